@@ -1,0 +1,47 @@
+//! What should be conserved.
+
+/// The balances of a model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ledger {
+    /// One balance for each conserved quantity.
+    pub balances: Vec<Balance>,
+}
+
+/// The account of one conserved quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Balance {
+    /// Name with unit, as in files: `water_m3`.
+    pub quantity: &'static str,
+    /// Amount at the start.
+    pub initial: f64,
+    /// Amount that came in since.
+    pub inflow: f64,
+    /// Amount that went out since.
+    pub outflow: f64,
+    /// Amount now.
+    pub now: f64,
+}
+
+impl Balance {
+    /// (now - initial - inflow + outflow) / max(initial + inflow, now + outflow), in magnitudes; 0 where there
+    /// never was anything.
+    pub fn relative_error(&self) -> f64 {
+        let scale = (self.initial.abs() + self.inflow.abs()).max(self.now.abs() + self.outflow.abs());
+        if scale == 0.0 { 0.0 } else { (self.now - self.initial - self.inflow + self.outflow) / scale }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Balance;
+
+    #[test]
+    fn relative_error_counts_what_came_in_and_went_out() {
+        let mut water = Balance { quantity: "water_m3", initial: 10.0, inflow: 5.0, outflow: 3.0, now: 12.0 };
+        assert_eq!(water.relative_error(), 0.0);
+        water.now = 13.5;
+        assert!((water.relative_error() - 1.5 / 16.5).abs() < 1e-15);
+        let none = Balance { quantity: "water_m3", initial: 0.0, inflow: 0.0, outflow: 0.0, now: 0.0 };
+        assert_eq!(none.relative_error(), 0.0);
+    }
+}

@@ -1,0 +1,92 @@
+//! The contract a model fulfils, and what it gives: frames, gauges, maps and a ledger.
+//!
+//! A model knows no screen, file or window. Whoever runs it asks for a time and reads what it shows.
+
+mod frame;
+mod gauge;
+mod ledger;
+mod map;
+
+pub use frame::{Column, Frame, ParticleSet, Values};
+pub use gauge::GaugeColumn;
+pub use ledger::{Balance, Ledger};
+pub use map::Map;
+
+use std::sync::atomic::AtomicBool;
+
+/// What can go wrong while a model runs. The text says what happened, when, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
+    /// The computation broke down (a value that is not a number, a step too small to go on).
+    #[error("the computation broke down at t = {time} s, step {step}: {what}")]
+    Breakdown {
+        /// Simulated time, s.
+        time: f64,
+        /// Number of the step.
+        step: u64,
+        /// What was seen and what to try.
+        what: String,
+    },
+    /// The scene asks for something that cannot be set up.
+    #[error("{0}")]
+    Setup(String),
+    /// A saved state that does not fit this scene or this version.
+    #[error("the checkpoint cannot be used: {0}")]
+    Checkpoint(String),
+}
+
+/// A model: physics that advances in time and can be looked at.
+///
+/// The model steps at its own pace. The state that it shows at the time asked for is read between two steps
+/// (dense output), so when it is looked at never changes the physics: the same scene gives the same bits
+/// whatever the frame or gauge period.
+pub trait Model: Send {
+    /// The model's name as written in a scene: `flood`, `gas` or `dew`.
+    fn name(&self) -> &'static str;
+
+    /// The time the model shows now, s. Exactly the time last asked of [`Model::advance_to`].
+    fn time(&self) -> f64;
+
+    /// Steps taken so far (gas: collisions).
+    fn steps(&self) -> u64;
+
+    /// Particles moved so far, summed over the steps: the measure of work done.
+    fn particle_steps(&self) -> u64;
+
+    /// Particles in the model now.
+    fn particles(&self) -> usize;
+
+    /// Advances so that the model shows `time` (s, not before the present one). Returns early, at a time
+    /// before `time` and in a sound state, when `stop` becomes true.
+    ///
+    /// # Errors
+    /// [`ModelError::Breakdown`] where the computation cannot go on; the state before it stays readable.
+    fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError>;
+
+    /// The particles at the time shown.
+    fn frame(&self) -> Frame;
+
+    /// Names and units of the gauge quantities, in the order of [`Model::gauge_row`].
+    fn gauge_columns(&self) -> Vec<GaugeColumn>;
+
+    /// The gauge values at the time shown; not-a-number where a gauge has nothing to measure.
+    fn gauge_row(&self) -> Vec<f64>;
+
+    /// Fields over the model's own map grid, as they stand now. Empty for a model without maps.
+    fn maps(&self) -> Vec<Map>;
+
+    /// What should be conserved, what came in and what went out.
+    fn ledger(&self) -> Ledger;
+
+    /// Things a user should know about this run, in sentences.
+    fn warnings(&self) -> Vec<String>;
+
+    /// The whole state, to the bit.
+    fn save(&self) -> Vec<u8>;
+
+    /// Takes back a state that [`Model::save`] wrote for the same scene.
+    ///
+    /// # Errors
+    /// [`ModelError::Checkpoint`] where the bytes are damaged or belong to another scene.
+    fn restore(&mut self, state: &[u8]) -> Result<(), ModelError>;
+}

@@ -1,0 +1,286 @@
+//! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
+//! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// The `[flood]` table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Flood {
+    /// Which formulation moves the water.
+    pub scheme: Scheme,
+    /// Distance between particles, m, in water of depth `spacing_depth_m`. All particles hold the same volume,
+    /// `spacing_m^2 * spacing_depth_m`, so they stand closer in deeper water and wider in shallower.
+    pub spacing_m: f64,
+    /// The depth at which particles are `spacing_m` apart, m. Left out: the mean depth of the initial water, or 1 m
+    /// where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing_depth_m: Option<f64>,
+    /// Acceleration of gravity, m/s2.
+    pub gravity_m_per_s2: f64,
+    /// Manning's roughness n, s/m^(1/3): a number or a raster.
+    pub manning: Manning,
+    /// A place counts as wet above this depth, m (maps and extent).
+    pub wet_depth_m: f64,
+    /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub map_every_s: Option<f64>,
+    /// Parameters of scheme `balanced`.
+    pub balanced: Balanced,
+    /// Parameters of scheme `paper`.
+    pub paper: Paper,
+    /// What happens at the four sides of the terrain.
+    pub edges: Edges,
+    /// Water that is there at the start.
+    pub water: Vec<Water>,
+    /// Water that comes in.
+    pub inflow: Vec<Inflow>,
+    /// Points where depth, level and velocity are recorded.
+    pub gauge: Vec<Gauge>,
+    /// Lines through which the discharge is recorded.
+    pub section: Vec<Section>,
+    /// A GeoJSON file with the flooded area as observed; hit rate and critical success index are then reported.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observed_extent: Option<PathBuf>,
+}
+
+impl Default for Flood {
+    fn default() -> Self {
+        Self {
+            scheme: Scheme::Balanced,
+            spacing_m: 10.0,
+            spacing_depth_m: None,
+            gravity_m_per_s2: 9.81,
+            manning: Manning::Number(0.03),
+            wet_depth_m: 0.01,
+            map_every_s: None,
+            balanced: Balanced::default(),
+            paper: Paper::default(),
+            edges: Edges::default(),
+            water: Vec::new(),
+            inflow: Vec::new(),
+            gauge: Vec::new(),
+            section: Vec::new(),
+            observed_extent: None,
+        }
+    }
+}
+
+/// Which formulation moves the water.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// Well-balanced, conservative, with Riemann pair forces: right as well as stable.
+    Balanced,
+    /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
+    Paper,
+}
+
+/// Manning's roughness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Manning {
+    /// One value everywhere, s/m^(1/3).
+    Number(f64),
+    /// A raster of values in any format that terrain comes in.
+    Raster {
+        /// The file.
+        raster: PathBuf,
+    },
+}
+
+/// Parameters of scheme `balanced`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Balanced {
+    /// Time step over (smoothing length / wave speed).
+    pub cfl: f64,
+    /// Smoothing length over particle distance (eta).
+    pub smoothing: f64,
+    /// Smoothing length at most this many times that in water of depth `spacing_depth_m`.
+    pub largest_smoothing: f64,
+}
+
+impl Default for Balanced {
+    fn default() -> Self {
+        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0 }
+    }
+}
+
+/// Parameters of scheme `paper`, defaults from its Table 1.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Paper {
+    /// Fixed time step, s.
+    pub time_step_s: f64,
+    /// Initial smoothing length h0, m.
+    pub smoothing_length_m: f64,
+    /// Density of water rho0 (also the reference two-dimensional density), kg/m3.
+    pub density_kg_per_m3: f64,
+    /// Gas constant k.
+    pub gas_constant: f64,
+    /// Viscosity.
+    pub viscosity: f64,
+    /// Particle radius, m (drawing only).
+    pub radius_m: f64,
+    /// The terrain-difference velocity control force, on or off.
+    pub control_force: bool,
+    /// Strength of the control force; the paper prints no coefficient.
+    pub control_strength: f64,
+    /// Side of the control square over the smoothing length (alpha).
+    pub control_square: f64,
+    /// Negative pressures are set to 0.
+    pub clip_negative_pressure: bool,
+    /// Smoothing length at most this many times h0.
+    pub largest_smoothing: f64,
+}
+
+impl Default for Paper {
+    fn default() -> Self {
+        Self {
+            time_step_s: 0.02,
+            smoothing_length_m: 2.66,
+            density_kg_per_m3: 1000.0,
+            gas_constant: 10.0,
+            viscosity: 0.1,
+            radius_m: 0.5,
+            control_force: true,
+            control_strength: 1.0,
+            control_square: 0.5,
+            clip_negative_pressure: true,
+            largest_smoothing: 4.0,
+        }
+    }
+}
+
+/// The four sides of the terrain.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Edges {
+    /// Side at the smallest x.
+    pub west: Edge,
+    /// Side at the largest x.
+    pub east: Edge,
+    /// Side at the smallest y.
+    pub south: Edge,
+    /// Side at the largest y.
+    pub north: Edge,
+}
+
+/// What happens at one side.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Edge {
+    /// Water flows out and is counted; nothing comes in.
+    #[default]
+    Open,
+    /// A wall without friction.
+    Wall,
+    /// What leaves here comes in at the opposite side (which must be periodic too).
+    Periodic,
+    /// The level is held at this value over time, m.
+    Stage(Series),
+}
+
+/// A value over time: a number, a table of `[time_s, value]` rows, or a CSV file with those two columns.
+/// Between rows it is linear; before the first and after the last it stays as there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Series {
+    /// The same at all times.
+    Constant(f64),
+    /// Rows of time in s and value.
+    Table(Vec<[f64; 2]>),
+    /// A CSV file: a header line, then rows of time in s and value.
+    File {
+        /// The file.
+        csv: PathBuf,
+    },
+}
+
+/// Water that is there at the start. Give exactly one of `level_m`, `depth_m`, `depth_raster`, `level_raster` or `block`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Water {
+    /// At rest up to this level, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level_m: Option<f64>,
+    /// The same depth everywhere, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_m: Option<f64>,
+    /// A raster of depths, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_raster: Option<PathBuf>,
+    /// Only inside this polygon: corners `[x, y]` in the terrain's coordinates. Left out: everywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polygon: Option<Vec<[f64; 2]>>,
+    /// A block of particles released above the ground, falling freely until it lands.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<Block>,
+    /// Velocity at the start `[east, north]`, m/s.
+    pub velocity_m_per_s: [f64; 2],
+}
+
+/// A block of particles in the air.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Block {
+    /// Corner at the smallest x and y.
+    pub from: [f64; 2],
+    /// Corner at the largest x and y.
+    pub to: [f64; 2],
+    /// Height of its lower side above the ground below its centre, m.
+    pub height_m: f64,
+    /// Layers of particles, one above the other, one spacing apart.
+    #[serde(default = "one")]
+    pub layers: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// Water that comes in. Give exactly one of `at` or `line`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Inflow {
+    /// Name, for gauges and messages.
+    pub name: String,
+    /// At a point `[x, y]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+    /// Spread along a line of points `[x, y]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<Vec<[f64; 2]>>,
+    /// Discharge over time, m3/s.
+    pub discharge_m3_per_s: Series,
+    /// Velocity `[east, north]` with which the water comes in, m/s.
+    #[serde(default)]
+    pub velocity_m_per_s: [f64; 2],
+}
+
+/// A point where depth, level and velocity are recorded. Give exactly one of `at` or `lon_lat`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gauge {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Place `[x, y]` in the terrain's coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+    /// Place as longitude and latitude, degrees (WGS 84).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lon_lat: Option<[f64; 2]>,
+}
+
+/// A line through which the discharge is recorded, positive from its left to its right side
+/// (left of the way from its first to its last point).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Points `[x, y]` in the terrain's coordinates.
+    pub line: Vec<[f64; 2]>,
+}
