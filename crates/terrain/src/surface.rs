@@ -1,0 +1,185 @@
+//! Smooth ground through heights on a regular grid.
+//!
+//! A bicubic Hermite surface: every node carries its height, its two slopes and its twist, and each patch between four
+//! nodes is a cubic in both directions, so heights and slopes are continuous everywhere. Slopes and twists are limited
+//! so that all sixteen Bezier points of a patch lie between the lowest and the highest of its four nodes (convex hull
+//! property of Bernstein polynomials): the surface never over- or undershoots the data, makes no pits and no bumps of
+//! its own, and is exact for a plane.
+
+use rayon::prelude::*;
+
+/// A slope is at most this many times the lesser of the two one-sided differences. 3 keeps an edge of a patch monotone
+/// (Fritsch and Carlson 1980); half of that keeps the inner Bezier points in range as well, as they add two slopes.
+const STEEPEST: f64 = 1.5;
+
+/// What is known of the ground at one node, in units of cells: derivatives are differences per cell.
+#[derive(Debug, Clone, Copy, Default)]
+struct Node {
+    height: f64,
+    slope_x: f64,
+    slope_y: f64,
+    twist: f64,
+}
+
+/// A smooth surface through heights on a regular grid.
+#[derive(Debug, Clone)]
+pub(crate) struct Surface {
+    /// Nodes of the grid and one ring round it, row by row from the south-west.
+    nodes: Vec<Node>,
+    /// Nodes in a row, ring included.
+    stride: usize,
+    /// Patches in each direction.
+    patches: [usize; 2],
+    /// Place of the south-west node of the ring.
+    corner: [f64; 2],
+    /// Nodes per metre.
+    per_metre: [f64; 2],
+}
+
+impl Surface {
+    /// The surface through `heights`, `columns` by `rows`, row by row from the south-west, the first at `first`,
+    /// neighbours `cell` apart. It reaches one cell beyond the outermost nodes, going on as it ends there.
+    pub(crate) fn new(heights: &[f64], [columns, rows]: [usize; 2], first: [f64; 2], cell: [f64; 2]) -> Self {
+        assert!(columns > 0 && rows > 0 && heights.len() == columns * rows, "a surface needs all its heights");
+        let padded = with_ring(heights, [columns, rows]);
+        let stride = columns + 2;
+        Self {
+            nodes: nodes(&padded, stride, rows + 2),
+            stride,
+            patches: [columns + 1, rows + 1],
+            corner: [first[0] - cell[0], first[1] - cell[1]],
+            per_metre: [1.0 / cell[0], 1.0 / cell[1]],
+        }
+    }
+
+    /// Height and slope `[dz/dx, dz/dy]`; the nearest edge's outside the ring. Never panics.
+    #[inline]
+    pub(crate) fn height_and_slope(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let (column, u) = patch((x - self.corner[0]) * self.per_metre[0], self.patches[0]);
+        let (row, v) = patch((y - self.corner[1]) * self.per_metre[1], self.patches[1]);
+        let south = row * self.stride + column;
+        let north = south + self.stride;
+        let [a, b] = [self.nodes[south], self.nodes[south + 1]];
+        let [c, d] = [self.nodes[north], self.nodes[north + 1]];
+        let (bu, du) = hermite(u);
+        let (bv, dv) = hermite(v);
+        // Along the two x-edges: height, y-slope, and their x-derivatives.
+        let along = |w: &[f64; 4], p: &Node, q: &Node| {
+            (
+                w[0] * p.height + w[1] * q.height + w[2] * p.slope_x + w[3] * q.slope_x,
+                w[0] * p.slope_y + w[1] * q.slope_y + w[2] * p.twist + w[3] * q.twist,
+            )
+        };
+        let (south_height, south_slope) = along(&bu, &a, &b);
+        let (north_height, north_slope) = along(&bu, &c, &d);
+        let (south_dx, south_twist) = along(&du, &a, &b);
+        let (north_dx, north_twist) = along(&du, &c, &d);
+        let across = |w: &[f64; 4], p: f64, q: f64, dp: f64, dq: f64| w[0] * p + w[1] * q + w[2] * dp + w[3] * dq;
+        let height = across(&bv, south_height, north_height, south_slope, north_slope);
+        let slope_x = across(&bv, south_dx, north_dx, south_twist, north_twist);
+        let slope_y = across(&dv, south_height, north_height, south_slope, north_slope);
+        (height, [slope_x * self.per_metre[0], slope_y * self.per_metre[1]])
+    }
+}
+
+/// The patch in which a grid coordinate lies and the place in it, 0 to 1; the outermost patches' outer sides beyond.
+#[inline]
+fn patch(position: f64, patches: usize) -> (usize, f64) {
+    let position = position.max(0.0).min(patches as f64);
+    // Truncation is floor here, and not-a-number has become 0.
+    let index = (position as usize).min(patches - 1);
+    (index, position - index as f64)
+}
+
+/// Cubic Hermite weights at `t` of (left value, right value, left slope, right slope), and their derivatives.
+#[inline]
+fn hermite(t: f64) -> ([f64; 4], [f64; 4]) {
+    let s = 1.0 - t;
+    let right = t * t * (3.0 - 2.0 * t);
+    let rise = 6.0 * t * s;
+    ([1.0 - right, right, t * s * s, -t * t * s], [-rise, rise, s * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)])
+}
+
+/// The heights with one ring of cells round them in which the ground goes on as it ends: with the lesser of the last
+/// two differences, so that a cliff at the edge does not dig a pit beyond it.
+fn with_ring(heights: &[f64], [columns, rows]: [usize; 2]) -> Vec<f64> {
+    let beyond = |line: &dyn Fn(usize) -> f64, length: usize| {
+        let [last, before, third] = [0, 1.min(length - 1), 2.min(length - 1)].map(line);
+        last + if length > 2 { lesser(last - before, before - third) } else { last - before }
+    };
+    let stride = columns + 2;
+    let mut padded = vec![0.0; stride * (rows + 2)];
+    for (row, line) in heights.chunks_exact(columns).enumerate() {
+        let target = &mut padded[(row + 1) * stride..][..stride];
+        target[1..=columns].copy_from_slice(line);
+        target[0] = beyond(&|i| line[i], columns);
+        target[stride - 1] = beyond(&|i| line[columns - 1 - i], columns);
+    }
+    for column in 0..stride {
+        padded[column] = beyond(&|i| padded[(i + 1) * stride + column], rows);
+        padded[(rows + 1) * stride + column] = beyond(&|i| padded[(rows - i) * stride + column], rows);
+    }
+    padded
+}
+
+/// The one nearer to 0 where both have the same sign, else 0.
+fn lesser(a: f64, b: f64) -> f64 {
+    if a * b <= 0.0 { 0.0 } else { a.signum() * a.abs().min(b.abs()) }
+}
+
+/// The slope at a node, from the differences before and after it: the mean, limited.
+fn limited(before: f64, after: f64) -> f64 {
+    lesser(0.5 * (before + after), STEEPEST * lesser(before, after))
+}
+
+/// Heights, limited slopes and limited twists of all nodes.
+fn nodes(heights: &[f64], stride: usize, rows: usize) -> Vec<Node> {
+    // Beyond the grid's ends the ground goes on with the last difference.
+    let difference = |index: usize, step: usize, position: usize, length: usize| {
+        let after = (position + 1 < length).then(|| heights[index + step] - heights[index]);
+        let before = (position > 0).then(|| heights[index] - heights[index - step]);
+        (before.or(after).unwrap_or(0.0), after.or(before).unwrap_or(0.0))
+    };
+    let mut nodes: Vec<Node> = (0..heights.len())
+        .into_par_iter()
+        .with_min_len(4096)
+        .map(|index| {
+            let (west, east) = difference(index, 1, index % stride, stride);
+            let (south, north) = difference(index, stride, index / stride, rows);
+            Node { height: heights[index], slope_x: limited(west, east), slope_y: limited(south, north), twist: 0.0 }
+        })
+        .collect();
+    let twists: Vec<f64> =
+        (0..nodes.len()).into_par_iter().with_min_len(4096).map(|i| limited_twist(&nodes, i, stride, rows)).collect();
+    for (node, twist) in nodes.iter_mut().zip(twists) {
+        node.twist = twist;
+    }
+    nodes
+}
+
+/// The twist at a node: the central difference of the y-slopes along x, limited so that the inner Bezier point next to
+/// this node in each of the four patches round it stays between the lowest and the highest corner of that patch.
+fn limited_twist(nodes: &[Node], index: usize, stride: usize, rows: usize) -> f64 {
+    let (column, row) = (index % stride, index / stride);
+    if column == 0 || column + 1 == stride || row == 0 || row + 1 == rows {
+        return 0.0;
+    }
+    let node = nodes[index];
+    let along_x = nodes[index + 1].slope_y - nodes[index - 1].slope_y;
+    let along_y = nodes[index + stride].slope_x - nodes[index - stride].slope_x;
+    let mut twist = 0.25 * (along_x + along_y);
+    for (sx, sy) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+        let beside = if sx > 0.0 { index + 1 } else { index - 1 };
+        let shift = |i: usize| if sy > 0.0 { i + stride } else { i - stride };
+        let corners = [index, beside, shift(index), shift(beside)].map(|i| nodes[i].height);
+        let low = corners.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // Bezier point: height + sx slope_x / 3 + sy slope_y / 3 + sx sy twist / 9.
+        let without = node.height + (sx * node.slope_x + sy * node.slope_y) / 3.0;
+        let sign = sx * sy;
+        let [least, most] = [(low - without) * 9.0, (high - without) * 9.0].map(|bound| bound * sign);
+        // 0 always lies between the two, but for rounding: `STEEPEST` sees to it.
+        twist = twist.max(least.min(most).min(0.0)).min(least.max(most).max(0.0));
+    }
+    twist
+}
