@@ -1,0 +1,82 @@
+//! First-order exact slopes of the surface and the velocity.
+
+use super::{Column, Slopes};
+use crate::arrangement::Arrangement;
+use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_sph::{BLOCK, LANES, Lanes};
+use multiversion::multiversion;
+use rayon::prelude::*;
+
+/// Relative difference of surface or velocity at which water counts as moving.
+const REST: f64 = 0.003;
+
+/// Finds the slopes of all particles.
+pub(super) fn find(gravity: f64, arrangement: &Arrangement, columns: &[Column], slopes: &mut [Slopes]) {
+    slopes.par_chunks_mut(BLOCK).enumerate().for_each(|(block, slopes)| {
+        find_block(gravity, arrangement, columns, block * BLOCK, slopes);
+    });
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn find_block(gravity: f64, arrangement: &Arrangement, columns: &[Column], first: usize, slopes: &mut [Slopes]) {
+    for (k, slopes) in slopes.iter_mut().enumerate() {
+        of_one(gravity, columns, arrangement.lists.of(first + k), first + k, slopes);
+    }
+}
+
+#[inline(always)]
+fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut Slopes) {
+    let own = columns[i];
+    let inverse_h = Lanes::splat(1.0 / own.h);
+    let end = Lanes::splat(2.0 * own.h);
+    let [mut xx, mut xy, mut yy] = [Lanes::ZERO; 3];
+    let [mut surface_x, mut surface_y, mut u_x, mut u_y, mut v_x, mut v_y] = [Lanes::ZERO; 6];
+    let [mut surface_step, mut velocity_step] = [Lanes::ZERO; 2];
+    for index in list.chunks_exact(LANES) {
+        let near: [&Column; LANES] = std::array::from_fn(|lane| &columns[index[lane] as usize]);
+        let ex = Lanes::from_fn(|lane| near[lane].x) - own.x;
+        let ey = Lanes::from_fn(|lane| near[lane].y) - own.y;
+        let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-12 * own.h));
+        // The gradient of W at i is slope * (ex, ey); slope is 0 beyond the support.
+        let slope = cubic_spline::slope_over_r(r, Lanes::splat(1.0) / r, inverse_h);
+        let weight = slope * Lanes::from_fn(|lane| near[lane].area);
+        let (weight_x, weight_y) = (weight * ex, weight * ey);
+        xx += weight_x * ex;
+        xy += weight_x * ey;
+        yy += weight_y * ey;
+        let ds = Lanes::from_fn(|lane| near[lane].surface) - own.surface;
+        let du = Lanes::from_fn(|lane| near[lane].u) - own.u;
+        let dv = Lanes::from_fn(|lane| near[lane].v) - own.v;
+        surface_x += weight_x * ds;
+        surface_y += weight_y * ds;
+        u_x += weight_x * du;
+        u_y += weight_y * du;
+        v_x += weight_x * dv;
+        v_y += weight_y * dv;
+        surface_step = surface_step.max(r.select_below(end, ds.abs(), Lanes::ZERO));
+        velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, Lanes::ZERO));
+    }
+    let moment = [xx.sum(), xy.sum(), yy.sum()];
+    let b = renormalisation(moment);
+    slopes.renormalisation = b;
+    let turned = |x: f64, y: f64| [b[0] * x + b[1] * y, b[1] * x + b[2] * y];
+    slopes.surface = turned(surface_x.sum(), surface_y.sum());
+    slopes.u = turned(u_x.sum(), u_y.sum());
+    slopes.v = turned(v_x.sum(), v_y.sum());
+    slopes.fullness = 0.5 * (moment[0] + moment[2]);
+    let wave = (gravity * own.depth).sqrt();
+    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
+    slopes.rest = (-unrest * unrest).exp();
+}
+
+/// Inverse of the moment matrix (xx, xy, yy), made invertible where the neighbours stand in a line or are missing.
+fn renormalisation([mut xx, xy, mut yy]: [f64; 3]) -> [f64; 3] {
+    let trace = xx + yy;
+    if xx * yy - xy * xy <= 0.02 * trace * trace || trace <= 0.2 {
+        let more = 0.1 * trace.max(0.1);
+        xx += more;
+        yy += more;
+    }
+    let inverse = 1.0 / (xx * yy - xy * xy);
+    [yy * inverse, -xy * inverse, xx * inverse]
+}

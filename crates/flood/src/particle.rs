@@ -1,0 +1,39 @@
+//! One column of water.
+
+use serde::{Deserialize, Serialize};
+
+/// A particle: a column of water of constant volume that moves with the flow.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Particle {
+    /// Place, m.
+    pub x: f64,
+    /// Place, m.
+    pub y: f64,
+    /// Velocity, m/s.
+    pub u: f64,
+    /// Velocity, m/s.
+    pub v: f64,
+    /// Acceleration by pressure and ground (friction apart), m/s2.
+    pub ax: f64,
+    /// Acceleration by pressure and ground (friction apart), m/s2.
+    pub ay: f64,
+    /// Volume, m3.
+    pub volume: f64,
+    /// Smoothing length, m.
+    pub h: f64,
+    /// Depth of the water, m.
+    pub depth: f64,
+    /// Height of the ground, m.
+    pub ground: f64,
+    /// Divergence of the velocity, 1/s.
+    pub divergence: f64,
+    /// Lasting identity.
+    pub id: u64,
+}
+
+impl Particle {
+    /// A particle at rest at (x, y).
+    pub fn new(id: u64, x: f64, y: f64, volume: f64, h: f64) -> Self {
+        Self { x, y, u: 0.0, v: 0.0, ax: 0.0, ay: 0.0, volume, h, depth: 0.0, ground: 0.0, divergence: 0.0, id }
+    }
+}
