@@ -1,6 +1,7 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
+use crate::Series;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -79,7 +80,11 @@ pub enum Scheme {
 
 /// Manning's roughness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected a number, as in 0.03, or a file, as in { raster = \"n.tif\" }"
+)]
 pub enum Manning {
     /// One value everywhere, s/m^(1/3).
     Number(f64),
@@ -183,23 +188,7 @@ pub enum Edge {
     Stage(Series),
 }
 
-/// A value over time: a number, a table of `[time_s, value]` rows, or a CSV file with those two columns.
-/// Between rows it is linear; before the first and after the last it stays as there.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Series {
-    /// The same at all times.
-    Constant(f64),
-    /// Rows of time in s and value.
-    Table(Vec<[f64; 2]>),
-    /// A CSV file: a header line, then rows of time in s and value.
-    File {
-        /// The file.
-        csv: PathBuf,
-    },
-}
-
-/// Water that is there at the start. Give exactly one of `level_m`, `depth_m`, `depth_raster`, `level_raster` or `block`.
+/// Water that is there at the start. Give exactly one of `level_m`, `depth_m`, `depth_raster` or `block`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Water {

@@ -1,9 +1,23 @@
 //! Scene files: what a user asks for, typed, in SI units and checked.
+//!
+//! [`Scene::read`] takes a TOML file, [`Scene::parse`] its text; [`builtin`] holds the scenes that come with the program.
+//! A [`Scene`] that was read is checked: numbers are finite and in range, names unique, exactly one kind given where
+//! one is meant. Files named in it are opened by whoever uses them.
 
+mod builtin;
+mod check;
+mod document;
+mod error;
 mod flood;
+mod parse;
+mod series;
 mod terrain;
+mod write;
 
+pub use builtin::{BUILTIN, Builtin, builtin};
+pub use error::{Place, Problem, SceneError};
 pub use flood::*;
+pub use series::{Series, Table};
 pub use terrain::*;
 
 use serde::{Deserialize, Serialize};
@@ -52,4 +66,26 @@ pub struct Run {
 
 fn default_checkpoint() -> f64 {
     60.0
+}
+
+impl Run {
+    /// Time between frames, s: as given, or a twentieth of the run.
+    pub fn frame_period_s(&self) -> f64 {
+        self.frame_every_s.unwrap_or(self.until_s / 20.0)
+    }
+
+    /// Time between gauge rows, s: as given, or a two-hundredth of the run.
+    pub fn gauge_period_s(&self) -> f64 {
+        self.gauge_every_s.unwrap_or(self.until_s / 200.0)
+    }
+}
+
+impl Scene {
+    /// Fills in what was left out and does not depend on the ground or the water: frame, gauge and map periods.
+    pub fn resolve_defaults(&mut self) {
+        let gauge_period = self.run.gauge_period_s();
+        self.run.frame_every_s = Some(self.run.frame_period_s());
+        self.run.gauge_every_s = Some(gauge_period);
+        self.flood.map_every_s.get_or_insert(gauge_period);
+    }
 }

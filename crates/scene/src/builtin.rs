@@ -1,0 +1,25 @@
+//! The scenes that come with the program.
+
+/// A scene that comes with the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Builtin {
+    /// Name: the model and a word, `flood/valley`.
+    pub name: &'static str,
+    /// The scene file, with comments.
+    pub text: &'static str,
+}
+
+macro_rules! builtin_scenes {
+    ($($name:literal),* $(,)?) => {
+        &[$(Builtin { name: $name, text: include_str!(concat!("../scenes/", $name, ".toml")) }),*]
+    };
+}
+
+/// All of them; the first is what runs when no scene is named.
+pub const BUILTIN: &[Builtin] =
+    builtin_scenes!["flood/valley", "flood/rough-terrain", "flood/dam-break", "flood/lake-at-rest"];
+
+/// The built-in scene called `name`.
+pub fn builtin(name: &str) -> Option<Builtin> {
+    BUILTIN.iter().copied().find(|scene| scene.name == name)
+}

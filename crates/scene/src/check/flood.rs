@@ -1,0 +1,202 @@
+//! Checks of `[flood]`.
+
+use super::{Check, Checked};
+use crate::series::check_rows;
+use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Paper, Problem, Series, Water};
+use std::collections::HashMap;
+
+/// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
+const LARGEST_MANNING: f64 = 1.0;
+
+impl Check {
+    pub(super) fn flood(&self, flood: &Flood) -> Checked {
+        self.above("flood.spacing_m", flood.spacing_m, 0.0)?;
+        if let Some(depth) = flood.spacing_depth_m {
+            self.above("flood.spacing_depth_m", depth, 0.0)?;
+        }
+        self.above("flood.gravity_m_per_s2", flood.gravity_m_per_s2, 0.0)?;
+        self.manning(&flood.manning)?;
+        self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
+        if let Some(period) = flood.map_every_s {
+            self.above("flood.map_every_s", period, 0.0)?;
+        }
+        self.balanced(&flood.balanced)?;
+        self.paper(&flood.paper)?;
+        self.edges(&flood.edges)?;
+        for (index, water) in flood.water.iter().enumerate() {
+            self.water(&format!("flood.water.{index}"), water)?;
+        }
+        for (index, inflow) in flood.inflow.iter().enumerate() {
+            self.inflow(&format!("flood.inflow.{index}"), inflow)?;
+        }
+        for (index, gauge) in flood.gauge.iter().enumerate() {
+            self.gauge(&format!("flood.gauge.{index}"), gauge)?;
+        }
+        for (index, section) in flood.section.iter().enumerate() {
+            self.line(&format!("flood.section.{index}.line"), &section.line)?;
+        }
+        self.names(flood)
+    }
+
+    fn manning(&self, manning: &Manning) -> Checked {
+        let Manning::Number(n) = *manning else { return Ok(()) };
+        self.at_least("flood.manning", n, 0.0)?;
+        self.require("flood.manning", n <= LARGEST_MANNING, || {
+            format!("must be Manning's n, 0.01 to 0.2 for most ground; for Strickler's k give 1/k = {:.4}", 1.0 / n)
+        })
+    }
+
+    fn balanced(&self, balanced: &Balanced) -> Checked {
+        self.require("flood.balanced.cfl", balanced.cfl > 0.0 && balanced.cfl <= 1.0, || {
+            "must be larger than 0 and at most 1".into()
+        })?;
+        self.require("flood.balanced.smoothing", (1.0..=4.0).contains(&balanced.smoothing), || {
+            "must be from 1 to 4".into()
+        })?;
+        self.at_least("flood.balanced.largest_smoothing", balanced.largest_smoothing, 1.0)
+    }
+
+    fn paper(&self, paper: &Paper) -> Checked {
+        self.above("flood.paper.time_step_s", paper.time_step_s, 0.0)?;
+        self.above("flood.paper.smoothing_length_m", paper.smoothing_length_m, 0.0)?;
+        self.above("flood.paper.density_kg_per_m3", paper.density_kg_per_m3, 0.0)?;
+        self.at_least("flood.paper.gas_constant", paper.gas_constant, 0.0)?;
+        self.at_least("flood.paper.viscosity", paper.viscosity, 0.0)?;
+        self.above("flood.paper.radius_m", paper.radius_m, 0.0)?;
+        self.at_least("flood.paper.control_strength", paper.control_strength, 0.0)?;
+        self.above("flood.paper.control_square", paper.control_square, 0.0)?;
+        self.at_least("flood.paper.largest_smoothing", paper.largest_smoothing, 1.0)
+    }
+
+    fn edges(&self, edges: &Edges) -> Checked {
+        for (side, edge) in
+            [("west", &edges.west), ("east", &edges.east), ("south", &edges.south), ("north", &edges.north)]
+        {
+            if let Edge::Stage(series) = edge {
+                self.series(&format!("flood.edges.{side}.stage"), series)?;
+            }
+        }
+        self.periodic(("west", &edges.west), ("east", &edges.east))?;
+        self.periodic(("south", &edges.south), ("north", &edges.north))
+    }
+
+    /// What leaves at one side comes in at the other, so both are periodic or neither.
+    fn periodic(&self, one: (&str, &Edge), other: (&str, &Edge)) -> Checked {
+        for ((side, edge), (opposite, opposite_edge)) in [(one, other), (other, one)] {
+            let alone = *edge == Edge::Periodic && *opposite_edge != Edge::Periodic;
+            self.require(&format!("flood.edges.{side}"), !alone, || {
+                format!("the opposite side must be periodic too: give {opposite} = \"periodic\"")
+            })?;
+        }
+        Ok(())
+    }
+
+    fn water(&self, key: &str, water: &Water) -> Checked {
+        self.exactly_one(
+            key,
+            &[
+                ("level_m", water.level_m.is_some()),
+                ("depth_m", water.depth_m.is_some()),
+                ("depth_raster", water.depth_raster.is_some()),
+                ("block", water.block.is_some()),
+            ],
+        )?;
+        if let Some(depth) = water.depth_m {
+            self.above(&format!("{key}.depth_m"), depth, 0.0)?;
+        }
+        if let Some(polygon) = &water.polygon {
+            self.polygon(&format!("{key}.polygon"), polygon)?;
+        }
+        let Some(block) = &water.block else { return Ok(()) };
+        self.require(&format!("{key}.polygon"), water.polygon.is_none(), || {
+            "a block has its own corners; leave the polygon out".into()
+        })?;
+        self.block(&format!("{key}.block"), block)
+    }
+
+    fn block(&self, key: &str, block: &Block) -> Checked {
+        let ordered = block.from[0] < block.to[0] && block.from[1] < block.to[1];
+        self.require(&format!("{key}.to"), ordered, || {
+            format!("must be larger than from = {:?} in both x and y", block.from)
+        })?;
+        self.at_least(&format!("{key}.height_m"), block.height_m, 0.0)?;
+        self.at_least(&format!("{key}.layers"), block.layers as f64, 1.0)
+    }
+
+    fn inflow(&self, key: &str, inflow: &Inflow) -> Checked {
+        self.exactly_one(key, &[("at", inflow.at.is_some()), ("line", inflow.line.is_some())])?;
+        if let Some(line) = &inflow.line {
+            self.line(&format!("{key}.line"), line)?;
+        }
+        let key = format!("{key}.discharge_m3_per_s");
+        self.series(&key, &inflow.discharge_m3_per_s)?;
+        let smallest = match &inflow.discharge_m3_per_s {
+            Series::Constant(value) => *value,
+            Series::Table(rows) => rows.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min),
+            Series::File { .. } => 0.0,
+        };
+        self.require(&key, smallest >= 0.0, || {
+            format!("a discharge must not be negative ({smallest} here): water leaves over open edges")
+        })
+    }
+
+    fn series(&self, key: &str, series: &Series) -> Checked {
+        let Series::Table(rows) = series else { return Ok(()) };
+        let at = |row: usize| if rows.is_empty() { key.to_owned() } else { format!("{key}.{row}") };
+        check_rows(rows).map_err(|(row, what)| self.problem(&at(row), &what))
+    }
+
+    fn gauge(&self, key: &str, gauge: &Gauge) -> Checked {
+        self.exactly_one(key, &[("at", gauge.at.is_some()), ("lon_lat", gauge.lon_lat.is_some())])?;
+        let Some([longitude, latitude]) = gauge.lon_lat else { return Ok(()) };
+        let on_earth = (-180.0..=360.0).contains(&longitude) && (-90.0..=90.0).contains(&latitude);
+        self.require(&format!("{key}.lon_lat"), on_earth, || {
+            "must be longitude, -180 to 180, then latitude, -90 to 90, in degrees".into()
+        })
+    }
+
+    fn line(&self, key: &str, line: &[[f64; 2]]) -> Checked {
+        self.require(key, line.len() >= 2, || "a line needs at least two points".into())?;
+        let double = line.windows(2).position(|pair| pair[0] == pair[1]);
+        self.require(key, double.is_none(), || {
+            format!(
+                "points {0} and {1} of the line (from 0) are the same",
+                double.unwrap_or(0),
+                double.unwrap_or(0) + 1
+            )
+        })
+    }
+
+    fn polygon(&self, key: &str, corners: &[[f64; 2]]) -> Checked {
+        self.require(key, corners.len() >= 3, || {
+            format!("a polygon needs at least three corners, not {}", corners.len())
+        })?;
+        let [x0, y0] = corners[0];
+        let next = corners.iter().cycle().skip(1);
+        let twice_area: f64 =
+            corners.iter().zip(next).map(|(a, b)| (a[0] - x0) * (b[1] - y0) - (b[0] - x0) * (a[1] - y0)).sum();
+        self.require(key, twice_area != 0.0, || "a polygon must have an area; its corners are on one line".into())
+    }
+
+    /// Names are fit for headers of tables and unique.
+    fn names(&self, flood: &Flood) -> Checked {
+        let gauges = flood.gauge.iter().map(|gauge| &gauge.name);
+        let sections = flood.section.iter().map(|section| &section.name);
+        let inflows = flood.inflow.iter().map(|inflow| &inflow.name);
+        let mut seen = HashMap::new();
+        let all = (gauges.enumerate().map(|named| ("gauge", named)))
+            .chain(sections.enumerate().map(|named| ("section", named)))
+            .chain(inflows.enumerate().map(|named| ("inflow", named)));
+        for (kind, (index, name)) in all {
+            let key = format!("flood.{kind}.{index}.name");
+            let fit = |c: char| c.is_alphanumeric() || " _-".contains(c);
+            self.require(&key, !name.trim().is_empty() && name.chars().all(fit), || {
+                "a name must be of letters, digits, spaces, `_` and `-`".into()
+            })?;
+            if let Some(other) = seen.insert(name, key.clone()) {
+                return Err(Problem::new(key, format!(" = {name:?}: this name is taken by {other}; give another")));
+            }
+        }
+        Ok(())
+    }
+}

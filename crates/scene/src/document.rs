@@ -1,0 +1,191 @@
+//! The text of a scene as a tree that knows where each value is written.
+
+use crate::error::{Place, Problem};
+use std::borrow::Cow;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A parsed TOML document with the overrides of the command line put in.
+///
+/// Places are byte ranges of the file's text, with the overrides' values counted on behind it, one byte apart.
+pub(crate) struct Document<'a> {
+    name: &'a str,
+    text: &'a str,
+    overrides: &'a [(String, String)],
+    root: Spanned<DeValue<'a>>,
+}
+
+impl<'a> Document<'a> {
+    /// Parses `text`, then sets each `(path, value)` of `overrides` in it.
+    pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Problem> {
+        let mut document = Self { name, text, overrides, root: Spanned::new(0..0, DeValue::Table(DeTable::new())) };
+        let table = DeTable::parse(text).map_err(|error| {
+            let what = format!("this is not TOML: {}", error.message().trim_end());
+            Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) }
+        })?;
+        document.root = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
+        let mut offset = text.len() + 1;
+        for (path, value) in overrides {
+            set(&mut document.root, path, override_value(value, offset)).map_err(|what| {
+                let place = Some(document.place(&(offset..offset + value.len())));
+                Problem { key: path.clone(), what, place }
+            })?;
+            offset += value.len() + 1;
+        }
+        Ok(document)
+    }
+
+    /// The tree, for deserialising.
+    pub fn root(&self) -> Spanned<DeValue<'a>> {
+        self.root.clone()
+    }
+
+    /// Where the value of `key` is written, or the nearest table round it that is written.
+    pub fn place_of(&self, key: &str) -> Option<Place> {
+        let mut node = &self.root;
+        for word in key.split('.') {
+            match child(node, word) {
+                Some(next) => node = next,
+                None => break,
+            }
+        }
+        let is_root = std::ptr::eq(node, &self.root);
+        (!is_root).then(|| self.place(&node.span()))
+    }
+
+    /// The path of the innermost key or value written at `span`.
+    pub fn key_at(&self, span: &Range<usize>) -> String {
+        let mut best = (usize::MAX, String::new());
+        visit(&self.root, "", &mut |path, range| {
+            let inside = range.start <= span.start && span.end <= range.end;
+            if inside && range.len() <= best.0 {
+                best = (range.len(), path.to_owned());
+            }
+        });
+        best.1
+    }
+
+    /// The line of the file, or the argument, that holds `span`.
+    pub fn place(&self, span: &Range<usize>) -> Place {
+        if span.start <= self.text.len() { self.place_in_text(span) } else { self.place_in_overrides(span) }
+    }
+
+    fn place_in_text(&self, span: &Range<usize>) -> Place {
+        let bytes = self.text.as_bytes();
+        let start = span.start.min(bytes.len());
+        let line_start = bytes[..start].iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
+        let line_end = bytes[start..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |length| start + length);
+        let characters = |range: Range<usize>| String::from_utf8_lossy(&bytes[range]).chars().count();
+        Place {
+            source: self.name.to_owned(),
+            line: Some(1 + bytes[..line_start].iter().filter(|&&b| b == b'\n').count()),
+            column: 1 + characters(line_start..start),
+            width: characters(start..span.end.clamp(start, line_end)),
+            text: String::from_utf8_lossy(&bytes[line_start..line_end]).trim_end().to_owned(),
+        }
+    }
+
+    fn place_in_overrides(&self, span: &Range<usize>) -> Place {
+        let mut end = self.text.len() + 1;
+        let at_fault = self.overrides.iter().find(|(_, value)| {
+            end += value.len() + 1;
+            span.start < end
+        });
+        let text = at_fault.map(|(path, value)| format!("{path}={value}")).unwrap_or_default();
+        Place { source: format!("--set {text}"), line: None, column: 1, width: text.chars().count(), text }
+    }
+}
+
+/// The value of an override: TOML where it is, else the words themselves, so that a name needs no quotes.
+fn override_value(text: &str, offset: usize) -> Spanned<DeValue<'_>> {
+    match DeValue::parse(text) {
+        Ok(value) => shifted(value, offset),
+        Err(_) => Spanned::new(offset..offset + text.len(), DeValue::String(Cow::Borrowed(text))),
+    }
+}
+
+/// The same value with all its places moved on by `offset` bytes.
+fn shifted(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
+    let moved = |span: Range<usize>| span.start + offset..span.end + offset;
+    let span = moved(value.span());
+    let inner = match value.into_inner() {
+        DeValue::Array(items) => DeValue::Array(items.into_iter().map(|item| shifted(item, offset)).collect()),
+        DeValue::Table(entries) => DeValue::Table(
+            entries
+                .into_iter()
+                .map(|(key, value)| (Spanned::new(moved(key.span()), key.into_inner()), shifted(value, offset)))
+                .collect(),
+        ),
+        other => other,
+    };
+    Spanned::new(span, inner)
+}
+
+/// Puts `value` at `path`, making tables on the way, and a new row where the index is one past the last.
+fn set<'a>(root: &mut Spanned<DeValue<'a>>, path: &'a str, value: Spanned<DeValue<'a>>) -> Result<(), String> {
+    if path.split('.').any(str::is_empty) {
+        return Err(": a path is words joined by dots, as in --set flood.inflow.0.discharge_m3_per_s=30".into());
+    }
+    let mut node = root;
+    for word in path.split('.') {
+        node = slot(node, word, value.span())?;
+    }
+    *node = value;
+    Ok(())
+}
+
+/// The value called `word` in `node`; an empty table where there is none.
+fn slot<'n, 'a>(
+    node: &'n mut Spanned<DeValue<'a>>,
+    word: &'a str,
+    span: Range<usize>,
+) -> Result<&'n mut Spanned<DeValue<'a>>, String> {
+    let new = Spanned::new(span.clone(), DeValue::Table(DeTable::new()));
+    match node.get_mut() {
+        DeValue::Table(table) => Ok(table.entry(Spanned::new(span, Cow::Borrowed(word))).or_insert(new)),
+        DeValue::Array(items) => {
+            let count = items.len();
+            let index = word.parse().ok().filter(|&index: &usize| index <= count).ok_or_else(|| {
+                format!(": `{word}` must be the number of a row, 0 to {count} ({count} adds a row at the end)")
+            })?;
+            if index == count {
+                items.push(new);
+            }
+            Ok(&mut items.as_mut()[index])
+        }
+        other => Err(format!(": there is no `{word}` in a {}", other.type_str())),
+    }
+}
+
+fn child<'n, 'a>(node: &'n Spanned<DeValue<'a>>, word: &str) -> Option<&'n Spanned<DeValue<'a>>> {
+    match node.get_ref() {
+        DeValue::Table(table) => table.get(word),
+        DeValue::Array(items) => items.as_ref().get(word.parse::<usize>().ok()?),
+        _ => None,
+    }
+}
+
+/// Calls `see` with the path and place of every key and every value below `node`.
+fn visit(node: &Spanned<DeValue<'_>>, path: &str, see: &mut impl FnMut(&str, Range<usize>)) {
+    see(path, node.span());
+    match node.get_ref() {
+        DeValue::Table(table) => {
+            for (key, value) in table {
+                let path = join(path, key.get_ref());
+                see(&path, key.span());
+                visit(value, &path, see);
+            }
+        }
+        DeValue::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                visit(item, &join(path, &index.to_string()), see);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn join(path: &str, word: &str) -> String {
+    if path.is_empty() { word.to_owned() } else { format!("{path}.{word}") }
+}

@@ -1,0 +1,129 @@
+//! From text to a scene.
+
+use crate::document::Document;
+use crate::{Problem, Scene, SceneError};
+use serde::Deserialize;
+use std::path::Path;
+
+impl Scene {
+    /// Reads a scene file. Paths in it stay as written: [`Scene::resolve_paths`] makes them absolute.
+    ///
+    /// # Errors
+    /// As [`Scene::parse`], or [`SceneError::Unreadable`].
+    pub fn read(path: &Path, overrides: &[(String, String)]) -> Result<Self, SceneError> {
+        let unreadable = |source| SceneError::Unreadable { path: path.to_owned(), source };
+        let text = std::fs::read_to_string(path).map_err(unreadable)?;
+        Self::parse(&text, &path.display().to_string(), overrides)
+    }
+
+    /// Reads a scene from TOML `text`, called `name` in messages, after setting each `(path, value)` of `overrides`
+    /// in it: `("flood.inflow.0.discharge_m3_per_s", "30")`. Checks it as [`Scene::check`] does.
+    ///
+    /// # Errors
+    /// [`SceneError::Invalid`] with the line and key of the first thing that is not as it must be.
+    pub fn parse(text: &str, name: &str, overrides: &[(String, String)]) -> Result<Self, SceneError> {
+        let document = Document::parse(text, name, overrides)?;
+        let scene = Self::deserialize(toml::de::ValueDeserializer::from(document.root()))
+            .map_err(|error| explain(&error, &document))?;
+        scene.find_problem().map_err(|mut problem| {
+            problem.place = document.place_of(&problem.key);
+            problem
+        })?;
+        Ok(scene)
+    }
+}
+
+/// A deserialising error in the user's words.
+fn explain(error: &toml::de::Error, document: &Document<'_>) -> Problem {
+    let message = error.message().trim_end();
+    let span = error.span();
+    let key = span.as_ref().map(|span| document.key_at(span)).unwrap_or_default();
+    let place = span.as_ref().map(|span| document.place(span));
+    if let Some(rest) = message.strip_prefix("missing field ") {
+        let name = words_in_ticks(rest).next().unwrap_or_default();
+        let path = if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+        let place = place.filter(|_| !key.is_empty());
+        return Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place };
+    }
+    let unknown = message.strip_prefix("unknown field ").or_else(|| message.strip_prefix("unknown variant "));
+    let what = match unknown {
+        Some(rest) => unknown_word(rest, message.starts_with("unknown field")),
+        None => wrong_type(message),
+    };
+    Problem { key, what, place }
+}
+
+/// What to write for a key that is missing.
+fn what_to_give(path: &str, name: &str) -> String {
+    match path {
+        "run" => "give a table [run] with until_s, the end of the run in seconds".into(),
+        "run.until_s" => "give the end of the run in seconds, as in until_s = 600".into(),
+        "terrain" => "give the ground, as in [terrain.file] with path = \"dem.tif\", or one of [terrain.valley], \
+                      [terrain.rough-hills], [terrain.plane], [terrain.bump], [terrain.bowl]"
+            .into(),
+        "flood" => "give a table [flood] with spacing_m and the water of the scene".into(),
+        _ if name == "name" => "give a name, unique in the scene, as in name = \"P1\"".into(),
+        _ if name == "line" => "give the points of a line, as in line = [[0, 0], [100, 0]]".into(),
+        _ if name == "discharge_m3_per_s" => {
+            "give a number, rows of [time_s, value], or a file, as in { csv = \"hydrograph.csv\" }".into()
+        }
+        _ => format!("give {name} = ... there"),
+    }
+}
+
+/// "unknown field `a`, expected one of `b`, `c`" as a sentence that offers the nearest.
+fn unknown_word(rest: &str, is_key: bool) -> String {
+    let mut words = words_in_ticks(rest);
+    let given = words.next().unwrap_or_default();
+    let known: Vec<&str> = words.collect();
+    let what =
+        if is_key { " is not a key that is known here".to_owned() } else { format!(": `{given}` is not known here") };
+    let nearest = known
+        .iter()
+        .map(|word| (strsim::jaro_winkler(given, word), *word))
+        .filter(|(likeness, _)| *likeness > 0.7)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match nearest {
+        Some((_, word)) => format!("{what}; did you mean `{word}`? (known: {})", known.join(", ")),
+        None => format!("{what}; known: {}", known.join(", ")),
+    }
+}
+
+fn words_in_ticks(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+/// "invalid type: string "a", expected f64" with the language's names of types replaced by words.
+fn wrong_type(message: &str) -> String {
+    let words = [
+        ("invalid type: ", "this is the wrong kind of value: "),
+        ("invalid value: ", "this value does not fit: "),
+        ("invalid length ", "this has the wrong length, "),
+        ("expected f64", "expected a number"),
+        ("expected u64", "expected a whole number, 0 or more"),
+        ("expected usize", "expected a whole number, 0 or more"),
+        ("expected a boolean", "expected true or false"),
+        ("expected a string", "expected text in quotes"),
+        ("expected path string", "expected a file's path in quotes"),
+        ("expected an array of length 2", "expected two numbers, as in [1.0, 2.0]"),
+        ("expected a sequence", "expected a list in [ ]; for tables write their header in double brackets"),
+        ("wanted exactly 1 element, found 0 elements", "expected exactly one kind, found none"),
+        ("wanted exactly 1 element, more than 1 element", "expected exactly one kind, found more"),
+        ("wanted string or table", "this is the wrong kind of value: expected a word in quotes or a table"),
+        ("unit variant", "a word"),
+    ];
+    words.iter().fold(format!(": {message}"), |text, (from, to)| text.replace(from, to))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_word_is_offered_and_a_far_one_is_not() {
+        let near = unknown_word("`spacng_m`, expected one of `scheme`, `spacing_m`", true);
+        assert!(near.contains("did you mean `spacing_m`?"), "{near}");
+        let far = unknown_word("`zzz`, expected one of `scheme`, `spacing_m`", true);
+        assert!(!far.contains("did you mean") && far.contains("scheme, spacing_m"), "{far}");
+    }
+}
