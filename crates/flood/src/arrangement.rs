@@ -12,6 +12,12 @@ pub struct Entry {
     pub image: Image,
 }
 
+/// How far from an edge a particle has an image, in reaches: some of those beyond it reach farther than itself.
+const IMAGE_MARGIN: f64 = 1.5;
+
+/// Stands for no particle: an image.
+pub const IMAGE: u32 = u32::MAX;
+
 /// Particles and images, sorted into cells, with their neighbour lists.
 #[derive(Debug, Default)]
 pub struct Arrangement {
@@ -23,6 +29,8 @@ pub struct Arrangement {
     pub entries: Vec<Entry>,
     /// The place of each particle, in sorted order.
     pub real: Vec<u32>,
+    /// The particle at each place, in sorted order; [`IMAGE`] for an image.
+    pub particle: Vec<u32>,
     /// The images: their place and the place of the particle that they show.
     pub images: Vec<(u32, u32)>,
     /// Places, sorted.
@@ -45,14 +53,8 @@ struct Unsorted {
 }
 
 impl Arrangement {
-    /// Arranges particles given as (x, y, reach) and the images of those within `margin` of an edge.
-    pub fn arrange(
-        &mut self,
-        particles: impl Iterator<Item = (f64, f64, f64)>,
-        edges: &EdgeRules,
-        margin: impl Fn(f64, f64, f64) -> f64,
-        cell_size: f64,
-    ) {
+    /// Arranges particles given as (x, y, reach) and their images beyond the edges.
+    pub fn arrange(&mut self, particles: impl Iterator<Item = (f64, f64, f64)>, edges: &EdgeRules, cell_size: f64) {
         let before = &mut self.unsorted;
         before.entries.clear();
         before.x.clear();
@@ -66,7 +68,7 @@ impl Arrangement {
                 before.reach.push(reach);
             };
             put(Image::NONE, x, y);
-            edges.images(x, y, margin(x, y, reach), put);
+            edges.images(x, y, IMAGE_MARGIN * reach, put);
         }
         let order = self.cells.sort(&before.x, &before.y, cell_size);
         gather(&mut self.entries, order, &before.entries);
@@ -84,10 +86,14 @@ impl Arrangement {
         place_of.clear();
         place_of.resize(self.entries.len(), 0);
         self.real.clear();
+        self.particle.clear();
         for (place, entry) in self.entries.iter().enumerate() {
             if entry.image == Image::NONE {
                 place_of[entry.from as usize] = place as u32;
+                self.particle.push(self.real.len() as u32);
                 self.real.push(place as u32);
+            } else {
+                self.particle.push(IMAGE);
             }
         }
         self.images.clear();

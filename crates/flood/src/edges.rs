@@ -1,5 +1,6 @@
 //! The four sides of the ground: images of particles beyond them.
 
+use corpuscle_scene::Table;
 use corpuscle_terrain::Bounds;
 
 /// Where an image stands: beyond the low side (-1), the high side (1) or neither (0), along x and y.
@@ -25,8 +26,8 @@ pub enum EdgeRule {
     Wall,
     /// Joined to the opposite side.
     Periodic,
-    /// Held at a level, m.
-    Stage(f64),
+    /// Held at a level over time, m.
+    Stage(Table),
 }
 
 /// The rules of the four sides of a rectangle.
@@ -39,14 +40,19 @@ pub struct EdgeRules {
 }
 
 impl EdgeRules {
-    /// The rule that an image beyond the x sides follows.
-    pub fn along_x(&self, side: i8) -> &EdgeRule {
-        &self.rules[usize::from(side > 0)]
+    /// The rule that an image follows along x, if it stands beyond the west or east side.
+    pub fn along_x(&self, image: Image) -> Option<&EdgeRule> {
+        (image.x != 0).then(|| &self.rules[usize::from(image.x > 0)])
     }
 
-    /// The rule that an image beyond the y sides follows.
-    pub fn along_y(&self, side: i8) -> &EdgeRule {
-        &self.rules[2 + usize::from(side > 0)]
+    /// The rule that an image follows along y, if it stands beyond the south or north side.
+    pub fn along_y(&self, image: Image) -> Option<&EdgeRule> {
+        (image.y != 0).then(|| &self.rules[2 + usize::from(image.y > 0)])
+    }
+
+    /// Whether an image is a particle of this water, seen from the other side.
+    pub fn is_periodic(&self, image: Image) -> bool {
+        [self.along_x(image), self.along_y(image)].into_iter().flatten().all(|rule| *rule == EdgeRule::Periodic)
     }
 
     /// Calls `put` with each image of a particle at (x, y) that stands within `margin` of the rectangle.

@@ -21,19 +21,50 @@ pub struct Particle {
     pub volume: f64,
     /// Smoothing length, m.
     pub h: f64,
+    /// Smoothing length for the next step, m.
+    pub next_h: f64,
     /// Depth of the water, m.
     pub depth: f64,
     /// Height of the ground, m.
     pub ground: f64,
-    /// Divergence of the velocity, 1/s.
-    pub divergence: f64,
+    /// Slope of the water's surface.
+    pub surface_slope: [f64; 2],
     /// Lasting identity.
     pub id: u64,
 }
 
 impl Particle {
-    /// A particle at rest at (x, y).
+    /// A particle at rest at (x, y) whose depth is not known yet.
     pub fn new(id: u64, x: f64, y: f64, volume: f64, h: f64) -> Self {
-        Self { x, y, u: 0.0, v: 0.0, ax: 0.0, ay: 0.0, volume, h, depth: 0.0, ground: 0.0, divergence: 0.0, id }
+        Self {
+            x,
+            y,
+            u: 0.0,
+            v: 0.0,
+            ax: 0.0,
+            ay: 0.0,
+            volume,
+            h,
+            next_h: h,
+            depth: 0.0,
+            ground: 0.0,
+            surface_slope: [0.0; 2],
+            id,
+        }
+    }
+
+    /// Height of the water's surface, m.
+    pub fn surface(&self) -> f64 {
+        self.ground + self.depth
+    }
+
+    /// Area that the particle stands for, m2.
+    pub fn area(&self) -> f64 {
+        self.volume / self.depth
+    }
+
+    /// Speed, m/s.
+    pub fn speed(&self) -> f64 {
+        self.u.hypot(self.v)
     }
 }

@@ -119,7 +119,7 @@ impl Body<'_> {
     ) {
         let mean_h = particles.iter().map(|p| p.h).sum::<f64>() / particles.len().max(1) as f64;
         let reaching = particles.iter().map(|p| (p.x, p.y, 2.0 * p.h));
-        arrangement.arrange(reaching, edges, |_, _, reach| 1.5 * reach, 1.2 * mean_h.max(1e-12));
+        arrangement.arrange(reaching, edges, 1.2 * mean_h.max(1e-12));
         arrangement.sort(particles, spare);
         let Arrangement { cells, lists, x, y, reach_squared, .. } = arrangement;
         lists.search(cells, x, y, reach_squared, &mut vec![(); x.len()], |_| ());
@@ -178,6 +178,7 @@ impl Body<'_> {
             for (particle, &place) in particles.iter_mut().zip(real.iter()) {
                 let density = densities[place as usize];
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);
+                particle.next_h = particle.h;
                 particle.depth = (self.depth)(particle.x, particle.y);
                 particle.volume = particle.depth / density.number;
             }

@@ -12,6 +12,9 @@ use rayon::prelude::*;
 pub(super) struct Force {
     /// Acceleration, m/s2.
     pub acceleration: [f64; 2],
+    /// Force of the ground and of what is beyond the edges, over the density of water, m4/s2: what is not exchanged with
+    /// other particles.
+    pub external: [f64; 2],
 }
 
 /// Finds the forces on all particles.
@@ -57,7 +60,7 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
     let ground = own.surface - own.depth;
     let [bxx, bxy, byy] = sloped.renormalisation;
     let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
-    let [mut fx, mut fy] = [Lanes::ZERO; 2];
+    let [mut fx, mut fy, mut external_x, mut external_y] = [Lanes::ZERO; 4];
     for index in list.chunks_exact(LANES) {
         let near: [&Column; LANES] = std::array::from_fn(|lane| &columns[index[lane] as usize]);
         let near_slopes: [&Slopes; LANES] = std::array::from_fn(|lane| &slopes[index[lane] as usize]);
@@ -119,10 +122,16 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
 
         // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
         let own_depth = (-middle + own.surface).positive();
-        let push = pressure - own_depth * own_depth * (0.5 * gravity) + own_pressure;
-        fx += area_x * push;
-        fy += area_y * push;
+        let ground_push = -(own_depth * own_depth) * (0.5 * gravity) + own_pressure;
+        fx += area_x * (pressure + ground_push);
+        fy += area_y * (pressure + ground_push);
+        let external_push = pressure * of_slopes(|s| s.outside) + ground_push;
+        external_x += area_x * external_push;
+        external_y += area_y * external_push;
     }
     let inverse_volume = 1.0 / (own.depth * own.area);
-    Force { acceleration: [-fx.sum() * inverse_volume, -fy.sum() * inverse_volume] }
+    Force {
+        acceleration: [-fx.sum() * inverse_volume, -fy.sum() * inverse_volume],
+        external: [-external_x.sum(), -external_y.sum()],
+    }
 }

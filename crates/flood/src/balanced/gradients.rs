@@ -63,7 +63,6 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
     slopes.surface = turned(surface_x.sum(), surface_y.sum());
     slopes.u = turned(u_x.sum(), u_y.sum());
     slopes.v = turned(v_x.sum(), v_y.sum());
-    slopes.fullness = 0.5 * (moment[0] + moment[2]);
     let wave = (gravity * own.depth).sqrt();
     let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
     slopes.rest = (-unrest * unrest).exp();

@@ -1,0 +1,237 @@
+//! Scheme `paper`: the published stable SPH-SWE model, formula by formula.
+//!
+//! Source: "Real-time simulation of realistic fluid animation based on a stable SPH-SWE numerical model", Acta Physica
+//! Sinica (2021). Poly6 for density, spiky for pressure, the viscosity kernel for viscosity, all in two dimensions at
+//! the particle's own smoothing length; a fixed time step; the terrain-difference velocity control force.
+//!
+//! Not printed in the paper and taken from where its table points (Mueller, Charypar & Gross 2003): the pressure
+//! p = k (rho - rho0) with their symmetric pair force, and their viscosity.
+
+use crate::arrangement::{Arrangement, IMAGE};
+use crate::edges::EdgeRule;
+use crate::particle::Particle;
+use crate::scheme::{Evaluation, Scheme, Surroundings};
+use corpuscle_scene::Paper as Parameters;
+use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
+use corpuscle_sph::{BLOCK, LANES, Lanes, Searched};
+use corpuscle_terrain::Terrain;
+use multiversion::multiversion;
+use rayon::prelude::*;
+
+/// What the force pass reads of a particle or image.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(align(64))]
+struct Parcel {
+    x: f64,
+    y: f64,
+    u: f64,
+    v: f64,
+    mass: f64,
+    density: f64,
+    pressure: f64,
+    h: f64,
+}
+
+/// The scheme with its working memory.
+pub(crate) struct Paper {
+    parameters: Parameters,
+    gravity: f64,
+    arrangement: Arrangement,
+    parcels: Vec<Parcel>,
+    densities: Vec<f64>,
+    accelerations: Vec<[f64; 2]>,
+    spare: Vec<Particle>,
+}
+
+impl Paper {
+    pub fn new(parameters: Parameters, gravity: f64) -> Self {
+        Self {
+            parameters,
+            gravity,
+            arrangement: Arrangement::default(),
+            parcels: Vec::new(),
+            densities: Vec::new(),
+            accelerations: Vec::new(),
+            spare: Vec::new(),
+        }
+    }
+
+    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; h = h0 sqrt(rho0 / rho) for the next step.
+    fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings) {
+        let Parameters { smoothing_length_m: h0, density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
+        let Arrangement { cells, lists, x, y, reach_squared, entries, real, .. } = &mut self.arrangement;
+        self.densities.resize(x.len(), 0.0);
+        // All particles hold much the same water; the sum over W alone times the own mass is exact where they hold the
+        // same, and each list is read once only.
+        lists.search(cells, x, y, reach_squared, &mut self.densities, |found| number_density(&found, reach_squared));
+        debug_assert_eq!(entries.len(), x.len());
+        particles.par_iter_mut().zip(&*real).for_each(|(particle, &place)| {
+            let density = rho0 * particle.volume * self.densities[place as usize];
+            particle.depth = density / rho0;
+            particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
+            particle.ground = surroundings.terrain.height(particle.x, particle.y);
+        });
+    }
+
+    fn fill_parcels(&mut self, particles: &[Particle], surroundings: &Surroundings) {
+        let Parameters { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = self.parameters;
+        self.parcels.resize(self.arrangement.len(), Parcel::default());
+        self.parcels.par_iter_mut().zip(&self.arrangement.particle).for_each(|(parcel, &particle)| {
+            if particle == IMAGE {
+                return;
+            }
+            let particle = &particles[particle as usize];
+            let density = rho0 * particle.depth;
+            let pressure = gas_constant * (density - rho0);
+            *parcel = Parcel {
+                x: particle.x,
+                y: particle.y,
+                u: particle.u,
+                v: particle.v,
+                mass: rho0 * particle.volume,
+                density,
+                pressure: if clip_negative_pressure { pressure.max(0.0) } else { pressure },
+                h: particle.h,
+            };
+        });
+        for &(place, source) in &self.arrangement.images {
+            let place = place as usize;
+            let mut parcel = self.parcels[source as usize];
+            (parcel.x, parcel.y) = (self.arrangement.x[place], self.arrangement.y[place]);
+            let image = self.arrangement.entries[place].image;
+            if surroundings.edges.along_x(image) == Some(&EdgeRule::Wall) {
+                parcel.u = -parcel.u;
+            }
+            if surroundings.edges.along_y(image) == Some(&EdgeRule::Wall) {
+                parcel.v = -parcel.v;
+            }
+            self.parcels[place] = parcel;
+        }
+    }
+
+    /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
+    fn take_over(&self, particles: &mut [Particle], terrain: &Terrain, step: f64) -> [f64; 2] {
+        particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &place)| {
+            let [mut ax, mut ay] = self.accelerations[place as usize];
+            let (_, slope) = terrain.height_and_slope(particle.x, particle.y);
+            ax -= self.gravity * slope[0];
+            ay -= self.gravity * slope[1];
+            if self.parameters.control_force && step > 0.0 {
+                let control = self.control(particle, terrain, step);
+                ax += control[0];
+                ay += control[1];
+            }
+            (particle.ax, particle.ay) = (ax, ay);
+        });
+        particles.iter().fold([0.0; 2], |sum, p| [sum[0] + p.volume * p.ax, sum[1] + p.volume * p.ay])
+    }
+
+    /// The terrain-difference velocity control force: f = (h_D^2/4) (f_A + f_B + f_C + f_D) with f = (rho2D/rho3D) NP at
+    /// the corners of a square of side h_D = alpha h0 sqrt(rho0/rho).
+    ///
+    /// NP is the way between the ground points under a corner now (N) and at the step before (P). Our reading, for the
+    /// paper's units do not close: its size is |NP| in three dimensions, it acts against the horizontal motion, and it is
+    /// an acceleration times `control_strength`. It stops the motion at most.
+    fn control(&self, particle: &Particle, terrain: &Terrain, step: f64) -> [f64; 2] {
+        let speed = particle.speed();
+        if speed == 0.0 {
+            return [0.0; 2];
+        }
+        let side = self.parameters.control_square * particle.next_h;
+        let (dx, dy) = (step * particle.u, step * particle.v);
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+        let way: f64 = corners
+            .iter()
+            .map(|(cx, cy)| {
+                let (x, y) = (particle.x + cx * side, particle.y + cy * side);
+                let rise = terrain.height(x, y) - terrain.height(x - dx, y - dy);
+                (dx * dx + dy * dy + rise * rise).sqrt()
+            })
+            .sum();
+        let force = self.parameters.control_strength * 0.25 * side * side * particle.depth * way;
+        let force = force.min(speed / step);
+        [-force * particle.u / speed, -force * particle.v / speed]
+    }
+}
+
+/// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2.
+#[inline(always)]
+fn number_density(found: &Searched, reach_squared: &[f64]) -> f64 {
+    let h_squared = reach_squared[found.particle];
+    let own = poly6(0.0, h_squared.sqrt());
+    let mut sum = Lanes::ZERO;
+    for r_squared in found.lanes() {
+        let inside = (-(r_squared * (1.0 / h_squared)) + 1.0).positive();
+        sum += inside * inside * inside;
+    }
+    own * (1.0 + sum.sum())
+}
+
+/// Pressure and viscosity on the particles of one block: accelerations, m/s2.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn pair_forces(viscosity: f64, arrangement: &Arrangement, parcels: &[Parcel], first: usize, out: &mut [[f64; 2]]) {
+    for (k, out) in out.iter_mut().enumerate() {
+        let i = first + k;
+        let own = parcels[i];
+        // Kernels at h_i: their constants once, the powers of (h - r) in each pair.
+        let spiky = spiky_slope(0.0, own.h) / (own.h * own.h);
+        let viscous = viscosity_laplacian(0.0, own.h) / own.h;
+        let [mut fx, mut fy] = [Lanes::ZERO; 2];
+        for index in arrangement.lists.of(i).chunks_exact(LANES) {
+            let near: [&Parcel; LANES] = std::array::from_fn(|lane| &parcels[index[lane] as usize]);
+            let of = |value: fn(&Parcel) -> f64| Lanes::from_fn(|lane| value(near[lane]));
+            let (ex, ey) = (of(|p| p.x) - own.x, of(|p| p.y) - own.y);
+            let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-9 * own.h));
+            let inside = (-r + own.h).positive();
+            let share = of(|p| p.mass) / of(|p| p.density);
+            // f = -sum m_j (p_i + p_j)/(2 rho_j) grad W + mu sum m_j (v_j - v_i)/rho_j lap W
+            let push = share * (of(|p| p.pressure) + own.pressure) * inside * inside * (0.5 * spiky) / r;
+            let drag = share * inside * (viscosity * viscous);
+            fx += drag * (of(|p| p.u) - own.u) - push * ex;
+            fy += drag * (of(|p| p.v) - own.v) - push * ey;
+        }
+        *out = [fx.sum() / own.density, fy.sum() / own.density];
+    }
+}
+
+impl Scheme for Paper {
+    fn drift(&self, particles: &mut [Particle], step: f64) {
+        particles.par_iter_mut().for_each(|particle| {
+            particle.x += step * particle.u;
+            particle.y += step * particle.v;
+        });
+    }
+
+    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64) {
+        let reaching = particles.iter().map(|p| (p.x, p.y, p.h));
+        self.arrangement.arrange(reaching, &surroundings.edges, cell_size);
+        self.arrangement.sort(particles, &mut self.spare);
+    }
+
+    fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
+        self.find_densities(particles, surroundings);
+        self.fill_parcels(particles, surroundings);
+        self.accelerations.resize(self.arrangement.len(), [0.0; 2]);
+        self.accelerations.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
+            pair_forces(self.parameters.viscosity, &self.arrangement, &self.parcels, block * BLOCK, out);
+        });
+        let external = self.take_over(particles, &surroundings.terrain, step);
+        Evaluation { time_step: self.parameters.time_step_s, external }
+    }
+
+    fn kick(&self, particles: &mut [Particle], step: f64) {
+        particles.par_iter_mut().for_each(|particle| {
+            particle.u += step * particle.ax;
+            particle.v += step * particle.ay;
+        });
+    }
+
+    fn arrangement(&self) -> &Arrangement {
+        &self.arrangement
+    }
+
+    fn bytes(&self) -> usize {
+        let each = size_of::<Parcel>() + size_of::<f64>() + size_of::<[f64; 2]>();
+        self.arrangement.bytes() + self.arrangement.len() * each + self.spare.capacity() * size_of::<Particle>()
+    }
+}

@@ -1,0 +1,95 @@
+//! The water at any place, from the particles round it.
+
+use crate::arrangement::{Arrangement, IMAGE};
+use crate::particle::Particle;
+use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_terrain::Terrain;
+
+/// Share of a place's surroundings that water must cover for the place to be wet.
+const COVERED: f64 = 0.5;
+
+/// The water at a place.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sample {
+    /// Depth, m; 0 where it is dry.
+    pub depth: f64,
+    /// Velocity `[east, north]`, m/s.
+    pub velocity: [f64; 2],
+}
+
+impl Sample {
+    /// Speed, m/s.
+    pub fn speed(&self) -> f64 {
+        self.velocity[0].hypot(self.velocity[1])
+    }
+}
+
+/// The particles, to be asked for the water at a place, a little after they were arranged.
+pub(crate) struct Sampler<'a> {
+    pub particles: &'a [Particle],
+    pub arrangement: &'a Arrangement,
+    pub terrain: &'a Terrain,
+    /// Time since the particles were arranged, s; they are taken where they are by then.
+    pub since: f64,
+    /// Support of the kernel used here, over the smoothing length (which the scheme's own kernel reaches otherwise).
+    pub smoothing: f64,
+}
+
+impl Sampler<'_> {
+    /// False where no particle can reach (x, y): quick to say.
+    pub fn may_be_wet(&self, x: f64, y: f64) -> bool {
+        !self.particles.is_empty() && self.arrangement.cells.reach_at(x, y) > 0.0
+    }
+
+    /// The particles whose cells come within `reach` of (x, y), and some more.
+    pub fn near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = &Particle> {
+        let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges(x, y, reach));
+        let places = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
+        places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
+    }
+
+    /// The water at (x, y): a Shepard mean over the particles (weights V W), of the surface's height where the surface
+    /// is the smoother field, as in a lake, and of the depth where that is, as in a sheet running down a slope.
+    pub fn at(&self, x: f64, y: f64) -> Sample {
+        if !self.may_be_wet(x, y) {
+            return Sample::default();
+        }
+        let near = |each: &mut dyn FnMut(&Particle, f64, f64, f64)| {
+            for particle in self.near(x, y, 1.1 * self.arrangement.cells.reach_at(x, y)) {
+                let dx = x - (particle.x + self.since * particle.u);
+                let dy = y - (particle.y + self.since * particle.v);
+                let h = self.smoothing * particle.h;
+                let r_squared = dx * dx + dy * dy;
+                if r_squared < 4.0 * h * h {
+                    let weight = particle.area() * cubic_spline::value_of_one(r_squared.sqrt(), h);
+                    each(particle, weight, dx, dy);
+                }
+            }
+        };
+        let mut total = 0.0;
+        let [mut surface, mut depth, mut u, mut v] = [0.0; 4];
+        near(&mut |particle, weight, dx, dy| {
+            total += weight;
+            let [slope_x, slope_y] = particle.surface_slope;
+            surface += weight * (particle.surface() + slope_x * dx + slope_y * dy);
+            depth += weight * particle.depth;
+            u += weight * particle.u;
+            v += weight * particle.v;
+        });
+        if total < COVERED {
+            return Sample::default();
+        }
+        [surface, depth, u, v] = [surface, depth, u, v].map(|sum| sum / total);
+        let [mut surface_spread, mut depth_spread] = [0.0; 2];
+        near(&mut |particle, weight, dx, dy| {
+            let [slope_x, slope_y] = particle.surface_slope;
+            let reconstructed = particle.surface() + slope_x * dx + slope_y * dy;
+            surface_spread += weight * (reconstructed - surface).powi(2);
+            depth_spread += weight * (particle.depth - depth).powi(2);
+        });
+        let from_surface = surface - self.terrain.height(x, y);
+        let spread = surface_spread + depth_spread;
+        let share = if spread > 0.0 { depth_spread / spread } else { 1.0 };
+        Sample { depth: (share * from_surface + (1.0 - share) * depth).max(0.0), velocity: [u, v] }
+    }
+}
