@@ -3,8 +3,8 @@
 use crate::error::{Place, Problem};
 use std::borrow::Cow;
 use std::ops::Range;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
 
 /// A parsed TOML document with the overrides of the command line put in.
 ///
@@ -41,6 +41,11 @@ impl<'a> Document<'a> {
         self.root.clone()
     }
 
+    /// The file as a whole.
+    pub fn whole(&self) -> Place {
+        Place { source: self.name.to_owned(), line: None, column: 1, width: 0, text: String::new() }
+    }
+
     /// Where the value of `key` is written, or the nearest table round it that is written.
     pub fn place_of(&self, key: &str) -> Option<Place> {
         let mut node = &self.root;
@@ -52,6 +57,11 @@ impl<'a> Document<'a> {
         }
         let is_root = std::ptr::eq(node, &self.root);
         (!is_root).then(|| self.place(&node.span()))
+    }
+
+    /// The path of the first key or item that is written here but not in `values`.
+    pub fn first_missing_in(&self, values: &Value) -> Option<String> {
+        first_missing(&self.root, values, "")
     }
 
     /// The path of the innermost key or value written at `span`.
@@ -162,6 +172,23 @@ fn child<'n, 'a>(node: &'n Spanned<DeValue<'a>>, word: &str) -> Option<&'n Spann
     match node.get_ref() {
         DeValue::Table(table) => table.get(word),
         DeValue::Array(items) => items.as_ref().get(word.parse::<usize>().ok()?),
+        _ => None,
+    }
+}
+
+fn first_missing(node: &Spanned<DeValue<'_>>, value: &Value, path: &str) -> Option<String> {
+    let below = |word: &str, inner, value: Option<&Value>| {
+        let path = join(path, word);
+        value.map_or(Some(path.clone()), |value| first_missing(inner, value, &path))
+    };
+    match (node.get_ref(), value) {
+        (DeValue::Table(given), Value::Table(read)) => {
+            given.iter().find_map(|(key, inner)| below(key.get_ref(), inner, read.get(key.get_ref().as_ref())))
+        }
+        (DeValue::Array(given), Value::Array(read)) => {
+            given.iter().enumerate().find_map(|(index, inner)| below(&index.to_string(), inner, read.get(index)))
+        }
+        (DeValue::Table(_) | DeValue::Array(_), _) => Some(path.to_owned()),
         _ => None,
     }
 }

@@ -83,7 +83,7 @@ impl fmt::Display for Problem {
 pub struct Place {
     /// The file's name, or the `--set` argument.
     pub source: String,
-    /// Line, counted from 1; none for an argument.
+    /// Line, counted from 1; none for an argument and for a file as a whole.
     pub line: Option<usize>,
     /// Column in characters, counted from 1.
     pub column: usize,
