@@ -54,14 +54,14 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(key: impl Into<String>, what: impl Into<String>) -> Self {
-        Self { key: key.into(), what: what.into(), place: None }
+    pub(crate) fn new(key: impl Into<String>, what: impl Into<String>) -> Box<Self> {
+        Box::new(Self { key: key.into(), what: what.into(), place: None })
     }
 }
 
-impl From<Problem> for SceneError {
-    fn from(problem: Problem) -> Self {
-        Self::Invalid(Box::new(problem))
+impl From<Box<Problem>> for SceneError {
+    fn from(problem: Box<Problem>) -> Self {
+        Self::Invalid(problem)
     }
 }
 

@@ -34,7 +34,7 @@ impl Scene {
 }
 
 /// Refuses what the deserialiser passes over in silence: a third number where two are meant, a list for a table.
-fn all_was_read(scene: &Scene, document: &Document<'_>) -> Result<(), Problem> {
+fn all_was_read(scene: &Scene, document: &Document<'_>) -> Result<(), Box<Problem>> {
     let values = toml::Value::try_from(scene).map_err(|error| Problem::new("", error.to_string()))?;
     match document.first_missing_in(&values) {
         Some(key) => {
@@ -45,7 +45,7 @@ fn all_was_read(scene: &Scene, document: &Document<'_>) -> Result<(), Problem> {
 }
 
 /// A deserialising error in the user's words.
-fn explain(error: &toml::de::Error, document: &Document<'_>) -> Problem {
+fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
     let message = error.message().trim_end();
     let span = error.span();
     let key = span.as_ref().map(|span| document.key_at(span)).unwrap_or_default();
@@ -54,14 +54,14 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Problem {
         let name = words_in_ticks(rest).next().unwrap_or_default();
         let path = if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
         let place = if key.is_empty() { Some(document.whole()) } else { place };
-        return Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place };
+        return Box::new(Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place });
     }
     let unknown = message.strip_prefix("unknown field ").or_else(|| message.strip_prefix("unknown variant "));
     let what = match unknown {
         Some(rest) => unknown_word(rest, message.starts_with("unknown field")),
         None => wrong_type(message),
     };
-    Problem { key, what, place }
+    Box::new(Problem { key, what, place })
 }
 
 /// What to write for a key that is missing.
