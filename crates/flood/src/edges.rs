@@ -55,6 +55,11 @@ impl EdgeRules {
         [self.along_x(image), self.along_y(image)].into_iter().flatten().all(|rule| *rule == EdgeRule::Periodic)
     }
 
+    /// Whether some side is held at a level.
+    pub fn holds_level(&self) -> bool {
+        self.rules.iter().any(|rule| matches!(rule, EdgeRule::Stage(_)))
+    }
+
     /// Calls `put` with each image of a particle at (x, y) that stands within `margin` of the rectangle.
     pub fn images(&self, x: f64, y: f64, margin: f64, mut put: impl FnMut(Image, f64, f64)) {
         let along_x = beyond(x, self.bounds.x_min, self.bounds.x_max, margin, &self.rules[..2]);

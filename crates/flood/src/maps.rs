@@ -35,6 +35,11 @@ impl Maps {
         Self { wet_depth, columns: grid.columns, cells: vec![DRY; grid.columns * grid.rows], last: 0.0 }
     }
 
+    /// Whether these are maps of the same ground.
+    pub fn fit(&self, other: &Self) -> bool {
+        self.columns == other.columns && self.cells.len() == other.cells.len()
+    }
+
     /// Looks at the water at `time` s. Wet time is counted since the last look.
     pub fn look(&mut self, water: &Sampler, time: f64) {
         let (wet_depth, since) = (self.wet_depth, (time - self.last) as f32);

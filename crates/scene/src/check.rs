@@ -6,7 +6,7 @@ mod terrain;
 use crate::{Problem, Run, Scene, SceneError};
 use toml::Value;
 
-type Checked = Result<(), Problem>;
+type Checked = Result<(), Box<Problem>>;
 
 impl Scene {
     /// Checks every value: finite, in range, names unique, exactly one kind given where one is meant.
@@ -85,7 +85,7 @@ impl Check {
     }
 
     /// The problem at `key`, with its value where that is short.
-    fn problem(&self, key: &str, what: &str) -> Problem {
+    fn problem(&self, key: &str, what: &str) -> Box<Problem> {
         let value = key.split('.').try_fold(&self.values, |value, word| match value {
             Value::Array(items) => items.get(word.parse::<usize>().ok()?),
             table => table.get(word),

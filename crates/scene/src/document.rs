@@ -3,8 +3,8 @@
 use crate::error::{Place, Problem};
 use std::borrow::Cow;
 use std::ops::Range;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
+use toml::{Spanned, Value};
 
 /// A parsed TOML document with the overrides of the command line put in.
 ///
@@ -18,18 +18,18 @@ pub(crate) struct Document<'a> {
 
 impl<'a> Document<'a> {
     /// Parses `text`, then sets each `(path, value)` of `overrides` in it.
-    pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Problem> {
+    pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Box<Problem>> {
         let mut document = Self { name, text, overrides, root: Spanned::new(0..0, DeValue::Table(DeTable::new())) };
         let table = DeTable::parse(text).map_err(|error| {
             let what = format!("this is not TOML: {}", error.message().trim_end());
-            Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) }
+            Box::new(Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) })
         })?;
         document.root = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
         let mut offset = text.len() + 1;
         for (path, value) in overrides {
             set(&mut document.root, path, override_value(value, offset)).map_err(|what| {
                 let place = Some(document.place(&(offset..offset + value.len())));
-                Problem { key: path.clone(), what, place }
+                Box::new(Problem { key: path.clone(), what, place })
             })?;
             offset += value.len() + 1;
         }
@@ -39,6 +39,11 @@ impl<'a> Document<'a> {
     /// The tree, for deserialising.
     pub fn root(&self) -> Spanned<DeValue<'a>> {
         self.root.clone()
+    }
+
+    /// The file as a whole.
+    pub fn whole(&self) -> Place {
+        Place { source: self.name.to_owned(), line: None, column: 1, width: 0, text: String::new() }
     }
 
     /// Where the value of `key` is written, or the nearest table round it that is written.
@@ -52,6 +57,11 @@ impl<'a> Document<'a> {
         }
         let is_root = std::ptr::eq(node, &self.root);
         (!is_root).then(|| self.place(&node.span()))
+    }
+
+    /// The path of the first key or item that is written here but not in `values`.
+    pub fn first_missing_in(&self, values: &Value) -> Option<String> {
+        first_missing(&self.root, values, "")
     }
 
     /// The path of the innermost key or value written at `span`.
@@ -122,28 +132,32 @@ fn shifted(value: Spanned<DeValue<'_>>, offset: usize) -> Spanned<DeValue<'_>> {
     Spanned::new(span, inner)
 }
 
-/// Puts `value` at `path`, making tables on the way, and a new row where the index is one past the last.
+/// Puts `value` at `path`, making tables and lists on the way, and a new row where the index is one past the last.
 fn set<'a>(root: &mut Spanned<DeValue<'a>>, path: &'a str, value: Spanned<DeValue<'a>>) -> Result<(), String> {
     if path.split('.').any(str::is_empty) {
         return Err(": a path is words joined by dots, as in --set flood.inflow.0.discharge_m3_per_s=30".into());
     }
     let mut node = root;
-    for word in path.split('.') {
-        node = slot(node, word, value.span())?;
+    let mut words = path.split('.').peekable();
+    while let Some(word) = words.next() {
+        let holder = match words.peek() {
+            Some(&"0") => DeValue::Array(DeArray::new()),
+            _ => DeValue::Table(DeTable::new()),
+        };
+        node = slot(node, word, Spanned::new(value.span(), holder))?;
     }
     *node = value;
     Ok(())
 }
 
-/// The value called `word` in `node`; an empty table where there is none.
+/// The value called `word` in `node`, put there as `new` where there is none.
 fn slot<'n, 'a>(
     node: &'n mut Spanned<DeValue<'a>>,
     word: &'a str,
-    span: Range<usize>,
+    new: Spanned<DeValue<'a>>,
 ) -> Result<&'n mut Spanned<DeValue<'a>>, String> {
-    let new = Spanned::new(span.clone(), DeValue::Table(DeTable::new()));
     match node.get_mut() {
-        DeValue::Table(table) => Ok(table.entry(Spanned::new(span, Cow::Borrowed(word))).or_insert(new)),
+        DeValue::Table(table) => Ok(table.entry(Spanned::new(new.span(), Cow::Borrowed(word))).or_insert(new)),
         DeValue::Array(items) => {
             let count = items.len();
             let index = word.parse().ok().filter(|&index: &usize| index <= count).ok_or_else(|| {
@@ -162,6 +176,23 @@ fn child<'n, 'a>(node: &'n Spanned<DeValue<'a>>, word: &str) -> Option<&'n Spann
     match node.get_ref() {
         DeValue::Table(table) => table.get(word),
         DeValue::Array(items) => items.as_ref().get(word.parse::<usize>().ok()?),
+        _ => None,
+    }
+}
+
+fn first_missing(node: &Spanned<DeValue<'_>>, value: &Value, path: &str) -> Option<String> {
+    let below = |word: &str, inner, value: Option<&Value>| {
+        let path = join(path, word);
+        value.map_or(Some(path.clone()), |value| first_missing(inner, value, &path))
+    };
+    match (node.get_ref(), value) {
+        (DeValue::Table(given), Value::Table(read)) => {
+            given.iter().find_map(|(key, inner)| below(key.get_ref(), inner, read.get(key.get_ref().as_ref())))
+        }
+        (DeValue::Array(given), Value::Array(read)) => {
+            given.iter().enumerate().find_map(|(index, inner)| below(&index.to_string(), inner, read.get(index)))
+        }
+        (DeValue::Table(_) | DeValue::Array(_), _) => Some(path.to_owned()),
         _ => None,
     }
 }

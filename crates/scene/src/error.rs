@@ -54,14 +54,14 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(key: impl Into<String>, what: impl Into<String>) -> Self {
-        Self { key: key.into(), what: what.into(), place: None }
+    pub(crate) fn new(key: impl Into<String>, what: impl Into<String>) -> Box<Self> {
+        Box::new(Self { key: key.into(), what: what.into(), place: None })
     }
 }
 
-impl From<Problem> for SceneError {
-    fn from(problem: Problem) -> Self {
-        Self::Invalid(Box::new(problem))
+impl From<Box<Problem>> for SceneError {
+    fn from(problem: Box<Problem>) -> Self {
+        Self::Invalid(problem)
     }
 }
 
@@ -83,7 +83,7 @@ impl fmt::Display for Problem {
 pub struct Place {
     /// The file's name, or the `--set` argument.
     pub source: String,
-    /// Line, counted from 1; none for an argument.
+    /// Line, counted from 1; none for an argument and for a file as a whole.
     pub line: Option<usize>,
     /// Column in characters, counted from 1.
     pub column: usize,

@@ -25,7 +25,7 @@ impl Scene {
         let document = Document::parse(text, name, overrides)?;
         let scene = Self::deserialize(toml::de::ValueDeserializer::from(document.root()))
             .map_err(|error| explain(&error, &document))?;
-        scene.find_problem().map_err(|mut problem| {
+        scene.find_problem().and_then(|()| all_was_read(&scene, &document)).map_err(|mut problem| {
             problem.place = document.place_of(&problem.key);
             problem
         })?;
@@ -33,8 +33,19 @@ impl Scene {
     }
 }
 
+/// Refuses what the deserialiser passes over in silence: a third number where two are meant, a list for a table.
+fn all_was_read(scene: &Scene, document: &Document<'_>) -> Result<(), Box<Problem>> {
+    let values = toml::Value::try_from(scene).map_err(|error| Problem::new("", error.to_string()))?;
+    match document.first_missing_in(&values) {
+        Some(key) => {
+            Err(Problem::new(key, ": this is not used as it is written here; take it out, or look up its form"))
+        }
+        None => Ok(()),
+    }
+}
+
 /// A deserialising error in the user's words.
-fn explain(error: &toml::de::Error, document: &Document<'_>) -> Problem {
+fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
     let message = error.message().trim_end();
     let span = error.span();
     let key = span.as_ref().map(|span| document.key_at(span)).unwrap_or_default();
@@ -42,15 +53,15 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Problem {
     if let Some(rest) = message.strip_prefix("missing field ") {
         let name = words_in_ticks(rest).next().unwrap_or_default();
         let path = if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
-        let place = place.filter(|_| !key.is_empty());
-        return Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place };
+        let place = if key.is_empty() { Some(document.whole()) } else { place };
+        return Box::new(Problem { what: format!(" is missing: {}", what_to_give(&path, name)), key: path, place });
     }
     let unknown = message.strip_prefix("unknown field ").or_else(|| message.strip_prefix("unknown variant "));
     let what = match unknown {
         Some(rest) => unknown_word(rest, message.starts_with("unknown field")),
         None => wrong_type(message),
     };
-    Problem { key, what, place }
+    Box::new(Problem { key, what, place })
 }
 
 /// What to write for a key that is missing.
@@ -110,7 +121,10 @@ fn wrong_type(message: &str) -> String {
         ("wanted exactly 1 element, found 0 elements", "expected exactly one kind, found none"),
         ("wanted exactly 1 element, more than 1 element", "expected exactly one kind, found more"),
         ("wanted string or table", "this is the wrong kind of value: expected a word in quotes or a table"),
-        ("unit variant", "a word"),
+        (
+            "this is the wrong kind of value: unit variant, expected newtype variant",
+            "this word needs a value of its own, as in { stage = 2.5 } or a table [terrain.plane]",
+        ),
     ];
     words.iter().fold(format!(": {message}"), |text, (from, to)| text.replace(from, to))
 }

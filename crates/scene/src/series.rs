@@ -1,6 +1,6 @@
 //! Values over time.
 
-use crate::SceneError;
+use crate::{Inflow, SceneError};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -83,10 +83,30 @@ impl Table {
         };
         before + self.rows.windows(2).map(within).sum::<f64>() + after
     }
+}
 
-    /// The smallest value.
-    pub fn smallest(&self) -> f64 {
-        self.rows.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min)
+impl Inflow {
+    /// The discharge over time, m3/s, with its file, if any, read; a relative path is taken from `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError::Series`] where the file is no such table or a discharge is negative.
+    pub fn load_discharge(&self, folder: &Path) -> Result<Table, SceneError> {
+        let table = self.discharge_m3_per_s.load(folder)?;
+        match table.rows.iter().find(|row| row[1] < 0.0) {
+            None => Ok(table),
+            Some([time, discharge]) => {
+                let file = match &self.discharge_m3_per_s {
+                    Series::File { csv } => folder.join(csv),
+                    _ => "the scene".into(),
+                };
+                let what = format!(
+                    "the discharge of inflow `{}` at {time} s is {discharge} m3/s and must not be negative: water leaves \
+                     over open edges",
+                    self.name
+                );
+                Err(SceneError::Series { file, line: None, what })
+            }
+        }
     }
 }
 
@@ -204,6 +224,21 @@ mod tests {
         }
         let missing = Series::File { csv: "none.csv".into() }.load(Path::new("/tmp")).unwrap_err().to_string();
         assert!(missing.contains("none.csv") && missing.contains("cannot read"), "{missing}");
+    }
+
+    #[test]
+    fn a_negative_discharge_in_a_file_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("q.csv"), "0,1\n60,-2\n").unwrap();
+        let inflow = Inflow {
+            name: "river".into(),
+            at: Some([0.0, 0.0]),
+            line: None,
+            discharge_m3_per_s: Series::File { csv: "q.csv".into() },
+            velocity_m_per_s: [0.0, 0.0],
+        };
+        let message = inflow.load_discharge(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("q.csv: ") && message.contains("`river` at 60 s is -2 m3/s"), "{message}");
     }
 
     proptest! {

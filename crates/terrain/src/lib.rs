@@ -5,11 +5,22 @@
 
 mod bounds;
 mod error;
+mod file;
+mod frame;
+mod generated;
+mod georeference;
 mod grid;
+mod holes;
+mod raster;
 mod surface;
+mod system;
 mod terrain;
 
 pub use bounds::Bounds;
 pub use error::TerrainError;
+pub use generated::valley_centre;
+pub use georeference::Georeference;
 pub use grid::MapGrid;
+pub use raster::{Raster, RasterField, read_raster, write_geotiff};
+pub use system::ReferenceSystem;
 pub use terrain::Terrain;

@@ -183,3 +183,88 @@ fn limited_twist(nodes: &[Node], index: usize, stride: usize, rows: usize) -> f6
     }
     twist
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Heights of a function at the nodes of a grid whose first node is at `FIRST`.
+    fn surface(columns: usize, rows: usize, height: impl Fn(f64, f64) -> f64) -> Surface {
+        let heights: Vec<f64> = (0..columns * rows)
+            .map(|i| height(FIRST[0] + CELL[0] * (i % columns) as f64, FIRST[1] + CELL[1] * (i / columns) as f64))
+            .collect();
+        Surface::new(&heights, [columns, rows], FIRST, CELL)
+    }
+
+    const FIRST: [f64; 2] = [100.0, -30.0];
+    const CELL: [f64; 2] = [2.0, 5.0];
+
+    #[test]
+    fn a_plane_is_exact_up_to_a_cell_beyond_the_outermost_nodes() {
+        let plane = |x: f64, y: f64| 3.0 + 0.25 * x - 0.5 * y;
+        let surface = surface(4, 3, plane);
+        for (x, y) in [(100.0, -30.0), (98.5, -34.0), (103.3, -27.1), (107.9, -15.1), (105.0, -20.0)] {
+            let (height, [east, north]) = surface.height_and_slope(x, y);
+            assert!((height - plane(x, y)).abs() < 1e-12, "{x} {y} {height}");
+            assert!((east - 0.25).abs() < 1e-12 && (north + 0.5).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn smooth_ground_is_met_to_third_order() {
+        let ground = |x: f64, y: f64| 0.01 * (x - 80.0) * (x - 80.0) + 0.02 * (x - 80.0) * (y + 60.0);
+        let surface = surface(12, 9, ground);
+        for (x, y) in [(108.7, -11.0), (110.9, -8.3), (112.0, -5.0)] {
+            let (height, _) = surface.height_and_slope(x, y);
+            assert!((height - ground(x, y)).abs() < 1e-10, "{x} {y}: {height} {}", ground(x, y));
+        }
+    }
+
+    #[test]
+    fn a_cliff_at_the_edge_digs_no_pit_beyond_it() {
+        let surface = surface(5, 5, |x, _| if x > 101.0 { 200.0 } else { 10.0 });
+        assert!(surface.height_and_slope(99.0, -20.0).0 >= 10.0 - 1e-12);
+    }
+
+    #[test]
+    fn outside_and_nonsense_are_answered_with_numbers() {
+        let surface = surface(3, 3, |x, y| x * y);
+        for (x, y) in [(f64::NAN, 0.0), (f64::INFINITY, f64::NEG_INFINITY), (-1e300, 1e300)] {
+            let (height, slope) = surface.height_and_slope(x, y);
+            assert!(height.is_finite() && slope.iter().all(|s| s.is_finite()), "{x} {y}");
+        }
+    }
+
+    proptest! {
+        /// Between four nodes the surface stays between the lowest and the highest of them, whatever the heights.
+        #[test]
+        fn never_over_or_undershoots(heights in prop::collection::vec(-100.0..100.0_f64, 36), u in 0.0..1.0_f64, v in 0.0..1.0_f64) {
+            let surface = Surface::new(&heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
+            for row in 0..5 {
+                for column in 0..5 {
+                    let corners = [0, 1, 6, 7].map(|i| heights[row * 6 + column + i]);
+                    let low = corners.iter().copied().fold(f64::INFINITY, f64::min);
+                    let high = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    let (height, _) = surface.height_and_slope(column as f64 + u, row as f64 + v);
+                    prop_assert!((low - 1e-10..=high + 1e-10).contains(&height), "{height} of {corners:?}");
+                }
+            }
+        }
+
+        /// The slope is the derivative of the height, and both are continuous across the sides of patches.
+        #[test]
+        fn slope_is_the_derivative(heights in prop::collection::vec(-10.0..10.0_f64, 36), x in 0.1..4.9_f64, y in 0.1..4.9_f64) {
+            let surface = Surface::new(&heights, [6, 6], [0.0, 0.0], [1.0, 1.0]);
+            let step = 1e-6;
+            let height = |x, y| surface.height_and_slope(x, y).0;
+            let (_, [east, north]) = surface.height_and_slope(x, y);
+            prop_assert!((east - (height(x + step, y) - height(x - step, y)) / (2.0 * step)).abs() < 1e-3);
+            prop_assert!((north - (height(x, y + step) - height(x, y - step)) / (2.0 * step)).abs() < 1e-3);
+            let side = x.round();
+            let (before, after) = (surface.height_and_slope(side - 1e-9, y), surface.height_and_slope(side + 1e-9, y));
+            prop_assert!((before.0 - after.0).abs() < 1e-6);
+            prop_assert!((before.1[0] - after.1[0]).abs() < 1e-5 && (before.1[1] - after.1[1]).abs() < 1e-5);
+        }
+    }
+}

@@ -1,25 +1,31 @@
 //! The ground as a model sees it.
 
+use crate::frame::Frame;
 use crate::surface::Surface;
-use crate::{Bounds, MapGrid, TerrainError};
+use crate::{Bounds, MapGrid, TerrainError, file, generated};
+use rayon::prelude::*;
 use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
 
 /// The ground: heights and slopes in model coordinates, and the grid on which maps are given back.
 ///
 /// Model coordinates are metres, x eastwards and y northwards. Immutable; share it in an `Arc`.
 #[derive(Debug)]
 pub struct Terrain {
-    bounds: Bounds,
-    ground: Ground,
-    map_grid: MapGrid,
-    warnings: Vec<String>,
+    pub(crate) bounds: Bounds,
+    pub(crate) ground: Ground,
+    pub(crate) map_grid: MapGrid,
+    /// Whether the file has data, for each cell of the map grid; `None` where it has everywhere.
+    pub(crate) valid: Option<Vec<bool>>,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// A function that gives height, m, and slope `[dz/dx, dz/dy]` at `(x, y)`.
 type Function = Box<dyn Fn(f64, f64) -> (f64, [f64; 2]) + Send + Sync>;
 
 /// Where heights come from.
-enum Ground {
+pub(crate) enum Ground {
     /// A formula.
     Function(Function),
     /// A smooth surface through gridded heights.
@@ -47,25 +53,37 @@ impl Terrain {
             bounds,
             ground: Ground::Function(Box::new(ground)),
             map_grid: MapGrid::over(bounds, cell),
+            valid: None,
             warnings: Vec::new(),
+        }
+    }
+
+    /// The ground that a scene asks for. `seed` makes generated ground, `folder` is what a relative path refers to.
+    ///
+    /// # Errors
+    /// A text that says what is wrong with the file or with the numbers of a generated terrain.
+    pub fn open(scene: &corpuscle_scene::Terrain, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
+        match scene {
+            corpuscle_scene::Terrain::File(scene) => file::open(scene, folder),
+            generated => generated::open(generated, seed),
         }
     }
 
     /// Smooth ground through heights on a grid: `height` gives them, m, at the centres of cells about `cell` wide
     /// that fill `bounds`.
-    pub fn gridded(bounds: Bounds, cell: f64, height: impl Fn(f64, f64) -> f64) -> Self {
+    pub fn gridded(bounds: Bounds, cell: f64, height: impl Fn(f64, f64) -> f64 + Sync) -> Self {
         let map_grid = MapGrid::over(bounds, cell);
         let [columns, rows] = [map_grid.columns, map_grid.rows];
-        let heights: Vec<f64> = (0..rows)
-            .rev()
-            .flat_map(|row| (0..columns).map(move |column| (column, row)))
-            .map(|(column, row)| {
-                let [x, y] = map_grid.centre(column, row);
+        let heights: Vec<f64> = (0..columns * rows)
+            .into_par_iter()
+            .with_min_len(256)
+            .map(|index| {
+                let [x, y] = map_grid.centre(index % columns, rows - 1 - index / columns);
                 height(x, y)
             })
             .collect();
-        let surface = Surface::new(&heights, [columns, rows], map_grid.centre(0, rows - 1), map_grid.cell_size());
-        Self { bounds, ground: Ground::Surface(surface), map_grid, warnings: Vec::new() }
+        let surface = Surface::new(&heights, [columns, rows], map_grid.centre(0, rows - 1), map_grid.georeference.cell);
+        Self { bounds, ground: Ground::Surface(surface), map_grid, valid: None, warnings: Vec::new() }
     }
 
     /// The rectangle in model coordinates inside which heights are defined.
@@ -93,35 +111,43 @@ impl Terrain {
         &self.map_grid
     }
 
-    /// False for cells of the map grid in which the file has no data: maps have none there either.
+    /// False for cells of the map grid in which the file has no data, and outside the grid: maps have none there
+    /// either.
     pub fn is_valid_cell(&self, column: usize, row: usize) -> bool {
-        column < self.map_grid.columns && row < self.map_grid.rows
+        let MapGrid { columns, rows, .. } = self.map_grid;
+        column < columns && row < rows && self.valid.as_ref().is_none_or(|valid| valid[row * columns + column])
     }
 
     /// From the terrain's own coordinates (longitude and latitude in degrees for a geographic one) to model metres.
+    /// Not-a-number for a place that a geographic terrain's local projection cannot show, half the Earth away.
     pub fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
-        place
+        self.map_grid.frame.to_model(place)
     }
 
     /// From model metres to the terrain's own coordinates.
     pub fn to_own(&self, model: [f64; 2]) -> [f64; 2] {
-        model
+        self.map_grid.frame.to_own(model)
     }
 
     /// From longitude and latitude, degrees (WGS 84), to model metres.
     ///
     /// # Errors
-    /// [`TerrainError::NoReferenceSystem`] where the terrain has no place on Earth.
-    pub fn from_lon_lat(&self, _lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
-        Err(TerrainError::NoReferenceSystem)
+    /// [`TerrainError::NoReferenceSystem`] where the terrain has no known place on Earth, [`TerrainError::Place`]
+    /// where its reference system does not reach.
+    pub fn from_lon_lat(&self, lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
+        self.map_grid.frame.lon_lat_to_model(lon_lat)
     }
 
     /// From model metres to longitude and latitude, degrees (WGS 84).
     ///
     /// # Errors
-    /// [`TerrainError::NoReferenceSystem`] where the terrain has no place on Earth.
-    pub fn to_lon_lat(&self, _model: [f64; 2]) -> Result<[f64; 2], TerrainError> {
-        Err(TerrainError::NoReferenceSystem)
+    /// As [`Terrain::from_lon_lat`].
+    pub fn to_lon_lat(&self, model: [f64; 2]) -> Result<[f64; 2], TerrainError> {
+        self.map_grid.frame.model_to_lon_lat(model)
+    }
+
+    pub(crate) fn frame(&self) -> Arc<Frame> {
+        Arc::clone(&self.map_grid.frame)
     }
 
     /// What a user should know about this terrain, in sentences.

@@ -1,0 +1,248 @@
+//! From what a scene says to what the model needs.
+
+use crate::edges::{EdgeRule, EdgeRules};
+use crate::falling::Falling;
+use crate::gauges::{LineGauge, PointGauge};
+use crate::inflow::{Source, Zone};
+use crate::particle::Particle;
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Block, Edge, Flood as FloodScene, Gauge, Series, Table, Water};
+use corpuscle_terrain::{Bounds, RasterField, Terrain};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::path::Path;
+
+/// Water that is there at the start, as functions of the place in model coordinates.
+pub struct InitialWater<'a> {
+    /// Depth, m; 0 or less where there is none. Goes on beyond `inside` where it can: the rim of the body is then cut out
+    /// of a larger arrangement and stands as close as its middle.
+    pub depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a>,
+    /// Whether a place belongs to this body of water.
+    pub inside: Box<dyn Fn(f64, f64) -> bool + Sync + 'a>,
+    /// A rectangle round it.
+    pub within: Bounds,
+    /// Velocity, m/s.
+    pub velocity: Box<dyn Fn(f64, f64) -> [f64; 2] + Sync + 'a>,
+}
+
+fn setup(text: impl std::fmt::Display) -> ModelError {
+    ModelError::Setup(text.to_string())
+}
+
+pub(crate) fn load(series: &Series, folder: &Path) -> Result<Table, ModelError> {
+    series.load(folder).map_err(setup)
+}
+
+pub(crate) fn edge_rules(scene: &FloodScene, terrain: &Terrain, folder: &Path) -> Result<EdgeRules, ModelError> {
+    let rule = |edge: &Edge| {
+        Ok(match edge {
+            Edge::Open => EdgeRule::Open,
+            Edge::Wall => EdgeRule::Wall,
+            Edge::Periodic => EdgeRule::Periodic,
+            Edge::Stage(level) => EdgeRule::Stage(load(level, folder)?),
+        })
+    };
+    let edges = &scene.edges;
+    let rules = [rule(&edges.west)?, rule(&edges.east)?, rule(&edges.south)?, rule(&edges.north)?];
+    Ok(EdgeRules { bounds: terrain.bounds(), rules })
+}
+
+/// The bodies of water that a scene fills at the start (blocks in the air apart).
+pub(crate) fn initial_water<'a>(
+    scene: &FloodScene,
+    terrain: &'a Terrain,
+    folder: &Path,
+) -> Result<Vec<InitialWater<'a>>, ModelError> {
+    let standing = scene.water.iter().enumerate().filter(|(_, water)| water.block.is_none());
+    standing.map(|(number, water)| body(water, number, terrain, folder)).collect()
+}
+
+fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<InitialWater<'a>, ModelError> {
+    let depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a> = if let Some(level) = water.level_m {
+        Box::new(move |x, y| level - terrain.height(x, y))
+    } else if let Some(depth) = water.depth_m {
+        Box::new(move |_, _| depth)
+    } else if let Some(path) = &water.depth_raster {
+        let raster = RasterField::open(&folder.join(path), terrain).map_err(setup)?;
+        Box::new(move |x, y| raster.smooth(x, y).unwrap_or(0.0))
+    } else {
+        return Err(setup(format!("flood.water[{number}] says neither level, depth, raster nor block")));
+    };
+    let bounds = terrain.bounds();
+    let velocity = water.velocity_m_per_s;
+    let velocity: Box<dyn Fn(f64, f64) -> [f64; 2] + Sync> = Box::new(move |_, _| velocity);
+    let Some(polygon) = &water.polygon else {
+        return Ok(InitialWater { depth, inside: Box::new(|_, _| true), within: bounds, velocity });
+    };
+    let polygon: Vec<[f64; 2]> = polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
+    let within = rectangle_round(&polygon);
+    let apart = within.x_max < bounds.x_min
+        || within.x_min > bounds.x_max
+        || within.y_max < bounds.y_min
+        || within.y_min > bounds.y_max;
+    if apart {
+        return Err(setup(format!(
+            "flood.water[{number}].polygon lies wholly outside the terrain, which spans {}: give its corners in the \
+             terrain's own coordinates",
+            span(terrain)
+        )));
+    }
+    Ok(InitialWater { depth, inside: Box::new(move |x, y| is_inside(&polygon, x, y)), within, velocity })
+}
+
+/// The terrain's extent in its own coordinates, for messages.
+fn span(terrain: &Terrain) -> String {
+    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+    let ([west, south], [east, north]) = (terrain.to_own([x_min, y_min]), terrain.to_own([x_max, y_max]));
+    format!("x from {west} to {east} and y from {south} to {north}")
+}
+
+fn rectangle_round(polygon: &[[f64; 2]]) -> Bounds {
+    let start = Bounds { x_min: f64::INFINITY, x_max: -f64::INFINITY, y_min: f64::INFINITY, y_max: -f64::INFINITY };
+    polygon.iter().fold(start, |b, &[x, y]| Bounds {
+        x_min: b.x_min.min(x),
+        x_max: b.x_max.max(x),
+        y_min: b.y_min.min(y),
+        y_max: b.y_max.max(y),
+    })
+}
+
+/// Whether a polygon holds a place: an odd number of sides crosses the ray eastwards.
+pub(crate) fn is_inside(polygon: &[[f64; 2]], x: f64, y: f64) -> bool {
+    let mut inside = false;
+    let mut before = polygon[polygon.len() - 1];
+    for &corner in polygon {
+        let [[x0, y0], [x1, y1]] = [before, corner];
+        if (y0 > y) != (y1 > y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0) {
+            inside = !inside;
+        }
+        before = corner;
+    }
+    inside
+}
+
+/// The mean depth of the water at the start over the places it covers, m; none where there is no water.
+pub(crate) fn mean_depth(bodies: &[InitialWater], terrain: &Terrain) -> Option<f64> {
+    let grid = terrain.map_grid();
+    let (mut sum, mut places) = (0.0, 0_u32);
+    for row in 0..grid.rows {
+        for column in 0..grid.columns {
+            let [x, y] = grid.centre(column, row);
+            for body in bodies {
+                if (body.inside)(x, y) && (body.depth)(x, y) > 0.0 {
+                    sum += (body.depth)(x, y);
+                    places += 1;
+                }
+            }
+        }
+    }
+    (places > 0).then(|| sum / f64::from(places))
+}
+
+/// The particles of a block in the air: layers of a lattice, each shifted a little at random so that no two stand one
+/// above the other.
+pub(crate) fn block(
+    block: &Block,
+    velocity: [f64; 2],
+    terrain: &Terrain,
+    spacing: f64,
+    volume: f64,
+    h: f64,
+    random: &mut ChaCha8Rng,
+) -> Vec<Falling> {
+    let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
+    let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
+    let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
+    let count = [0, 1].map(|axis| ((to[axis] - from[axis]) / spacing).round().max(1.0) as usize);
+    let mut falling = Vec::with_capacity(count[0] * count[1] * block.layers);
+    for layer in 0..block.layers {
+        for row in 0..count[1] {
+            for column in 0..count[0] {
+                let mut at = |from: f64, k: usize| from + (k as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
+                let (x, y) = (at(from[0], column), at(from[1], row));
+                let mut particle = Particle::new(0, x, y, volume, h);
+                [particle.u, particle.v] = velocity;
+                falling.push(Falling { particle, z: bottom + (layer as f64 + 0.5) * spacing, w: 0.0 });
+            }
+        }
+    }
+    falling
+}
+
+pub(crate) fn sources(
+    scene: &FloodScene,
+    terrain: &Terrain,
+    folder: &Path,
+    spacing: f64,
+) -> Result<Vec<Source>, ModelError> {
+    let bounds = terrain.bounds();
+    let source = |inflow: &corpuscle_scene::Inflow| {
+        let discharge = load(&inflow.discharge_m3_per_s, folder)?;
+        let largest = discharge.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
+        let points: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
+            (Some(at), _) => vec![terrain.to_model(*at)],
+            (_, Some(line)) => line.iter().map(|&point| terrain.to_model(point)).collect(),
+            (None, None) => Vec::new(),
+        };
+        if let Some([x, y]) = points.iter().find(|[x, y]| !bounds.contains(*x, *y)) {
+            let [own_x, own_y] = terrain.to_own([*x, *y]);
+            return Err(setup(format!(
+                "the inflow '{}' has the point [{own_x}, {own_y}], which lies outside the terrain: that spans {}",
+                inflow.name,
+                span(terrain)
+            )));
+        }
+        let zone = match points.as_slice() {
+            [] => return Err(setup(format!("the inflow '{}' has neither a point nor a line", inflow.name))),
+            [at] => Zone::at(*at, largest, spacing),
+            _ => Zone::along(points, largest, spacing),
+        };
+        Ok(Source { zone, discharge, velocity: inflow.velocity_m_per_s })
+    };
+    scene.inflow.iter().map(source).collect()
+}
+
+pub(crate) fn point_gauges(scene: &FloodScene, terrain: &Terrain) -> Result<Vec<PointGauge>, ModelError> {
+    let gauge = |gauge: &Gauge| {
+        let at = match (gauge.at, gauge.lon_lat) {
+            (Some(at), _) => terrain.to_model(at),
+            (None, Some(lon_lat)) => terrain.from_lon_lat(lon_lat).map_err(setup)?,
+            (None, None) => return Err(setup(format!("the gauge '{}' has no place", gauge.name))),
+        };
+        if !terrain.bounds().contains(at[0], at[1]) {
+            return Err(setup(format!(
+                "the gauge '{}' lies outside the terrain, which spans {}",
+                gauge.name,
+                span(terrain)
+            )));
+        }
+        Ok(PointGauge { name: gauge.name.clone(), at })
+    };
+    scene.gauge.iter().map(gauge).collect()
+}
+
+pub(crate) fn line_gauges(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> Vec<LineGauge> {
+    let line = |line: &[[f64; 2]]| line.iter().map(|&point| terrain.to_model(point)).collect::<Vec<_>>();
+    scene.section.iter().map(|s| LineGauge::new(s.name.clone(), &line(&s.line), 0.5 * spacing)).collect()
+}
+
+/// The random numbers of one purpose.
+pub(crate) fn random(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream);
+    random
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polygon_holds_its_inside_and_not_its_bay() {
+        let polygon = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 4.0], [0.0, 10.0]];
+        assert!(is_inside(&polygon, 2.0, 2.0));
+        assert!(is_inside(&polygon, 9.0, 8.0));
+        assert!(!is_inside(&polygon, 5.0, 6.0));
+        assert!(!is_inside(&polygon, -1.0, 2.0));
+    }
+}

@@ -1,0 +1,241 @@
+//! Every way a scene can be wrong is refused with its line, key, value and what would be right.
+
+use corpuscle_scene::Scene;
+
+/// A scene without fault; each test spoils one line of it.
+const GOOD: &str = r#"title = "test"
+seed = 1
+
+[run]
+until_s = 60.0
+frame_every_s = 1.0
+
+[terrain.plane]
+extent = { length_m = 100.0, width_m = 50.0, cell_m = 1.0 }
+
+[flood]
+scheme = "balanced"
+spacing_m = 1.0
+manning = 0.03
+
+[flood.edges]
+west = "wall"
+east = { stage = [[0.0, 1.0], [10.0, 2.0]] }
+
+[[flood.water]]
+level_m = 1.0
+polygon = [[0, 0], [10, 0], [10, 10]]
+
+[[flood.inflow]]
+name = "river"
+at = [1.0, 1.0]
+discharge_m3_per_s = [[0.0, 1.0], [10.0, 2.0]]
+
+[[flood.gauge]]
+name = "P1"
+at = [1.0, 1.0]
+
+[[flood.section]]
+name = "S1"
+line = [[0.0, 0.0], [1.0, 0.0]]
+"#;
+
+fn refuse(text: &str, overrides: &[(&str, &str)]) -> String {
+    let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();
+    match Scene::parse(text, "test.toml", &overrides) {
+        Ok(scene) => panic!("accepted:\n{text}\n{scene:?}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+/// Replaces one line by another and asserts that the message holds all the words.
+fn assert_refused(line: &str, by: &str, words: &[&str]) {
+    let lines: Vec<_> = GOOD.lines().collect();
+    let number = 1 + lines.iter().position(|found| *found == line).unwrap_or_else(|| panic!("no line {line}"));
+    let text = GOOD.replace(&format!("\n{line}\n"), &format!("\n{by}\n"));
+    let message = refuse(&text, &[]);
+    for word in words.iter().copied().chain([format!("test.toml:{number}:").as_str()]) {
+        assert!(message.contains(word), "{by}: {word:?} is not in:\n{message}");
+    }
+}
+
+#[test]
+fn the_scene_that_the_tests_spoil_is_good() {
+    Scene::parse(GOOD, "test.toml", &[]).unwrap();
+}
+
+#[test]
+fn syntax() {
+    assert_refused("until_s = 60.0", "until_s =", &["this is not TOML"]);
+    assert_refused("scheme = \"balanced\"", "scheme = \"balanced", &["this is not TOML"]);
+    let twice = refuse(&GOOD.replace("seed = 1", "seed = 1\nseed = 2"), &[]);
+    assert!(twice.contains("test.toml:3:1") && twice.contains("duplicate key"), "{twice}");
+}
+
+#[test]
+fn the_message_shows_the_line_and_marks_the_value() {
+    let message = refuse(&GOOD.replace("spacing_m = 1.0", "spacing_m = -5.0 # too small"), &[]);
+    let expected = "test.toml:13:13: flood.spacing_m = -5.0: must be larger than 0
+  13 | spacing_m = -5.0 # too small
+     |             ^^^^";
+    assert_eq!(message, expected);
+}
+
+#[test]
+fn unknown_words() {
+    assert_refused("seed = 1", "sed = 1", &["sed is not a key", "did you mean `seed`"]);
+    assert_refused("spacing_m = 1.0", "spacng_m = 1.0", &["flood.spacng_m", "did you mean `spacing_m`"]);
+    assert_refused("spacing_m = 1.0", "qq = 1.0", &["flood.qq", "known: scheme, spacing_m"]);
+    assert_refused("[run]", "[rum]", &["rum", "did you mean `run`"]);
+    assert_refused("[terrain.plane]", "[terrain.plain]", &["did you mean `plane`", "rough-hills"]);
+    assert_refused("west = \"wall\"", "west = \"wal\"", &["flood.edges.west", "did you mean `wall`"]);
+    assert_refused("west = \"wall\"", "west = { stag = 1.0 }", &["flood.edges.west", "did you mean `stage`"]);
+    assert_refused("scheme = \"balanced\"", "scheme = \"balnced\"", &["flood.scheme", "did you mean `balanced`"]);
+}
+
+#[test]
+fn wrong_types() {
+    assert_refused("until_s = 60.0", "until_s = \"long\"", &["run.until_s", "\"long\"", "expected a number"]);
+    assert_refused("seed = 1", "seed = -1", &["seed", "-1", "0 or more"]);
+    assert_refused("seed = 1", "seed = 99999999999999999999999", &["seed", "99999999999999999999999"]);
+    assert_refused("seed = 1", "seed = 18446744073709551615", &["at most 9223372036854775807"]);
+    assert_refused("manning = 0.03", "manning = true", &["flood.manning", "expected a number", "raster"]);
+    assert_refused("manning = 0.03", "manning = { rster = \"n.tif\" }", &["{ raster = "]);
+    assert_refused("manning = 0.03", "manning = { raster = \"n.tif\", n = 1 }", &["{ raster = "]);
+    assert_refused("west = \"wall\"", "west = \"stage\"", &["flood.edges.west", "needs a value", "{ stage = "]);
+    assert_refused("west = \"wall\"", "west = { stage = \"a\" }", &["flood.edges.west", "expected a number", "csv"]);
+    assert_refused("west = \"wall\"", "west = 1", &["flood.edges.west", "a word in quotes or a table"]);
+    assert_refused("line = [[0.0, 0.0], [1.0, 0.0]]", "line = [[0.0], [1.0, 0.0]]", &["two numbers"]);
+    assert_refused("[[flood.gauge]]", "[flood.gauge]", &["flood.gauge", "double brackets"]);
+}
+
+#[test]
+fn nothing_written_is_passed_over() {
+    let third = "line = [[0.0, 0.0, 7.0], [1.0, 0.0]]";
+    assert_refused("line = [[0.0, 0.0], [1.0, 0.0]]", third, &["flood.section.0.line.0.2", "not used", "^^^"]);
+    let list = "extent = [100.0, 50.0, 1.0]";
+    assert_refused("extent = { length_m = 100.0, width_m = 50.0, cell_m = 1.0 }", list, &["terrain.plane.extent"]);
+}
+
+#[test]
+fn missing_keys_and_tables() {
+    let without = |line: &str| refuse(&GOOD.replace(&format!("{line}\n"), ""), &[]);
+    let message = without("until_s = 60.0");
+    assert!(
+        message.contains("test.toml:4:1: run.until_s is missing") && message.contains("until_s = 600"),
+        "{message}"
+    );
+    let message = without("name = \"S1\"");
+    assert!(message.contains("test.toml:33:1: flood.section.0.name is missing"), "{message}");
+    for (text, words) in [
+        ("", ["test.toml: run is missing", "until_s"]),
+        ("[run]\nuntil_s = 1\n[flood]\n", ["test.toml: terrain is missing", "[terrain.file]"]),
+        ("[run]\nuntil_s = 1\n[terrain.plane]\n", ["test.toml: flood is missing", "[flood]"]),
+        ("[run]\nuntil_s = 1\n[terrain]\n[flood]\n", ["test.toml:3:1: terrain", "exactly one"]),
+        ("[run]\nuntil_s = 1\n[terrain.bowl]\n[terrain.plane]\n[flood]\n", ["terrain", "exactly one kind, found more"]),
+    ] {
+        let message = refuse(text, &[]);
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range() {
+    for value in ["nan", "inf", "-inf", "0", "-1.0"] {
+        assert_refused("until_s = 60.0", &format!("until_s = {value}"), &["run.until_s = ", "must be "]);
+    }
+    assert_refused("spacing_m = 1.0", "spacing_m = nan", &["flood.spacing_m = nan", "finite"]);
+    assert_refused("line = [[0.0, 0.0], [1.0, 0.0]]", "line = [[0.0, nan], [1.0, 0.0]]", &["flood.section.0.line.0.1"]);
+    assert_refused("frame_every_s = 1.0", "frame_every_s = 1e-9", &["run.frame_every_s", "frames"]);
+    assert_refused("manning = 0.03", "manning = 30.0", &["flood.manning = 30.0", "1/k = 0.0333"]);
+    assert_refused("manning = 0.03", "manning = -0.1", &["flood.manning = -0.1", "at least 0"]);
+    let extent = "extent = { length_m = 100.0, width_m = 50.0, cell_m = 1.0 }";
+    assert_refused(extent, "extent = { length_m = 1e6, width_m = 1e6, cell_m = 1.0 }", &["cell_m", "larger cells"]);
+    assert_refused(extent, "extent = { length_m = 9.0, width_m = 5.0, cell_m = 7.0 }", &["cell_m = 7.0", "at most"]);
+    assert_refused(extent, "extent = { length_m = -9.0 }", &["length_m = -9.0", "larger than 0"]);
+}
+
+#[test]
+fn shapes() {
+    let polygon = "polygon = [[0, 0], [10, 0], [10, 10]]";
+    assert_refused(polygon, "polygon = []", &["flood.water.0.polygon", "at least three corners"]);
+    assert_refused(polygon, "polygon = [[0, 0], [5, 5], [10, 10]]", &["flood.water.0.polygon", "area"]);
+    let line = "line = [[0.0, 0.0], [1.0, 0.0]]";
+    assert_refused(line, "line = [[0.0, 0.0]]", &["flood.section.0.line", "at least two points"]);
+    assert_refused(line, "line = [[0.0, 0.0], [0.0, 0.0]]", &["points 0 and 1", "same"]);
+}
+
+/// The water and the gauge of the good scene are at the heads of their tables, so the error points there.
+#[test]
+fn exactly_one_kind() {
+    let spoil = |line: &str, by: &str| refuse(&GOOD.replacen(line, by, 1), &[]);
+    let both = spoil("level_m = 1.0", "level_m = 1.0\ndepth_m = 1.0");
+    assert!(
+        both.contains("test.toml:20:1: flood.water.0") && both.contains("not level_m and depth_m together"),
+        "{both}"
+    );
+    let none = spoil("level_m = 1.0\n", "");
+    assert!(none.contains("flood.water.0: give exactly one of level_m, depth_m, depth_raster, block"), "{none}");
+    let none = spoil("at = [1.0, 1.0]\n", "");
+    assert!(none.contains("flood.inflow.0: give exactly one of at, line; none"), "{none}");
+    let both = spoil("name = \"P1\"", "name = \"P1\"\nlon_lat = [7.0, 43.5]");
+    assert!(both.contains("flood.gauge.0: give exactly one of at, lon_lat"), "{both}");
+    let block = "block = { from = [0, 0], to = [1, 1], height_m = 1 }";
+    let polygon = spoil("level_m = 1.0", block);
+    assert!(polygon.contains("flood.water.0.polygon") && polygon.contains("own corners"), "{polygon}");
+}
+
+#[test]
+fn series_in_the_scene() {
+    let line = "discharge_m3_per_s = [[0.0, 1.0], [10.0, 2.0]]";
+    let key = "flood.inflow.0.discharge_m3_per_s";
+    let spoil = |by: &str, words: &[&str]| assert_refused(line, &format!("discharge_m3_per_s = {by}"), words);
+    spoil("[[10.0, 1.0], [1.0, 2.0]]", &[key, "sort the rows by time"]);
+    spoil("[[0.0, 1.0], [10.0, -2.0]]", &[key, "must not be negative (-2 here)"]);
+    spoil("-3", &[key, "must not be negative"]);
+    spoil("[]", &[key, "no rows"]);
+    spoil("[[0.0, inf]]", &[key, "finite"]);
+    spoil("[[0.0, 1.0], [10.0]]", &[key, "rows of [time_s, value]"]);
+    let east = "east = { stage = [[0.0, 1.0], [10.0, 2.0]] }";
+    assert_refused(east, "east = { stage = [[9.0, 1.0], [1.0, 2.0]] }", &["flood.edges.east.stage.1", "sort the rows"]);
+}
+
+#[test]
+fn names_and_edges() {
+    assert_refused("name = \"S1\"", "name = \"P1\"", &["flood.section.0.name", "taken by flood.gauge.0.name"]);
+    assert_refused("name = \"river\"", "name = \"S1\"", &["flood.inflow.0.name", "taken by flood.section.0.name"]);
+    assert_refused("name = \"S1\"", "name = \"a,b\"", &["flood.section.0.name = \"a,b\"", "letters, digits"]);
+    assert_refused("name = \"S1\"", "name = \"\"", &["flood.section.0.name", "letters, digits"]);
+    assert_refused("west = \"wall\"", "west = \"periodic\"", &["flood.edges.west", "give east = \"periodic\""]);
+}
+
+#[test]
+fn overrides_are_named() {
+    let others = ("flood.wet_depth_m", "0.5");
+    for ((path, value), words) in [
+        (("flood.scheme", "papr"), "did you mean `paper`"),
+        (("flood.scheme", ""), "known: balanced, paper"),
+        (("flood.spacing_m", "-1"), "must be larger than 0"),
+        (("flood.spcing_m", "1"), "did you mean `spacing_m`"),
+        (("flood.gauge.5.name", "b"), "the number of a row, 0 to 1"),
+        (("flood.gauge.1.name", "b"), "exactly one of at, lon_lat"),
+        (("flood.scheme.a", "b"), "there is no `a` in a string"),
+        (("flood..a", "b"), "words joined by dots"),
+    ] {
+        let message = refuse(GOOD, &[others, (path, value), others]);
+        assert!(message.starts_with(&format!("--set {path}={value}: ")) && message.contains(words), "{message}");
+    }
+}
+
+#[test]
+fn a_scene_made_in_memory_is_checked_too() {
+    let mut scene = Scene::parse(GOOD, "test.toml", &[]).unwrap();
+    scene.flood.spacing_m = f64::NAN;
+    assert_eq!(scene.check().unwrap_err().to_string(), "flood.spacing_m = nan: must be a finite number");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let message = Scene::read("no/such/scene.toml".as_ref(), &[]).unwrap_err().to_string();
+    assert!(message.contains("no/such/scene.toml"), "{message}");
+}

@@ -1,0 +1,121 @@
+//! A scene written and read again is the same scene, and no text makes the parser panic.
+
+use corpuscle_scene::{BUILTIN, Manning, Scene, Series, Terrain, builtin};
+use proptest::prelude::*;
+use std::path::Path;
+
+fn parse(text: &str) -> Scene {
+    Scene::parse(text, "test.toml", &[]).unwrap()
+}
+
+#[test]
+fn every_built_in_scene_reads_and_round_trips() {
+    for scene in BUILTIN {
+        let mut scene = Scene::parse(scene.text, scene.name, &[]).unwrap();
+        assert!(!scene.title.is_empty() && !scene.description.is_empty());
+        assert_eq!(parse(&scene.to_toml().unwrap()), scene);
+        scene.resolve_defaults();
+        let written = scene.to_toml().unwrap();
+        assert_eq!(parse(&written), scene);
+        for key in ["frame_every_s", "gauge_every_s", "map_every_s", "gravity_m_per_s2", "checkpoint_every_wall_s"] {
+            assert!(written.contains(&format!("{key} = ")), "{key} is not in\n{written}");
+        }
+    }
+}
+
+#[test]
+fn built_in_scenes_are_found_by_name() {
+    assert_eq!(builtin("flood/valley"), Some(BUILTIN[0]));
+    assert_eq!(builtin("flood/none"), None);
+}
+
+const FILES: &str = r#"
+[run]
+until_s = 60
+[terrain.file]
+path = "dem.tif"
+[flood]
+manning = { raster = "n.tif" }
+observed_extent = "/abs/seen.geojson"
+[flood.edges]
+west = { stage = { csv = "tide.csv" } }
+[[flood.water]]
+depth_raster = "sub/depth.tif"
+[[flood.inflow]]
+name = "river"
+line = [[0, 0], [1, 1]]
+discharge_m3_per_s = { csv = "q.csv" }
+"#;
+
+#[test]
+fn paths_become_absolute_and_round_trip() {
+    let mut scene = parse(FILES);
+    scene.resolve_paths(Path::new("/data/scene"));
+    let Terrain::File(file) = &scene.terrain else { panic!("{:?}", scene.terrain) };
+    assert_eq!(file.path, Path::new("/data/scene/dem.tif"));
+    assert_eq!(scene.flood.manning, Manning::Raster { raster: "/data/scene/n.tif".into() });
+    assert_eq!(scene.flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into() });
+    assert_eq!(scene.flood.observed_extent.as_deref(), Some(Path::new("/abs/seen.geojson")));
+    let written = scene.to_toml().unwrap();
+    assert!(written.contains("/data/scene/tide.csv") && written.contains("/data/scene/sub/depth.tif"), "{written}");
+    assert_eq!(parse(&written), scene);
+}
+
+#[test]
+fn overrides_change_numbers_words_rows_and_kinds() {
+    let set = |overrides: &[(&str, &str)]| {
+        let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();
+        Scene::parse(FILES, "test.toml", &overrides).unwrap()
+    };
+    let scene = set(&[
+        ("run.until_s", "10"),
+        ("flood.scheme", "paper"),
+        ("title", "Two words"),
+        ("flood.inflow.0.discharge_m3_per_s", "[[0, 1], [5, 2]]"),
+        ("flood.gauge.0.name", "P1"),
+        ("flood.gauge.0.at", "[1, 2]"),
+        ("flood.gauge.1", "{ name = \"P2\", at = [3, 4] }"),
+        ("flood.paper.control_force", "false"),
+    ]);
+    assert_eq!(scene.run.until_s, 10.0);
+    assert_eq!(scene.title, "Two words");
+    assert_eq!(scene.flood.inflow[0].discharge_m3_per_s, Series::Table(vec![[0.0, 1.0], [5.0, 2.0]]));
+    assert_eq!(scene.flood.gauge[1].at, Some([3.0, 4.0]));
+    assert!(!scene.flood.paper.control_force);
+    assert_eq!(set(&[("terrain", "{ plane = {} }")]).terrain, Terrain::Plane(Default::default()));
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read_or_refused(text in "\\PC{0,200}", value in "\\PC{0,20}", path in "[a-z0-9.]{0,20}") {
+        for overrides in [vec![], vec![(path, value)]] {
+            if let Err(error) = Scene::parse(&text, "any.toml", &overrides) {
+                prop_assert!(!error.to_string().is_empty());
+            }
+        }
+    }
+
+    #[test]
+    fn any_damaged_scene_is_read_or_refused(
+        which in 0..BUILTIN.len(), at in 0.0..1.0f64, length in 0usize..30, by in "[\\[\\]{}=.,#\"a-z0-9\n é-]{0,10}",
+    ) {
+        let text = BUILTIN[which].text;
+        let boundary = |byte: usize| (byte.min(text.len())..=text.len()).find(|&i| text.is_char_boundary(i)).unwrap();
+        let from = boundary((at * text.len() as f64) as usize);
+        let to = boundary(from + length);
+        let damaged = format!("{}{by}{}", &text[..from], &text[to..]);
+        match Scene::parse(&damaged, "damaged.toml", &[]) {
+            Ok(scene) => prop_assert_eq!(Scene::parse(&scene.to_toml().unwrap(), "again.toml", &[]).unwrap(), scene),
+            Err(error) => prop_assert!(error.to_string().starts_with("damaged.toml"), "{}", error),
+        }
+    }
+
+    #[test]
+    fn any_override_of_a_number_is_read_or_refused(value in any::<f64>()) {
+        let overrides = [("flood.spacing_m".to_owned(), format!("{value:?}"))];
+        match Scene::parse(BUILTIN[0].text, "valley", &overrides) {
+            Ok(scene) => prop_assert_eq!(scene.flood.spacing_m.to_bits(), value.to_bits()),
+            Err(error) => prop_assert!(error.to_string().contains("flood.spacing_m"), "{}", error),
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Terrain from a raster file.
+
+use crate::frame::Frame;
+use crate::holes;
+use crate::surface::Surface;
+use crate::system::ReferenceSystem;
+use crate::terrain::{Ground, Terrain};
+use crate::{Bounds, Georeference, MapGrid, Raster, TerrainError, read_raster};
+use corpuscle_scene::TerrainFile;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Heights beyond these are no ground on Earth, m: most likely an unnamed no-data mark.
+const LOWEST_ON_EARTH: f64 = -11_000.0;
+const HIGHEST_ON_EARTH: f64 = 9_000.0;
+
+/// Heights beyond this in magnitude are no ground at all, m.
+const ABSURD: f64 = 1e6;
+
+/// A local projection is stretched by more than a thousandth beyond this distance from its middle line, m.
+const FAR_FROM_CENTRE: f64 = 285e3;
+
+/// Opens the terrain of a scene's `[terrain.file]`.
+pub(crate) fn open(scene: &TerrainFile, folder: &Path) -> Result<Terrain, TerrainError> {
+    let path = folder.join(&scene.path);
+    let mut raster = read_raster(&path)?;
+    let mut warnings = std::mem::take(&mut raster.warnings);
+    choose_system(&mut raster, scene.crs.as_deref(), &path, &mut warnings)?;
+    check_heights(&raster, &path, &mut warnings)?;
+    let size = [raster.columns, raster.rows];
+    let holes: Vec<bool> = raster.values.iter().map(|height| height.is_nan()).collect();
+    let valid = holes.contains(&true).then(|| holes.iter().map(|hole| !hole).collect());
+    holes::close(&mut raster.values, size, scene.no_data);
+    let frame = frame(&raster).map_err(|what| TerrainError::unusable(&path, what))?;
+    let map_grid =
+        MapGrid { columns: size[0], rows: size[1], georeference: raster.georeference.clone(), frame: Arc::new(frame) };
+    let geographic = raster.georeference.system.as_ref().is_some_and(|system| system.geographic);
+    let (bounds, surface) = if geographic {
+        let bounds = inside(&map_grid).map_err(|what| TerrainError::unusable(&path, what))?;
+        if bounds.x_min < -FAR_FROM_CENTRE || bounds.x_max > FAR_FROM_CENTRE {
+            let what = "The terrain is so wide that distances near its sides are wrong by more than 0.1 %; cut it out \
+                        smaller if that matters.";
+            warnings.push(what.into());
+        }
+        (bounds, resampled(&raster, bounds, &map_grid))
+    } else {
+        (outside(&map_grid), metric(&raster, &map_grid))
+    };
+    Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
+}
+
+/// Settles the reference system from what the file and the scene say.
+fn choose_system(
+    raster: &mut Raster,
+    crs: Option<&str>,
+    path: &Path,
+    warnings: &mut Vec<String>,
+) -> Result<(), TerrainError> {
+    let named = crs.map(ReferenceSystem::parse).transpose()?;
+    let file = path.display();
+    match (&raster.georeference.system, named) {
+        (Some(own), Some(named)) if own.name != named.name => warnings.push(format!(
+            "{file} is in {}; the scene's crs = \"{}\" is for files that name none, and is not used.",
+            own.name, named.name
+        )),
+        (None, Some(named)) => raster.georeference = raster.georeference.clone().with_system(named),
+        (None, None) => warnings.push(format!(
+            "{file} names no reference system: its coordinates are taken as metres without a place on Earth. Name it \
+             with `crs` in [terrain.file] if you know it."
+        )),
+        (Some(_), _) => {}
+    }
+    warnings.extend(raster.georeference.system.as_ref().and_then(ReferenceSystem::warning));
+    Ok(())
+}
+
+/// Refuses heights that are none, and tells of doubtful ones.
+fn check_heights(raster: &Raster, path: &Path, warnings: &mut Vec<String>) -> Result<(), TerrainError> {
+    let lowest = raster.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let highest = raster.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let hint = "if that marks cells without data, say so in the file: `gdal_edit.py -a_nodata`";
+    if lowest < -ABSURD || highest > ABSURD {
+        let what = format!("its heights go from {lowest} to {highest} m, which is no ground; {hint}");
+        return Err(TerrainError::unusable(path, what));
+    }
+    if lowest < LOWEST_ON_EARTH || highest > HIGHEST_ON_EARTH {
+        warnings.push(format!("{} has heights from {lowest} to {highest} m; {hint}.", path.display()));
+    }
+    Ok(())
+}
+
+/// The frame of a raster, centred on it.
+fn frame(raster: &Raster) -> Result<Frame, String> {
+    let Georeference { system, .. } = &raster.georeference;
+    let Some(system) = system else { return Ok(Frame::plain()) };
+    let middle = [raster.columns, raster.rows].map(|count| 0.5 * count as f64 - 0.5);
+    let centre = raster.georeference.place(middle);
+    if system.geographic && !(centre[0].abs() <= 360.0 && centre[1].abs() <= 89.0) {
+        return Err(format!(
+            "its middle {centre:?} is no longitude and latitude in degrees, which its reference system {} wants",
+            system.name
+        ));
+    }
+    Frame::of(system, centre)
+}
+
+/// The heights from the south-west, row by row.
+fn from_south_west(raster: &Raster) -> Vec<f64> {
+    raster.values.chunks_exact(raster.columns).rev().flatten().copied().collect()
+}
+
+/// The surface of a raster whose own coordinates are the model's but for the unit.
+fn metric(raster: &Raster, grid: &MapGrid) -> Surface {
+    let first = grid.centre(0, raster.rows - 1);
+    let cell = grid.frame.to_model(raster.georeference.cell);
+    Surface::new(&from_south_west(raster), [raster.columns, raster.rows], first, cell)
+}
+
+/// The rectangle round the cells of a raster that is not turned against the model's axes.
+fn outside(grid: &MapGrid) -> Bounds {
+    let [x_min, y_max] = grid.place([-0.5, -0.5]);
+    let [x_max, y_min] = grid.place([grid.columns as f64 - 0.5, grid.rows as f64 - 0.5]);
+    Bounds { x_min, x_max, y_min, y_max }
+}
+
+/// A rectangle in model coordinates inside the curved outline of a geographic raster.
+fn inside(grid: &MapGrid) -> Result<Bounds, String> {
+    const STEPS: usize = 64;
+    let [last_column, last_row] = [grid.columns, grid.rows].map(|count| count as f64 - 0.5);
+    let along = |from: [f64; 2], to: [f64; 2]| {
+        (0..=STEPS).map(move |step| {
+            let t = step as f64 / STEPS as f64;
+            grid.place([from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1])])
+        })
+    };
+    let corners = [[-0.5, -0.5], [last_column, -0.5], [-0.5, last_row], [last_column, last_row]];
+    let [north_west, north_east, south_west, south_east] = corners;
+    let bounds = Bounds {
+        x_min: along(north_west, south_west).map(|[x, _]| x).fold(f64::NEG_INFINITY, f64::max),
+        x_max: along(north_east, south_east).map(|[x, _]| x).fold(f64::INFINITY, f64::min),
+        y_min: along(south_west, south_east).map(|[_, y]| y).fold(f64::NEG_INFINITY, f64::max),
+        y_max: along(north_west, north_east).map(|[_, y]| y).fold(f64::INFINITY, f64::min),
+    };
+    let [width, height] = bounds.size();
+    let finite = corners.iter().flat_map(|corner| grid.place(*corner)).all(f64::is_finite);
+    if finite && width > 0.0 && height > 0.0 {
+        Ok(bounds)
+    } else {
+        Err("it spans too much of the Earth to be shown flat; cut out the part that matters (`gdal_translate \
+             -projwin`) or project it (`gdalwarp -t_srs`)"
+            .into())
+    }
+}
+
+/// The ground over `bounds` at about the raster's own resolution, from the surface over its own coordinates.
+fn resampled(raster: &Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
+    let south_west = raster.georeference.centre(0, raster.rows - 1);
+    let own =
+        Surface::new(&from_south_west(raster), [raster.columns, raster.rows], south_west, raster.georeference.cell);
+    let size = bounds.size();
+    let wanted = grid.cell_size();
+    let count = [0, 1].map(|axis: usize| (size[axis] / wanted[axis]).round().max(2.0) as usize);
+    let cell = [0, 1].map(|axis: usize| size[axis] / count[axis] as f64);
+    let first = [bounds.x_min + 0.5 * cell[0], bounds.y_min + 0.5 * cell[1]];
+    let heights: Vec<f64> = (0..count[0] * count[1])
+        .into_par_iter()
+        .with_min_len(1024)
+        .map(|index| {
+            let (column, row) = (index % count[0], index / count[0]);
+            let place = [first[0] + column as f64 * cell[0], first[1] + row as f64 * cell[1]];
+            let [longitude, latitude] = grid.frame.to_own(place);
+            own.height_and_slope(longitude, latitude).0
+        })
+        .collect();
+    Surface::new(&heights, count, first, cell)
+}

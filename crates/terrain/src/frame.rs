@@ -1,0 +1,96 @@
+//! From a terrain's own coordinates to model metres and back.
+
+use crate::TerrainError;
+use crate::system::{ReferenceSystem, WGS_84};
+use proj4rs::Proj;
+use proj4rs::transform::transform;
+
+/// How a terrain's own coordinates, model metres, and longitude and latitude on WGS 84 hang together.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    kind: Kind,
+    /// The own system, where it is known.
+    own: Option<Proj>,
+    wgs_84: Proj,
+}
+
+#[derive(Debug)]
+enum Kind {
+    /// Model coordinates are own coordinates times this.
+    Scaled(f64),
+    /// Own coordinates are degrees; the model's come from this projection.
+    Projected(Box<Proj>),
+}
+
+impl Frame {
+    /// Model coordinates are own coordinates in metres; no place on Earth.
+    pub(crate) fn plain() -> Self {
+        Self { kind: Kind::Scaled(1.0), own: None, wgs_84: wgs_84() }
+    }
+
+    /// Model coordinates are the system's own in metres, or for a geographic one metres of a projection that is true
+    /// to scale at `centre`.
+    pub(crate) fn of(system: &ReferenceSystem, centre: [f64; 2]) -> Result<Self, String> {
+        let kind = if system.geographic {
+            Kind::Projected(Box::new(system.local_projection(centre)?))
+        } else {
+            Kind::Scaled(system.metres_per_unit)
+        };
+        Ok(Self { kind, own: system.projection(), wgs_84: wgs_84() })
+    }
+
+    /// Not-a-number where the projection does not reach.
+    pub(crate) fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
+        match (&self.kind, &self.own) {
+            (Kind::Scaled(metres), _) => place.map(|value| value * metres),
+            (Kind::Projected(local), Some(own)) => convert(own, local, place).unwrap_or([f64::NAN; 2]),
+            (Kind::Projected(_), None) => [f64::NAN; 2],
+        }
+    }
+
+    /// Not-a-number where the projection does not reach.
+    pub(crate) fn to_own(&self, model: [f64; 2]) -> [f64; 2] {
+        match (&self.kind, &self.own) {
+            (Kind::Scaled(metres), _) => model.map(|value| value / metres),
+            (Kind::Projected(local), Some(own)) => convert(local, own, model).unwrap_or([f64::NAN; 2]),
+            (Kind::Projected(_), None) => [f64::NAN; 2],
+        }
+    }
+
+    pub(crate) fn lon_lat_to_model(&self, lon_lat: [f64; 2]) -> Result<[f64; 2], TerrainError> {
+        let own = self.own.as_ref().ok_or(TerrainError::NoReferenceSystem)?;
+        let place = convert(&self.wgs_84, own, lon_lat).map_err(|what| TerrainError::Place { place: lon_lat, what })?;
+        Ok(self.to_model(place))
+    }
+
+    pub(crate) fn model_to_lon_lat(&self, model: [f64; 2]) -> Result<[f64; 2], TerrainError> {
+        let own = self.own.as_ref().ok_or(TerrainError::NoReferenceSystem)?;
+        convert(own, &self.wgs_84, self.to_own(model)).map_err(|what| TerrainError::Place { place: model, what })
+    }
+
+    /// From own coordinates to those of another system.
+    pub(crate) fn own_to(&self, other: &Proj, place: [f64; 2]) -> Option<[f64; 2]> {
+        convert(self.own.as_ref()?, other, place).ok()
+    }
+
+    /// True where own coordinates can be converted to other systems.
+    pub(crate) fn is_known(&self) -> bool {
+        self.own.is_some()
+    }
+}
+
+fn wgs_84() -> Proj {
+    Proj::from_proj_string(WGS_84).expect("a definition that the projection library's own examples use")
+}
+
+/// From one system to another; geographic coordinates are degrees (the library's are radians).
+fn convert(from: &Proj, to: &Proj, place: [f64; 2]) -> Result<[f64; 2], String> {
+    let [x, y] = if from.is_latlong() { place.map(f64::to_radians) } else { place };
+    let mut point = (x, y, 0.0);
+    transform(from, to, &mut point).map_err(|error| error.to_string())?;
+    let place = [point.0, point.1];
+    if !place.iter().all(|value| value.is_finite()) {
+        return Err("it lies beyond what the projection can show".into());
+    }
+    Ok(if to.is_latlong() { place.map(f64::to_degrees) } else { place })
+}

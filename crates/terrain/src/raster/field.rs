@@ -1,0 +1,104 @@
+//! Other rasters over a terrain: roughness, initial depth.
+
+use super::{Raster, read_raster};
+use crate::frame::Frame;
+use crate::{Terrain, TerrainError};
+use proj4rs::Proj;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A raster, on whatever grid, looked up at model coordinates of a terrain.
+#[derive(Debug)]
+pub struct RasterField {
+    raster: Raster,
+    frame: Arc<Frame>,
+    /// The raster's own system, where it has one and it is not the terrain's.
+    other: Option<Proj>,
+}
+
+impl RasterField {
+    /// Reads a raster to be looked up over `terrain`. It is in the terrain's reference system, unless it names
+    /// another one.
+    ///
+    /// # Errors
+    /// As [`read_raster`], and where it names a system from or to which the terrain's places cannot be converted.
+    pub fn open(path: impl AsRef<Path>, terrain: &Terrain) -> Result<Self, TerrainError> {
+        let path = path.as_ref();
+        let raster = read_raster(path)?;
+        let frame = terrain.frame();
+        let own = &terrain.map_grid().georeference.system;
+        let other = match &raster.georeference.system {
+            Some(system) if own.as_ref().is_some_and(|own| own != system) => {
+                let projection = system.projection().filter(|_| frame.is_known()).ok_or_else(|| {
+                    let what = format!(
+                        "its reference system {} differs from the terrain's and cannot be converted; bring it to the \
+                         terrain's with `gdalwarp -t_srs`",
+                        system.name
+                    );
+                    TerrainError::unusable(path, what)
+                })?;
+                Some(projection)
+            }
+            _ => None,
+        };
+        Ok(Self { raster, frame, other })
+    }
+
+    /// What a user should know about the file, in sentences.
+    pub fn warnings(&self) -> &[String] {
+        &self.raster.warnings
+    }
+
+    /// The value of the cell in which the model coordinates lie; `None` outside and where there is no data. For classes
+    /// and coefficients.
+    pub fn nearest(&self, x: f64, y: f64) -> Option<f64> {
+        self.value_under(self.position([x, y])?)
+    }
+
+    /// The value between the centres of the four nearest cells, bilinear over those that have data; `None` where
+    /// [`RasterField::nearest`] is. For depths.
+    pub fn bilinear(&self, x: f64, y: f64) -> Option<f64> {
+        let position = self.position([x, y])?;
+        self.value_under(position)?;
+        let [column, row] = position;
+        let (west, north) = (column.floor(), row.floor());
+        let (u, v) = (column - west, row - north);
+        let corners = [
+            (west, north, (1.0 - u) * (1.0 - v)),
+            (west + 1.0, north, u * (1.0 - v)),
+            (west, north + 1.0, (1.0 - u) * v),
+            (west + 1.0, north + 1.0, u * v),
+        ];
+        let (sum, weights) = corners.iter().fold((0.0, 0.0), |(sum, weights), &(column, row, weight)| {
+            self.value(column, row).map_or((sum, weights), |value| (sum + weight * value, weights + weight))
+        });
+        Some(sum / weights)
+    }
+
+    /// Fractional (column, row) of a place in model coordinates.
+    fn position(&self, model: [f64; 2]) -> Option<[f64; 2]> {
+        let own = self.frame.to_own(model);
+        let place = match &self.other {
+            Some(system) => self.frame.own_to(system, own)?,
+            None => own,
+        };
+        Some(self.raster.georeference.position(place))
+    }
+
+    /// The value of the cell in which a fractional (column, row) lies, the raster's sides included.
+    fn value_under(&self, [column, row]: [f64; 2]) -> Option<f64> {
+        let cell = |position: f64, count: usize| {
+            let last = count as f64 - 1.0;
+            (-0.5..=last + 0.5).contains(&position).then(|| (position + 0.5).floor().min(last))
+        };
+        self.value(cell(column, self.raster.columns)?, cell(row, self.raster.rows)?)
+    }
+
+    /// The value of a cell, if there is one.
+    fn value(&self, column: f64, row: f64) -> Option<f64> {
+        let Raster { columns, rows, values, .. } = &self.raster;
+        let inside = (0.0..*columns as f64).contains(&column) && (0.0..*rows as f64).contains(&row);
+        let value = inside.then(|| values[row as usize * columns + column as usize])?;
+        (!value.is_nan()).then_some(value)
+    }
+}

@@ -1,0 +1,60 @@
+//! GeoTIFF, written with the `geotiff-writer` library.
+
+use crate::{MapGrid, TerrainError};
+use geotiff_reader::transform::GeoTransform;
+use geotiff_writer::{Compression, GeoTiffBuilder, Predictor, RasterType};
+use ndarray::ArrayView2;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Side of a tile in the file, cells.
+const TILE: u32 = 256;
+
+/// Writes a map as GeoTIFF: 32-bit floating point, Deflate, tiled, with the place and the reference system of `grid`.
+/// `values` are `rows * columns`, row by row from the north-west; those that are not a number are written as `no_data`,
+/// which the file names. The file appears whole or not at all.
+///
+/// # Errors
+/// [`TerrainError::Write`] where the folder, the disk or the number of values does not allow it.
+pub fn write_geotiff(path: impl AsRef<Path>, grid: &MapGrid, values: &[f32], no_data: f32) -> Result<(), TerrainError> {
+    let path = path.as_ref();
+    let filled: Vec<f32> = values.iter().map(|value| if value.is_nan() { no_data } else { *value }).collect();
+    let array =
+        ArrayView2::from_shape((grid.rows, grid.columns), &filled).map_err(|error| TerrainError::write(path, error))?;
+    let builder = builder(grid, no_data);
+    let mut file = temporary_beside(path).map_err(|error| TerrainError::write(path, error))?;
+    let mut buffer = BufWriter::new(file.as_file_mut());
+    builder.write_2d_to(&mut buffer, array).map_err(|error| TerrainError::write(path, error))?;
+    buffer.flush().map_err(|error| TerrainError::write(path, error))?;
+    drop(buffer);
+    file.persist(path).map_err(|error| TerrainError::write(path, error))?;
+    Ok(())
+}
+
+/// What the file says about itself.
+fn builder(grid: &MapGrid, no_data: f32) -> GeoTiffBuilder {
+    let place = &grid.georeference;
+    let transform =
+        GeoTransform::from_origin_and_pixel_size(place.corner[0], place.corner[1], place.cell[0], -place.cell[1]);
+    let start = GeoTiffBuilder::new(grid.columns as u32, grid.rows as u32);
+    let keys = place.keys.keys.iter().fold(start, |builder, key| builder.geokey(key.id, key.value.clone()));
+    keys.transform(transform)
+        .raster_type(RasterType::PixelIsArea)
+        .nodata(&no_data.to_string())
+        .compression(Compression::Deflate)
+        .predictor(Predictor::FloatingPoint)
+        .tile_size(TILE, TILE)
+}
+
+/// A temporary file in the same folder, to be renamed, as readable as a file usually is.
+fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Temporary files are private unless told otherwise; the user's mask still applies.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
