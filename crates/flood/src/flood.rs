@@ -95,9 +95,7 @@ impl Flood {
         scene.resolve_defaults();
         let flood = &mut scene.flood;
         let spacing = flood.spacing_m;
-        let depth = *flood
-            .spacing_depth_m
-            .get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
+        let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
         let (scheme, h): (Box<dyn Scheme>, f64) = match flood.scheme {
             SchemeName::Balanced => {
@@ -230,7 +228,7 @@ impl Flood {
             SchemeName::Balanced => [0, 1].map(|k| 0.5 * step * (self.state.external[k] + evaluation.external[k])),
             SchemeName::Paper => evaluation.external.map(|force| step * force),
         };
-        impulse.map(|along| self.state.momentum.book(DENSITY * along));
+        impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
         let before = self.momentum();
         self.roughness.slow(&mut self.state.particles, self.scene.flood.gravity_m_per_s2, step);
         let after = self.momentum();
@@ -314,13 +312,14 @@ impl Flood {
             return;
         }
         self.state.next_look = (self.state.time / self.map_period).floor() as u64 + 1;
+        let smoothing = self.smoothing();
         let State { particles, maps, time, .. } = &mut self.state;
         let water = Sampler {
             particles,
             arrangement: self.scheme.arrangement(),
             terrain: &self.surroundings.terrain,
             since: 0.0,
-            smoothing: self.smoothing(),
+            smoothing,
         };
         maps.look(&water, *time);
     }

@@ -18,7 +18,8 @@ impl Roughness {
         Ok(match scene {
             Manning::Number(n) => Self::Even(*n),
             Manning::Raster { raster } => Self::Raster(
-                RasterField::open(&folder.join(raster), terrain).map_err(|error| ModelError::Setup(error.to_string()))?,
+                RasterField::open(&folder.join(raster), terrain)
+                    .map_err(|error| ModelError::Setup(error.to_string()))?,
             ),
         })
     }

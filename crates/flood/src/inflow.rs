@@ -132,7 +132,8 @@ impl Nursery<'_> {
             };
             let centre = at(0.5 * width, middle);
             let wanted = (level - self.water.terrain.height(centre[0], centre[1])) * length * width;
-            let [here, moved_u, moved_v] = self.water_in(centre, if along_y { [width, length] } else { [length, width] });
+            let [here, moved_u, moved_v] =
+                self.water_in(centre, if along_y { [width, length] } else { [length, width] });
             if wanted - here > 0.75 * self.volume {
                 let velocity = if here > 0.0 { [moved_u / here, moved_v / here] } else { [0.0; 2] };
                 let line = vec![at(0.5 * width, low), at(0.5 * width, low + length)];

@@ -64,7 +64,7 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
         Box::new(move |_, _| depth)
     } else if let Some(path) = &water.depth_raster {
         let raster = RasterField::open(&folder.join(path), terrain).map_err(setup)?;
-        Box::new(move |x, y| raster.smooth(x, y).unwrap_or(0.0))
+        Box::new(move |x, y| raster.bilinear(x, y).unwrap_or(0.0))
     } else {
         return Err(setup(format!("flood.water[{number}] says neither level, depth, raster nor block")));
     };

@@ -82,7 +82,8 @@ impl Cells {
         let cells = (reach / self.size) as usize + 1;
         for row in row.saturating_sub(cells)..(row + cells + 1).min(self.rows) {
             let line = row * self.columns;
-            for seen in &mut self.reach[line + column.saturating_sub(cells)..line + (column + cells + 1).min(self.columns)]
+            for seen in
+                &mut self.reach[line + column.saturating_sub(cells)..line + (column + cells + 1).min(self.columns)]
             {
                 *seen = seen.max(reach);
             }

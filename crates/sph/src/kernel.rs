@@ -104,8 +104,7 @@ mod tests {
             let w = cubic_spline::value(Lanes::splat(r), Lanes::splat(1.0 / h)).0[5];
             assert!((w - cubic_spline::value_of_one(r, h)).abs() < 1e-13);
             let e = 1e-6;
-            let difference =
-                (cubic_spline::value_of_one(r + e, h) - cubic_spline::value_of_one(r - e, h)) / (2.0 * e);
+            let difference = (cubic_spline::value_of_one(r + e, h) - cubic_spline::value_of_one(r - e, h)) / (2.0 * e);
             let slope = cubic_spline::slope_over_r(Lanes::splat(r), Lanes::splat(1.0 / r), Lanes::splat(1.0 / h)).0[0];
             assert!((-slope * r - difference).abs() < 1e-6, "at {r}: {} against {difference}", -slope * r);
         }

@@ -94,8 +94,7 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
         let w_i = (ex * own.u + ey * own.v) * inverse_r;
         let w_j = (ex * of(|c| c.u) + ey * of(|c| c.v)) * inverse_r;
         let w_step = w_j - w_i;
-        let own_change =
-            along(ex * sloped.u[0] + ey * sloped.u[1], ex * sloped.v[0] + ey * sloped.v[1]) * inverse_r;
+        let own_change = along(ex * sloped.u[0] + ey * sloped.u[1], ex * sloped.v[0] + ey * sloped.v[1]) * inverse_r;
         let near_change = along(
             along(of_slopes(|s| s.u[0]), of_slopes(|s| s.u[1])),
             along(of_slopes(|s| s.v[0]), of_slopes(|s| s.v[1])),
@@ -116,9 +115,10 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
         let pressure_j = depth_j * depth_j * (0.5 * gravity);
         let impedance_i = depth_i * (depth_i * gravity).sqrt();
         let impedance_j = depth_j * (depth_j * gravity).sqrt();
-        let pressure = ((impedance_j * pressure_i + impedance_i * pressure_j + impedance_i * impedance_j * (w_i - w_j))
-            / (impedance_i + impedance_j))
-            .positive();
+        let pressure =
+            ((impedance_j * pressure_i + impedance_i * pressure_j + impedance_i * impedance_j * (w_i - w_j))
+                / (impedance_i + impedance_j))
+                .positive();
 
         // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
         let own_depth = (-middle + own.surface).positive();

@@ -149,9 +149,9 @@ impl Balanced {
             })
             .reduce(|| longest_step, f64::min);
         let real = self.arrangement.real.iter();
-        let external = real.map(|&place| self.forces[place as usize].external).fold([0.0; 2], |sum, force| {
-            [sum[0] + force[0], sum[1] + force[1]]
-        });
+        let external = real
+            .map(|&place| self.forces[place as usize].external)
+            .fold([0.0; 2], |sum, force| [sum[0] + force[0], sum[1] + force[1]]);
         Evaluation { time_step, external }
     }
 }
