@@ -7,6 +7,7 @@
 
 mod arrangement;
 mod balanced;
+pub mod knobs;
 mod density;
 mod edges;
 mod falling;

@@ -64,14 +64,14 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
     slopes.u = turned(u_x.sum(), u_y.sum());
     slopes.v = turned(v_x.sum(), v_y.sum());
     let wave = (gravity * own.depth).sqrt();
-    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
+    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / crate::knobs::knob(0, REST);
     slopes.rest = (-unrest * unrest).exp();
 }
 
 /// Inverse of the moment matrix (xx, xy, yy), made invertible where the neighbours stand in a line or are missing.
 fn renormalisation([mut xx, xy, mut yy]: [f64; 3]) -> [f64; 3] {
     let trace = xx + yy;
-    if xx * yy - xy * xy <= 0.02 * trace * trace || trace <= 0.2 {
+    if xx * yy - xy * xy <= crate::knobs::knob(1, 0.02) * trace * trace || trace <= 0.2 {
         let more = 0.1 * trace.max(0.1);
         xx += more;
         yy += more;

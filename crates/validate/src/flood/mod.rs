@@ -1,0 +1,86 @@
+//! Cases of the flood model.
+
+mod channel;
+mod dam_break;
+pub mod debug;
+mod lake;
+mod malpasset;
+mod thacker;
+
+use crate::{Case, Row};
+use corpuscle_flood::{Flood, InitialWater};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{Edge, Edges, Flood as FloodScene, Manning, Plane, Run, Scene, Terrain as TerrainScene};
+use corpuscle_terrain::{Bounds, Terrain};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Acceleration of gravity, m/s2.
+const GRAVITY: f64 = 9.81;
+
+pub(crate) const CASES: &[Case] = &[
+    lake::LAKE_AT_REST,
+    dam_break::STOKER,
+    dam_break::RITTER,
+    thacker::RADIAL,
+    thacker::PLANAR,
+    channel::BUMP,
+    channel::MACDONALD,
+    malpasset::MALPASSET,
+];
+
+/// A frictionless scene with the given particle distance in water of the given depth; its ground comes by itself.
+fn scene(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Scene {
+    Scene {
+        title: String::new(),
+        description: String::new(),
+        seed: 1,
+        run: Run { until_s, frame_every_s: None, gauge_every_s: None, checkpoint_every_wall_s: f64::MAX },
+        terrain: TerrainScene::Plane(Plane::default()),
+        flood: FloodScene {
+            spacing_m,
+            spacing_depth_m: Some(depth),
+            gravity_m_per_s2: GRAVITY,
+            manning: Manning::Number(0.0),
+            edges,
+            ..FloodScene::default()
+        },
+    }
+}
+
+/// Edges of a strip: `ends` in the west and east, periodic across.
+fn strip(ends: &Edge) -> Edges {
+    Edges { west: ends.clone(), east: ends.clone(), south: Edge::Periodic, north: Edge::Periodic }
+}
+
+/// Water everywhere, with the given depth and velocity.
+fn water_everywhere<'a>(
+    bounds: Bounds,
+    depth: impl Fn(f64, f64) -> f64 + Sync + 'a,
+    velocity: impl Fn(f64, f64) -> [f64; 2] + Sync + 'a,
+) -> InitialWater<'a> {
+    InitialWater {
+        depth: Box::new(depth),
+        inside: Box::new(|_, _| true),
+        within: bounds,
+        velocity: Box::new(velocity),
+    }
+}
+
+/// Sets up a flood and runs it to `time` s.
+fn run(scene: &Scene, terrain: &Arc<Terrain>, water: &[InitialWater], time: f64) -> Result<Flood, ModelError> {
+    let mut flood = Flood::with_water(scene, Path::new("."), Arc::clone(terrain), water)?;
+    flood.advance_to(time, &AtomicBool::new(false))?;
+    Ok(flood)
+}
+
+/// Rows of a case, or the row of its failure.
+fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
+    result.unwrap_or_else(|error| vec![Row::broken(case, &error.to_string())])
+}
+
+/// Order of convergence from the errors at two spacings, the second `ratio` times the first.
+fn order(fine: f64, coarse: f64, ratio: f64) -> f64 {
+    (coarse / fine).ln() / ratio.ln()
+}

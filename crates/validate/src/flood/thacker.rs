@@ -1,0 +1,126 @@
+//! Water swinging in a paraboloid (Thacker 1981): wetting and drying with exact solutions.
+
+use super::{GRAVITY, order, rows, run, scene, water_everywhere};
+use crate::{Case, Options, Row};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Edges;
+use corpuscle_terrain::{Bounds, Terrain};
+use std::sync::Arc;
+
+pub(super) const RADIAL: Case = Case {
+    name: "flood/thacker-radial",
+    about: "A radially symmetric wave in a paraboloid after one period (Thacker 1981; parameters of SWASHES 1.05: h0 \
+            0.1 m, a 1 m, r0 0.8 m), spacing 0.02 m in the middle.",
+    slow: true,
+    run: radial,
+};
+
+pub(super) const PLANAR: Case = Case {
+    name: "flood/thacker-planar",
+    about: "A plane surface going round in a paraboloid after one period (Thacker 1981; parameters of SWASHES 1.05: \
+            h0 0.1 m, a 1 m, eta 0.5 m), spacing 0.02 m in the middle.",
+    slow: true,
+    run: planar,
+};
+
+/// Depth of the paraboloid's middle below its rim, m, and radius of the rim, m.
+const H0: f64 = 0.1;
+const A: f64 = 1.0;
+
+fn bounds() -> Bounds {
+    Bounds { x_min: -2.0, x_max: 2.0, y_min: -2.0, y_max: 2.0 }
+}
+
+fn bowl() -> Arc<Terrain> {
+    Arc::new(Terrain::analytic(bounds(), 0.02, |x, y| {
+        (H0 * ((x * x + y * y) / (A * A) - 1.0), [x, y].map(|x| 2.0 * H0 * x / (A * A)))
+    }))
+}
+
+/// Height of the surface and velocity at a place and a time.
+type Exact = fn(x: f64, y: f64, t: f64) -> (f64, [f64; 2]);
+
+fn omega() -> f64 {
+    (8.0 * GRAVITY * H0).sqrt() / A
+}
+
+/// Thacker's curved surface, with A = (a^2 - r0^2)/(a^2 + r0^2).
+fn curved(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
+    let r0 = 0.8;
+    let amplitude = (A * A - r0 * r0) / (A * A + r0 * r0);
+    let root = (1.0 - amplitude * amplitude).sqrt();
+    let swing = 1.0 - amplitude * (omega() * t).cos();
+    let r_squared = x * x + y * y;
+    let surface = H0 * (root / swing - 1.0 - r_squared / (A * A) * ((1.0 - amplitude * amplitude) / (swing * swing) - 1.0));
+    let rate = 0.5 * omega() * amplitude * (omega() * t).sin() / swing;
+    (surface, [rate * x, rate * y])
+}
+
+/// Thacker's plane surface; its frequency is half the curved one's for the same bowl, squared.
+fn plane(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
+    let eta = 0.5;
+    let omega = (2.0 * GRAVITY * H0).sqrt() / A;
+    let (sin, cos) = (omega * t).sin_cos();
+    let surface = eta * H0 / (A * A) * (2.0 * x * cos + 2.0 * y * sin - eta);
+    (surface, [-eta * omega * sin, eta * omega * cos])
+}
+
+fn radial(_: &Options) -> Vec<Row> {
+    rows(RADIAL.name, measure(RADIAL.name, curved, std::f64::consts::TAU / omega(), 5e-2))
+}
+
+fn planar(_: &Options) -> Vec<Row> {
+    rows(PLANAR.name, measure(PLANAR.name, plane, 2.0 * std::f64::consts::TAU / omega(), 5e-2))
+}
+
+fn measure(case: &'static str, exact: Exact, period: f64, bound: f64) -> Result<Vec<Row>, ModelError> {
+    let [fine, coarse] = [error(exact, period, 0.02)?, error(exact, period, 0.08)?];
+    Ok(vec![
+        Row::at_most(case, "relative_l1_error_2cm", fine, "", bound),
+        Row::at_least(case, "order", order(fine, coarse, 4.0), "", 0.45),
+    ])
+}
+
+/// mean |h - h_exact| / mean h_exact after one period, on a grid of 2 cm.
+fn error(exact: Exact, period: f64, spacing: f64) -> Result<f64, ModelError> {
+    let terrain = bowl();
+    let ground = Arc::clone(&terrain);
+    let depth = move |x: f64, y: f64| exact(x, y, 0.0).0 - ground.height(x, y);
+    let water = water_everywhere(bounds(), depth, move |x, y| exact(x, y, 0.0).1);
+    let mut scene = scene(period, spacing, H0, Edges::default());
+    scene.flood.wet_depth_m = 1e-3;
+    let flood = run(&scene, &terrain, &[water], period)?;
+    let cells = 200;
+    let at = |k: usize| -2.0 + 4.0 * (k as f64 + 0.5) / cells as f64;
+    let (mut wrong, mut right) = (0.0, 0.0);
+    for row in 0..cells {
+        for column in 0..cells {
+            let (x, y) = (at(column), at(row));
+            let depth = (exact(x, y, period).0 - terrain.height(x, y)).max(0.0);
+            right += depth;
+            wrong += (flood.sample(x, y).depth - depth).abs();
+        }
+    }
+    Ok(wrong / right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both solutions must satisfy dh/dt + div(h u) = 0 where they are wet.
+    #[test]
+    fn exact_solutions_conserve_water() {
+        let e = 1e-5;
+        for exact in [curved as Exact, plane] {
+            for (x, y, t) in [(0.2, 0.1, 0.3), (-0.4, 0.3, 1.1), (0.5, -0.2, 2.0)] {
+                let depth = |x: f64, y: f64, t: f64| exact(x, y, t).0 - H0 * (x * x + y * y - 1.0);
+                assert!(depth(x, y, t) > 0.0);
+                let flux = |x: f64, y: f64, axis: usize| depth(x, y, t) * exact(x, y, t).1[axis];
+                let rate = (depth(x, y, t + e) - depth(x, y, t - e)) / (2.0 * e);
+                let out = (flux(x + e, y, 0) - flux(x - e, y, 0) + flux(x, y + e, 1) - flux(x, y - e, 1)) / (2.0 * e);
+                assert!((rate + out).abs() < 1e-6, "{rate} {out}");
+            }
+        }
+    }
+}
