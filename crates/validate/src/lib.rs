@@ -1,1 +1,10 @@
-//! To be written.
+//! Cases with known answers, and rates on this machine.
+//!
+//! A [`Case`] runs a scene whose answer is known and gives [`Row`]s: what was measured, and the bound it must keep.
+//! A [`Bench`] runs a scene whose cost matters and gives [`Rate`]s.
+
+mod bench;
+mod case;
+
+pub use bench::{Bench, BenchOptions, Rate, benches};
+pub use case::{Case, Options, Row, cases};

@@ -1,0 +1,47 @@
+//! What a bench is and what it gives.
+
+use serde::Serialize;
+
+/// A rate measured on this machine.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rate {
+    /// What was run: `flood/balanced-60k`.
+    pub name: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Dimensions of the computation.
+    pub dimensions: usize,
+    /// Part of space that particles fill (gas).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<f64>,
+    /// Threads used.
+    pub threads: usize,
+    /// The rate, all threads together.
+    pub rate: f64,
+    /// What is counted: `particle_steps_per_s`.
+    pub rate_unit: String,
+    /// Memory of the model over its particles.
+    pub bytes_per_particle: f64,
+}
+
+/// A scene whose cost matters.
+pub struct Bench {
+    /// Name: the model and words, `flood/balanced-60k`.
+    pub name: &'static str,
+    /// What it measures, in a sentence.
+    pub about: &'static str,
+    /// Runs it.
+    pub run: fn(&BenchOptions) -> Vec<Rate>,
+}
+
+/// What benches are run with.
+#[derive(Debug, Clone, Default)]
+pub struct BenchOptions {
+    /// Less time for each, for a quick look: the figures scatter more.
+    pub quick: bool,
+}
+
+/// All benches.
+pub fn benches() -> &'static [Bench] {
+    &[]
+}
