@@ -153,13 +153,14 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
     }
 }
 
-/// The ground over `bounds` at about the raster's own resolution, from the surface over its own coordinates.
+/// The ground over `bounds`, from the surface over the raster's own coordinates, at twice the raster's resolution: at
+/// the same, tops and channels between the new nodes would be flattened.
 fn resampled(raster: &Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
     let south_west = raster.georeference.centre(0, raster.rows - 1);
     let own =
         Surface::new(&from_south_west(raster), [raster.columns, raster.rows], south_west, raster.georeference.cell);
     let size = bounds.size();
-    let wanted = grid.cell_size();
+    let wanted = grid.cell_size().map(|cell| 0.5 * cell);
     let count = [0, 1].map(|axis: usize| (size[axis] / wanted[axis]).round().max(2.0) as usize);
     let cell = [0, 1].map(|axis: usize| size[axis] / count[axis] as f64);
     let first = [bounds.x_min + 0.5 * cell[0], bounds.y_min + 0.5 * cell[1]];

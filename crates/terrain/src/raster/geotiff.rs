@@ -4,7 +4,7 @@ use super::{Raster, check_size};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
 use geotiff_reader::transform::GeoTransform;
-use geotiff_reader::{GeoTiffFile, Result as ReaderResult};
+use geotiff_reader::{Error as ReaderError, GeoTiffFile, Result as ReaderResult};
 use ndarray::ArrayD;
 use std::path::Path;
 
@@ -15,7 +15,12 @@ const LARGEST_COMPRESSION: u64 = 20_000;
 /// Reads the first band of a GeoTIFF.
 pub(super) fn read(path: &Path) -> Result<Raster, TerrainError> {
     let bytes = std::fs::metadata(path).map_err(|error| TerrainError::read(path, error))?.len();
-    let damaged = |error: geotiff_reader::Error| TerrainError::damaged(path, error.to_string());
+    let nowhere =
+        || TerrainError::unusable(path, "it says nowhere where it lies; add its corners with `gdal_edit.py -a_ullr`");
+    let damaged = |error| match error {
+        ReaderError::NotGeoTiff => nowhere(),
+        error => TerrainError::damaged(path, error.to_string()),
+    };
     let file = GeoTiffFile::open(path).map_err(damaged)?;
     let (columns, rows) = (u64::from(file.width()), u64::from(file.height()));
     check_size(path, columns, rows)?;
@@ -34,10 +39,7 @@ pub(super) fn read(path: &Path) -> Result<Raster, TerrainError> {
         values.iter_mut().for_each(|value| *value *= unit);
         warnings.push(format!("{} gives its values in units of {unit} m; they were converted.", path.display()));
     }
-    let transform = file.transform().copied().unwrap_or_else(|| {
-        warnings.push(format!("{} says nowhere where it lies; its cells are taken to be 1 m wide.", path.display()));
-        GeoTransform::from_origin_and_pixel_size(0.0, rows as f64, 1.0, -1.0)
-    });
+    let transform = *file.transform().ok_or_else(nowhere)?;
     let corner = north_up(path, &transform, [file.width() as usize, file.height() as usize], &mut values)?;
     let georeference = Georeference {
         corner,
