@@ -31,8 +31,18 @@ impl Recorder {
     /// # Errors
     /// Where the folder holds no run, no checkpoint or one that does not fit.
     pub fn resume(path: &Path) -> Result<(Simulation, Self), Error> {
-        let scene = Scene::read(&path.join("scene.toml"), &[])?;
-        let mut simulation = Simulation::open(scene, path)?;
+        Self::resume_with(path, |scene| Simulation::open(scene, path))
+    }
+
+    /// [`Recorder::resume`] with a model of one's own: `open` makes the scene ready.
+    ///
+    /// # Errors
+    /// As [`Recorder::resume`].
+    pub fn resume_with(
+        path: &Path,
+        open: impl FnOnce(Scene) -> Result<Simulation, Error>,
+    ) -> Result<(Simulation, Self), Error> {
+        let mut simulation = open(Scene::read(&path.join("scene.toml"), &[])?)?;
         let (folder, clock, state) = RunFolder::resume(path)?;
         simulation.restore(clock, &state)?;
         let recorder = Self::new(folder, &simulation);
