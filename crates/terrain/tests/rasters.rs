@@ -85,9 +85,11 @@ fn every_compression_and_layout_is_read() {
     }
 }
 
+const PACK_BITS: u32 = 32773;
+
 /// A big-endian TIFF of 16-bit samples in one strip, packed by PackBits as runs of literal bytes; with its place, the
-/// same as that of `builder`, or without.
-fn packed_bits(with_place: bool) -> Vec<u8> {
+/// same as that of `builder`, or without. Another code of compression makes it a lie.
+fn packed_bits(with_place: bool, compression: u32) -> Vec<u8> {
     let samples: Vec<u8> =
         (0..ROWS * COLUMNS).flat_map(|i| (value(i % COLUMNS, i / COLUMNS) as u16).to_be_bytes()).collect();
     // Each row is packed on its own: a count of bytes less one, then the bytes.
@@ -104,7 +106,7 @@ fn packed_bits(with_place: bool) -> Vec<u8> {
         (256, short, 1, COLUMNS as u32),
         (257, short, 1, ROWS as u32),
         (258, short, 1, 16),
-        (259, long, 1, 32773),
+        (259, long, 1, compression),
         (262, short, 1, 1),
         (273, long, 1, 8),
         (277, short, 1, 1),
@@ -132,7 +134,7 @@ fn packed_bits(with_place: bool) -> Vec<u8> {
 #[test]
 fn packed_bits_in_big_endian_order_are_read() {
     let (_folder, path) = temporary("dem.tif");
-    std::fs::write(&path, packed_bits(true)).unwrap();
+    std::fs::write(&path, packed_bits(true, PACK_BITS)).unwrap();
     let raster = read_raster(&path).unwrap();
     assert_values(&raster);
     assert_eq!((raster.georeference.corner, raster.georeference.cell), ([1000.0, 5000.0], [10.0, 20.0]));
@@ -140,9 +142,20 @@ fn packed_bits_in_big_endian_order_are_read() {
 }
 
 #[test]
+fn compressions_that_are_not_read_are_refused_by_name() {
+    let (_folder, path) = temporary("dem.tif");
+    // LERC in a big-endian file, and LZMA.
+    for (compression, hint) in [(34887, "LERC"), (34925, "34925")] {
+        std::fs::write(&path, packed_bits(true, compression)).unwrap();
+        let error = read_raster(&path).unwrap_err().to_string();
+        assert!(error.contains(hint) && error.contains("COMPRESS=DEFLATE"), "{error}");
+    }
+}
+
+#[test]
 fn a_picture_without_a_place_is_refused() {
     let (_folder, path) = temporary("dem.tif");
-    std::fs::write(&path, packed_bits(false)).unwrap();
+    std::fs::write(&path, packed_bits(false, PACK_BITS)).unwrap();
     assert!(read_raster(&path).unwrap_err().to_string().contains("says nowhere where it lies"));
 }
 
