@@ -20,7 +20,7 @@ impl Simulation {
         let terrain = Arc::new(Terrain::open(&scene.terrain, scene.seed, folder)?);
         check_observed_extent(&scene, &terrain)?;
         let flood = Flood::new(&scene, folder, terrain.clone())?;
-        let scene = flood.resolved_scene();
+        let scene = flood.resolved_scene().clone();
         Ok(Self::new(scene, terrain, Box::new(flood)))
     }
 }

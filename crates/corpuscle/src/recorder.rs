@@ -2,17 +2,17 @@
 
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_record::{Clock, FrameFormat, RunFolder, Summary, compare_extent};
+use corpuscle_record::{Clock, FrameFormat, Report, RunFolder, Status, Summary, compare_extent};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
-/// Writes a run into its folder.
+/// Writes a run into its folder; when the run has ended, its report too.
 pub struct Recorder {
     folder: RunFolder,
     terrain: Arc<Terrain>,
-    observed_extent: Option<PathBuf>,
+    scene: Scene,
 }
 
 impl Recorder {
@@ -50,11 +50,7 @@ impl Recorder {
     }
 
     fn new(folder: RunFolder, simulation: &Simulation) -> Self {
-        Self {
-            folder,
-            terrain: simulation.terrain().clone(),
-            observed_extent: simulation.scene().flood.observed_extent.clone(),
-        }
+        Self { folder, terrain: simulation.terrain().clone(), scene: simulation.scene().clone() }
     }
 
     /// The folder.
@@ -84,13 +80,18 @@ impl Sink for Recorder {
         if !maps.is_empty() {
             self.folder.write_final_maps(&maps, &self.terrain)?;
         }
-        if let (Some(observed), Some(depth)) = (&self.observed_extent, maps.iter().find(|map| map.name == "max_depth"))
+        if let (Some(observed), Some(depth)) =
+            (&self.scene.flood.observed_extent, maps.iter().find(|map| map.name == "max_depth"))
         {
             summary.extent = Some(compare_extent(observed, &self.terrain, &depth.values)?);
         }
         for warning in &summary.warnings {
             self.folder.log(&format!("warning: {warning}"))?;
         }
-        Ok(self.folder.finish(summary)?)
+        self.folder.finish(summary)?;
+        if summary.status != Status::Stopped {
+            Report::read(self.folder.path(), &self.scene, &self.terrain)?.write()?;
+        }
+        Ok(())
     }
 }
