@@ -122,6 +122,15 @@ fn a_terrain_in_feet_becomes_metres() {
 }
 
 #[test]
+fn a_projection_that_is_not_true_to_scale_is_told_of() {
+    let folder = tempfile::tempdir().unwrap();
+    // Web Mercator at 60 degrees north shows everything twice as large.
+    write(&folder.path().join("dem.tif"), builder().projected_epsg(3857), [1_000_000.0, 8_400_500.0], 10.0, |_, _| 1.0);
+    let warnings = open(&folder, None).warnings().to_vec();
+    assert!(warnings.iter().any(|warning| warning.contains("is 0.50") && warning.contains("UTM")), "{warnings:?}");
+}
+
+#[test]
 fn a_file_without_a_system_takes_the_scenes_or_none() {
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("dem.tif"), builder(), [238_000.0, 836_500.0], 10.0, |_, _| 1.0);

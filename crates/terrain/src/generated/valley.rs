@@ -24,7 +24,7 @@ pub fn valley_centre(valley: &Valley, seed: u64, x: f64) -> f64 {
 }
 
 /// The ground of a valley.
-pub(super) fn make(valley: &Valley, seed: u64) -> Result<Terrain, TerrainError> {
+pub(crate) fn make(valley: &Valley, seed: u64) -> Result<Terrain, TerrainError> {
     let bounds = bounds("valley", &valley.extent)?;
     finite("valley", &[("slope", valley.slope)])?;
     positive("valley", &[("channel_width_m", valley.channel_width_m), ("meander_length_m", valley.meander_length_m)])?;
