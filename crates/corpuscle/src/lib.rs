@@ -1,1 +1,35 @@
-//! To be written.
+//! Corpuscle as a library: open a scene, run it, attach sinks.
+//!
+//! ```no_run
+//! use corpuscle::{Recorder, Simulation};
+//! use std::path::Path;
+//! use std::sync::atomic::AtomicBool;
+//!
+//! # fn main() -> Result<(), corpuscle::Error> {
+//! let scene = corpuscle::scene::Scene::read(Path::new("flood.toml"), &[])?;
+//! let mut simulation = Simulation::open(scene, Path::new("."))?;
+//! let mut recorder = Recorder::create(Path::new("runs/flood-1"), &simulation, Default::default())?;
+//! let summary = simulation.run(&mut [&mut recorder], &AtomicBool::new(false), &mut |_| {})?;
+//! println!("{} particles", summary.particles);
+//! # Ok(())
+//! # }
+//! ```
+
+mod error;
+mod open;
+mod progress;
+mod recorder;
+mod schedule;
+mod simulation;
+mod sink;
+
+pub use corpuscle_model as model;
+pub use corpuscle_record as record;
+pub use corpuscle_scene as scene;
+pub use corpuscle_terrain as terrain;
+
+pub use error::Error;
+pub use progress::Progress;
+pub use recorder::Recorder;
+pub use simulation::Simulation;
+pub use sink::Sink;

@@ -1,1 +1,26 @@
-//! To be written.
+//! A run's folder: particle files, gauges, maps, checkpoint, summary, pictures and the report.
+//!
+//! [`RunFolder`] is written while a run goes on; a [`Report`] is made from the folder, at the end of the run or any
+//! time later.
+
+mod checkpoint;
+mod error;
+mod extent;
+mod frames;
+mod gauges;
+mod maps;
+mod number;
+mod picture;
+mod report;
+mod run_folder;
+mod summary;
+mod whole;
+
+pub use checkpoint::Clock;
+pub use error::RecordError;
+pub use extent::{ExtentScores, compare_extent, write_extent};
+pub use frames::FrameFormat;
+pub use gauges::GaugeTable;
+pub use report::Report;
+pub use run_folder::{RunFolder, next_run_folder};
+pub use summary::{LedgerEntry, Status, Summary, ledger_entries};

@@ -2,6 +2,7 @@
 
 use crate::frame::Frame;
 use crate::holes;
+use crate::raster::MOST_CELLS;
 use crate::surface::Surface;
 use crate::system::ReferenceSystem;
 use crate::terrain::{Ground, Terrain};
@@ -20,6 +21,9 @@ const ABSURD: f64 = 1e6;
 
 /// A local projection is stretched by more than a thousandth beyond this distance from its middle line, m.
 const FAR_FROM_CENTRE: f64 = 285e3;
+
+/// A projection is told of when its scale is wrong by more than this (UTM and national grids keep within 0.002).
+const DISTORTED: f64 = 0.005;
 
 /// Opens the terrain of a scene's `[terrain.file]`.
 pub(crate) fn open(scene: &TerrainFile, folder: &Path) -> Result<Terrain, TerrainError> {
@@ -45,7 +49,14 @@ pub(crate) fn open(scene: &TerrainFile, folder: &Path) -> Result<Terrain, Terrai
         }
         (bounds, resampled(&raster, bounds, &map_grid))
     } else {
-        (outside(&map_grid), metric(&raster, &map_grid))
+        let bounds = outside(&map_grid);
+        if let Some(scale) = map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > DISTORTED) {
+            warnings.push(format!(
+                "A metre of the terrain's projection is {scale:.3} m on the ground, and so are areas and volumes out of \
+                 proportion; project it to one that is true to scale here, e.g. UTM, with `gdalwarp -t_srs`."
+            ));
+        }
+        (bounds, metric(&raster, &map_grid))
     };
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
 }
@@ -153,13 +164,15 @@ fn inside(grid: &MapGrid) -> Result<Bounds, String> {
     }
 }
 
-/// The ground over `bounds` at about the raster's own resolution, from the surface over its own coordinates.
+/// The ground over `bounds`, from the surface over the raster's own coordinates. At twice the raster's resolution, if
+/// that is not too much: at the same, tops and channels between the new nodes are flattened.
 fn resampled(raster: &Raster, bounds: Bounds, grid: &MapGrid) -> Surface {
     let south_west = raster.georeference.centre(0, raster.rows - 1);
     let own =
         Surface::new(&from_south_west(raster), [raster.columns, raster.rows], south_west, raster.georeference.cell);
     let size = bounds.size();
-    let wanted = grid.cell_size();
+    let finer = if 4 * raster.values.len() as u64 <= MOST_CELLS { 2.0 } else { 1.0 };
+    let wanted = grid.cell_size().map(|cell| cell / finer);
     let count = [0, 1].map(|axis: usize| (size[axis] / wanted[axis]).round().max(2.0) as usize);
     let cell = [0, 1].map(|axis: usize| size[axis] / count[axis] as f64);
     let first = [bounds.x_min + 0.5 * cell[0], bounds.y_min + 0.5 * cell[1]];

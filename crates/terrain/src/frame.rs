@@ -68,6 +68,16 @@ impl Frame {
         convert(own, &self.wgs_84, self.to_own(model)).map_err(|what| TerrainError::Place { place: model, what })
     }
 
+    /// Metres on the ground in one metre of model coordinates northwards at a place, where the Earth is known.
+    pub(crate) fn scale(&self, [x, y]: [f64; 2]) -> Option<f64> {
+        const STEP: f64 = 100.0;
+        let here = self.model_to_lon_lat([x, y]).ok()?;
+        let there = self.model_to_lon_lat([x, y + STEP]).ok()?;
+        let system = ReferenceSystem::parse(WGS_84).ok()?;
+        let [east, north] = convert(&self.wgs_84, &system.local_projection(here).ok()?, there).ok()?;
+        Some(east.hypot(north) / STEP)
+    }
+
     /// From own coordinates to those of another system.
     pub(crate) fn own_to(&self, other: &Proj, place: [f64; 2]) -> Option<[f64; 2]> {
         convert(self.own.as_ref()?, other, place).ok()

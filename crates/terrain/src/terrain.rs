@@ -3,6 +3,7 @@
 use crate::frame::Frame;
 use crate::surface::Surface;
 use crate::{Bounds, MapGrid, TerrainError, file, generated};
+use corpuscle_scene::Terrain as Scene;
 use rayon::prelude::*;
 use std::fmt;
 use std::path::Path;
@@ -62,10 +63,14 @@ impl Terrain {
     ///
     /// # Errors
     /// A text that says what is wrong with the file or with the numbers of a generated terrain.
-    pub fn open(scene: &corpuscle_scene::Terrain, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
+    pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
         match scene {
-            corpuscle_scene::Terrain::File(scene) => file::open(scene, folder),
-            generated => generated::open(generated, seed),
+            Scene::File(scene) => file::open(scene, folder),
+            Scene::Valley(scene) => generated::valley(scene, seed),
+            Scene::RoughHills(scene) => generated::rough_hills(scene, seed),
+            Scene::Plane(scene) => generated::plane(scene),
+            Scene::Bump(scene) => generated::bump(scene),
+            Scene::Bowl(scene) => generated::bowl(scene),
         }
     }
 

@@ -99,8 +99,12 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
             along(of_slopes(|s| s.u[0]), of_slopes(|s| s.u[1])),
             along(of_slopes(|s| s.v[0]), of_slopes(|s| s.v[1])),
         ) * inverse_r;
-        let w_i = w_i + limited(own_change * 2.0 - w_step, w_step) * 0.5;
-        let w_j = w_j - limited(near_change * 2.0 - w_step, w_step) * 0.5;
+        let change_i = limited(own_change * 2.0 - w_step, w_step) * 0.5;
+        let change_j = limited(near_change * 2.0 - w_step, w_step) * 0.5;
+        // Reconstructed velocities may meet but not pass each other, or the pair would feed motion.
+        let closing = (w_step.abs() / (change_i + change_j).abs().max(Lanes::splat(f64::MIN_POSITIVE))).min(Lanes::splat(1.0));
+        let w_i = w_i + change_i * closing;
+        let w_j = w_j - change_j * closing;
 
         // Ground in the middle from heights and slopes at both ends (cubic Hermite); symmetric in i and j.
         let depth = of(|c| c.depth);

@@ -7,7 +7,7 @@ use corpuscle_scene::RoughHills;
 use rayon::prelude::*;
 
 /// Fractal noise from 0 up to the relief asked for.
-pub(super) fn make(hills: &RoughHills, seed: u64) -> Result<Terrain, TerrainError> {
+pub(crate) fn make(hills: &RoughHills, seed: u64) -> Result<Terrain, TerrainError> {
     let RoughHills { extent, relief_m, hill_size_m, roughness } = hills.clone();
     let bounds = bounds("rough-hills", &extent)?;
     positive("rough-hills", &[("hill_size_m", hill_size_m)])?;

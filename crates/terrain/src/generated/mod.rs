@@ -5,23 +5,14 @@ mod noise;
 mod shapes;
 mod valley;
 
+pub(crate) use hills::make as rough_hills;
+pub(crate) use shapes::{bowl, bump, plane};
+pub(crate) use valley::make as valley;
 pub use valley::valley_centre;
 
 use crate::raster::MOST_CELLS;
-use crate::{Bounds, Terrain, TerrainError};
-use corpuscle_scene::{Extent, Terrain as Scene};
-
-/// The ground that a scene describes by numbers.
-pub(crate) fn open(scene: &Scene, seed: u64) -> Result<Terrain, TerrainError> {
-    match scene {
-        Scene::Valley(valley) => valley::make(valley, seed),
-        Scene::RoughHills(hills) => hills::make(hills, seed),
-        Scene::Plane(plane) => shapes::plane(plane),
-        Scene::Bump(bump) => shapes::bump(bump),
-        Scene::Bowl(bowl) => shapes::bowl(bowl),
-        Scene::File(_) => unreachable!("files are opened by their own module"),
-    }
-}
+use crate::{Bounds, TerrainError};
+use corpuscle_scene::Extent;
 
 /// The rectangle of generated ground, refusing sizes that make none.
 fn bounds(table: &str, extent: &Extent) -> Result<Bounds, TerrainError> {

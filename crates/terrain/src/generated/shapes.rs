@@ -5,7 +5,7 @@ use crate::{Terrain, TerrainError};
 use corpuscle_scene::{Bowl, Bump, Plane};
 
 /// An even plane.
-pub(super) fn plane(plane: &Plane) -> Result<Terrain, TerrainError> {
+pub(crate) fn plane(plane: &Plane) -> Result<Terrain, TerrainError> {
     let Plane { extent, slope_east, slope_north, height_m } = plane.clone();
     let bounds = bounds("plane", &extent)?;
     finite("plane", &[("slope_east", slope_east), ("slope_north", slope_north), ("height_m", height_m)])?;
@@ -16,7 +16,7 @@ pub(super) fn plane(plane: &Plane) -> Result<Terrain, TerrainError> {
 }
 
 /// A Gaussian bump on a flat bed.
-pub(super) fn bump(bump: &Bump) -> Result<Terrain, TerrainError> {
+pub(crate) fn bump(bump: &Bump) -> Result<Terrain, TerrainError> {
     let Bump { extent, height_m, width_m, at } = bump.clone();
     let bounds = bounds("bump", &extent)?;
     positive("bump", &[("width_m", width_m)])?;
@@ -31,7 +31,7 @@ pub(super) fn bump(bump: &Bump) -> Result<Terrain, TerrainError> {
 }
 
 /// A paraboloid of revolution (Thacker 1981).
-pub(super) fn bowl(bowl: &Bowl) -> Result<Terrain, TerrainError> {
+pub(crate) fn bowl(bowl: &Bowl) -> Result<Terrain, TerrainError> {
     let Bowl { extent, depth_m, radius_m } = bowl.clone();
     let bounds = bounds("bowl", &extent)?;
     positive("bowl", &[("radius_m", radius_m)])?;

@@ -24,7 +24,7 @@ pub fn valley_centre(valley: &Valley, seed: u64, x: f64) -> f64 {
 }
 
 /// The ground of a valley.
-pub(super) fn make(valley: &Valley, seed: u64) -> Result<Terrain, TerrainError> {
+pub(crate) fn make(valley: &Valley, seed: u64) -> Result<Terrain, TerrainError> {
     let bounds = bounds("valley", &valley.extent)?;
     finite("valley", &[("slope", valley.slope)])?;
     positive("valley", &[("channel_width_m", valley.channel_width_m), ("meander_length_m", valley.meander_length_m)])?;
@@ -93,23 +93,27 @@ impl<'a> Landscape<'a> {
         plain + channel_depth_m * (LEVEE_HEIGHT * levee - bed) + (1.0 - bed) * self.hills(x, y)
     }
 
-    /// Height of the hills above the plain: spurs and gullies that grow out of the plain's edge.
+    /// Height of the hills above the plain: spurs that come down to the plain, with gullies between them.
     fn hills(&self, x: f64, y: f64) -> f64 {
         let &Valley { ref extent, plain_width_m, meander_length_m, hills_m, .. } = self.valley;
         let reach = (0.5 * (extent.width_m - plain_width_m)).max(extent.cell_m);
-        let size = 0.45 * meander_length_m;
-        let finest = 2.0 * extent.cell_m / size;
-        // The foot of the slope is crooked.
-        let foot = 0.5 * plain_width_m * (1.0 + 0.25 * self.ground.fractal(x / size + 50.0, y / size, 0.45, 0.2));
+        let size = 0.35 * meander_length_m;
+        // The sharp bottoms of gullies need more cells than smooth waves do.
+        let finest = 4.0 * extent.cell_m / size;
+        let noise = &self.ground;
+        // Gullies run down the slope: their pattern is longer across the valley than along it, and is bent by noise.
+        let bend = 0.5 * noise.fractal(x / (2.0 * size) + 7.0, y / (2.0 * size) + 3.0, 0.5, 0.25);
+        let [along, across] = [x / size + bend, y / (1.8 * size) - 0.5 * bend];
+        let spurs = noise.eroded(along, across, 0.45, finest);
+        // The foot of the slope comes forward with the spurs and goes back with the gullies.
+        let foot = 0.5 * plain_width_m + 0.12 * reach * (1.0 - 2.0 * spurs);
         let up = ((y - self.axis(x)).abs() - foot) / reach;
         if up <= 0.0 {
             return 0.0;
         }
-        // Steepens from the foot, then flattens: no edge at the plain, rounded tops.
-        let rise = up * up * (3.0 - 2.0 * up.min(1.0)) / (0.25 + 0.75 * up.max(1.0) * up.max(1.0));
-        let bend = 0.35 * self.ground.at(x / size + 7.0, y / size + 3.0);
-        let spurs = self.ground.eroded(x / size + bend, y / size - bend, 0.5, finest);
-        hills_m * rise.min(2.0) * mix(0.3, 1.3, spurs)
+        // Bends up from the plain within a short way, then flattens towards rounded tops.
+        let rise = 1.5 * up * up / ((up + 0.08) * (1.0 + 0.5 * up));
+        hills_m * rise * mix(0.45, 1.25, spurs)
     }
 }
 
@@ -197,6 +201,13 @@ mod tests {
                 assert!(depth_below(5.0) > 5.0 && depth_below(995.0) > 5.0, "no hills at x {x}");
             }
         }
+    }
+
+    #[test]
+    fn the_same_bits_on_every_machine() {
+        let terrain = make(&Valley::default(), 1).unwrap();
+        let bits = [[402.5, 507.5], [1202.5, 902.5], [1752.5, 102.5]].map(|[x, y]| terrain.height(x, y).to_bits());
+        assert_eq!(bits, [4_619_191_555_452_966_674, 4_625_291_878_908_992_813, 4_629_187_781_952_673_086]);
     }
 
     #[test]

@@ -35,10 +35,7 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<Raster, TerrainError> {
         .flat_map(|(line, words)| words.split_ascii_whitespace().map(move |word| (line + 1, word)))
         .peekable();
     let mut header = Header::default();
-    while let Some((line, key)) = words.next_if(|(_, word)| word.starts_with(|first: char| first.is_alphabetic())) {
-        if is_not_a_number(key) {
-            return Err(damaged(path, line, "a value stands where the header should be"));
-        }
+    while let Some((line, key)) = words.next_if(|(_, word)| is_key(word)) {
         let (_, value) = words.next().ok_or_else(|| damaged(path, line, &format!("`{key}` has no value")))?;
         header.set(key, value).map_err(|what| damaged(path, line, &what))?;
     }
@@ -67,9 +64,9 @@ fn damaged(path: &Path, line: usize, what: &str) -> TerrainError {
     TerrainError::damaged(path, format!("line {line}: {what}"))
 }
 
-/// True for the words that float parsing takes but that are no header keys.
-fn is_not_a_number(word: &str) -> bool {
-    word.parse::<f64>().is_ok()
+/// True for a word that is no value; `nan` and `inf` are values.
+fn is_key(word: &str) -> bool {
+    word.starts_with(|first: char| first.is_alphabetic()) && word.parse::<f64>().is_err()
 }
 
 /// A word about a projection file beside the grid, which is not read.

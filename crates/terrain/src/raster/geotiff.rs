@@ -4,7 +4,7 @@ use super::{Raster, check_size};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
 use geotiff_reader::transform::GeoTransform;
-use geotiff_reader::{GeoTiffFile, Result as ReaderResult};
+use geotiff_reader::{Error as ReaderError, GeoTiffFile, Result as ReaderResult};
 use ndarray::ArrayD;
 use std::path::Path;
 
@@ -12,13 +12,19 @@ use std::path::Path;
 /// block left out of a sparse file takes 16 bytes): a header that claims more is broken.
 const LARGEST_COMPRESSION: u64 = 20_000;
 
-/// Reads the first band of a GeoTIFF.
-pub(super) fn read(path: &Path) -> Result<Raster, TerrainError> {
+/// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian.
+pub(super) fn read(path: &Path, big_endian: bool) -> Result<Raster, TerrainError> {
     let bytes = std::fs::metadata(path).map_err(|error| TerrainError::read(path, error))?.len();
-    let damaged = |error: geotiff_reader::Error| TerrainError::damaged(path, error.to_string());
+    let nowhere =
+        || TerrainError::unusable(path, "it says nowhere where it lies; add its corners with `gdal_edit.py -a_ullr`");
+    let damaged = |error| match error {
+        ReaderError::NotGeoTiff => nowhere(),
+        error => refused(path, &error),
+    };
     let file = GeoTiffFile::open(path).map_err(damaged)?;
     let (columns, rows) = (u64::from(file.width()), u64::from(file.height()));
     check_size(path, columns, rows)?;
+    check_compression(path, &file, big_endian)?;
     let format = SampleFormat::of(&file).map_err(damaged)?;
     if columns * rows * u64::from(format.bits) / 8 > bytes.saturating_mul(LARGEST_COMPRESSION) {
         let what = format!("its header says {columns} x {rows} cells, which its {bytes} bytes cannot hold");
@@ -34,10 +40,7 @@ pub(super) fn read(path: &Path) -> Result<Raster, TerrainError> {
         values.iter_mut().for_each(|value| *value *= unit);
         warnings.push(format!("{} gives its values in units of {unit} m; they were converted.", path.display()));
     }
-    let transform = file.transform().copied().unwrap_or_else(|| {
-        warnings.push(format!("{} says nowhere where it lies; its cells are taken to be 1 m wide.", path.display()));
-        GeoTransform::from_origin_and_pixel_size(0.0, rows as f64, 1.0, -1.0)
-    });
+    let transform = *file.transform().ok_or_else(nowhere)?;
     let corner = north_up(path, &transform, [file.width() as usize, file.height() as usize], &mut values)?;
     let georeference = Georeference {
         corner,
@@ -46,6 +49,27 @@ pub(super) fn read(path: &Path) -> Result<Raster, TerrainError> {
         keys: file.geokeys().clone(),
     };
     Ok(Raster { columns: columns as usize, rows: rows as usize, values, georeference, warnings })
+}
+
+/// What is wrong with a file that the library does not read.
+fn refused(path: &Path, error: &ReaderError) -> TerrainError {
+    let what = error.to_string();
+    // The library's own error type, which would tell, is not part of its interface.
+    if what.contains("unsupported") {
+        return TerrainError::unusable(path, format!("{what}; convert it with `gdal_translate -co COMPRESS=DEFLATE`"));
+    }
+    TerrainError::damaged(path, what)
+}
+
+/// Refuses LERC in big-endian files, whose bytes the library (0.10) turns round although LERC's own order is fixed.
+fn check_compression(path: &Path, file: &GeoTiffFile, big_endian: bool) -> Result<(), TerrainError> {
+    const LERC: u16 = 34887;
+    let image = file.tiff().ifd(file.base_ifd_index()).map_err(|error| refused(path, &error.into()))?;
+    if image.compression() == LERC && big_endian {
+        let what = "LERC in a big-endian file is not read; convert it with `gdal_translate -co COMPRESS=DEFLATE`";
+        return Err(TerrainError::unusable(path, what));
+    }
+    Ok(())
 }
 
 /// How a file stores its samples.
@@ -101,7 +125,7 @@ fn band<T: Copy>(
     number: impl Fn(T) -> f64,
     is_no_data: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, TerrainError> {
-    let samples = samples.map_err(|error| TerrainError::damaged(path, error.to_string()))?;
+    let samples = samples.map_err(|error| refused(path, &error))?;
     let with_holes = |value: f64| if is_no_data(value) { f64::NAN } else { value };
     Ok(samples.iter().map(|sample| with_holes(number(*sample))).collect())
 }

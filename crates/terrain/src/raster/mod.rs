@@ -49,7 +49,7 @@ pub fn read_raster(path: impl AsRef<Path>) -> Result<Raster, TerrainError> {
     file.rewind().map_err(|error| TerrainError::read(path, error))?;
     let raster = match start.as_slice() {
         [] => return Err(TerrainError::wrong_type(path, "the file is empty")),
-        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => geotiff::read(path)?,
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => geotiff::read(path, start[0] == b'M')?,
         [0x1f, 0x8b, ..] => ascii::read(path, &text(path, GzDecoder::new(BufReader::new(file)))?)?,
         _ if ascii::looks_like(&start) => ascii::read(path, &text(path, file)?)?,
         _ => return Err(TerrainError::wrong_type(path, kind(&start))),

@@ -38,8 +38,9 @@ fn builder(grid: &MapGrid, no_data: f32) -> GeoTiffBuilder {
         GeoTransform::from_origin_and_pixel_size(place.corner[0], place.corner[1], place.cell[0], -place.cell[1]);
     let start = GeoTiffBuilder::new(grid.columns as u32, grid.rows as u32);
     let keys = place.keys.keys.iter().fold(start, |builder, key| builder.geokey(key.id, key.value.clone()));
+    // Without a reference system no key at all is written: a lone raster type reads as an unnamed system.
+    let keys = if place.keys.keys.is_empty() { keys } else { keys.raster_type(RasterType::PixelIsArea) };
     keys.transform(transform)
-        .raster_type(RasterType::PixelIsArea)
         .nodata(&no_data.to_string())
         .compression(Compression::Deflate)
         .predictor(Predictor::FloatingPoint)

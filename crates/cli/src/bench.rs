@@ -1,0 +1,41 @@
+//! `corpuscle bench`.
+
+use crate::args::BenchOptions;
+use crate::output::{number, print, print_json};
+use crate::refusal::check_backend;
+use crate::select::select;
+use corpuscle_validate::{Rate, benches};
+use std::process::ExitCode;
+
+/// Measures rates and prints them as they come.
+pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> {
+    check_backend(options.backend)?;
+    let with = corpuscle_validate::BenchOptions { quick: options.quick };
+    let mut rates = Vec::new();
+    for bench in select(benches(), |bench| bench.name, &options.names)? {
+        for rate in (bench.run)(&with) {
+            let line = line(&rate);
+            if as_json {
+                eprint!("{line}");
+            } else {
+                print(&line)?;
+            }
+            rates.push(rate);
+        }
+    }
+    if as_json {
+        print_json(&rates)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A rate as people read it.
+fn line(rate: &Rate) -> String {
+    let Rate { name, particles, dimensions, threads, rate_unit, .. } = rate;
+    let packing = rate.packing.map(|packing| format!(", packing {packing}")).unwrap_or_default();
+    format!(
+        "{name:28} {:>11} {rate_unit}  ({particles} particles, {dimensions}D{packing}, {threads} threads, {} bytes a particle)\n",
+        number(rate.rate),
+        number(rate.bytes_per_particle)
+    )
+}

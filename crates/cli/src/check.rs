@@ -1,0 +1,198 @@
+//! `corpuscle check`.
+
+use crate::args::CheckOptions;
+use crate::output::{duration, number, print, print_json};
+use crate::scene_argument;
+use corpuscle::Simulation;
+use corpuscle::scene::Scene;
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How long the model is run to see its time step and rate.
+const PROBE: Duration = Duration::from_secs(2);
+
+/// The part of the run that is long enough to see its time step.
+const PROBE_PART: f64 = 0.01;
+
+/// Memory for each particle, bytes: state, sorted copies, neighbours and work space.
+const BYTES_PER_PARTICLE: f64 = 400.0;
+
+/// Memory for each cell of the ground, bytes: heights, and the maps of maxima and times.
+const BYTES_PER_CELL: f64 = 60.0;
+
+/// What would be run.
+#[derive(Debug, Serialize)]
+struct Report {
+    ok: bool,
+    title: String,
+    model: &'static str,
+    terrain: Ground,
+    particles_at_start: usize,
+    particles_to_come: usize,
+    memory_bytes: f64,
+    /// At the start; none where nothing moves yet.
+    time_step_s: Option<f64>,
+    estimated_wall_time_s: Option<f64>,
+    until_s: f64,
+    frames: u64,
+    gauge_rows: u64,
+    gauges: Vec<String>,
+    warnings: Vec<String>,
+}
+
+/// The ground's size.
+#[derive(Debug, Serialize)]
+struct Ground {
+    columns: usize,
+    rows: usize,
+    cell_m: [f64; 2],
+    size_m: [f64; 2],
+}
+
+/// Says what a scene would run, without writing anything.
+pub fn check(options: &CheckOptions, as_json: bool) -> anyhow::Result<ExitCode> {
+    match report(options) {
+        Ok(report) if as_json => print_json(&report)?,
+        Ok(report) => print(&text(&report))?,
+        Err(error) => {
+            if as_json {
+                print_json(&fault(&error))?;
+            }
+            return Err(error);
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is wrong, for programs: the message and, where it is in the scene's text, its place.
+fn fault(error: &anyhow::Error) -> Value {
+    let problem = match error.downcast_ref() {
+        Some(corpuscle::Error::Scene(error)) => error.problem(),
+        _ => None,
+    };
+    let place = problem.and_then(|problem| problem.place.as_ref());
+    json!({
+        "ok": false,
+        "error": format!("{error:#}"),
+        "key": problem.map(|problem| &problem.key),
+        "file": place.map(|place| &place.source),
+        "line": place.and_then(|place| place.line),
+        "column": place.map(|place| place.column),
+    })
+}
+
+fn report(options: &CheckOptions) -> anyhow::Result<Report> {
+    let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
+    let mut simulation = Simulation::open(named.scene, &named.folder)?;
+    let particles_at_start = simulation.model().particles();
+    let particles_to_come = particles_to_come(simulation.scene(), &named.folder)?;
+    let probe = Probe::run(&mut simulation)?;
+    let (terrain, run) = (simulation.terrain(), &simulation.scene().run);
+    let grid = terrain.map_grid();
+    let particles = (particles_at_start + particles_to_come) as f64;
+    let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
+    Ok(Report {
+        ok: true,
+        title: simulation.scene().title.clone(),
+        model: simulation.model().name(),
+        terrain: Ground {
+            columns: grid.columns,
+            rows: grid.rows,
+            cell_m: grid.cell_size(),
+            size_m: terrain.bounds().size(),
+        },
+        particles_at_start,
+        particles_to_come,
+        memory_bytes: particles * BYTES_PER_PARTICLE + (grid.columns * grid.rows) as f64 * BYTES_PER_CELL,
+        time_step_s: probe.time_step,
+        // What comes in is there for half of the run on average.
+        estimated_wall_time_s: probe.wall_time(particles - 0.5 * particles_to_come as f64, run.until_s),
+        until_s: run.until_s,
+        frames: rows(run.frame_period_s()),
+        gauge_rows: rows(run.gauge_period_s()),
+        gauges: simulation.model().gauge_columns().iter().map(|column| column.header()).collect(),
+        warnings: simulation.warnings(),
+    })
+}
+
+/// Particles that the inflows bring in over the run.
+fn particles_to_come(scene: &Scene, folder: &Path) -> Result<usize, corpuscle::Error> {
+    let flood = &scene.flood;
+    let Some(depth) = flood.spacing_depth_m else { return Ok(0) };
+    let mut volume = 0.0;
+    for inflow in &flood.inflow {
+        volume += inflow.load_discharge(folder)?.integral(0.0, scene.run.until_s);
+    }
+    Ok((volume / (flood.spacing_m * flood.spacing_m * depth)) as usize)
+}
+
+/// What a short run shows.
+struct Probe {
+    /// Mean time step, s; none where nothing moved.
+    time_step: Option<f64>,
+    /// Particles moved in a second of wall-clock time.
+    particle_steps_per_s: f64,
+}
+
+impl Probe {
+    /// Runs the first hundredth of the scene, or [`PROBE`] of wall-clock time.
+    fn run(simulation: &mut Simulation) -> Result<Self, corpuscle::Error> {
+        let until = PROBE_PART * simulation.scene().run.until_s;
+        let stop = Arc::new(AtomicBool::new(false));
+        let timer = stop.clone();
+        thread::spawn(move || {
+            thread::sleep(PROBE);
+            timer.store(true, Ordering::Relaxed);
+        });
+        let start = Instant::now();
+        let model = simulation.model_mut();
+        model.advance_to(until, &stop)?;
+        Ok(Self {
+            time_step: (model.steps() > 0).then(|| model.time() / model.steps() as f64),
+            particle_steps_per_s: model.particle_steps() as f64 / start.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// Wall-clock time of the whole run, s, with so many particles on average.
+    fn wall_time(&self, particles: f64, until: f64) -> Option<f64> {
+        let steps = until / self.time_step?;
+        (self.particle_steps_per_s > 0.0).then(|| steps * particles / self.particle_steps_per_s)
+    }
+}
+
+/// The report as people read it.
+fn text(report: &Report) -> String {
+    let Report { title, model, terrain, .. } = report;
+    let [width, height] = terrain.size_m.map(number);
+    let [cell_x, cell_y] = terrain.cell_m.map(number);
+    let mut lines = vec![
+        format!("{title} ({model})"),
+        format!(
+            "terrain    {width} x {height} m, {} x {} cells of {cell_x} x {cell_y} m",
+            terrain.columns, terrain.rows
+        ),
+        format!("particles  {} at the start, about {} to come", report.particles_at_start, report.particles_to_come),
+        format!("memory     about {} MB", number((report.memory_bytes / 1e6).ceil())),
+        format!(
+            "run        {} s, {} frames, {} gauge rows of {} values",
+            number(report.until_s),
+            report.frames,
+            report.gauge_rows,
+            report.gauges.len()
+        ),
+    ];
+    if let Some(step) = report.time_step_s {
+        lines.push(format!("time step  {} s at the start", number(step)));
+    }
+    if let Some(wall_time) = report.estimated_wall_time_s {
+        lines.push(format!("will take  about {} here", duration(wall_time)));
+    }
+    lines.extend(report.warnings.iter().map(|warning| format!("warning: {warning}")));
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,34 @@
+//! Errors that are the input's fault.
+
+use crate::args::Backend;
+use std::fmt;
+
+/// Something asked for that cannot be done: exit status 2.
+#[derive(Debug)]
+struct Refusal(String);
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+/// An error that says what was asked for cannot be done.
+pub fn refuse(what: impl Into<String>) -> anyhow::Error {
+    Refusal(what.into()).into()
+}
+
+/// True where the input is at fault.
+pub fn is_refusal(error: &anyhow::Error) -> bool {
+    error.is::<Refusal>() || error.downcast_ref::<corpuscle::Error>().is_some_and(corpuscle::Error::is_refusal)
+}
+
+/// Refuses a backend that is not there.
+pub fn check_backend(backend: Backend) -> anyhow::Result<()> {
+    match backend {
+        Backend::Auto | Backend::Cpu => Ok(()),
+        Backend::Gpu => Err(refuse("this build has no GPU backend yet; use --backend cpu, or leave it out")),
+    }
+}

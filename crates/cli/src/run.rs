@@ -1,0 +1,90 @@
+//! `corpuscle run`.
+
+use crate::args::RunOptions;
+use crate::output::{duration, number, print_json, rate};
+use crate::progress::Bar;
+use crate::refusal::check_backend;
+use crate::scene_argument;
+use anyhow::Context;
+use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
+use corpuscle::{Recorder, Simulation};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Runs a scene, or goes on with an interrupted run.
+pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
+    check_backend(options.backend)?;
+    let stop = stop_on_interrupt()?;
+    let (mut simulation, mut recorder) = match &options.resume {
+        Some(folder) => Recorder::resume(folder)?,
+        None => start(options)?,
+    };
+    for warning in simulation.warnings() {
+        eprintln!("warning: {warning}");
+    }
+    eprintln!("writing {}", recorder.path().display());
+    let bar = Bar::new()?;
+    let ended = simulation.run(&mut [&mut recorder], &stop, &mut |progress| bar.show(progress));
+    bar.clear();
+    let folder = recorder.path().display();
+    let summary = ended.map_err(anyhow::Error::from).with_context(|| {
+        let time = number(simulation.model().time());
+        format!("the run ended at t = {time} s; what was written up to there stays readable in {folder}")
+    })?;
+    tell(&summary, recorder.path());
+    if as_json {
+        print_json(&summary)?;
+    }
+    Ok(if summary.status == Status::Done { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn start(options: &RunOptions) -> anyhow::Result<(Simulation, Recorder)> {
+    let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
+    let simulation = Simulation::open(named.scene, &named.folder)?;
+    let folder = match &options.output {
+        Some(folder) => folder.clone(),
+        None => next_run_folder(Path::new("runs"), &named.short_name).map_err(corpuscle::Error::from)?,
+    };
+    let frames = options.frames.map(FrameFormat::from).unwrap_or_default();
+    let recorder = Recorder::create(&folder, &simulation, frames)?;
+    Ok((simulation, recorder))
+}
+
+/// Becomes true on Ctrl-C, and the run ends in order. A second one ends it at once.
+fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler_stop = stop.clone();
+    ctrlc::set_handler(move || {
+        if handler_stop.swap(true, Ordering::Relaxed) {
+            std::process::exit(1);
+        }
+    })
+    .context("cannot watch for Ctrl-C")?;
+    Ok(stop)
+}
+
+/// Tells people how it went.
+fn tell(summary: &Summary, folder: &Path) {
+    let folder = folder.display();
+    if summary.status == Status::Stopped {
+        let time = number(summary.simulated_time_s);
+        eprintln!("interrupted at t = {time} s; go on with\n    corpuscle run --resume {folder}");
+        return;
+    }
+    eprintln!(
+        "done in {}: {} s simulated, {} particles, {} steps, {}",
+        duration(summary.wall_time_s),
+        number(summary.simulated_time_s),
+        summary.particles,
+        summary.steps,
+        rate(summary.particle_steps_per_s)
+    );
+    for (quantity, entry) in &summary.ledger {
+        let [initial, inflow, outflow, end] = [entry.initial, entry.inflow, entry.outflow, entry.end].map(number);
+        let error = number(entry.relative_error);
+        eprintln!("{quantity}: {initial} at the start, {inflow} in, {outflow} out, {end} now; relative error {error}");
+    }
+    eprintln!("results in {folder}");
+}

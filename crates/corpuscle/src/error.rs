@@ -1,0 +1,34 @@
+//! What can go wrong between a scene and the end of its run.
+
+use corpuscle_model::ModelError;
+use corpuscle_record::RecordError;
+use corpuscle_scene::SceneError;
+use corpuscle_terrain::TerrainError;
+
+/// Why a scene cannot be opened or its run cannot go on. The text is that of the part where it happened.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The scene, or a time series that it names.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The ground.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// The computation.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The run's folder.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+impl Error {
+    /// True where what was asked for cannot be run as it is; false where a sound run came to grief.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Scene(_) | Self::Terrain(_) => true,
+            Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
+            Self::Record(error) => !matches!(error, RecordError::Write { .. } | RecordError::GaugeCount { .. }),
+        }
+    }
+}

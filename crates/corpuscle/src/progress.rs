@@ -1,0 +1,23 @@
+//! How far a run has come.
+
+/// How far a run has come, for people to watch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Simulated time, s.
+    pub time: f64,
+    /// End of the run, s.
+    pub until: f64,
+    /// Particles now.
+    pub particles: usize,
+    /// Particles moved per second of wall-clock time, since the start or the resumption.
+    pub particle_steps_per_s: f64,
+    /// Wall-clock time left if it goes on like this, s; none before the first step.
+    pub left_s: Option<f64>,
+}
+
+impl Progress {
+    /// The part of the run that is done, 0 to 1.
+    pub fn fraction(&self) -> f64 {
+        (self.time / self.until).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,97 @@
+//! A run's folder as a sink.
+
+use crate::{Error, Simulation, Sink};
+use corpuscle_model::Model;
+use corpuscle_record::{Clock, FrameFormat, Report, RunFolder, Status, Summary, compare_extent};
+use corpuscle_scene::Scene;
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Writes a run into its folder; when the run has ended, its report too.
+pub struct Recorder {
+    folder: RunFolder,
+    terrain: Arc<Terrain>,
+    scene: Scene,
+}
+
+impl Recorder {
+    /// Starts the folder of a run.
+    ///
+    /// # Errors
+    /// [`corpuscle_record::RecordError`] where the folder holds anything or cannot be written.
+    pub fn create(path: &Path, simulation: &Simulation, frames: FrameFormat) -> Result<Self, Error> {
+        let scene_text = simulation.scene().to_toml()?;
+        let folder = RunFolder::create(path, &scene_text, &simulation.model().gauge_columns(), frames)?;
+        Ok(Self::new(folder, simulation))
+    }
+
+    /// Takes up the folder of an interrupted run: opens its scene, and goes on from its checkpoint.
+    ///
+    /// # Errors
+    /// Where the folder holds no run, no checkpoint or one that does not fit.
+    pub fn resume(path: &Path) -> Result<(Simulation, Self), Error> {
+        Self::resume_with(path, |scene| Simulation::open(scene, path))
+    }
+
+    /// [`Recorder::resume`] with a model of one's own: `open` makes the scene ready.
+    ///
+    /// # Errors
+    /// As [`Recorder::resume`].
+    pub fn resume_with(
+        path: &Path,
+        open: impl FnOnce(Scene) -> Result<Simulation, Error>,
+    ) -> Result<(Simulation, Self), Error> {
+        let mut simulation = open(Scene::read(&path.join("scene.toml"), &[])?)?;
+        let (folder, clock, state) = RunFolder::resume(path)?;
+        simulation.restore(clock, &state)?;
+        let recorder = Self::new(folder, &simulation);
+        Ok((simulation, recorder))
+    }
+
+    fn new(folder: RunFolder, simulation: &Simulation) -> Self {
+        Self { folder, terrain: simulation.terrain().clone(), scene: simulation.scene().clone() }
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+impl Sink for Recorder {
+    fn gauges(&mut self, model: &dyn Model) -> Result<(), Error> {
+        Ok(self.folder.append_gauges(model.time(), &model.gauge_row())?)
+    }
+
+    fn frame(&mut self, model: &dyn Model) -> Result<(), Error> {
+        if self.folder.frame_format() != FrameFormat::None {
+            self.folder.write_frame(&model.frame())?;
+        }
+        Ok(self.folder.write_snapshot(model.time(), &model.maps(), &self.terrain)?)
+    }
+
+    fn checkpoint(&mut self, model: &dyn Model, clock: Clock) -> Result<(), Error> {
+        Ok(self.folder.write_checkpoint(clock, &model.save())?)
+    }
+
+    fn finish(&mut self, model: &dyn Model, summary: &mut Summary) -> Result<(), Error> {
+        let maps = model.maps();
+        if !maps.is_empty() {
+            self.folder.write_final_maps(&maps, &self.terrain)?;
+        }
+        if let (Some(observed), Some(depth)) =
+            (&self.scene.flood.observed_extent, maps.iter().find(|map| map.name == "max_depth"))
+        {
+            summary.extent = Some(compare_extent(observed, &self.terrain, &depth.values)?);
+        }
+        for warning in &summary.warnings {
+            self.folder.log(&format!("warning: {warning}"))?;
+        }
+        self.folder.finish(summary)?;
+        if summary.status != Status::Stopped {
+            Report::read(self.folder.path(), &self.scene, &self.terrain)?.write()?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,190 @@
+//! A scene made ready, and its run.
+
+use crate::schedule::Schedule;
+use crate::{Error, Progress, Sink};
+use corpuscle_model::Model;
+use corpuscle_record::{Clock, Status, Summary, ledger_entries};
+use corpuscle_scene::Scene;
+use corpuscle_terrain::Terrain;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// A run pauses at least this often, to report progress and to keep its state.
+const PAUSES: f64 = 1000.0;
+
+/// A scene made ready to run.
+pub struct Simulation {
+    scene: Scene,
+    terrain: Arc<Terrain>,
+    model: Box<dyn Model>,
+    /// Wall-clock time spent before this part of the run, s.
+    wall_before: f64,
+    /// True where the run goes on from a checkpoint: what is due at its time is taken already.
+    resumed: bool,
+}
+
+impl Simulation {
+    /// Puts together a scene with all defaults filled in, its ground and its model.
+    pub fn new(scene: Scene, terrain: Arc<Terrain>, model: Box<dyn Model>) -> Self {
+        Self { scene, terrain, model, wall_before: 0.0, resumed: false }
+    }
+
+    /// The scene as run, with all defaults filled in and paths absolute.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The ground.
+    pub fn terrain(&self) -> &Arc<Terrain> {
+        &self.terrain
+    }
+
+    /// The model.
+    pub fn model(&self) -> &dyn Model {
+        &*self.model
+    }
+
+    /// The model, to be moved by hand.
+    pub fn model_mut(&mut self) -> &mut dyn Model {
+        &mut *self.model
+    }
+
+    /// What a user should know, in sentences: of the ground, then of the model.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.terrain.warnings().to_vec();
+        let more = self.model.warnings().into_iter().filter(|warning| !self.terrain.warnings().contains(warning));
+        warnings.extend(more);
+        warnings
+    }
+
+    /// Goes on from a state that [`Model::save`] wrote.
+    ///
+    /// # Errors
+    /// [`corpuscle_model::ModelError::Checkpoint`] where the state does not fit.
+    pub fn restore(&mut self, clock: Clock, state: &[u8]) -> Result<(), Error> {
+        self.model.restore(state)?;
+        self.wall_before = clock.wall_time_s;
+        self.resumed = true;
+        Ok(())
+    }
+
+    /// Runs to the scene's end, or until `stop` becomes true; then a checkpoint is kept and the summary says so.
+    ///
+    /// # Errors
+    /// Where the model breaks down or a sink fails. The sinks are then finished with what there is.
+    pub fn run(
+        &mut self,
+        sinks: &mut [&mut dyn Sink],
+        stop: &AtomicBool,
+        on_progress: &mut dyn FnMut(&Progress),
+    ) -> Result<Summary, Error> {
+        let start = Instant::now();
+        let ended = self.advance_to_end(sinks, stop, on_progress, start);
+        let status = match ended {
+            Ok(status) => status,
+            Err(_) => Status::Failed,
+        };
+        let mut summary = self.summary(status, start);
+        // A sink that fails does not keep the others from their end; the first error is the one to tell.
+        let finished: Vec<_> = sinks.iter_mut().map(|sink| sink.finish(&*self.model, &mut summary)).collect();
+        ended?;
+        finished.into_iter().collect::<Result<(), Error>>()?;
+        Ok(summary)
+    }
+
+    fn advance_to_end(
+        &mut self,
+        sinks: &mut [&mut dyn Sink],
+        stop: &AtomicBool,
+        on_progress: &mut dyn FnMut(&Progress),
+        start: Instant,
+    ) -> Result<Status, Error> {
+        let run = &self.scene.run;
+        let (until, checkpoint_period) = (run.until_s, run.checkpoint_every_wall_s);
+        let gauges = Schedule::new(run.gauge_period_s(), until);
+        let frames = Schedule::new(run.frame_period_s(), until);
+        let pauses = Schedule::new(until / PAUSES, until);
+        let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps() };
+        if !self.resumed {
+            for sink in &mut *sinks {
+                sink.gauges(&*self.model)?;
+                sink.frame(&*self.model)?;
+            }
+        }
+        let mut kept = start;
+        loop {
+            let now = self.model.time();
+            let [gauge, frame, pause] = [gauges, frames, pauses].map(|schedule| schedule.after(now));
+            let Some(next) = [gauge, frame, pause].into_iter().flatten().min_by(f64::total_cmp) else {
+                return Ok(Status::Done);
+            };
+            self.model.advance_to(next, stop)?;
+            let stopped = self.model.time() < next;
+            for sink in &mut *sinks {
+                if !stopped && gauge == Some(next) {
+                    sink.gauges(&*self.model)?;
+                }
+                if !stopped && frame == Some(next) {
+                    sink.frame(&*self.model)?;
+                }
+            }
+            on_progress(&meter.progress(&*self.model, until));
+            let stopped = stopped || next < until && stop.load(Ordering::Relaxed);
+            if stopped || kept.elapsed().as_secs_f64() >= checkpoint_period {
+                let clock = Clock { time_s: self.model.time(), wall_time_s: self.wall_time(start) };
+                for sink in &mut *sinks {
+                    sink.checkpoint(&*self.model, clock)?;
+                }
+                kept = Instant::now();
+            }
+            if stopped {
+                return Ok(Status::Stopped);
+            }
+        }
+    }
+
+    fn wall_time(&self, start: Instant) -> f64 {
+        self.wall_before + start.elapsed().as_secs_f64()
+    }
+
+    fn summary(&self, status: Status, start: Instant) -> Summary {
+        let model = &*self.model;
+        let wall_time_s = self.wall_time(start);
+        Summary {
+            model: model.name().into(),
+            backend: "cpu".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            status,
+            particles: model.particles(),
+            steps: model.steps(),
+            simulated_time_s: model.time(),
+            wall_time_s,
+            particle_steps_per_s: model.particle_steps() as f64 / wall_time_s,
+            warnings: self.warnings(),
+            ledger: ledger_entries(&model.ledger()),
+            extent: None,
+        }
+    }
+}
+
+/// Where this part of the run began, to measure its rate.
+struct Meter {
+    start: Instant,
+    time: f64,
+    particle_steps: u64,
+}
+
+impl Meter {
+    fn progress(&self, model: &dyn Model, until: f64) -> Progress {
+        let wall = self.start.elapsed().as_secs_f64();
+        let done = model.time() - self.time;
+        Progress {
+            time: model.time(),
+            until,
+            particles: model.particles(),
+            particle_steps_per_s: (model.particle_steps() - self.particle_steps) as f64 / wall,
+            left_s: (done > 0.0).then(|| wall * (until - model.time()) / done),
+        }
+    }
+}

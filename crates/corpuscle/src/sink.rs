@@ -1,0 +1,41 @@
+//! Where what a run shows goes.
+
+use crate::Error;
+use corpuscle_model::Model;
+use corpuscle_record::{Clock, Summary};
+
+/// Takes what a run shows: a folder, a window, a test. Each call looks at the model at the time it shows now and takes
+/// from it what it needs; an error ends the run.
+pub trait Sink {
+    /// A row of gauges is due.
+    ///
+    /// # Errors
+    /// Where it cannot be taken.
+    fn gauges(&mut self, _model: &dyn Model) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// A frame of particles, with maps, is due.
+    ///
+    /// # Errors
+    /// Where it cannot be taken.
+    fn frame(&mut self, _model: &dyn Model) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The state should be kept, to resume from.
+    ///
+    /// # Errors
+    /// Where it cannot be kept.
+    fn checkpoint(&mut self, _model: &dyn Model, _clock: Clock) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The run has ended, for better or worse (`summary.status`). What the sink finds out may go into the summary.
+    ///
+    /// # Errors
+    /// Where the end cannot be taken.
+    fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {
+        Ok(())
+    }
+}

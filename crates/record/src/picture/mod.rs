@@ -1,0 +1,22 @@
+//! Pictures: charts and maps as SVG, and as PNG from the same SVG. They know no physics.
+
+mod chart;
+mod classes;
+mod ground;
+mod map;
+mod png;
+mod relief;
+mod resample;
+mod style;
+mod svg;
+mod text;
+mod ticks;
+
+pub(crate) use chart::{Chart, Series};
+pub(crate) use classes::{Classes, Ramp};
+pub(crate) use ground::Ground;
+pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image};
+pub(crate) use png::{data_url, svg_to_png};
+pub(crate) use style::{FIGURE_CSS, Theme};
+pub(crate) use svg::{Figure, beside, escape, stack};
+pub(crate) use text::{area, number, time, volume};

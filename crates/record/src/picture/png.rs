@@ -1,0 +1,93 @@
+//! PNG: pictures from pixels, and from SVG with the fonts that come along.
+
+use super::svg::Figure;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{Options, Tree, fontdb::Database};
+use std::sync::{Arc, LazyLock};
+
+/// Width of a picture in pixels, over its width in CSS pixels.
+const PIXELS: f32 = 1.6;
+
+/// The only fonts, so that a picture is the same on every machine.
+static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
+    let mut fonts = Database::new();
+    fonts.load_font_data(include_bytes!("../../fonts/Inter-Regular.otf").to_vec());
+    fonts.load_font_data(include_bytes!("../../fonts/Inter-SemiBold.otf").to_vec());
+    Arc::new(fonts)
+});
+
+/// A figure as PNG.
+///
+/// # Errors
+/// What cannot be drawn (a figure without extent).
+pub(crate) fn svg_to_png(figure: &Figure) -> Result<Vec<u8>, String> {
+    let options = Options { fontdb: FONTS.clone(), font_family: "Inter".into(), ..Options::default() };
+    let tree = Tree::from_str(&figure.standalone(), &options).map_err(|error| error.to_string())?;
+    let [width, height] = figure.size().map(|length| (length as f32 * PIXELS).round() as u32);
+    let mut pixels = Pixmap::new(width, height).ok_or("the figure has no extent")?;
+    resvg::render(&tree, Transform::from_scale(PIXELS, PIXELS), &mut pixels.as_mut());
+    // The page rectangle covers all: no pixel is transparent, and premultiplied colours are plain ones.
+    let rgb: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+    encode_rgb(width, height, &rgb)
+}
+
+/// A picture of red, green and blue bytes.
+pub(crate) fn encode_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
+    encode(width, height, rgb, |encoder| encoder.set_color(png::ColorType::Rgb))
+}
+
+/// A picture of one byte for each pixel that chooses a colour (red, green, blue, opacity).
+pub(crate) fn encode_indexed(width: u32, height: u32, indices: &[u8], palette: &[[u8; 4]]) -> Result<Vec<u8>, String> {
+    encode(width, height, indices, |encoder| {
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(palette.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<u8>>());
+        encoder.set_trns(palette.iter().map(|colour| colour[3]).collect::<Vec<u8>>());
+    })
+}
+
+fn encode(
+    width: u32,
+    height: u32,
+    data: &[u8],
+    set_up: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
+) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_depth(png::BitDepth::Eight);
+    set_up(&mut encoder);
+    let mut writer = encoder.write_header().map_err(|error| error.to_string())?;
+    writer.write_image_data(data).map_err(|error| error.to_string())?;
+    writer.finish().map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+/// A PNG as a URL that holds it.
+pub(crate) fn data_url(png: &[u8]) -> String {
+    format!("data:image/png;base64,{}", STANDARD.encode(png))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::svg::{Anchor, Svg};
+
+    #[test]
+    fn text_leaves_ink_on_the_page() {
+        let ink = |text: &str| {
+            let mut svg = Svg::default();
+            svg.text([5.0, 20.0], Anchor::Start, "title", text);
+            let png = svg_to_png(&svg.finish([200.0, 30.0], "")).unwrap();
+            let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+            pixels.iter().filter(|value| **value < 128).count()
+        };
+        assert_eq!(ink(""), 0);
+        // Each of these must be in the font: a letter without a glyph would leave as much as the one before.
+        assert!(ink("10⁻¹²") > ink("10⁻¹"));
+        assert!(ink("m³") > ink("m"));
+        assert!(ink("0 – 5") > ink("0 5"));
+    }
+}

@@ -1,0 +1,130 @@
+//! Numbers as people read them. A thin space groups thousands.
+
+const THIN: char = '\u{2009}';
+
+/// About three figures: `12 345`, `12.3`, `0.0123`, `3.2 × 10⁻⁷`.
+pub(crate) fn number(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if !value.is_finite() => "–".into(),
+        0.0 => "0".into(),
+        1e7.. => scientific(value),
+        99.95.. => grouped(value),
+        9.995.. => format!("{value:.1}"),
+        0.9995.. => format!("{value:.2}"),
+        0.001.. => trimmed(value, (2 - size.log10().floor() as i32) as usize),
+        _ => scientific(value),
+    }
+    .replace('-', "−")
+}
+
+fn trimmed(value: f64, decimals: usize) -> String {
+    format!("{value:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn grouped(value: f64) -> String {
+    let digits = format!("{:.0}", value.abs());
+    let mut text = String::from(if value < 0.0 { "-" } else { "" });
+    for (place, digit) in digits.char_indices() {
+        if place > 0 && (digits.len() - place) % 3 == 0 && digits.len() > 4 {
+            text.push(THIN);
+        }
+        text.push(digit);
+    }
+    text
+}
+
+fn scientific(value: f64) -> String {
+    let text = format!("{value:.1e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let exponent: String = exponent
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
+        })
+        .collect();
+    format!("{digits}{THIN}×{THIN}10{exponent}")
+}
+
+/// An area given in m2, in m², ha or km².
+pub(crate) fn area(square_metres: f64) -> String {
+    match square_metres.abs() {
+        1e6.. => format!("{} km²", number(square_metres / 1e6)),
+        1e4.. => format!("{} ha", number(square_metres / 1e4)),
+        _ => format!("{} m²", number(square_metres)),
+    }
+}
+
+/// A volume given in m3, in m³ or million m³.
+pub(crate) fn volume(cubic_metres: f64) -> String {
+    match cubic_metres.abs() {
+        1e6.. => format!("{} million m³", number(cubic_metres / 1e6)),
+        _ => format!("{} m³", number(cubic_metres)),
+    }
+}
+
+/// A time given in s: `45 s`, `12 min`, `1 h 05 min`, `2 d 3 h`.
+pub(crate) fn time(seconds: f64) -> String {
+    let whole = seconds.abs().round() as u64;
+    let (days, hours, minutes) = (whole / 86400, whole / 3600 % 24, whole / 60 % 60);
+    match seconds.abs() {
+        size if !size.is_finite() => "–".into(),
+        172_799.5.. => format!("{days} d {hours} h"),
+        3599.5.. => format!("{} h {minutes:02} min", whole / 3600),
+        119.5.. if whole % 60 == 0 => format!("{minutes} min"),
+        119.5.. => format!("{minutes} min {:02} s", whole % 60),
+        _ => format!("{} s", number(seconds)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_about_three_figures() {
+        for (value, text) in [
+            (0.0, "0"),
+            (1234567.0, "1\u{2009}234\u{2009}567"),
+            (1234.4, "1234"),
+            (99.96, "100"),
+            (-12.345, "−12.3"),
+            (1.0, "1.00"),
+            (0.05, "0.05"),
+            (0.012345, "0.0123"),
+            (3.24e-17, "3.2\u{2009}×\u{2009}10⁻¹⁷"),
+            (4.5e8, "4.5\u{2009}×\u{2009}10⁸"),
+            (f64::NAN, "–"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn times_read_as_a_clock() {
+        for (seconds, text) in [
+            (0.5, "0.5 s"),
+            (45.0, "45.0 s"),
+            (600.0, "10 min"),
+            (605.0, "10 min 05 s"),
+            (3900.0, "1 h 05 min"),
+            (7199.6, "2 h 00 min"),
+            (100_000.0, "27 h 46 min"),
+            (183_600.0, "2 d 3 h"),
+        ] {
+            assert_eq!(time(seconds), text);
+        }
+    }
+
+    #[test]
+    fn areas_and_volumes_choose_their_unit() {
+        assert_eq!(area(2.5e6), "2.50 km²");
+        assert_eq!(area(12_000.0), "1.20 ha");
+        assert_eq!(volume(1.5e6), "1.50 million m³");
+        assert_eq!(volume(12_345.0), "12\u{2009}345 m³");
+    }
+}

@@ -1,0 +1,159 @@
+//! Numbers in the report: key figures and tables, as cells of text.
+
+use super::{Report, figures::FieldFigure, gauges};
+use crate::Status;
+use crate::picture::{area, number, time, volume};
+use corpuscle_scene::{Scheme, Terrain};
+
+/// A key figure.
+pub(super) struct KeyFigure {
+    /// What it is.
+    pub label: &'static str,
+    /// The value with its unit.
+    pub value: String,
+    /// A remark below.
+    pub remark: String,
+}
+
+/// A table: head and rows of cells.
+pub(super) struct Table {
+    pub head: Vec<&'static str>,
+    pub rows: Vec<Vec<String>>,
+}
+
+/// The handful of numbers that come first.
+pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
+    let mut figures = Vec::new();
+    let mut add = |label, value, remark| figures.push(KeyFigure { label, value, remark });
+    if let Some(depth) = report.field("max_depth") {
+        let wet = report.area_of(depth, |value| !value.is_nan());
+        let total: f64 = report.cell_areas.iter().sum();
+        let part = number(100.0 * wet / total);
+        add(
+            "Flooded area",
+            area(wet),
+            format!("{part} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
+        );
+    }
+    for (name, label, unit) in [("max_depth", "Largest depth", "m"), ("max_speed", "Largest speed", "m/s")] {
+        if let Some(field) = report.field(name) {
+            let largest = field.values.iter().copied().filter(|value| !value.is_nan()).reduce(f32::max);
+            let value = largest.map_or("none".into(), |value| format!("{} {unit}", number(f64::from(value))));
+            add(label, value, "anywhere, at any time".into());
+        }
+    }
+    let all = gauges::series(&report.gauges);
+    let discharges = all.iter().filter(|series| series.unit == "m³/s").filter_map(|s| Some((s, s.peak()?)));
+    if let Some((series, peak)) = discharges.reduce(|best, next| if next.1[1] > best.1[1] { next } else { best }) {
+        add("Peak discharge", format!("{} m³/s", number(peak[1])), format!("{}, at {}", series.gauge, time(peak[0])));
+    }
+    if let Some(water) = report.summary.ledger.get("water_m3") {
+        add("Water in", volume(water.inflow), format!("at the start {}", volume(water.initial)));
+        add("Water out", volume(water.outflow), format!("at the end {}", volume(water.end)));
+        let error = number(water.relative_error.abs());
+        add("Water balance error", error, "relative to all water".into());
+    }
+    if let Some(hazard) = report.field("hazard") {
+        let extreme = report.area_of(hazard, |value| value >= 2.0);
+        add("Danger for all", area(extreme), "hazard rating of 2 and above".into());
+    }
+    figures
+}
+
+/// Area in each class of a field, from the lowest to the highest.
+pub(super) fn areas_by_class(report: &Report, figure: &FieldFigure) -> Vec<(String, [u8; 3], f64)> {
+    let Some(field) = report.field(figure.kind.name) else { return Vec::new() };
+    let classes = &figure.classes;
+    let area =
+        |class: usize| report.area_of(field, |value| !value.is_nan() && classes.class_of(f64::from(value)) == class);
+    classes.colours.iter().enumerate().map(|(class, colour)| (classes.range(class), *colour, area(class))).collect()
+}
+
+/// The balances.
+pub(super) fn ledger(report: &Report) -> Table {
+    let row = |(name, entry): (&String, &crate::LedgerEntry)| {
+        let (quantity, unit) = name.rsplit_once('_').unwrap_or((name, ""));
+        let unit = match unit {
+            "m3" => "m³",
+            other => other,
+        };
+        let values = [entry.initial, entry.inflow, entry.outflow, entry.end, entry.relative_error].map(number);
+        std::iter::once(if unit.is_empty() { quantity.to_owned() } else { format!("{quantity}, {unit}") })
+            .chain(values)
+            .collect()
+    };
+    Table {
+        head: vec!["quantity", "at the start", "came in", "went out", "at the end", "relative error"],
+        rows: report.summary.ledger.iter().map(row).collect(),
+    }
+}
+
+/// First water, largest depth and speed at each gauge.
+pub(super) fn gauge_peaks(report: &Report) -> Table {
+    let all = gauges::series(&report.gauges);
+    let wet = report.scene.flood.wet_depth_m;
+    let of = |gauge: &str, quantity: &str| all.iter().find(|s| s.gauge == gauge && s.quantity == quantity);
+    let peak = |gauge: &str, quantity: &str| of(gauge, quantity).and_then(gauges::GaugeSeries::peak);
+    let value = |peak: Option<[f64; 2]>| peak.map_or("–".into(), |peak| number(peak[1]));
+    let row = |depth: &gauges::GaugeSeries| {
+        let gauge = depth.gauge.as_str();
+        let first = depth.points.iter().find(|point| point[1] > wet);
+        let deepest = peak(gauge, "depth").filter(|peak| peak[1] > wet);
+        vec![
+            gauge.to_owned(),
+            first.map_or("stays dry".into(), |point| time(point[0])),
+            value(deepest),
+            deepest.map_or("–".into(), |peak| time(peak[0])),
+            value(deepest.and(peak(gauge, "level"))),
+            value(deepest.and(peak(gauge, "speed"))),
+        ]
+    };
+    Table {
+        head: vec!["gauge", "first wet at", "max depth, m", "at", "max level, m", "max speed, m/s"],
+        rows: all.iter().filter(|series| series.quantity == "depth").map(row).collect(),
+    }
+}
+
+/// Name and value of what was run.
+pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
+    let (summary, scene) = (&report.summary, &report.scene);
+    let ground = &report.ground;
+    let [columns, rows] = ground.grid.map(|count| number(count as f64).replace(".0", ""));
+    let cell = [0, 1].map(|axis| number(ground.extent[axis] / ground.grid[axis] as f64));
+    let cell = if cell[0] == cell[1] { format!("{} m", cell[0]) } else { format!("{} m × {} m", cell[0], cell[1]) };
+    let [low, high] = ground.height_range().map(number);
+    let scheme = match scene.flood.scheme {
+        Scheme::Balanced => "balanced",
+        Scheme::Paper => "paper",
+    };
+    let status = match summary.status {
+        Status::Done => "came to its end",
+        Status::Stopped => "stopped before its end",
+        Status::Failed => "broke down before its end",
+    };
+    vec![
+        ("Model", format!("{}, scheme {scheme}", summary.model)),
+        ("Terrain", terrain_words(&scene.terrain)),
+        ("Grid", format!("{columns} × {rows} cells of {cell}; heights {low} to {high} m")),
+        ("Reference system", ground.system.clone().unwrap_or_else(|| "none (metres)".into())),
+        ("Simulated time", format!("{} ({status})", time(summary.simulated_time_s))),
+        ("Particles", number(summary.particles as f64).replace(".0", "")),
+        ("Steps", number(summary.steps as f64).replace(".0", "")),
+        ("Computed in", format!("{} on {}", time(summary.wall_time_s), summary.backend)),
+        ("Rate", format!("{} particle steps per second", number(summary.particle_steps_per_s))),
+        ("Corpuscle", format!("version {}", summary.version)),
+    ]
+}
+
+fn terrain_words(terrain: &Terrain) -> String {
+    match terrain {
+        Terrain::File(file) => {
+            file.path.file_name().map_or_else(|| "file".into(), |name| name.to_string_lossy().into_owned())
+        }
+        Terrain::Valley(_) => "generated valley".into(),
+        Terrain::RoughHills(_) => "generated rough hills".into(),
+        Terrain::Plane(_) => "plane".into(),
+        Terrain::Bump(_) => "flat bed with bumps".into(),
+        Terrain::Bowl(_) => "paraboloid bowl".into(),
+    }
+}

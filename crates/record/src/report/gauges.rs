@@ -1,0 +1,149 @@
+//! From the columns of `gauges.csv` to charts and peaks.
+
+use crate::GaugeTable;
+use crate::picture::{Chart, Series, number, time};
+
+/// Units as they end a header, and as printed; the longer before those that end like them.
+const UNITS: [(&str, &str); 5] =
+    [("m3_per_s", "m³/s"), ("m2_per_s", "m²/s"), ("m_per_s", "m/s"), ("m3", "m³"), ("m", "m")];
+
+/// Gauges whose hydrographs are drawn at most; the others are in the table's file.
+pub(super) const MOST_GAUGES: usize = 24;
+
+/// One column of the table.
+#[derive(Debug, Clone)]
+pub(super) struct GaugeSeries {
+    /// The gauge: `G1`.
+    pub gauge: String,
+    /// What it measures: `depth`.
+    pub quantity: String,
+    /// Unit as printed.
+    pub unit: &'static str,
+    /// Time, s, and value.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl GaugeSeries {
+    /// Time, s, and value of the largest value; none where nothing was measured.
+    pub(super) fn peak(&self) -> Option<[f64; 2]> {
+        let finite = self.points.iter().copied().filter(|point| point[1].is_finite());
+        // The first of equal ones.
+        finite.reduce(|best, point| if point[1] > best[1] { point } else { best })
+    }
+
+    fn line(&self, name: &str, colour: usize, filled: bool) -> Series {
+        Series { name: name.to_owned(), points: self.points.clone(), colour, filled }
+    }
+}
+
+/// All columns of a table, with the speed of gauges that give only its components.
+pub(super) fn series(table: &GaugeTable) -> Vec<GaugeSeries> {
+    let mut all: Vec<GaugeSeries> =
+        table.columns.iter().enumerate().filter_map(|(index, header)| column(table, index, header)).collect();
+    let speeds: Vec<GaugeSeries> = all.iter().filter_map(|east| speed(&all, east)).collect();
+    all.extend(speeds);
+    all
+}
+
+fn column(table: &GaugeTable, index: usize, header: &str) -> Option<GaugeSeries> {
+    let (gauge, rest) = header.rsplit_once('.')?;
+    let named = UNITS.iter().find_map(|(suffix, unit)| Some((rest.strip_suffix(suffix)?.strip_suffix('_')?, *unit)));
+    let (quantity, unit) = named.unwrap_or((rest, ""));
+    let points = table.times.iter().zip(&table.rows).map(|(time, row)| [*time, row[index]]).collect();
+    Some(GaugeSeries { gauge: gauge.to_owned(), quantity: quantity.to_owned(), unit, points })
+}
+
+/// The speed that goes with an eastward velocity, unless the gauge gives it itself.
+fn speed(all: &[GaugeSeries], east: &GaugeSeries) -> Option<GaugeSeries> {
+    let of_gauge = |quantity: &str| all.iter().find(|s| s.gauge == east.gauge && s.quantity == quantity);
+    if east.quantity != "velocity_east" || of_gauge("speed").is_some() {
+        return None;
+    }
+    let north = of_gauge("velocity_north")?;
+    let points = east.points.iter().zip(&north.points).map(|(e, n)| [e[0], e[1].hypot(n[1])]).collect();
+    Some(GaugeSeries { gauge: east.gauge.clone(), quantity: "speed".into(), unit: "m/s", points })
+}
+
+/// Depth and speed at each gauge that measures a depth: two charts a gauge.
+pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Vec<[Chart; 2]> {
+    let depths = all.iter().filter(|series| series.quantity == "depth").take(MOST_GAUGES);
+    let chart = |series: Option<&GaugeSeries>, title: String, unit: &str, height: f64, colour: usize| Chart {
+        title,
+        remark: series.and_then(GaugeSeries::peak).filter(|peak| peak[1] > 0.0).map_or("dry".into(), |peak| {
+            format!("max {} {} at {}", number(peak[1]), series.map_or("", |s| s.unit), time(peak[0]))
+        }),
+        unit: unit.to_owned(),
+        size: [width, height],
+        span,
+        series: series.map(|s| s.line("", colour, true)).into_iter().collect(),
+    };
+    let pair = |depth: &GaugeSeries| {
+        let speed = all.iter().find(|s| s.gauge == depth.gauge && s.quantity == "speed");
+        [
+            chart(Some(depth), depth.gauge.clone(), "depth, m", 176.0, 0),
+            chart(speed, String::new(), "speed, m/s", 150.0, 1),
+        ]
+    };
+    depths.map(pair).collect()
+}
+
+/// One chart of all columns in a unit; none where there is none.
+pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64; 2], size: [f64; 2]) -> Option<Chart> {
+    let chosen: Vec<&GaugeSeries> = all.iter().filter(|series| series.unit == unit).collect();
+    let several = chosen.iter().any(|series| series.quantity != chosen[0].quantity);
+    let named = |series: &GaugeSeries| match several {
+        true => format!("{} {}", series.gauge, series.quantity.replace('_', " ")),
+        false => series.gauge.clone(),
+    };
+    let lines =
+        chosen.iter().enumerate().map(|(colour, series)| series.line(&named(series), colour, chosen.len() == 1));
+    (!chosen.is_empty()).then(|| Chart {
+        title: title.to_owned(),
+        remark: String::new(),
+        unit: unit.to_owned(),
+        size,
+        span,
+        series: lines.collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> GaugeTable {
+        let columns =
+            ["G.1.depth_m", "G.1.velocity_east_m_per_s", "G.1.velocity_north_m_per_s", "weir.discharge_m3_per_s"];
+        GaugeTable {
+            columns: columns.map(str::to_owned).to_vec(),
+            times: vec![0.0, 10.0],
+            rows: vec![vec![0.0, f64::NAN, f64::NAN, 1.0], vec![2.0, 3.0, -4.0, 7.0]],
+        }
+    }
+
+    #[test]
+    fn headers_are_taken_apart() {
+        let all = series(&table());
+        assert_eq!((all[0].gauge.as_str(), all[0].quantity.as_str(), all[0].unit), ("G.1", "depth", "m"));
+        assert_eq!((all[3].gauge.as_str(), all[3].quantity.as_str(), all[3].unit), ("weir", "discharge", "m³/s"));
+        assert_eq!(all[3].peak(), Some([10.0, 7.0]));
+    }
+
+    #[test]
+    fn speed_comes_from_its_components() {
+        let all = series(&table());
+        let speed = all.iter().find(|series| series.quantity == "speed").unwrap();
+        assert!(speed.points[0][1].is_nan());
+        assert_eq!(speed.points[1], [10.0, 5.0]);
+    }
+
+    #[test]
+    fn charts_for_what_is_there() {
+        let all = series(&table());
+        let [depth, speed] = &hydrographs(&all, [0.0, 10.0], 300.0)[0];
+        assert_eq!((depth.series.len(), speed.series.len()), (1, 1));
+        assert_eq!(depth.remark, "max 2.00 m at 10.0 s");
+        assert!(together(&all, "m³/s", "Discharge", [0.0, 10.0], [900.0, 240.0]).is_some());
+        assert!(together(&all, "m³", "Volume", [0.0, 10.0], [900.0, 240.0]).is_none());
+    }
+}

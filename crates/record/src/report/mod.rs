@@ -1,0 +1,145 @@
+//! The report: what a planner would show, made from a run's folder.
+
+mod facts;
+mod figures;
+mod gauges;
+mod page;
+mod snapshots;
+
+use crate::maps::read_map;
+use crate::picture::{Ground, Place, PlaceKind};
+use crate::whole::write_bytes;
+use crate::{GaugeTable, RecordError, Summary};
+use corpuscle_scene::Scene;
+use corpuscle_terrain::Terrain;
+use figures::{FIELDS, FieldKind, Figures};
+use snapshots::Snapshot;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A finished run as its report needs it.
+#[derive(Debug)]
+pub struct Report {
+    folder: PathBuf,
+    scene: Scene,
+    scene_text: String,
+    summary: Summary,
+    gauges: GaugeTable,
+    ground: Ground,
+    /// Area of each cell, m2, for areas by class.
+    cell_areas: Vec<f64>,
+    places: Vec<Place>,
+    fields: Vec<Field>,
+    snapshots: Vec<Snapshot>,
+}
+
+/// A field that stands for the whole run.
+#[derive(Debug)]
+struct Field {
+    kind: &'static FieldKind,
+    /// A value for each cell of the map grid; not-a-number where there is nothing.
+    values: Vec<f32>,
+}
+
+impl Report {
+    /// Reads the folder of a run that has ended. `scene` is its scene.toml and `terrain` that scene's terrain.
+    ///
+    /// Maps that are not there are left out of the report.
+    ///
+    /// # Errors
+    /// [`RecordError::Read`] or [`RecordError::Content`], naming the file.
+    pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, RecordError> {
+        let scene_path = folder.join("scene.toml");
+        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let grid = terrain.map_grid();
+        let cells = grid.columns * grid.rows;
+        let maps = folder.join("maps");
+        let mut fields = Vec::new();
+        for kind in &FIELDS {
+            let path = maps.join(format!("{}.tif", kind.name));
+            if path.exists() {
+                fields.push(Field { kind, values: read_field(&path, cells)? });
+            }
+        }
+        Ok(Self {
+            folder: folder.to_owned(),
+            scene: scene.clone(),
+            scene_text,
+            summary: Summary::read(folder)?,
+            gauges: GaugeTable::read(&folder.join("gauges.csv"))?,
+            ground: Ground::of(terrain),
+            cell_areas: (0..cells).map(|cell| grid.cell_area(cell % grid.columns, cell / grid.columns)).collect(),
+            places: places(scene, terrain),
+            fields,
+            snapshots: snapshots::read(&maps, cells)?,
+        })
+    }
+
+    /// Writes `pictures/*.png` and `report.html` into the folder. The same folder always gives the same bytes.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), RecordError> {
+        let pictures = self.folder.join("pictures");
+        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
+        let drawing = |what: String| RecordError::content(&pictures, what);
+        let figures = Figures::draw(self).map_err(drawing)?;
+        for (name, png) in figures.pngs().map_err(drawing)? {
+            write_bytes(&pictures.join(format!("{name}.png")), &png)?;
+        }
+        write_bytes(&self.folder.join("report.html"), page::html(self, &figures).as_bytes())
+    }
+
+    fn field(&self, name: &str) -> Option<&Field> {
+        self.fields.iter().find(|field| field.kind.name == name)
+    }
+
+    /// The scene's title, or the folder's name.
+    fn title(&self) -> String {
+        match self.scene.title.trim() {
+            "" => self.folder_name(),
+            title => title.to_owned(),
+        }
+    }
+
+    fn folder_name(&self) -> String {
+        self.folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Area where a field has a value, m2.
+    fn area_of(&self, field: &Field, wanted: impl Fn(f32) -> bool) -> f64 {
+        let cells = field.values.iter().zip(&self.cell_areas);
+        cells.filter(|(value, _)| wanted(**value)).map(|(_, area)| area).sum()
+    }
+}
+
+fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, RecordError> {
+    let values = read_map(path)?;
+    if values.len() != cells {
+        let what =
+            format!("it has {} cells where the scene's terrain has {cells}; it belongs to another", values.len());
+        return Err(RecordError::content(path, what));
+    }
+    Ok(values)
+}
+
+/// What the scene names on the ground, in the terrain's own coordinates.
+fn places(scene: &Scene, terrain: &Terrain) -> Vec<Place> {
+    let flood = &scene.flood;
+    let sections = flood.section.iter().map(|section| Place {
+        kind: PlaceKind::Section,
+        name: section.name.clone(),
+        points: section.line.clone(),
+    });
+    let inflows = flood.inflow.iter().map(|inflow| Place {
+        kind: PlaceKind::Inflow,
+        name: inflow.name.clone(),
+        points: inflow.line.clone().unwrap_or_else(|| inflow.at.into_iter().collect()),
+    });
+    let gauges = flood.gauge.iter().map(|gauge| {
+        let from_lon_lat = gauge.lon_lat.and_then(|place| terrain.from_lon_lat(place).ok());
+        let at = gauge.at.or(from_lon_lat.map(|model| terrain.to_own(model)));
+        Place { kind: PlaceKind::Gauge, name: gauge.name.clone(), points: at.into_iter().collect() }
+    });
+    sections.chain(inflows).chain(gauges).collect()
+}
