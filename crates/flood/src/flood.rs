@@ -217,8 +217,8 @@ impl Flood {
     fn step(&mut self) -> Result<(), ModelError> {
         let step = self.state.time_step;
         self.scheme.drift(&mut self.state.particles, step);
-        self.lose();
         self.gain(step);
+        self.lose();
         self.state.time += step;
         self.surroundings.time = self.state.time;
         self.arrange();

@@ -7,7 +7,6 @@
 
 mod arrangement;
 mod balanced;
-pub mod knobs;
 mod density;
 mod edges;
 mod falling;

@@ -1,5 +1,4 @@
 fn main() {
-    if std::env::args().any(|a| a == "island") { corpuscle_validate::flood::debug::island(); return; }
     let want: Vec<String> = std::env::args().skip(1).collect();
     let options = corpuscle_validate::Options { data: std::env::var_os("CORPUSCLE_DATA").map(Into::into), require_data: false };
     for case in corpuscle_validate::cases() {

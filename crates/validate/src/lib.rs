@@ -5,8 +5,7 @@
 
 mod bench;
 mod case;
-#[doc(hidden)]
-pub mod flood;
+mod flood;
 
 pub use bench::{Bench, BenchOptions, Rate, benches};
 pub use case::{Case, Options, Row, cases};

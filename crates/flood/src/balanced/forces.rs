@@ -17,6 +17,9 @@ pub(super) struct Force {
     pub external: [f64; 2],
 }
 
+/// The depth in which two particles push each other, at most, over the smaller of theirs.
+const SHARED: f64 = 3.0;
+
 /// Finds the forces on all particles.
 pub(super) fn find(
     gravity: f64,
@@ -99,18 +102,16 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
             along(of_slopes(|s| s.u[0]), of_slopes(|s| s.u[1])),
             along(of_slopes(|s| s.v[0]), of_slopes(|s| s.v[1])),
         ) * inverse_r;
-        let change_i = limited(own_change * 2.0 - w_step, w_step) * 0.5;
-        let change_j = limited(near_change * 2.0 - w_step, w_step) * 0.5;
-        // Reconstructed velocities may meet but not pass each other, or the pair would feed motion.
-        let closing = (w_step.abs() / (change_i + change_j).abs().max(Lanes::splat(f64::MIN_POSITIVE))).min(Lanes::splat(1.0));
-        let w_i = w_i + change_i * closing;
-        let w_j = w_j - change_j * closing;
+        let w_i = w_i + limited(own_change * 2.0 - w_step, w_step) * 0.5;
+        let w_j = w_j - limited(near_change * 2.0 - w_step, w_step) * 0.5;
 
         // Ground in the middle from heights and slopes at both ends (cubic Hermite); symmetric in i and j.
         let depth = of(|c| c.depth);
         let bend = (-of_slopes(|s| s.ground[0]) + sloped.ground[0]) * ex
             + (-of_slopes(|s| s.ground[1]) + sloped.ground[1]) * ey;
         let middle = ((surface - depth) + ground) * 0.5 + bend * 0.125;
+        // Thin water on a slope must not feel the whole depth of its deep neighbour: that would shake it to pieces.
+        let middle = middle.max(Lanes::splat(own.surface - SHARED * own.depth)).max(surface - depth * SHARED);
 
         // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the Riemann problem in Lagrangian form.
         let depth_i = (surface_i - middle).max(Lanes::splat(1e-6 * own.depth));

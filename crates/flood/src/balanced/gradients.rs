@@ -7,8 +7,11 @@ use corpuscle_sph::{BLOCK, LANES, Lanes};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-/// Relative difference of surface or velocity at which water counts as moving.
-const REST: f64 = 0.003;
+/// Difference of surface over depth, or of velocity over wave speed, at which water counts as moving.
+const REST: f64 = 0.05;
+
+/// Difference of surface over that of the ground at which water counts as tilted: below it, water lies as a lake does.
+const TILT: f64 = 0.6;
 
 /// Finds the slopes of all particles.
 pub(super) fn find(gravity: f64, arrangement: &Arrangement, columns: &[Column], slopes: &mut [Slopes]) {
@@ -31,7 +34,7 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
     let end = Lanes::splat(2.0 * own.h);
     let [mut xx, mut xy, mut yy] = [Lanes::ZERO; 3];
     let [mut surface_x, mut surface_y, mut u_x, mut u_y, mut v_x, mut v_y] = [Lanes::ZERO; 6];
-    let [mut surface_step, mut velocity_step] = [Lanes::ZERO; 2];
+    let [mut surface_step, mut velocity_step, mut ground_step] = [Lanes::ZERO; 3];
     for index in list.chunks_exact(LANES) {
         let near: [&Column; LANES] = std::array::from_fn(|lane| &columns[index[lane] as usize]);
         let ex = Lanes::from_fn(|lane| near[lane].x) - own.x;
@@ -54,6 +57,8 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
         v_x += weight_x * dv;
         v_y += weight_y * dv;
         surface_step = surface_step.max(r.select_below(end, ds.abs(), Lanes::ZERO));
+        let dz = ds - (Lanes::from_fn(|lane| near[lane].depth) - own.depth);
+        ground_step = ground_step.max(r.select_below(end, dz.abs(), Lanes::ZERO));
         velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, Lanes::ZERO));
     }
     let moment = [xx.sum(), xy.sum(), yy.sum()];
@@ -64,14 +69,15 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
     slopes.u = turned(u_x.sum(), u_y.sum());
     slopes.v = turned(v_x.sum(), v_y.sum());
     let wave = (gravity * own.depth).sqrt();
-    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / crate::knobs::knob(0, REST);
-    slopes.rest = (-unrest * unrest).exp();
+    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
+    let tilt = surface_step.largest() / (TILT * ground_step.largest()).max(1e-12 * own.depth);
+    slopes.rest = (-(unrest.min(tilt)).powi(2)).exp();
 }
 
 /// Inverse of the moment matrix (xx, xy, yy), made invertible where the neighbours stand in a line or are missing.
 fn renormalisation([mut xx, xy, mut yy]: [f64; 3]) -> [f64; 3] {
     let trace = xx + yy;
-    if xx * yy - xy * xy <= crate::knobs::knob(1, 0.02) * trace * trace || trace <= 0.2 {
+    if xx * yy - xy * xy <= 0.02 * trace * trace || trace <= 0.2 {
         let more = 0.1 * trace.max(0.1);
         xx += more;
         yy += more;

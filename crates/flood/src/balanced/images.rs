@@ -15,9 +15,13 @@ impl Balanced {
             let mut ground_slope = self.slopes[source as usize].ground;
             let ground = column.surface - column.depth;
             let (x, y) = (self.arrangement.x[place], self.arrangement.y[place]);
+            let bounds = edges.bounds;
             if let Some(rule) = edges.along_x(image) {
                 match rule {
-                    EdgeRule::Periodic => {}
+                    EdgeRule::Periodic => {
+                        let [west, east] = [bounds.x_min, bounds.x_max].map(|side| terrain.height(side, column.y));
+                        column.surface += f64::from(image.x) * (east - west);
+                    }
                     EdgeRule::Wall => (column.u, ground_slope[0]) = (-column.u, -ground_slope[0]),
                     EdgeRule::Open => {
                         let edge = terrain.height(0.5 * (x + column.x), column.y);
@@ -31,7 +35,10 @@ impl Balanced {
             }
             if let Some(rule) = edges.along_y(image) {
                 match rule {
-                    EdgeRule::Periodic => {}
+                    EdgeRule::Periodic => {
+                        let [south, north] = [bounds.y_min, bounds.y_max].map(|side| terrain.height(column.x, side));
+                        column.surface += f64::from(image.y) * (north - south);
+                    }
                     EdgeRule::Wall => (column.v, ground_slope[1]) = (-column.v, -ground_slope[1]),
                     EdgeRule::Open => {
                         let edge = terrain.height(column.x, 0.5 * (y + column.y));

@@ -2,7 +2,6 @@
 
 mod channel;
 mod dam_break;
-pub mod debug;
 mod lake;
 mod malpasset;
 mod thacker;
