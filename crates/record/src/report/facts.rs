@@ -28,11 +28,11 @@ pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
     if let Some(depth) = report.field("max_depth") {
         let wet = report.area_of(depth, |value| !value.is_nan());
         let total: f64 = report.cell_areas.iter().sum();
-        let part = number(100.0 * wet / total);
+        let part = 100.0 * wet / total;
         add(
             "Flooded area",
             area(wet),
-            format!("{part} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
+            format!("{part:.1} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
         );
     }
     for (name, label, unit) in [("max_depth", "Largest depth", "m"), ("max_speed", "Largest speed", "m/s")] {

@@ -64,24 +64,26 @@ fn speed(all: &[GaugeSeries], east: &GaugeSeries) -> Option<GaugeSeries> {
     Some(GaugeSeries { gauge: east.gauge.clone(), quantity: "speed".into(), unit: "m/s", points })
 }
 
-/// Depth and speed at each gauge that measures a depth: two charts a gauge.
+/// Depth and speed at each gauge that became wet: two charts a gauge.
 pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Vec<[Chart; 2]> {
-    let depths = all.iter().filter(|series| series.quantity == "depth").take(MOST_GAUGES);
+    let is_wet = |series: &&GaugeSeries| series.peak().is_some_and(|peak| peak[1] > 0.0);
+    let depths = all.iter().filter(|series| series.quantity == "depth").filter(is_wet).take(MOST_GAUGES);
     let chart = |series: Option<&GaugeSeries>, title: String, unit: &str, height: f64, colour: usize| Chart {
-        title,
-        remark: series.and_then(GaugeSeries::peak).filter(|peak| peak[1] > 0.0).map_or("dry".into(), |peak| {
+        remark: series.and_then(GaugeSeries::peak).map_or_else(String::new, |peak| {
             format!("max {} {} at {}", number(peak[1]), series.map_or("", |s| s.unit), time(peak[0]))
         }),
         unit: unit.to_owned(),
         size: [width, height],
         span,
+        time_named: title.is_empty(),
+        title,
         series: series.map(|s| s.line("", colour, true)).into_iter().collect(),
     };
     let pair = |depth: &GaugeSeries| {
         let speed = all.iter().find(|s| s.gauge == depth.gauge && s.quantity == "speed");
         [
-            chart(Some(depth), depth.gauge.clone(), "depth, m", 176.0, 0),
-            chart(speed, String::new(), "speed, m/s", 150.0, 1),
+            chart(Some(depth), depth.gauge.clone(), "depth, m", 166.0, 0),
+            chart(speed, String::new(), "speed, m/s", 132.0, 1),
         ]
     };
     depths.map(pair).collect()
@@ -103,6 +105,7 @@ pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64;
         unit: unit.to_owned(),
         size,
         span,
+        time_named: true,
         series: lines.collect(),
     })
 }

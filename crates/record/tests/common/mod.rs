@@ -1,3 +1,4 @@
+#![allow(dead_code, missing_docs, reason = "each test uses a part of it")]
 //! A made-up flood in a generated valley, written as a run writes it.
 
 use corpuscle_model::{Balance, Column, Frame, GaugeColumn, Ledger, Map, ParticleSet, Values};
