@@ -2,6 +2,7 @@
 
 use crate::args::CheckOptions;
 use crate::output::{duration, number, print, print_json};
+use crate::refusal::in_words;
 use crate::scene_argument;
 use corpuscle::Simulation;
 use corpuscle::scene::Scene;
@@ -23,11 +24,11 @@ const PROBE_STEPS: u64 = 50;
 /// The part of the run that is looked at first; it is doubled until there are enough steps.
 const SHORTEST_PROBE: f64 = 1e-3;
 
-/// Memory for each particle, bytes: state, sorted copies, neighbours and work space.
-const BYTES_PER_PARTICLE: f64 = 400.0;
+/// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
+const BYTES_PER_PARTICLE: f64 = 650.0;
 
-/// Memory for each cell of the ground, bytes: heights, and the maps of maxima and times.
-const BYTES_PER_CELL: f64 = 60.0;
+/// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
+const BYTES_PER_CELL: f64 = 55.0;
 
 /// What would be run.
 #[derive(Debug, Serialize)]
@@ -83,7 +84,7 @@ fn fault(error: &anyhow::Error) -> Value {
     let place = problem.and_then(|problem| problem.place.as_ref());
     json!({
         "ok": false,
-        "error": format!("{error:#}"),
+        "error": in_words(error),
         "key": problem.map(|problem| &problem.key),
         "file": place.map(|place| &place.source),
         "line": place.and_then(|place| place.line),
@@ -97,13 +98,14 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let particles_at_start = simulation.model().particles();
     let particles_to_come = particles_to_come(simulation.scene(), &named.folder)?;
     let probe = Probe::run(&mut simulation)?;
-    let (terrain, run) = (simulation.terrain(), &simulation.scene().run);
+    let (terrain, scene) = (simulation.terrain(), simulation.scene());
+    let run = &scene.run;
     let grid = terrain.map_grid();
     let particles = (particles_at_start + particles_to_come) as f64;
     let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
     Ok(Report {
         ok: true,
-        title: simulation.scene().title.clone(),
+        title: if scene.title.is_empty() { named.short_name } else { scene.title.clone() },
         model: simulation.model().name(),
         terrain: Ground {
             columns: grid.columns,
