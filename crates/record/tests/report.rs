@@ -45,6 +45,8 @@ fn it_has_what_a_planner_needs_and_needs_nothing_else() {
         "upper bridge",
         "stays dry",
         "Discharge and storage",
+        "river, inflow",
+        "total outflow",
         "water, m³",
         "momentum",
         "Critical success index",

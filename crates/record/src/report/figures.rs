@@ -106,7 +106,7 @@ impl Figures {
         let fields: Vec<FieldFigure> =
             numbers.map(|number| draw_field(report, number, &relief_url)).collect::<Result<_, String>>()?;
         let (snapshots, snapshots_file) = draw_snapshots(report, &fields, &relief_url)?;
-        let all = gauges::series(&report.gauges);
+        let all = gauges::series(report);
         let span = [0.0, report.gauges.times.last().copied().unwrap_or(report.summary.simulated_time_s)];
         let hydrographs = gauges::hydrographs(&all, span, 322.0);
         let wide = [1000.0, 250.0];
