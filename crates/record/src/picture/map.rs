@@ -132,6 +132,14 @@ impl Layer {
     }
 }
 
+/// The classes of a field without a map, for several maps together.
+pub(crate) fn legend(classes: &Classes) -> Figure {
+    let mut svg = Svg::default();
+    svg.text([1.0, 20.0], Anchor::Start, "text", &classes.title);
+    draw_class_bar(&mut svg, classes, [1.0, 29.0], 420.0);
+    svg.finish([440.0, 60.0], &format!("Legend: {}", classes.title))
+}
+
 /// Where the map lies in its figure.
 #[derive(Debug, Clone, Copy)]
 struct Frame {

@@ -3,7 +3,8 @@
 use super::snapshots::Snapshot;
 use super::{Report, gauges};
 use crate::picture::{
-    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, stack, svg_to_png, time,
+    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, legend, stack, svg_to_png,
+    time,
 };
 
 use rayon::prelude::*;
@@ -178,7 +179,7 @@ fn draw_snapshots(
     let values = || report.snapshots.iter().flat_map(|snapshot| snapshot.depth.iter().copied());
     let of_maximum = fields.iter().find(|field| field.kind.name == "max_depth");
     let classes = match of_maximum {
-        Some(field) => field.classes.clone(),
+        Some(field) => Classes { title: "Depth, m".into(), ..field.classes.clone() },
         None => Classes::of(Ramp::Depth, "Depth, m", &values().collect::<Vec<f32>>()),
     };
     let reference = format!("#{RELIEF}");
@@ -199,6 +200,6 @@ fn draw_snapshots(
     };
     let drawn: Vec<(Figure, Figure)> = report.snapshots.par_iter().map(draw).collect::<Result<_, String>>()?;
     let (on_page, in_file): (Vec<Figure>, Vec<Figure>) = drawn.into_iter().unzip();
-    let file = (!in_file.is_empty()).then(|| beside(&in_file, 3, [12.0, 8.0]));
+    let file = (!in_file.is_empty()).then(|| stack(&[beside(&in_file, 3, [12.0, 8.0]), legend(&classes)], 0.0));
     Ok((on_page, file))
 }
