@@ -2,6 +2,7 @@
 
 use crate::args::CheckOptions;
 use crate::output::{duration, number, print, print_json};
+use crate::refusal::in_words;
 use crate::scene_argument;
 use corpuscle::Simulation;
 use corpuscle::scene::Scene;
@@ -17,14 +18,17 @@ use std::time::{Duration, Instant};
 /// How long the model is run to see its time step and rate.
 const PROBE: Duration = Duration::from_secs(2);
 
-/// The part of the run that is long enough to see its time step.
-const PROBE_PART: f64 = 0.01;
+/// Steps that are enough to see their length.
+const PROBE_STEPS: u64 = 50;
 
-/// Memory for each particle, bytes: state, sorted copies, neighbours and work space.
-const BYTES_PER_PARTICLE: f64 = 400.0;
+/// The part of the run that is looked at first; it is doubled until there are enough steps.
+const SHORTEST_PROBE: f64 = 1e-3;
 
-/// Memory for each cell of the ground, bytes: heights, and the maps of maxima and times.
-const BYTES_PER_CELL: f64 = 60.0;
+/// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
+const BYTES_PER_PARTICLE: f64 = 650.0;
+
+/// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
+const BYTES_PER_CELL: f64 = 55.0;
 
 /// What would be run.
 #[derive(Debug, Serialize)]
@@ -38,6 +42,7 @@ struct Report {
     memory_bytes: f64,
     /// At the start; none where nothing moves yet.
     time_step_s: Option<f64>,
+    /// On this machine; none where the start says little about the rest.
     estimated_wall_time_s: Option<f64>,
     until_s: f64,
     frames: u64,
@@ -79,7 +84,7 @@ fn fault(error: &anyhow::Error) -> Value {
     let place = problem.and_then(|problem| problem.place.as_ref());
     json!({
         "ok": false,
-        "error": format!("{error:#}"),
+        "error": in_words(error),
         "key": problem.map(|problem| &problem.key),
         "file": place.map(|place| &place.source),
         "line": place.and_then(|place| place.line),
@@ -93,13 +98,14 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let particles_at_start = simulation.model().particles();
     let particles_to_come = particles_to_come(simulation.scene(), &named.folder)?;
     let probe = Probe::run(&mut simulation)?;
-    let (terrain, run) = (simulation.terrain(), &simulation.scene().run);
+    let (terrain, scene) = (simulation.terrain(), simulation.scene());
+    let run = &scene.run;
     let grid = terrain.map_grid();
     let particles = (particles_at_start + particles_to_come) as f64;
     let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
     Ok(Report {
         ok: true,
-        title: simulation.scene().title.clone(),
+        title: if scene.title.is_empty() { named.short_name } else { scene.title.clone() },
         model: simulation.model().name(),
         terrain: Ground {
             columns: grid.columns,
@@ -111,8 +117,10 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         particles_to_come,
         memory_bytes: particles * BYTES_PER_PARTICLE + (grid.columns * grid.rows) as f64 * BYTES_PER_CELL,
         time_step_s: probe.time_step,
-        // What comes in is there for half of the run on average.
-        estimated_wall_time_s: probe.wall_time(particles - 0.5 * particles_to_come as f64, run.until_s),
+        // Where most of the water comes later its start says little about the rest.
+        estimated_wall_time_s: (particles_to_come < particles_at_start)
+            .then(|| probe.wall_time(particles - 0.5 * particles_to_come as f64, run.until_s))
+            .flatten(),
         until_s: run.until_s,
         frames: rows(run.frame_period_s()),
         gauge_rows: rows(run.gauge_period_s()),
@@ -141,9 +149,9 @@ struct Probe {
 }
 
 impl Probe {
-    /// Runs the first hundredth of the scene, or [`PROBE`] of wall-clock time.
+    /// Runs the scene for some steps, or [`PROBE`] of wall-clock time.
     fn run(simulation: &mut Simulation) -> Result<Self, corpuscle::Error> {
-        let until = PROBE_PART * simulation.scene().run.until_s;
+        let end = simulation.scene().run.until_s;
         let stop = Arc::new(AtomicBool::new(false));
         let timer = stop.clone();
         thread::spawn(move || {
@@ -152,7 +160,11 @@ impl Probe {
         });
         let start = Instant::now();
         let model = simulation.model_mut();
-        model.advance_to(until, &stop)?;
+        let mut until = SHORTEST_PROBE * end;
+        while model.steps() < PROBE_STEPS && model.time() < end && !stop.load(Ordering::Relaxed) {
+            model.advance_to(until.min(end), &stop)?;
+            until *= 2.0;
+        }
         Ok(Self {
             time_step: (model.steps() > 0).then(|| model.time() / model.steps() as f64),
             particle_steps_per_s: model.particle_steps() as f64 / start.elapsed().as_secs_f64(),

@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     match dispatch(&arguments) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", refusal::in_words(&error));
             if refusal::is_refusal(&error) { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }

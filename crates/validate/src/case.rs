@@ -87,3 +87,31 @@ impl Row {
         Self { pass, ..Self::broken(case, why) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Row;
+    use serde_json::json;
+
+    #[test]
+    fn rows_have_the_names_that_scripts_depend_on() {
+        let row = Row {
+            case: "flood/stoker".into(),
+            measure: "relative_l1_error_1m".into(),
+            value: Some(0.001),
+            unit: String::new(),
+            relation: "<=".into(),
+            bound: 0.0032,
+            pass: Some(true),
+            reason: None,
+        };
+        let mut form = json!({
+            "case": "flood/stoker", "measure": "relative_l1_error_1m", "value": 0.001, "unit": "", "relation": "<=",
+            "bound": 0.0032, "pass": true,
+        });
+        assert_eq!(serde_json::to_value(&row).unwrap(), form);
+        let skipped = Row { value: None, pass: None, reason: Some("no data".into()), ..row };
+        (form["value"], form["pass"], form["reason"]) = (json!(null), json!(null), json!("no data"));
+        assert_eq!(serde_json::to_value(&skipped).unwrap(), form);
+    }
+}

@@ -81,11 +81,11 @@ fn write_point_data(file: &mut impl Write, frame: &Frame, arrays: &mut Appended)
 }
 
 fn scalars(frame: &Frame, column: impl Fn(&ParticleSet) -> &Vec<f64>) -> impl Iterator<Item = u8> {
-    frame.sets.iter().flat_map(move |set| column(set)).flat_map(|value| value.to_le_bytes())
+    frame.sets.iter().flat_map(column).flat_map(|value| value.to_le_bytes())
 }
 
 fn vectors(frame: &Frame, column: impl Fn(&ParticleSet) -> &Vec<[f64; 3]>) -> impl Iterator<Item = u8> {
-    frame.sets.iter().flat_map(move |set| column(set)).flatten().flat_map(|value| value.to_le_bytes())
+    frame.sets.iter().flat_map(column).flatten().flat_map(|value| value.to_le_bytes())
 }
 
 /// Values of one of a model's own columns; not-a-number where this set has it not.

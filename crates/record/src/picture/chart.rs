@@ -33,10 +33,13 @@ pub(crate) struct Chart {
     pub size: [f64; 2],
     /// First and last time, s.
     pub span: [f64; 2],
+    /// True to name the time axis.
+    pub time_named: bool,
     /// The lines.
     pub series: Vec<Series>,
 }
 
+/// Space left of the plot at least.
 const LEFT: f64 = 48.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 34.0;
@@ -68,7 +71,7 @@ impl Chart {
         svg.text([self.size[0] - RIGHT, 16.0], Anchor::End, "small", &self.remark);
         let top = self.draw_legend(&mut svg);
         let axes = self.axes(top);
-        draw_axes(&mut svg, &axes);
+        draw_axes(&mut svg, &axes, self.time_named);
         self.series.iter().for_each(|series| draw_series(&mut svg, &axes, series));
         if let [only] = self.series.as_slice() {
             draw_peak(&mut svg, &axes, only);
@@ -78,7 +81,7 @@ impl Chart {
 
     /// Names of the lines, where there is more than one, and the unit. Gives the top of the plot.
     fn draw_legend(&self, svg: &mut Svg) -> f64 {
-        let mut baseline = 34.0;
+        let mut baseline = if self.title.is_empty() { 16.0 } else { 34.0 };
         svg.text([0.0, baseline], Anchor::Start, "small", &self.unit);
         if self.series.len() < 2 {
             return baseline + 12.0;
@@ -104,28 +107,30 @@ impl Chart {
         let low = finite().fold(0.0, f64::min);
         let high = finite().fold(0.0, f64::max);
         let span = if high > low { high - low } else { 1.0 };
-        let most = ((self.size[1] - top - BOTTOM) / 34.0).max(2.0) as usize;
+        let bottom = if self.time_named { BOTTOM } else { BOTTOM - 12.0 };
+        let most = ((self.size[1] - top - bottom) / 34.0).max(2.0) as usize;
         let step = ticks::step(span * 1.02, most);
         let range = [(low / step).floor() * step, ((low + span * 1.02) / step).ceil() * step];
+        let longest = range.map(|value| value_label(value, step).chars().count() as f64 * SPACE_OF_LETTER);
+        let left = LEFT.max(longest[0].max(longest[1]) + 12.0);
         let [from, to] = self.span;
         Axes {
             unit: TimeUnit::of(to),
             span: [from, if to > from { to } else { from + 1.0 }],
             range,
             step,
-            left_top: [LEFT, top],
-            right_bottom: [self.size[0] - RIGHT, self.size[1] - BOTTOM],
+            left_top: [left, top],
+            right_bottom: [self.size[0] - RIGHT, self.size[1] - bottom],
         }
     }
 }
 
-fn draw_axes(svg: &mut Svg, axes: &Axes) {
+fn draw_axes(svg: &mut Svg, axes: &Axes, time_named: bool) {
     let ([left, top], [right, bottom]) = (axes.left_top, axes.right_bottom);
     for value in ticks::multiples(axes.range[0], axes.range[1], axes.step) {
         let [_, y] = axes.place([axes.span[0], value]);
         svg.line([left, y], [right, y], if value == 0.0 { "axis" } else { "grid" });
-        let label = if axes.step >= 1.0 { number_label(value) } else { ticks::label(value, axes.step) };
-        svg.text([left - 7.0, y + 4.0], Anchor::End, "number", &label);
+        svg.text([left - 7.0, y + 4.0], Anchor::End, "number", &value_label(value, axes.step));
     }
     let seconds = axes.unit.seconds;
     let [from, to] = axes.span.map(|time| time / seconds);
@@ -137,13 +142,15 @@ fn draw_axes(svg: &mut Svg, axes: &Axes) {
         svg.text([x, bottom + 17.0], Anchor::Middle, "number", &ticks::label(*time, step));
     }
     svg.line([left, bottom], [right, bottom], "axis");
-    svg.text([right, bottom + 31.0], Anchor::End, "small", &format!("time, {}", axes.unit.name));
+    if time_named {
+        svg.text([right, bottom + 31.0], Anchor::End, "small", &format!("time, {}", axes.unit.name));
+    }
     svg.line([left, top], [left, bottom], "grid");
 }
 
-/// Whole numbers on an axis, with thousands grouped.
-fn number_label(value: f64) -> String {
-    if value.abs() >= 1e7 || value.abs() >= 1000.0 { number(value) } else { ticks::label(value, 1.0) }
+/// A value on an axis, with thousands grouped.
+fn value_label(value: f64, step: f64) -> String {
+    if value.abs() >= 1000.0 { number(value) } else { ticks::label(value, step) }
 }
 
 fn draw_series(svg: &mut Svg, axes: &Axes, series: &Series) {
@@ -206,6 +213,7 @@ mod tests {
             unit: "m".into(),
             size: [300.0, 160.0],
             span: [0.0, 3600.0],
+            time_named: true,
             series: vec![series],
         }
     }

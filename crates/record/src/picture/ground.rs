@@ -1,6 +1,7 @@
 //! The ground as pictures need it: heights at pixels, and how the terrain's own coordinates lie in them.
 
 use corpuscle_terrain::Terrain;
+use rayon::prelude::*;
 
 /// Most pixels along one side of a map.
 const MOST_PIXELS: f64 = 1500.0;
@@ -39,19 +40,15 @@ impl Ground {
         let extent = [columns * cell[0], rows * cell[1]];
         let pixels = pixels(extent);
         let own_extent = [columns * place.cell[0], rows * place.cell[1]];
-        let mut heights = Vec::with_capacity(pixels[0] * pixels[1]);
-        for y in 0..pixels[1] {
-            for x in 0..pixels[0] {
-                let part = [(x as f64 + 0.5) / pixels[0] as f64, (y as f64 + 0.5) / pixels[1] as f64];
-                let [column, row] = [(part[0] * columns) as usize, (part[1] * rows) as usize];
-                let own = [place.corner[0] + part[0] * own_extent[0], place.corner[1] - part[1] * own_extent[1]];
-                let [model_x, model_y] = terrain.to_model(own);
-                heights.push(match terrain.is_valid_cell(column, row) {
-                    true => terrain.height(model_x, model_y) as f32,
-                    false => f32::NAN,
-                });
-            }
-        }
+        let height = |index: usize| {
+            let pixel = [index % pixels[0], index / pixels[0]];
+            let part = [0, 1].map(|axis| (pixel[axis] as f64 + 0.5) / pixels[axis] as f64);
+            let [column, row] = [(part[0] * columns) as usize, (part[1] * rows) as usize];
+            let own = [place.corner[0] + part[0] * own_extent[0], place.corner[1] - part[1] * own_extent[1]];
+            let [x, y] = terrain.to_model(own);
+            if terrain.is_valid_cell(column, row) { terrain.height(x, y) as f32 } else { f32::NAN }
+        };
+        let heights = (0..pixels[0] * pixels[1]).into_par_iter().map(height).collect();
         let system = place.system.as_ref();
         Self {
             grid: shape,

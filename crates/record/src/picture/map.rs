@@ -24,7 +24,7 @@ impl Size {
     /// Largest width and height of the map itself, CSS pixels.
     fn most(self) -> [f64; 2] {
         match self {
-            Self::Full => [914.0, 860.0],
+            Self::Full => [902.0, 860.0],
             Self::Compact => [480.0, 520.0],
             Self::Thumb => [314.0, 340.0],
         }
@@ -33,7 +33,7 @@ impl Size {
     /// Space left and right of the map.
     fn sides(self) -> [f64; 2] {
         match self {
-            Self::Full => [74.0, 12.0],
+            Self::Full => [74.0, 24.0],
             _ => [1.0, 1.0],
         }
     }
@@ -132,6 +132,14 @@ impl Layer {
     }
 }
 
+/// The classes of a field without a map, for several maps together.
+pub(crate) fn legend(classes: &Classes) -> Figure {
+    let mut svg = Svg::default();
+    svg.text([1.0, 20.0], Anchor::Start, "text", &classes.title);
+    draw_class_bar(&mut svg, classes, [1.0, 29.0], 420.0);
+    svg.finish([440.0, 60.0], &format!("Legend: {}", classes.title))
+}
+
 /// Where the map lies in its figure.
 #[derive(Debug, Clone, Copy)]
 struct Frame {
@@ -201,7 +209,7 @@ impl MapFigure<'_> {
             Size::Thumb => size[0] + left + right,
         };
         let x = left + 0.5 * (width - left - size[0] - right);
-        Frame { corner: [x, if self.heading.is_some() { 62.0 } else { 2.0 }], size, width }
+        Frame { corner: [x, if self.heading.is_some() { 62.0 } else { 8.0 }], size, width }
     }
 
     fn draw_relief(&self, svg: &mut Svg, frame: &Frame) {
@@ -240,7 +248,7 @@ impl MapFigure<'_> {
         };
         let [west, north] = ground.corner;
         let [east, south] = [west + ground.own_extent[0], north - ground.own_extent[1]];
-        let step = ticks::step(east - west, (frame.size[0] / 105.0).max(2.0) as usize);
+        let step = ticks::step(east - west, (frame.size[0] / 85.0).max(2.0) as usize);
         for value in ticks::multiples(west, east, step) {
             let [x, _] = frame.place(ground.part([value, north]));
             svg.line([x, frame.bottom()], [x, frame.bottom() + 5.0], "axis");
@@ -280,14 +288,14 @@ impl MapFigure<'_> {
         let length = if length > space * metres_per_pixel { length / 2.0 } else { length };
         let (divisor, unit) = if length >= 2000.0 { (1000.0, "km") } else { (1.0, "m") };
         let width = length / metres_per_pixel;
-        let left = right - width - 16.0;
+        let left = right - width - 24.0;
         for part in 0..4 {
             let class = if part % 2 == 0 { "bar-dark" } else { "bar-light" };
             svg.rectangle([left + part as f64 * width / 4.0, top + 12.0], [width / 4.0, 5.0], class);
         }
         let length = length / divisor;
-        for (part, name) in [(0.0, String::new()), (0.5, String::new()), (1.0, format!(" {unit}"))] {
-            let text = ticks::label(part * length, ticks::step(length / 2.0, 1).min(length / 2.0)) + &name;
+        for (part, unit) in [(0.0, String::new()), (0.5, String::new()), (1.0, format!(" {unit}"))] {
+            let text = format!("{}{unit}", (part * length * 1e6).round() / 1e6);
             svg.text([left + part * width, top + 32.0], Anchor::Middle, "number", &text);
         }
     }

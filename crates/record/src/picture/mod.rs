@@ -15,7 +15,7 @@ mod ticks;
 pub(crate) use chart::{Chart, Series};
 pub(crate) use classes::{Classes, Ramp};
 pub(crate) use ground::Ground;
-pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image};
+pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image, legend};
 pub(crate) use png::{data_url, svg_to_png};
 pub(crate) use style::{FIGURE_CSS, Theme};
 pub(crate) use svg::{Figure, beside, escape, stack};

@@ -3,7 +3,7 @@
 use super::svg::Figure;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 use std::sync::{Arc, LazyLock};
 
@@ -27,8 +27,9 @@ pub(crate) fn svg_to_png(figure: &Figure) -> Result<Vec<u8>, String> {
     let tree = Tree::from_str(&figure.standalone(), &options).map_err(|error| error.to_string())?;
     let [width, height] = figure.size().map(|length| (length as f32 * PIXELS).round() as u32);
     let mut pixels = Pixmap::new(width, height).ok_or("the figure has no extent")?;
+    // The page rectangle may end within the last pixel: none is left transparent, and premultiplied colours are plain.
+    pixels.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(PIXELS, PIXELS), &mut pixels.as_mut());
-    // The page rectangle covers all: no pixel is transparent, and premultiplied colours are plain ones.
     let rgb: Vec<u8> = pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     encode_rgb(width, height, &rgb)
 }

@@ -2,6 +2,7 @@
 
 use super::ground::Ground;
 use super::ticks;
+use rayon::prelude::*;
 
 /// Directions of light, degrees clockwise from north, and their shares: more than one, so that ridges along the main
 /// light keep their form (after the multidirectional shading of Mark, 1992).
@@ -13,7 +14,7 @@ const STEEP: f64 = 0.7;
 /// Exaggeration at most.
 const MOST_EXAGGERATION: f64 = 12.0;
 /// Tints of low, middle and high ground.
-const TINTS: [[f64; 3]; 3] = [[219.0, 226.0, 211.0], [236.0, 231.0, 216.0], [250.0, 248.0, 244.0]];
+const TINTS: [[f64; 3]; 3] = [[208.0, 216.0, 203.0], [227.0, 223.0, 210.0], [243.0, 241.0, 237.0]];
 /// Colour where there is no data.
 const NO_DATA: [u8; 3] = [233, 236, 239];
 /// Colour of contour lines.
@@ -42,24 +43,23 @@ pub(crate) fn relief(ground: &Ground) -> Vec<u8> {
     let exaggeration = exaggeration(ground);
     let [low, high] = ground.height_range();
     let interval = contour_interval(ground);
-    let mut rgb = Vec::with_capacity(ground.heights.len() * 3);
-    for (index, &height) in ground.heights.iter().enumerate() {
+    let pixel = |index: usize| {
+        let height = ground.heights[index];
         if height.is_nan() {
-            rgb.extend(NO_DATA);
-            continue;
+            return NO_DATA;
         }
         let slope = slope(ground, &ground.heights, index).map(|value| value * exaggeration);
         let flat = ALTITUDE.to_radians().sin();
         let shade: f64 = LIGHTS.iter().map(|(azimuth, share)| share * hillshade(slope, *azimuth, ALTITUDE)).sum();
-        let light = (0.42 + 0.58 * shade / flat).min(1.12);
+        let light = (0.4 + 0.6 * shade / flat).min(1.05);
         let tint = tint((f64::from(height) - low) / (high - low).max(1e-9));
         let line = interval.map_or(0.0, |interval| contour_strength(ground, &smooth, index, interval));
-        for channel in 0..3 {
+        [0, 1, 2].map(|channel| {
             let shaded = (tint[channel] * light).min(255.0);
-            rgb.push((shaded + (CONTOUR[channel] - shaded) * line).round() as u8);
-        }
-    }
-    rgb
+            (shaded + (CONTOUR[channel] - shaded) * line).round() as u8
+        })
+    };
+    (0..ground.heights.len()).into_par_iter().map(pixel).collect::<Vec<[u8; 3]>>().into_flattened()
 }
 
 /// How strongly a contour line covers a pixel: by the distance to it in pixels.
@@ -73,7 +73,7 @@ fn contour_strength(ground: &Ground, heights: &[f32], index: usize, interval: f6
         return 0.0;
     }
     let distance = (height - nearest * interval).abs() / rise_across_pixel;
-    let strength = if nearest % 5.0 == 0.0 { 0.5 } else { 0.24 };
+    let strength = if nearest % 5.0 == 0.0 { 0.6 } else { 0.3 };
     strength * (1.2 - distance).clamp(0.0, 1.0)
 }
 
@@ -135,7 +135,7 @@ fn smoothed(heights: &[f32], [width, height]: [usize; 2]) -> Vec<f32> {
         }
         sum / count
     };
-    (0..heights.len()).map(mean).collect()
+    (0..heights.len()).into_par_iter().map(mean).collect()
 }
 
 #[cfg(test)]

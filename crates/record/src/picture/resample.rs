@@ -1,5 +1,7 @@
 //! From a map's cells to a picture's pixels.
 
+use rayon::prelude::*;
+
 /// Cells and weights that make one pixel, along one axis.
 type Taps = Vec<(usize, f32)>;
 
@@ -10,23 +12,21 @@ pub(crate) fn resample(values: &[f32], [columns, rows]: [usize; 2], [width, heig
     let down = taps(rows, height);
     // In a reduced picture a stream narrower than a pixel should still be seen.
     let least = if columns > width || rows > height { 0.15 } else { 0.5 };
-    let mut pixels = Vec::with_capacity(width * height);
-    for vertical in &down {
-        for horizontal in &across {
-            let (mut sum, mut weight) = (0.0, 0.0);
-            for (row, share_down) in vertical {
-                for (column, share_across) in horizontal {
-                    let value = values[row * columns + column];
-                    if !value.is_nan() {
-                        sum += share_down * share_across * value;
-                        weight += share_down * share_across;
-                    }
+    let pixel = |vertical: &Taps, horizontal: &Taps| {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for (row, share_down) in vertical {
+            for (column, share_across) in horizontal {
+                let value = values[row * columns + column];
+                if !value.is_nan() {
+                    sum += share_down * share_across * value;
+                    weight += share_down * share_across;
                 }
             }
-            pixels.push(if weight >= least { sum / weight } else { f32::NAN });
         }
-    }
-    pixels
+        if weight >= least { sum / weight } else { f32::NAN }
+    };
+    let line = |vertical| across.iter().map(move |horizontal| pixel(vertical, horizontal));
+    down.par_iter().flat_map_iter(line).collect()
 }
 
 /// For each pixel the cells under a triangle as wide as two cells or two pixels, whichever is more; weights add to 1.

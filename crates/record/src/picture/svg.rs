@@ -117,7 +117,7 @@ impl Svg {
     pub(crate) fn image(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], url: &str, opacity: f64) {
         let [x, y, width, height] = [x, y, width, height].map(at);
         self.put(format_args!(
-            r#"<image x="{x}" y="{y}" width="{width}" height="{height}" preserveAspectRatio="none" opacity="{opacity}" href="{url}"/>"#
+            r#"<image x="{x}" y="{y}" width="{width}" height="{height}" preserveAspectRatio="none" image-rendering="smooth" opacity="{opacity}" href="{url}"/>"#
         ));
     }
 

@@ -75,7 +75,7 @@ pub(crate) fn time(seconds: f64) -> String {
         size if !size.is_finite() => "–".into(),
         172_799.5.. => format!("{days} d {hours} h"),
         3599.5.. => format!("{} h {minutes:02} min", whole / 3600),
-        119.5.. if whole % 60 == 0 => format!("{minutes} min"),
+        119.5.. if whole.is_multiple_of(60) => format!("{minutes} min"),
         119.5.. => format!("{minutes} min {:02} s", whole % 60),
         _ => format!("{} s", number(seconds)),
     }

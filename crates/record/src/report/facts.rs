@@ -28,11 +28,11 @@ pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
     if let Some(depth) = report.field("max_depth") {
         let wet = report.area_of(depth, |value| !value.is_nan());
         let total: f64 = report.cell_areas.iter().sum();
-        let part = number(100.0 * wet / total);
+        let part = 100.0 * wet / total;
         add(
             "Flooded area",
             area(wet),
-            format!("{part} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
+            format!("{part:.1} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
         );
     }
     for (name, label, unit) in [("max_depth", "Largest depth", "m"), ("max_speed", "Largest speed", "m/s")] {
@@ -42,7 +42,7 @@ pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
             add(label, value, "anywhere, at any time".into());
         }
     }
-    let all = gauges::series(&report.gauges);
+    let all = gauges::series(report);
     let discharges = all.iter().filter(|series| series.unit == "m³/s").filter_map(|s| Some((s, s.peak()?)));
     if let Some((series, peak)) = discharges.reduce(|best, next| if next.1[1] > best.1[1] { next } else { best }) {
         add("Peak discharge", format!("{} m³/s", number(peak[1])), format!("{}, at {}", series.gauge, time(peak[0])));
@@ -90,7 +90,7 @@ pub(super) fn ledger(report: &Report) -> Table {
 
 /// First water, largest depth and speed at each gauge.
 pub(super) fn gauge_peaks(report: &Report) -> Table {
-    let all = gauges::series(&report.gauges);
+    let all = gauges::series(report);
     let wet = report.scene.flood.wet_depth_m;
     let of = |gauge: &str, quantity: &str| all.iter().find(|s| s.gauge == gauge && s.quantity == quantity);
     let peak = |gauge: &str, quantity: &str| of(gauge, quantity).and_then(gauges::GaugeSeries::peak);

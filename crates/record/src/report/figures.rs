@@ -1,9 +1,13 @@
 //! Everything in the report that is drawn.
 
+use super::snapshots::Snapshot;
 use super::{Report, gauges};
 use crate::picture::{
-    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, stack, svg_to_png, time,
+    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, legend, stack, svg_to_png,
+    time,
 };
+
+use rayon::prelude::*;
 
 /// A field that the report knows how to show.
 #[derive(Debug)]
@@ -18,6 +22,8 @@ pub(super) struct FieldKind {
     pub about: &'static str,
     /// Its colours.
     pub ramp: Ramp,
+    /// True to tell the area in each class.
+    pub areas: bool,
 }
 
 /// The fields, in the order of the report.
@@ -28,6 +34,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         legend: "Maximum depth, m",
         about: "The largest depth that each place saw during the run.",
         ramp: Ramp::Depth,
+        areas: true,
     },
     FieldKind {
         name: "arrival_s",
@@ -35,6 +42,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         legend: "Arrival after the start",
         about: "When each place first became wet. Dark is early.",
         ramp: Ramp::Arrival,
+        areas: false,
     },
     FieldKind {
         name: "max_speed",
@@ -42,14 +50,16 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         legend: "Maximum speed, m/s",
         about: "The largest speed of the water, in any direction.",
         ramp: Ramp::Speed,
+        areas: false,
     },
     FieldKind {
         name: "hazard",
         title: "Flood hazard rating",
         legend: "UK hazard rating: depth × (speed + 0.5)",
-        about: "Largest rating over time, debris factor 0: below 0.75 caution; to 1.25 danger for some, such as \
-                children; to 2 danger for most; above that danger for all.",
+        about: "Below 0.75: caution. To 1.25: danger for some, such as children. To 2: danger for most. Above: danger \
+                for all. Debris factor 0.",
         ramp: Ramp::Hazard,
+        areas: true,
     },
     FieldKind {
         name: "duration_s",
@@ -57,6 +67,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         legend: "Time under water",
         about: "How long each place was wet during the run.",
         ramp: Ramp::Duration,
+        areas: true,
     },
 ];
 
@@ -92,11 +103,11 @@ impl Figures {
     /// Draws everything.
     pub(super) fn draw(report: &Report) -> Result<Self, String> {
         let relief_url = data_url(&ground_image(&report.ground)?);
-        let fields = report.fields.iter().enumerate();
+        let numbers = (0..report.fields.len()).into_par_iter();
         let fields: Vec<FieldFigure> =
-            fields.map(|(number, _)| draw_field(report, number, &relief_url)).collect::<Result<_, String>>()?;
+            numbers.map(|number| draw_field(report, number, &relief_url)).collect::<Result<_, String>>()?;
         let (snapshots, snapshots_file) = draw_snapshots(report, &fields, &relief_url)?;
-        let all = gauges::series(&report.gauges);
+        let all = gauges::series(report);
         let span = [0.0, report.gauges.times.last().copied().unwrap_or(report.summary.simulated_time_s)];
         let hydrographs = gauges::hydrographs(&all, span, 322.0);
         let wide = [1000.0, 250.0];
@@ -133,7 +144,7 @@ impl Figures {
             all.push(("gauges", beside(&self.hydrographs, 3, [17.0, 14.0])));
         }
         all.extend(self.charts.iter().cloned());
-        all.into_iter().map(|(name, figure)| Ok((name, svg_to_png(&figure.with_margin(16.0))?))).collect()
+        all.into_par_iter().map(|(name, figure)| Ok((name, svg_to_png(&figure.with_margin(16.0))?))).collect()
     }
 }
 
@@ -168,12 +179,11 @@ fn draw_snapshots(
     let values = || report.snapshots.iter().flat_map(|snapshot| snapshot.depth.iter().copied());
     let of_maximum = fields.iter().find(|field| field.kind.name == "max_depth");
     let classes = match of_maximum {
-        Some(field) => field.classes.clone(),
+        Some(field) => Classes { title: "Depth, m".into(), ..field.classes.clone() },
         None => Classes::of(Ramp::Depth, "Depth, m", &values().collect::<Vec<f32>>()),
     };
     let reference = format!("#{RELIEF}");
-    let (mut on_page, mut in_file) = (Vec::new(), Vec::new());
-    for snapshot in &report.snapshots {
+    let draw = |snapshot: &Snapshot| -> Result<(Figure, Figure), String> {
         let url = data_url(&Layer::image(&report.ground, &snapshot.depth, &classes, 2)?);
         let layer = Layer { url, classes: classes.clone() };
         let caption = time(snapshot.time);
@@ -186,9 +196,10 @@ fn draw_snapshots(
             heading: None,
             title: &caption,
         };
-        on_page.push(map.figure());
-        in_file.push(MapFigure { relief_url, ..map }.figure());
-    }
-    let file = (!in_file.is_empty()).then(|| beside(&in_file, 3, [12.0, 8.0]));
+        Ok((map.figure(), MapFigure { relief_url, ..map }.figure()))
+    };
+    let drawn: Vec<(Figure, Figure)> = report.snapshots.par_iter().map(draw).collect::<Result<_, String>>()?;
+    let (on_page, in_file): (Vec<Figure>, Vec<Figure>) = drawn.into_iter().unzip();
+    let file = (!in_file.is_empty()).then(|| stack(&[beside(&in_file, 3, [12.0, 8.0]), legend(&classes)], 0.0));
     Ok((on_page, file))
 }

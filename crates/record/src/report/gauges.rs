@@ -1,7 +1,9 @@
 //! From the columns of `gauges.csv` to charts and peaks.
 
+use super::Report;
 use crate::GaugeTable;
 use crate::picture::{Chart, Series, number, time};
+use corpuscle_scene::Inflow;
 
 /// Units as they end a header, and as printed; the longer before those that end like them.
 const UNITS: [(&str, &str); 5] =
@@ -36,8 +38,26 @@ impl GaugeSeries {
     }
 }
 
+/// What the report draws over time: the gauges, and the inflows as the scene prescribes them.
+pub(super) fn series(report: &Report) -> Vec<GaugeSeries> {
+    let mut all = gauge_series(&report.gauges);
+    all.extend(report.scene.flood.inflow.iter().filter_map(|inflow| prescribed(inflow, report)));
+    all
+}
+
+/// An inflow at the times of the gauges; none where its file is not there any more.
+fn prescribed(inflow: &Inflow, report: &Report) -> Option<GaugeSeries> {
+    let discharge = inflow.load_discharge(&report.folder).ok()?;
+    Some(GaugeSeries {
+        gauge: inflow.name.clone(),
+        quantity: "inflow".into(),
+        unit: "m³/s",
+        points: report.gauges.times.iter().map(|time| [*time, discharge.at(*time)]).collect(),
+    })
+}
+
 /// All columns of a table, with the speed of gauges that give only its components.
-pub(super) fn series(table: &GaugeTable) -> Vec<GaugeSeries> {
+fn gauge_series(table: &GaugeTable) -> Vec<GaugeSeries> {
     let mut all: Vec<GaugeSeries> =
         table.columns.iter().enumerate().filter_map(|(index, header)| column(table, index, header)).collect();
     let speeds: Vec<GaugeSeries> = all.iter().filter_map(|east| speed(&all, east)).collect();
@@ -64,24 +84,26 @@ fn speed(all: &[GaugeSeries], east: &GaugeSeries) -> Option<GaugeSeries> {
     Some(GaugeSeries { gauge: east.gauge.clone(), quantity: "speed".into(), unit: "m/s", points })
 }
 
-/// Depth and speed at each gauge that measures a depth: two charts a gauge.
+/// Depth and speed at each gauge that became wet: two charts a gauge.
 pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Vec<[Chart; 2]> {
-    let depths = all.iter().filter(|series| series.quantity == "depth").take(MOST_GAUGES);
+    let is_wet = |series: &&GaugeSeries| series.peak().is_some_and(|peak| peak[1] > 0.0);
+    let depths = all.iter().filter(|series| series.quantity == "depth").filter(is_wet).take(MOST_GAUGES);
     let chart = |series: Option<&GaugeSeries>, title: String, unit: &str, height: f64, colour: usize| Chart {
-        title,
-        remark: series.and_then(GaugeSeries::peak).filter(|peak| peak[1] > 0.0).map_or("dry".into(), |peak| {
+        remark: series.and_then(GaugeSeries::peak).map_or_else(String::new, |peak| {
             format!("max {} {} at {}", number(peak[1]), series.map_or("", |s| s.unit), time(peak[0]))
         }),
         unit: unit.to_owned(),
         size: [width, height],
         span,
+        time_named: title.is_empty(),
+        title,
         series: series.map(|s| s.line("", colour, true)).into_iter().collect(),
     };
     let pair = |depth: &GaugeSeries| {
         let speed = all.iter().find(|s| s.gauge == depth.gauge && s.quantity == "speed");
         [
-            chart(Some(depth), depth.gauge.clone(), "depth, m", 176.0, 0),
-            chart(speed, String::new(), "speed, m/s", 150.0, 1),
+            chart(Some(depth), depth.gauge.clone(), "depth, m", 166.0, 0),
+            chart(speed, String::new(), "speed, m/s", 132.0, 1),
         ]
     };
     depths.map(pair).collect()
@@ -90,10 +112,12 @@ pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Ve
 /// One chart of all columns in a unit; none where there is none.
 pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64; 2], size: [f64; 2]) -> Option<Chart> {
     let chosen: Vec<&GaugeSeries> = all.iter().filter(|series| series.unit == unit).collect();
-    let several = chosen.iter().any(|series| series.quantity != chosen[0].quantity);
-    let named = |series: &GaugeSeries| match several {
-        true => format!("{} {}", series.gauge, series.quantity.replace('_', " ")),
-        false => series.gauge.clone(),
+    let several_quantities = chosen.iter().any(|series| series.quantity != chosen[0].quantity);
+    let several_gauges = chosen.iter().any(|series| series.gauge != chosen[0].gauge);
+    let named = |series: &GaugeSeries| match (several_gauges, several_quantities) {
+        (true, true) => format!("{}, {}", series.gauge, series.quantity.replace('_', " ")),
+        (_, false) => series.gauge.clone(),
+        (false, true) => series.quantity.replace('_', " "),
     };
     let lines =
         chosen.iter().enumerate().map(|(colour, series)| series.line(&named(series), colour, chosen.len() == 1));
@@ -103,6 +127,7 @@ pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64;
         unit: unit.to_owned(),
         size,
         span,
+        time_named: true,
         series: lines.collect(),
     })
 }
@@ -123,7 +148,7 @@ mod tests {
 
     #[test]
     fn headers_are_taken_apart() {
-        let all = series(&table());
+        let all = gauge_series(&table());
         assert_eq!((all[0].gauge.as_str(), all[0].quantity.as_str(), all[0].unit), ("G.1", "depth", "m"));
         assert_eq!((all[3].gauge.as_str(), all[3].quantity.as_str(), all[3].unit), ("weir", "discharge", "m³/s"));
         assert_eq!(all[3].peak(), Some([10.0, 7.0]));
@@ -131,7 +156,7 @@ mod tests {
 
     #[test]
     fn speed_comes_from_its_components() {
-        let all = series(&table());
+        let all = gauge_series(&table());
         let speed = all.iter().find(|series| series.quantity == "speed").unwrap();
         assert!(speed.points[0][1].is_nan());
         assert_eq!(speed.points[1], [10.0, 5.0]);
@@ -139,7 +164,7 @@ mod tests {
 
     #[test]
     fn charts_for_what_is_there() {
-        let all = series(&table());
+        let all = gauge_series(&table());
         let [depth, speed] = &hydrographs(&all, [0.0, 10.0], 300.0)[0];
         assert_eq!((depth.series.len(), speed.series.len()), (1, 1));
         assert_eq!(depth.remark, "max 2.00 m at 10.0 s");

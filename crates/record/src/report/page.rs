@@ -90,7 +90,7 @@ fn maximum(report: &Report, figures: &Figures) -> String {
 
 fn other_maps(report: &Report, figures: &Figures) -> String {
     let maps = figures.fields.iter().skip(1).map(|field| {
-        let areas = if field.kind.name == "hazard" { class_areas(report, field) } else { String::new() };
+        let areas = if field.kind.areas { class_areas(report, field) } else { String::new() };
         format!(
             "<div>\n<h3>{}</h3>\n<p>{}</p>\n<figure>{}</figure>\n{areas}</div>\n",
             field.kind.title,
@@ -119,12 +119,11 @@ fn class_areas(report: &Report, field: &FieldFigure) -> String {
         escape(&field.classes.title)
     );
     for (name, [r, g, b], size) in areas {
-        let (width, part) = (number(100.0 * size / largest).replace('\u{2009}', ""), number(100.0 * size / total));
-        let width = if size > 0.001 * largest { width } else { "0".into() };
+        let (width, part) = (100.0 * size / largest, 100.0 * size / total);
         let _ = writeln!(
             html,
-            "<tr><th scope=\"row\">{}</th><td class=\"bar\"><span style=\"width:{width}%;background:rgb({r},{g},{b})\">\
-             </span></td><td>{}</td><td>{part} %</td></tr>",
+            "<tr><th scope=\"row\">{}</th><td class=\"bar\"><span style=\"width:{width:.1}%;background:rgb({r},{g},{b})\">\
+             </span></td><td>{}</td><td>{part:.1} %</td></tr>",
             escape(&name),
             area(size)
         );
@@ -144,16 +143,21 @@ fn snapshots(figures: &Figures) -> String {
 }
 
 fn hydrographs(report: &Report, figures: &Figures) -> String {
-    if figures.hydrographs.is_empty() {
+    let peaks = facts::gauge_peaks(report);
+    if peaks.rows.is_empty() {
         return String::new();
     }
     let charts: String =
         figures.hydrographs.iter().map(|chart| format!("<figure>{}</figure>\n", chart.inline())).collect();
-    let peaks = facts::gauge_peaks(report);
-    let more = peaks.rows.len().saturating_sub(gauges::MOST_GAUGES);
-    let more = if more > 0 { format!("<p>{more} more gauges are in gauges.csv.</p>\n") } else { String::new() };
+    let left_out = match peaks.rows.len() - figures.hydrographs.len() {
+        0 => "",
+        _ if figures.hydrographs.len() == gauges::MOST_GAUGES => {
+            "<p>More gauges are in the table and in gauges.csv.</p>\n"
+        }
+        _ => "<p>Gauges that stay dry have no chart.</p>\n",
+    };
     format!(
-        "<section>\n<h2>Hydrographs at the gauges</h2>\n<div class=\"strip\">\n{charts}</div>\n{more}{}</section>\n",
+        "<section>\n<h2>Hydrographs at the gauges</h2>\n{left_out}<div class=\"strip\">\n{charts}</div>\n{}</section>\n",
         table(&peaks)
     )
 }

@@ -1,0 +1,120 @@
+//! Runs that are interrupted, by hand or by a full disk.
+#![cfg(unix)]
+
+mod tool;
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tool::{Ended, LAKE, Place};
+
+/// What makes the small lake slosh, and long enough to be interrupted.
+const LONG: [&str; 6] = [
+    "--set=flood.spacing_m=0.5",
+    "--set=flood.water.0.velocity_m_per_s=[0.5, 0.1]",
+    "--set=run.until_s=12",
+    "--set=run.frame_every_s=2",
+    "--set=run.gauge_every_s=0.1",
+    "--frames=csv",
+];
+
+fn wait_for_rows(child: &mut Child, gauges: &Path, rows: usize) {
+    let start = Instant::now();
+    while fs::read_to_string(gauges).map_or(0, |text| text.lines().count()) < rows {
+        assert!(child.try_wait().unwrap().is_none(), "the run ended before it could be interrupted");
+        assert!(start.elapsed() < Duration::from_secs(60), "no gauges after a minute");
+        sleep(Duration::from_millis(2));
+    }
+}
+
+fn signal(name: &str, child: &Child) {
+    assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
+}
+
+/// All files of a run that do not depend on the clock on the wall, by name.
+fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut found = Vec::new();
+    for sub in ["", "frames", "maps"] {
+        for entry in fs::read_dir(folder.join(sub)).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder).unwrap().display().to_string();
+            if path.is_file() && !["summary.json", "report.html", "log.txt"].contains(&name.as_str()) {
+                found.push((name, fs::read(path).unwrap()));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn interrupted_or_killed_and_resumed_a_run_gives_the_same_bytes() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    place.run(&[&["run", "lake.toml", "-o", "whole"], &LONG[..]].concat()).expect_status(0);
+    let expected = results(&place.path("whole"));
+
+    let arguments = [&["run", "lake.toml", "-o", "stopped"], &LONG[..]].concat();
+    let mut child = place.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for_rows(&mut child, &place.path("stopped/gauges.csv"), 20);
+    signal("-INT", &child);
+    let ended = Ended::of(child.wait_with_output().unwrap()).expect_status(1);
+    assert!(ended.stderr.contains("corpuscle run --resume stopped"), "{}", ended.stderr);
+    let summary: serde_json::Value = serde_json::from_slice(&place.read("stopped/summary.json")).unwrap();
+    assert_eq!(summary["status"], "stopped");
+    assert!(results(&place.path("stopped")).len() < expected.len());
+
+    // Killed on the way, it goes on from the checkpoint that the interruption left.
+    let mut child = place.command(&["run", "--resume", "stopped"]).stderr(Stdio::null()).spawn().unwrap();
+    let rows = fs::read_to_string(place.path("stopped/gauges.csv")).unwrap().lines().count();
+    wait_for_rows(&mut child, &place.path("stopped/gauges.csv"), rows + 5);
+    signal("-KILL", &child);
+    child.wait().unwrap();
+
+    place.run(&["run", "--resume", "stopped", "--threads", "1"]).expect_status(0);
+    let found = results(&place.path("stopped"));
+    assert_eq!(
+        found.iter().map(|file| &file.0).collect::<Vec<_>>(),
+        expected.iter().map(|file| &file.0).collect::<Vec<_>>()
+    );
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!(found == expected, "{} differs", found.0);
+    }
+    assert!(place.path("stopped/report.html").is_file());
+}
+
+/// A limit on the size of files stands for a full disk: both fail a write half way.
+#[test]
+fn a_write_that_fails_ends_the_run_and_leaves_what_is_there_readable() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    let binary = env!("CARGO_BIN_EXE_corpuscle");
+    let long = LONG.map(|argument| format!("'{argument}'")).join(" ");
+    let script =
+        format!("trap '' XFSZ; ulimit -f 16; exec {binary} run lake.toml -o full {long} --set=flood.spacing_m=1");
+    let output = Command::new("sh").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
+    let ended = Ended::of(output).expect_status(1);
+    let words = ["cannot write", "full/", "stays readable"];
+    assert!(words.iter().all(|word| ended.stderr.contains(word)), "{}", ended.stderr);
+    let gauges = fs::read_to_string(place.path("full/gauges.csv")).unwrap();
+    assert!(gauges.starts_with("time_s,") && gauges.ends_with('\n'));
+    fs::read_dir(place.path("full/frames")).unwrap().for_each(|entry| {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(name.starts_with("frame_"), "litter: {name}");
+    });
+}
+
+#[test]
+fn standard_output_that_cannot_be_written_is_an_error_and_one_that_is_closed_is_not() {
+    let place = Place::new();
+    let script = format!("{} scenes | true", env!("CARGO_BIN_EXE_corpuscle"));
+    let closed = Ended::of(Command::new("sh").args(["-c", &script]).output().unwrap()).expect_status(0);
+    assert_eq!(closed.stderr, "");
+    if cfg!(target_os = "linux") {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let ended = Ended::of(place.command(&["scenes"]).stdout(full).stderr(Stdio::piped()).output().unwrap());
+        assert!(ended.expect_status(1).stderr.contains("standard output"));
+    }
+}

@@ -1,0 +1,90 @@
+//! Running the binary in a folder of its own.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A small lake over a bump: runs in a blink.
+pub const LAKE: &str = "[run]
+until_s = 2.0
+frame_every_s = 1.0
+[terrain.bump]
+extent = { length_m = 20.0, width_m = 20.0, cell_m = 1.0 }
+height_m = 1.0
+width_m = 5.0
+[flood]
+spacing_m = 2.0
+spacing_depth_m = 2.0
+water = [{ level_m = 2.0 }]
+gauge = [{ name = \"P1\", at = [3.0, 3.0] }]
+[flood.edges]
+west = \"wall\"
+east = \"wall\"
+south = \"wall\"
+north = \"wall\"
+";
+
+/// An ESRI ASCII grid with a valley down its middle.
+#[allow(dead_code, reason = "not every test uses it")]
+pub const SMALL_TERRAIN: &str = "ncols 5\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n\
+    9 5 1 5 9\n9 5 2 5 9\n9 5 3 5 9\n9 5 4 5 9\n";
+
+/// A folder of its own for one test.
+pub struct Place(tempfile::TempDir);
+
+impl Place {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    pub fn path(&self, name: impl AsRef<Path>) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The binary with these arguments, in this folder, without what the surroundings may set.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
+        command.args(arguments).current_dir(self.0.path()).env_remove("CORPUSCLE_DATA");
+        command
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Ended {
+        Ended::of(self.command(arguments).output().unwrap())
+    }
+}
+
+/// What came of a command.
+pub struct Ended {
+    pub status: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Ended {
+    pub fn of(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Self { status: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    pub fn expect_status(self, status: i32) -> Self {
+        assert_eq!(self.status, Some(status), "stdout: {}\nstderr: {}", self.stdout, self.stderr);
+        assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+        self
+    }
+
+    #[allow(dead_code, reason = "not every test uses it")]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
+    }
+}
