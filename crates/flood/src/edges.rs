@@ -17,7 +17,7 @@ impl Image {
     pub const NONE: Image = Image { x: 0, y: 0 };
 }
 
-/// What a side does to the water. Sides are numbered west, east, south, north.
+/// What a side does to the water. Sides are numbered 0 west, 1 east, 2 south, 3 north.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EdgeRule {
     /// Flows out freely.
@@ -75,9 +75,10 @@ impl EdgeRules {
         }
     }
 
-    /// Puts a place that has left through a periodic side back in, and one beyond a wall back before it; false where it
-    /// has left for good.
-    pub fn keep(&self, place: &mut [f64; 2], velocity: &mut [f64; 2]) -> bool {
+    /// Puts a place that has left through a periodic side back in, and one beyond a wall back before it; names the side
+    /// over which it has left otherwise.
+    pub fn keep(&self, place: &mut [f64; 2], velocity: &mut [f64; 2]) -> Option<u8> {
+        let mut left = None;
         let bounds = [(self.bounds.x_min, self.bounds.x_max), (self.bounds.y_min, self.bounds.y_max)];
         for axis in 0..2 {
             let (low, high) = bounds[axis];
@@ -95,19 +96,47 @@ impl EdgeRules {
                     place[axis] = (2.0 * edge - place[axis]).clamp(low, high);
                     velocity[axis] = -velocity[axis];
                 }
-                EdgeRule::Open | EdgeRule::Stage(_) => return false,
+                EdgeRule::Open | EdgeRule::Stage(_) => left = Some((2 * axis + side) as u8),
             }
         }
-        true
+        left
+    }
+
+    /// The place `distance` m before the edge that is nearest to a place beyond it.
+    pub fn before(&self, x: f64, y: f64, distance: f64) -> [f64; 2] {
+        let within = |value: f64, low: f64, high: f64| {
+            let margin = distance.min(0.5 * (high - low));
+            value.clamp(low + margin, high - margin)
+        };
+        let Bounds { x_min, x_max, y_min, y_max } = self.bounds;
+        [within(x, x_min, x_max), within(y, y_min, y_max)]
+    }
+
+    /// How far beyond a side a place is, m; negative inside.
+    pub fn beyond(&self, side: u8, x: f64, y: f64) -> f64 {
+        let bounds = &self.bounds;
+        match side {
+            0 => bounds.x_min - x,
+            1 => x - bounds.x_max,
+            2 => bounds.y_min - y,
+            _ => y - bounds.y_max,
+        }
     }
 }
 
-/// Images beyond the low and the high side along one axis.
+/// Outward unit vectors of the sides.
+pub(crate) const OUTWARD: [[f64; 2]; 4] = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+
+/// Images beyond the low and the high side along one axis; none beyond sides over which water leaves: there it goes on
+/// by itself.
 fn beyond(place: f64, low: f64, high: f64, margin: f64, rules: &[EdgeRule]) -> [Option<(i8, f64)>; 2] {
     let periodic = rules[0] == EdgeRule::Periodic;
     let below = if periodic { place - (high - low) } else { 2.0 * low - place };
     let above = if periodic { place + (high - low) } else { 2.0 * high - place };
-    [(below > low - margin).then_some((-1, below)), (above < high + margin).then_some((1, above))]
+    let images = |rule: &EdgeRule| matches!(rule, EdgeRule::Periodic | EdgeRule::Wall);
+    let low_image = images(&rules[0]) && below > low - margin && below <= low;
+    let high_image = images(&rules[1]) && above < high + margin && above >= high;
+    [low_image.then_some((-1, below)), high_image.then_some((1, above))]
 }
 
 #[cfg(test)]
@@ -145,8 +174,8 @@ mod tests {
             let kept = rules(rule).keep(&mut place, &mut velocity);
             (kept, place, velocity)
         };
-        assert_eq!(keep(EdgeRule::Wall, [10.5, 1.0]), (true, [9.5, 1.0], [-3.0, 1.0]));
-        assert_eq!(keep(EdgeRule::Periodic, [10.5, 1.0]), (true, [0.5, 1.0], velocity));
-        assert!(!keep(EdgeRule::Open, [10.5, 1.0]).0);
+        assert_eq!(keep(EdgeRule::Wall, [10.5, 1.0]), (None, [9.5, 1.0], [-3.0, 1.0]));
+        assert_eq!(keep(EdgeRule::Periodic, [10.5, 1.0]), (None, [0.5, 1.0], velocity));
+        assert_eq!(keep(EdgeRule::Open, [10.5, 1.0]).0, Some(1));
     }
 }

@@ -1,6 +1,7 @@
 //! The flood model: water that comes, moves and goes.
 
 use crate::balanced::{self, Balanced};
+use crate::edges::OUTWARD;
 use crate::falling::Falling;
 use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
@@ -195,6 +196,10 @@ impl Flood {
         self.state.water.initial = self.stored();
         self.state.momentum.initial = self.momentum();
         self.arrange();
+        if self.surroundings.edges.holds_level() {
+            self.gain(0.0);
+            self.arrange();
+        }
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
         self.state.time_step = evaluation.time_step;
         self.state.external = evaluation.external;
@@ -216,6 +221,7 @@ impl Flood {
 
     fn step(&mut self) -> Result<(), ModelError> {
         let step = self.state.time_step;
+        self.carry_beyond();
         self.scheme.drift(&mut self.state.particles, step);
         self.gain(step);
         self.lose();
@@ -241,28 +247,58 @@ impl Flood {
         self.check(step)
     }
 
-    /// Takes out what has left over the edges.
+    /// Books what crosses the edges, and takes out what is well beyond them.
     fn lose(&mut self) {
-        let bounds = self.surroundings.edges.bounds;
-        if self.state.particles.par_iter().all(|particle| bounds.contains(particle.x, particle.y)) {
+        let edges = &self.surroundings.edges;
+        let is_inside = |p: &Particle| p.outside.is_none() && edges.bounds.contains(p.x, p.y);
+        if self.state.particles.par_iter().all(is_inside) {
             return;
         }
+        let gravity = self.scene.flood.gravity_m_per_s2;
         let State { particles, water, momentum, .. } = &mut self.state;
         particles.retain_mut(|particle| {
+            let before = [particle.u, particle.v];
             let mut place = [particle.x, particle.y];
-            let mut velocity = [particle.u, particle.v];
-            let stays = self.surroundings.edges.keep(&mut place, &mut velocity);
+            let mut velocity = before;
+            let side = edges.keep(&mut place, &mut velocity);
             [particle.x, particle.y] = place;
-            let change = velocity[0] - particle.u + velocity[1] - particle.v;
             [particle.u, particle.v] = velocity;
-            if stays {
-                momentum.book(DENSITY * particle.volume * change);
-            } else {
-                water.outflow.add(particle.volume);
-                momentum.book(-DENSITY * particle.volume * (particle.u + particle.v));
+            let carried = |velocity: [f64; 2]| DENSITY * particle.volume * (velocity[0] + velocity[1]);
+            match (particle.outside, side) {
+                (None, None) => momentum.book(carried(velocity) - carried(before)),
+                (None, Some(side)) => {
+                    water.outflow.add(particle.volume);
+                    momentum.book(-carried(before));
+                    leave(particle, side, gravity);
+                }
+                (Some(_), None) => {
+                    water.inflow.add(particle.volume);
+                    momentum.book(carried(velocity));
+                }
+                (Some(_), Some(_)) => {}
             }
-            stays
+            particle.outside = side;
+            side.is_none_or(|side| edges.beyond(side, particle.x, particle.y) < BEYOND * particle.h)
         });
+    }
+
+    /// Beyond an edge held at a level, water moves with that before the edge: in where it sinks away, out where it comes.
+    fn carry_beyond(&mut self) {
+        let edges = &self.surroundings.edges;
+        if !edges.holds_level() {
+            return;
+        }
+        let water = self.sampler(0.0);
+        let carried: Vec<(usize, [f64; 2])> = (self.state.particles.iter().enumerate())
+            .filter_map(|(number, particle)| {
+                self.surroundings.stage(particle.outside)?;
+                let [x, y] = edges.before(particle.x, particle.y, particle.h);
+                Some((number, water.at(x, y).velocity))
+            })
+            .collect();
+        for (number, velocity) in carried {
+            [self.state.particles[number].u, self.state.particles[number].v] = velocity;
+        }
     }
 
     /// Lets in what comes during the coming step.
@@ -298,7 +334,7 @@ impl Flood {
         };
         let state = &mut self.state;
         (state.owed, state.falling, state.next_id) = (owed, falling, next_id);
-        for particle in &born {
+        for particle in born.iter().filter(|particle| particle.outside.is_none()) {
             state.water.inflow.add(particle.volume);
             state.momentum.book(DENSITY * particle.volume * (particle.u + particle.v));
         }
@@ -362,16 +398,21 @@ impl Flood {
         self.shown - self.state.time
     }
 
+    /// The particles that have not left.
+    fn inside(&self) -> impl Iterator<Item = &Particle> {
+        self.state.particles.iter().filter(|particle| particle.outside.is_none())
+    }
+
     /// Water in the model, m3.
     fn stored(&self) -> f64 {
         let airborne = self.state.falling.iter().map(|drop| drop.particle.volume);
-        self.state.particles.iter().map(|particle| particle.volume).chain(airborne).collect::<ExactSum>().value()
+        self.inside().map(|particle| particle.volume).chain(airborne).collect::<ExactSum>().value()
     }
 
     /// Momentum of the water, sum of its two components, kg m/s.
     fn momentum(&self) -> f64 {
         let along = |particle: &Particle| DENSITY * particle.volume * (particle.u + particle.v);
-        self.state.particles.iter().map(along).sum::<f64>()
+        self.inside().map(along).sum::<f64>()
             + self.state.falling.iter().map(|drop| along(&drop.particle)).sum::<f64>()
     }
 
@@ -404,6 +445,21 @@ impl Flood {
 /// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer.
 const CELL_OVER_H: f64 = 1.2;
 
+/// How far beyond an edge particles go on, in smoothing lengths: those before the edge and their neighbours see them.
+const BEYOND: f64 = 4.0;
+
+/// A particle that has left goes on at its speed, but not so slowly that it would stand in the way: at this Froude number
+/// at least.
+const SLOWEST_LEAVING: f64 = 0.1;
+
+fn leave(particle: &mut Particle, side: u8, gravity: f64) {
+    let outward = OUTWARD[usize::from(side)];
+    let speed = particle.u * outward[0] + particle.v * outward[1];
+    let missing = (SLOWEST_LEAVING * (gravity * particle.depth).sqrt() - speed).max(0.0);
+    particle.u += missing * outward[0];
+    particle.v += missing * outward[1];
+}
+
 impl Model for Flood {
     fn name(&self) -> &'static str {
         "flood"
@@ -422,7 +478,7 @@ impl Model for Flood {
     }
 
     fn particles(&self) -> usize {
-        self.state.particles.len() + self.state.falling.len()
+        self.inside().count() + self.state.falling.len()
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
@@ -439,7 +495,7 @@ impl Model for Flood {
 
     fn frame(&self) -> Frame {
         let since = self.since();
-        let mut order: Vec<&Particle> = self.state.particles.iter().collect();
+        let mut order: Vec<&Particle> = self.inside().collect();
         order.sort_unstable_by_key(|particle| particle.id);
         let count = order.len() + self.state.falling.len();
         let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };

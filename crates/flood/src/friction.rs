@@ -38,6 +38,9 @@ impl Roughness {
             return;
         }
         particles.par_iter_mut().for_each(|particle| {
+            if particle.outside.is_some() {
+                return;
+            }
             let n = self.at(particle.x, particle.y);
             let depth = particle.depth;
             let factor = 1.0 / (1.0 + step * gravity * n * n * particle.speed() / (depth * depth.cbrt()));

@@ -99,7 +99,7 @@ impl Nursery<'_> {
         owed.add(source.discharge.integral(time, time + step));
         while owed.value() >= self.volume {
             owed.add(-self.volume);
-            self.bear(&source.zone, source.velocity);
+            self.bear(&source.zone, source.velocity, None);
         }
     }
 
@@ -112,53 +112,50 @@ impl Nursery<'_> {
         }
     }
 
-    /// Sees to it that a strip inside the edge, two particle distances wide, holds water up to `level`, m. What is too
-    /// much flows out by itself, for beyond the edge the level is held too.
+    /// Sees to it that a strip beyond the edge, as wide as water before the edge looks, holds water up to `level`, m.
     fn hold_level(&mut self, side: usize, level: f64) {
         let bounds = self.edges.bounds;
         let along_y = side < 2;
         let (from, to) = if along_y { (bounds.y_min, bounds.y_max) } else { (bounds.x_min, bounds.x_max) };
-        let pieces = ((to - from) / (2.0 * self.spacing)).ceil().max(1.0) as usize;
+        let width = 3.0 * self.h;
+        let pieces = ((to - from) / width).ceil().max(1.0) as usize;
         let length = (to - from) / pieces as f64;
-        let width = 2.0 * self.spacing;
         for piece in 0..pieces {
             let low = from + piece as f64 * length;
-            let middle = low + 0.5 * length;
-            let at = |inwards: f64, along: f64| match side {
-                0 => [bounds.x_min + inwards, along],
-                1 => [bounds.x_max - inwards, along],
-                2 => [along, bounds.y_min + inwards],
-                _ => [along, bounds.y_max - inwards],
+            let at = |outwards: f64, along: f64| match side {
+                0 => [bounds.x_min - outwards, along],
+                1 => [bounds.x_max + outwards, along],
+                2 => [along, bounds.y_min - outwards],
+                _ => [along, bounds.y_max + outwards],
             };
-            let centre = at(0.5 * width, middle);
-            let wanted = (level - self.water.terrain.height(centre[0], centre[1])) * length * width;
-            let [here, moved_u, moved_v] =
-                self.water_in(centre, if along_y { [width, length] } else { [length, width] });
-            if wanted - here > 0.75 * self.volume {
-                let velocity = if here > 0.0 { [moved_u / here, moved_v / here] } else { [0.0; 2] };
-                let line = vec![at(0.5 * width, low), at(0.5 * width, low + length)];
-                self.bear(&Zone::Band { line, half_width: 0.5 * width }, velocity);
+            let parts = 5;
+            let depth = |part: i32| {
+                let [x, y] = at(0.0, low + (f64::from(part) + 0.5) / f64::from(parts) * length);
+                (level - self.water.terrain.height(x, y)).max(0.0)
+            };
+            let wanted = (0..parts).map(depth).sum::<f64>() / f64::from(parts) * length * width;
+            let size = if along_y { [width, length] } else { [length, width] };
+            let here = self.volume_in(at(0.5 * width, low + 0.5 * length), size);
+            let missing = ((wanted - here) / self.volume + 0.25).floor().max(0.0) as usize;
+            let line = vec![at(0.5 * width, low), at(0.5 * width, low + length)];
+            let strip = Zone::Band { line, half_width: 0.5 * width };
+            for _ in 0..missing {
+                self.bear(&strip, [0.0; 2], Some(side as u8));
             }
         }
     }
 
-    /// Volume and momentum of the water in a rectangle.
-    fn water_in(&self, centre: [f64; 2], size: [f64; 2]) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        let mut add = |particle: &Particle| {
-            if (particle.x - centre[0]).abs() <= 0.5 * size[0] && (particle.y - centre[1]).abs() <= 0.5 * size[1] {
-                sum[0] += particle.volume;
-                sum[1] += particle.volume * particle.u;
-                sum[2] += particle.volume * particle.v;
-            }
+    /// Volume of the water in a rectangle, m3.
+    fn volume_in(&self, centre: [f64; 2], size: [f64; 2]) -> f64 {
+        let inside = |particle: &&Particle| {
+            (particle.x - centre[0]).abs() <= 0.5 * size[0] && (particle.y - centre[1]).abs() <= 0.5 * size[1]
         };
-        self.water.near(centre[0], centre[1], 0.5 * size[0].max(size[1]) + self.spacing).for_each(&mut add);
-        self.born.iter().for_each(&mut add);
-        sum
+        let near = self.water.near(centre[0], centre[1], 0.5 * size[0].max(size[1]) + self.spacing);
+        near.chain(&self.born).filter(inside).map(|particle| particle.volume).sum()
     }
 
     /// One new particle in `zone`, where the surface stands lowest.
-    fn bear(&mut self, zone: &Zone, velocity: [f64; 2]) {
+    fn bear(&mut self, zone: &Zone, velocity: [f64; 2], outside: Option<u8>) {
         let id = self.next_id;
         self.next_id += 1;
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
@@ -166,6 +163,9 @@ impl Nursery<'_> {
         let bounds = self.edges.bounds;
         let places = (0..TRIES).map(|_| {
             let [x, y] = zone.any(&mut random);
+            if outside.is_some() {
+                return [x, y];
+            }
             [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max)]
         });
         let (_, [x, y]) = places
@@ -173,6 +173,7 @@ impl Nursery<'_> {
             .fold((f64::INFINITY, [0.0; 2]), |best, tried| if tried.0 < best.0 { tried } else { best });
         let mut particle = Particle::new(id, x, y, self.volume, self.h);
         [particle.u, particle.v] = velocity;
+        particle.outside = outside;
         self.born.push(particle);
     }
 

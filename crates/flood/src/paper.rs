@@ -69,7 +69,7 @@ impl Paper {
             let density = rho0 * particle.volume * self.densities[place as usize];
             particle.depth = density / rho0;
             particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
-            particle.ground = surroundings.terrain.height(particle.x, particle.y);
+            (particle.ground, _) = surroundings.ground(particle.x, particle.y);
         });
     }
 
@@ -110,14 +110,18 @@ impl Paper {
     }
 
     /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
-    fn take_over(&self, particles: &mut [Particle], terrain: &Terrain, step: f64) -> [f64; 2] {
+    fn take_over(&self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
         particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &place)| {
+            if particle.outside.is_some() {
+                [particle.ax, particle.ay] = [0.0; 2];
+                return;
+            }
             let [mut ax, mut ay] = self.accelerations[place as usize];
-            let (_, slope) = terrain.height_and_slope(particle.x, particle.y);
+            let (_, slope) = surroundings.ground(particle.x, particle.y);
             ax -= self.gravity * slope[0];
             ay -= self.gravity * slope[1];
             if self.parameters.control_force && step > 0.0 {
-                let control = self.control(particle, terrain, step);
+                let control = self.control(particle, &surroundings.terrain, step);
                 ax += control[0];
                 ay += control[1];
             }
@@ -215,7 +219,7 @@ impl Scheme for Paper {
         self.accelerations.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
             pair_forces(self.parameters.viscosity, &self.arrangement, &self.parcels, block * BLOCK, out);
         });
-        let external = self.take_over(particles, &surroundings.terrain, step);
+        let external = self.take_over(particles, surroundings, step);
         Evaluation { time_step: self.parameters.time_step_s, external }
     }
 

@@ -29,6 +29,9 @@ pub struct Particle {
     pub ground: f64,
     /// Slope of the water's surface.
     pub surface_slope: [f64; 2],
+    /// The side over which it has left (0 west, 1 east, 2 south, 3 north): then it is not of this water any more, and goes
+    /// on for a while only so that the water before the edge meets water beyond it.
+    pub outside: Option<u8>,
     /// Lasting identity.
     pub id: u64,
 }
@@ -49,6 +52,7 @@ impl Particle {
             depth: 0.0,
             ground: 0.0,
             surface_slope: [0.0; 2],
+            outside: None,
             id,
         }
     }

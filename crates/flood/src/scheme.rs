@@ -1,7 +1,7 @@
 //! What a formulation of the water's motion does in a step.
 
 use crate::arrangement::Arrangement;
-use crate::edges::EdgeRules;
+use crate::edges::{EdgeRule, EdgeRules};
 use crate::particle::Particle;
 use corpuscle_terrain::Terrain;
 use std::sync::Arc;
@@ -12,6 +12,28 @@ pub(crate) struct Surroundings {
     pub edges: EdgeRules,
     /// Time, s.
     pub time: f64,
+}
+
+impl Surroundings {
+    /// Height and slope of the ground. Beyond an edge it goes on as it falls towards it, and never rises.
+    pub fn ground(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
+        let (height, slope) = self.terrain.height_and_slope(x, y);
+        let bounds = self.edges.bounds;
+        if bounds.contains(x, y) {
+            return (height, slope);
+        }
+        let dx = x - x.clamp(bounds.x_min, bounds.x_max);
+        let dy = y - y.clamp(bounds.y_min, bounds.y_max);
+        (height + (slope[0] * dx).min(0.0) + (slope[1] * dy).min(0.0), slope)
+    }
+
+    /// The level at which the side over which a particle has left is held, m, if it is.
+    pub fn stage(&self, outside: Option<u8>) -> Option<f64> {
+        match &self.edges.rules[usize::from(outside?)] {
+            EdgeRule::Stage(level) => Some(level.at(self.time)),
+            _ => None,
+        }
+    }
 }
 
 /// What an evaluation of the forces tells beside the particles' accelerations.

@@ -147,7 +147,7 @@ impl Body<'_> {
             let shift = [push_x, push_y].map(|push| -0.2 * h * h * push);
             let clip = (longest / shift[0].hypot(shift[1]).max(1e-300)).min(1.0);
             let mut place = [particle.x + clip * shift[0], particle.y + clip * shift[1]];
-            if !edges.keep(&mut place, &mut [0.0; 2]) {
+            if edges.keep(&mut place, &mut [0.0; 2]).is_some() {
                 return;
             }
             let depth = (self.depth)(place[0], place[1]);

@@ -13,7 +13,6 @@ impl Balanced {
             let image = self.arrangement.entries[place].image;
             let mut column = self.columns[source as usize];
             let mut ground_slope = self.slopes[source as usize].ground;
-            let ground = column.surface - column.depth;
             let (x, y) = (self.arrangement.x[place], self.arrangement.y[place]);
             let bounds = edges.bounds;
             if let Some(rule) = edges.along_x(image) {
@@ -23,14 +22,7 @@ impl Balanced {
                         column.surface += f64::from(image.x) * (east - west);
                     }
                     EdgeRule::Wall => (column.u, ground_slope[0]) = (-column.u, -ground_slope[0]),
-                    EdgeRule::Open => {
-                        let edge = terrain.height(0.5 * (x + column.x), column.y);
-                        column.surface += beyond_open(edge, ground);
-                    }
-                    EdgeRule::Stage(stage) => {
-                        column.depth = (stage.at(surroundings.time) - ground).max(1e-3 * column.depth);
-                        column.surface = ground + column.depth;
-                    }
+                    EdgeRule::Open | EdgeRule::Stage(_) => {}
                 }
             }
             if let Some(rule) = edges.along_y(image) {
@@ -40,14 +32,7 @@ impl Balanced {
                         column.surface += f64::from(image.y) * (north - south);
                     }
                     EdgeRule::Wall => (column.v, ground_slope[1]) = (-column.v, -ground_slope[1]),
-                    EdgeRule::Open => {
-                        let edge = terrain.height(column.x, 0.5 * (y + column.y));
-                        column.surface += beyond_open(edge, ground);
-                    }
-                    EdgeRule::Stage(stage) => {
-                        column.depth = (stage.at(surroundings.time) - ground).max(1e-3 * column.depth);
-                        column.surface = ground + column.depth;
-                    }
+                    EdgeRule::Open | EdgeRule::Stage(_) => {}
                 }
             }
             (column.x, column.y) = (x, y);
@@ -65,9 +50,8 @@ impl Balanced {
             let mut turned = Slopes { ground, outside, ..self.slopes[source as usize] };
             for (axis, rule) in [edges.along_x(image), edges.along_y(image)].into_iter().enumerate() {
                 match rule {
-                    None | Some(EdgeRule::Periodic) => {}
                     Some(EdgeRule::Wall) => turned.mirror(axis),
-                    Some(EdgeRule::Open | EdgeRule::Stage(_)) => turned.level(axis),
+                    _ => {}
                 }
             }
             self.slopes[place as usize] = turned;
@@ -85,17 +69,4 @@ impl Slopes {
         along[1 - axis] = -along[1 - axis];
         across[axis] = -across[axis];
     }
-
-    /// Level along `axis`: what is beyond an open edge is as at the edge.
-    fn level(&mut self, axis: usize) {
-        self.renormalisation[1] = -self.renormalisation[1];
-        self.surface[axis] = 0.0;
-        self.u[axis] = 0.0;
-        self.v[axis] = 0.0;
-    }
-}
-
-/// The ground goes on beyond an open edge as it fell towards it, and never rises: how much lower it is than here, m.
-fn beyond_open(edge: f64, ground: f64) -> f64 {
-    (2.0 * (edge - ground)).min(0.0)
 }

@@ -64,6 +64,9 @@ pub(crate) struct Parameters {
     pub longest_step: f64,
 }
 
+/// Least depth beyond an edge whose level falls below the ground, over the depth as it was.
+const SHALLOWEST_STAGE: f64 = 1e-3;
+
 /// The scheme with its working memory.
 pub(crate) struct Balanced {
     parameters: Parameters,
@@ -103,7 +106,10 @@ impl Balanced {
             let density = &self.densities[place as usize];
             particle.depth = particle.volume * density.number;
             particle.next_h = density.next_h(particle.h, eta).min(largest_h);
-            particle.ground = surroundings.terrain.height(particle.x, particle.y);
+            (particle.ground, _) = surroundings.ground(particle.x, particle.y);
+            if let Some(level) = surroundings.stage(particle.outside) {
+                particle.depth = (level - particle.ground).max(SHALLOWEST_STAGE * particle.depth);
+            }
         });
     }
 
@@ -127,8 +133,8 @@ impl Balanced {
                 area: 1.0 / density.number,
                 h: particle.h,
             };
-            slopes.ground = surroundings.terrain.height_and_slope(particle.x, particle.y).1;
-            slopes.outside = 0.0;
+            slopes.ground = surroundings.ground(particle.x, particle.y).1;
+            slopes.outside = f64::from(u8::from(particle.outside.is_some()));
         });
     }
 
@@ -140,17 +146,21 @@ impl Balanced {
             .zip(&self.arrangement.real)
             .map(|(particle, &place)| {
                 let slopes = &self.slopes[place as usize];
-                [particle.ax, particle.ay] = self.forces[place as usize].acceleration;
                 particle.surface_slope = slopes.surface;
+                if particle.outside.is_some() {
+                    [particle.ax, particle.ay] = [0.0; 2];
+                    return longest_step;
+                }
+                [particle.ax, particle.ay] = self.forces[place as usize].acceleration;
                 let wave = (gravity * particle.depth).sqrt();
                 let squeeze = 2.0 * particle.h * (-(slopes.u[0] + slopes.v[1])).max(0.0);
                 let pull = (particle.h * particle.ax.hypot(particle.ay)).sqrt();
                 cfl * particle.h / (wave + squeeze).max(pull)
             })
             .reduce(|| longest_step, f64::min);
-        let real = self.arrangement.real.iter();
-        let external = real
-            .map(|&place| self.forces[place as usize].external)
+        let inside = particles.iter().zip(&self.arrangement.real).filter(|(particle, _)| particle.outside.is_none());
+        let external = inside
+            .map(|(_, &place)| self.forces[place as usize].external)
             .fold([0.0; 2], |sum, force| [sum[0] + force[0], sum[1] + force[1]]);
         Evaluation { time_step, external }
     }

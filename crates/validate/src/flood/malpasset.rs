@@ -1,10 +1,10 @@
 //! The dam of Malpasset, 2 December 1959.
 
-use super::GRAVITY;
+use super::{rows, scene};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::Scene;
+use corpuscle_scene::{Edges, Gauge, Manning, NoData, Scene, Terrain as TerrainScene, TerrainFile, Water};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -12,17 +12,123 @@ use std::sync::atomic::AtomicBool;
 
 pub(super) const MALPASSET: Case = Case {
     name: "flood/malpasset",
-    about: "The Malpasset dam break of 1959, particles 15 m apart in water 20 m deep: highest levels of the police \
-            survey, arrival at the scale model's gauges. Bounds: LISFLOOD-FP 8.1 FV1 on the same 20 m ground.",
+    about: "The Malpasset dam break of 1959, particles 15 m apart in water 22.5 m deep (the reservoir's mean), n 0.033, \
+            4000 s: highest levels of the police survey, arrival (0.05 m) at the scale model's gauges. Bounds: what \
+            LISFLOOD-FP 8.1 FV1 gets on the same ground with 20 m cells.",
     slow: true,
     run: malpasset,
 };
 
+/// The reservoir: west of the dam between (4701.18, 4143.41) and (4655.5, 4392.1).
+const RESERVOIR: [[f64; 2]; 7] = [
+    [4701.18, 4143.41],
+    [4655.5, 4392.1],
+    [4600.0, 6830.0],
+    [530.0, 6830.0],
+    [530.0, -2350.0],
+    [4800.0, -2350.0],
+    [4800.0, 3500.0],
+];
+
+/// The sea, wholly east of this.
+const SEA: [[f64; 2]; 4] = [[14200.0, -2350.0], [17770.0, -2350.0], [17770.0, 6830.0], [14200.0, 6830.0]];
+
+const TIME: f64 = 4000.0;
+
+/// Time between looks at the water, s.
+const LOOK: f64 = 2.0;
+
+/// A place of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
+struct Place {
+    name: String,
+    at: [f64; 2],
+    level: f64,
+    arrival: Option<f64>,
+}
+
 fn malpasset(options: &Options) -> Vec<Row> {
-    let _ = GRAVITY;
-    let Some(data) = &options.data else {
-        return vec![Row::without_data(MALPASSET.name, options)];
+    match &options.data {
+        None => vec![Row::without_data(MALPASSET.name, options)],
+        Some(data) => rows(MALPASSET.name, measure(&data.join("malpasset"))),
+    }
+}
+
+fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
+    let police = read(&folder.join("police-survey.csv"))?;
+    let gauges = read(&folder.join("scale-model-gauges.csv"))?;
+    let scene = malpasset_scene(folder, police.iter().chain(&gauges));
+    let terrain = Terrain::open(&scene.terrain, scene.seed, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
+    let mut flood = Flood::new(&scene, folder, Arc::new(terrain))?;
+    let (highest, arrival) = watch(&mut flood, police.len() + gauges.len())?;
+    let error = |place: usize, measured: &Place| highest[place] - measured.level;
+    let police_errors: Vec<f64> = police.iter().enumerate().map(|(k, place)| error(k, place)).collect();
+    let gauge_errors: Vec<f64> = gauges.iter().enumerate().map(|(k, place)| error(police.len() + k, place)).collect();
+    let late = |(k, place): (usize, &Place)| place.arrival.map(|measured| (arrival[police.len() + k] - measured).abs());
+    let late: Vec<f64> = gauges.iter().enumerate().filter_map(late).collect();
+    let water = flood.ledger().balances[0].relative_error().abs();
+    let at_most = |measure, value, unit, bound| Row::at_most(MALPASSET.name, measure, value, unit, bound);
+    Ok(vec![
+        at_most("police_rmse", root_mean_square(&police_errors), "m", 2.9),
+        at_most("police_mae", mean_magnitude(&police_errors), "m", 2.3),
+        at_most("gauge_rmse", root_mean_square(&gauge_errors), "m", 3.88),
+        at_most("arrival_mae", mean_magnitude(&late), "s", 107.0),
+        at_most("water_relative_error", water, "", 1e-12),
+    ])
+}
+
+/// Highest level and time of arrival at each gauge; a gauge that stays dry has its bed's level and the end of the run.
+fn watch(flood: &mut Flood, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
+    let mut highest = vec![f64::NEG_INFINITY; gauges];
+    let mut arrival = vec![TIME; gauges];
+    let looks = (TIME / LOOK) as usize;
+    for look in 0..=looks {
+        let time = look as f64 * LOOK;
+        flood.advance_to(time, &AtomicBool::new(false))?;
+        for (gauge, row) in flood.gauge_row().chunks_exact(4).take(gauges).enumerate() {
+            highest[gauge] = highest[gauge].max(row[1]);
+            if row[0] >= 0.05 {
+                arrival[gauge] = arrival[gauge].min(time);
+            }
+        }
+    }
+    Ok((highest, arrival))
+}
+
+fn malpasset_scene<'a>(folder: &Path, places: impl Iterator<Item = &'a Place>) -> Scene {
+    let mut scene = scene(TIME, 15.0, 22.5, Edges::default());
+    scene.terrain =
+        TerrainScene::File(TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall });
+    let pool = |level_m: f64, polygon: &[[f64; 2]]| Water {
+        level_m: Some(level_m),
+        polygon: Some(polygon.to_vec()),
+        ..Water::default()
     };
-    let _ = data;
-    vec![]
+    scene.flood.water = vec![pool(100.0, &RESERVOIR), pool(0.0, &SEA)];
+    scene.flood.manning = Manning::Number(0.033);
+    scene.flood.map_every_s = Some(TIME);
+    let gauge = |place: &Place| Gauge { name: place.name.clone(), at: Some(place.at), lon_lat: None };
+    scene.flood.gauge = places.map(gauge).collect();
+    scene
+}
+
+/// Reads name, x, y, highest level and, where there is one, arrival.
+fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
+    let place = |line: &str| {
+        let mut fields = line.split(',').map(str::trim);
+        let name = fields.next()?.to_string();
+        let mut number = || fields.next()?.parse::<f64>().ok();
+        Some(Place { name, at: [number()?, number()?], level: number()?, arrival: number() })
+    };
+    let parsed = text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(place);
+    parsed.collect::<Option<_>>().ok_or_else(|| ModelError::Setup(format!("{} is not as expected", path.display())))
+}
+
+fn root_mean_square(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+fn mean_magnitude(errors: &[f64]) -> f64 {
+    errors.iter().map(|error| error.abs()).sum::<f64>() / errors.len() as f64
 }
