@@ -8,6 +8,9 @@ use corpuscle_terrain::Terrain;
 /// Share of a place's surroundings that water must cover for the place to be wet.
 const COVERED: f64 = 0.5;
 
+/// A place is at most this much deeper than the deepest particle near it.
+const DEEPER: f64 = 1.2;
+
 /// The water at a place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sample {
@@ -80,14 +83,17 @@ impl Sampler<'_> {
             return Sample::default();
         }
         [surface, depth, u, v] = [surface, depth, u, v].map(|sum| sum / total);
-        let [mut surface_spread, mut depth_spread] = [0.0; 2];
+        let [mut surface_spread, mut depth_spread, mut deepest] = [0.0, 0.0, 0.0_f64];
         near(&mut |particle, weight, dx, dy| {
             let [slope_x, slope_y] = particle.surface_slope;
             let reconstructed = particle.surface() + slope_x * dx + slope_y * dy;
             surface_spread += weight * (reconstructed - surface).powi(2);
             depth_spread += weight * (particle.depth - depth).powi(2);
+            deepest = deepest.max(particle.depth);
         });
-        let from_surface = surface - self.terrain.height(x, y);
+        let from_surface = (surface - self.terrain.height(x, y)).min(DEEPER * deepest);
+        // Variances squared, so that the smoother field decides alone but where the two are much alike.
+        let [surface_spread, depth_spread] = [surface_spread, depth_spread].map(|spread| spread * spread);
         let spread = surface_spread + depth_spread;
         let share = if spread > 0.0 { depth_spread / spread } else { 1.0 };
         Sample { depth: (share * from_surface + (1.0 - share) * depth).max(0.0), velocity: [u, v] }

@@ -20,6 +20,10 @@ const ROUNDS: usize = 60;
 /// Longest way in one round, in particle distances.
 const LONGEST_SHIFT: f64 = 0.1;
 
+/// Largest volume of a particle over the wanted one. In a pocket with too few neighbours the exact depth would take more,
+/// and such a particle would stand out wherever it goes.
+const LARGEST_VOLUME: f64 = 2.0;
+
 /// A body of water to be filled with particles.
 pub struct Body<'a> {
     /// Depth of the water at a place, m; 0 or less where there is none. Goes on beyond `inside` where the ground does,
@@ -180,7 +184,7 @@ impl Body<'_> {
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);
                 particle.next_h = particle.h;
                 particle.depth = (self.depth)(particle.x, particle.y);
-                particle.volume = particle.depth / density.number;
+                particle.volume = (particle.depth / density.number).min(LARGEST_VOLUME * self.volume);
             }
         }
     }

@@ -43,5 +43,5 @@ pub struct BenchOptions {
 
 /// All benches.
 pub fn benches() -> &'static [Bench] {
-    &[]
+    crate::flood::bench::BENCHES
 }

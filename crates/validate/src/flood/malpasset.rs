@@ -2,10 +2,11 @@
 
 use super::{rows, scene};
 use crate::{Case, Options, Row};
-use corpuscle_flood::Flood;
+use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edges, Gauge, Manning, NoData, Scene, Terrain as TerrainScene, TerrainFile, Water};
-use corpuscle_terrain::Terrain;
+use corpuscle_scene::{Edges, Gauge, Manning, NoData, Scene, Terrain as TerrainScene, TerrainFile};
+use corpuscle_terrain::{RasterField, Terrain};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -19,19 +20,8 @@ pub(super) const MALPASSET: Case = Case {
     run: malpasset,
 };
 
-/// The reservoir: west of the dam between (4701.18, 4143.41) and (4655.5, 4392.1).
-const RESERVOIR: [[f64; 2]; 7] = [
-    [4701.18, 4143.41],
-    [4655.5, 4392.1],
-    [4600.0, 6830.0],
-    [530.0, 6830.0],
-    [530.0, -2350.0],
-    [4800.0, -2350.0],
-    [4800.0, 3500.0],
-];
-
-/// The sea, wholly east of this.
-const SEA: [[f64; 2]; 4] = [[14200.0, -2350.0], [17770.0, -2350.0], [17770.0, 6830.0], [14200.0, 6830.0]];
+/// Wholly west of the sea and east of the reservoir, m.
+const SEA: f64 = 10_000.0;
 
 const TIME: f64 = 4000.0;
 
@@ -58,7 +48,11 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let gauges = read(&folder.join("scale-model-gauges.csv"))?;
     let scene = malpasset_scene(folder, police.iter().chain(&gauges));
     let terrain = Terrain::open(&scene.terrain, scene.seed, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
-    let mut flood = Flood::new(&scene, folder, Arc::new(terrain))?;
+    let terrain = Arc::new(terrain);
+    let ground = Arc::clone(&terrain);
+    let wet = RasterField::open(folder.join("initial-depth-20m.tif"), &terrain)
+        .map_err(|e| ModelError::Setup(e.to_string()))?;
+    let mut flood = Flood::with_water(&scene, folder, terrain, &[pool(&ground, &wet, 100.0, 0.0..SEA), pool(&ground, &wet, 0.0, SEA..f64::INFINITY)])?;
     let (highest, arrival) = watch(&mut flood, police.len() + gauges.len())?;
     let error = |place: usize, measured: &Place| highest[place] - measured.level;
     let police_errors: Vec<f64> = police.iter().enumerate().map(|(k, place)| error(k, place)).collect();
@@ -98,17 +92,22 @@ fn malpasset_scene<'a>(folder: &Path, places: impl Iterator<Item = &'a Place>) -
     let mut scene = scene(TIME, 15.0, 22.5, Edges::default());
     scene.terrain =
         TerrainScene::File(TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall });
-    let pool = |level_m: f64, polygon: &[[f64; 2]]| Water {
-        level_m: Some(level_m),
-        polygon: Some(polygon.to_vec()),
-        ..Water::default()
-    };
-    scene.flood.water = vec![pool(100.0, &RESERVOIR), pool(0.0, &SEA)];
     scene.flood.manning = Manning::Number(0.033);
     scene.flood.map_every_s = Some(TIME);
     let gauge = |place: &Place| Gauge { name: place.name.clone(), at: Some(place.at), lon_lat: None };
     scene.flood.gauge = places.map(gauge).collect();
     scene
+}
+
+/// Water at rest at a level where the raster of the initial depth has some, between two x.
+fn pool<'a>(ground: &'a Terrain, wet: &'a RasterField, level: f64, between: Range<f64>) -> InitialWater<'a> {
+    let inside = move |x: f64, y: f64| between.contains(&x) && wet.nearest(x, y).is_some_and(|depth| depth > 0.0);
+    InitialWater {
+        depth: Box::new(move |x, y| level - ground.height(x, y)),
+        inside: Box::new(inside),
+        within: ground.bounds(),
+        velocity: Box::new(|_, _| [0.0; 2]),
+    }
 }
 
 /// Reads name, x, y, highest level and, where there is one, arrival.

@@ -1,5 +1,6 @@
 //! Cases of the flood model.
 
+pub(crate) mod bench;
 mod channel;
 mod dam_break;
 mod lake;
