@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// Particle physics from a scene file: flood valleys, look at the result in QGIS and ParaView.
 #[derive(Debug, Parser)]
-#[command(name = "corpuscle", version, about, max_term_width = 100)]
+#[command(name = "corpuscle", version, max_term_width = 100)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,

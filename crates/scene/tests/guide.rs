@@ -1,0 +1,143 @@
+//! The guide's page on the scene file tells every key that there is, no other, and its default.
+
+use corpuscle_scene::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use toml::Value;
+
+/// A key: its table as headed in the guide, and its name.
+type Key = (String, String);
+
+/// The keys that the guide tells, with their defaults: rows of the tables below headings with a name in ticks.
+fn told() -> BTreeMap<Key, String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let in_ticks = |text: &str| text.split('`').nth(1).map(str::to_owned);
+    let mut table = None;
+    let mut keys = BTreeMap::new();
+    for line in text.lines() {
+        if line.starts_with('#') {
+            table = in_ticks(line).map(|name| name.trim_matches(['[', ']']).to_owned());
+        } else if let (Some(table), true) = (&table, line.starts_with("| `")) {
+            let cells: Vec<_> = line.split('|').map(str::trim).collect();
+            let default = in_ticks(cells[3]).unwrap_or_else(|| cells[3].to_owned());
+            keys.insert((table.clone(), in_ticks(cells[1]).unwrap()), default);
+        }
+    }
+    keys
+}
+
+/// Puts the keys below `value`, a table called `name`, into `keys`, with their values. Rows of a list of tables are alike.
+fn collect(name: &str, value: &Value, keys: &mut BTreeMap<Key, Value>) {
+    for (key, value) in value.as_table().unwrap() {
+        let below = match (name, key.as_str()) {
+            ("scene", key) => key.to_owned(),
+            (_, "extent") => "extent".to_owned(),
+            (name, key) => format!("{name}.{key}"),
+        };
+        match value {
+            Value::Table(_) => collect(&below, value, keys),
+            Value::Array(rows) if rows.iter().any(Value::is_table) => {
+                rows.iter().for_each(|row| collect(&below, row, keys));
+            }
+            value => _ = keys.insert((name.to_owned(), key.clone()), value.clone()),
+        }
+    }
+}
+
+fn keys_of(scene: &Scene) -> BTreeMap<Key, Value> {
+    let mut keys = BTreeMap::new();
+    collect("scene", &Value::try_from(scene).unwrap(), &mut keys);
+    keys
+}
+
+fn all_terrains() -> [Terrain; 6] {
+    [
+        Terrain::File(TerrainFile { path: "a".into(), crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
+        Terrain::Valley(Valley::default()),
+        Terrain::RoughHills(RoughHills::default()),
+        Terrain::Plane(Plane::default()),
+        // Named one by one, so that a new field does not compile until it is named here.
+        Terrain::Bump(Bump { extent: Extent::default(), height_m: 1.0, width_m: 1.0, at: Some([0.0; 2]) }),
+        Terrain::Bowl(Bowl::default()),
+    ]
+}
+
+/// A scene with every key written, whether or not they go together. No field is left to a default.
+fn full(terrain: Terrain) -> Scene {
+    let block = Block { from: [0.0; 2], to: [1.0; 2], height_m: 1.0, layers: 1 };
+    let water = Water {
+        level_m: Some(1.0),
+        depth_m: Some(1.0),
+        depth_raster: Some("a".into()),
+        polygon: Some(vec![[0.0; 2]]),
+        block: None,
+        velocity_m_per_s: [0.0; 2],
+    };
+    let in_the_air = Water { block: Some(block), ..water.clone() };
+    let place = Some([0.0; 2]);
+    let flood = Flood {
+        scheme: Scheme::Balanced,
+        spacing_m: 1.0,
+        spacing_depth_m: Some(1.0),
+        gravity_m_per_s2: 1.0,
+        manning: Manning::Number(0.0),
+        wet_depth_m: 1.0,
+        map_every_s: Some(1.0),
+        balanced: Balanced::default(),
+        paper: Paper::default(),
+        edges: Edges::default(),
+        water: vec![water, in_the_air],
+        inflow: vec![Inflow {
+            name: "a".into(),
+            at: place,
+            line: Some(vec![[0.0; 2]]),
+            discharge_m3_per_s: Series::Constant(1.0),
+            velocity_m_per_s: [0.0; 2],
+        }],
+        gauge: vec![Gauge { name: "a".into(), at: place, lon_lat: place }],
+        section: vec![Section { name: "a".into(), line: vec![[0.0; 2]] }],
+        observed_extent: Some("a".into()),
+    };
+    let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
+    Scene { title: String::new(), description: String::new(), seed: 1, run, terrain, flood }
+}
+
+#[test]
+fn the_guide_tells_every_key_and_no_other() {
+    let known: BTreeSet<Key> =
+        all_terrains().into_iter().flat_map(|terrain| keys_of(&full(terrain)).into_keys()).collect();
+    let mut told: BTreeSet<Key> = told().into_keys().collect();
+    // Its value is the table that follows.
+    assert!(told.remove(&("flood.water".into(), "block".into())));
+    let missing: Vec<_> = known.difference(&told).collect();
+    let unknown: Vec<_> = told.difference(&known).collect();
+    assert!(missing.is_empty() && unknown.is_empty(), "not told: {missing:?}\ntold but not known: {unknown:?}");
+}
+
+#[test]
+fn the_guide_tells_the_defaults() {
+    let told = told();
+    let mut compared = 0;
+    for kind in ["file = { path = \"a\" }", "valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"] {
+        let text = format!("run.until_s = 1\nflood = {{ water = [{{ level_m = 1 }}] }}\nterrain.{kind}");
+        let scene = Scene::parse(&text, "smallest", &[]).unwrap();
+        let given = ["path", "until_s", "level_m", "water", "inflow", "gauge", "section"];
+        for (key, default) in keys_of(&scene).into_iter().filter(|((_, name), _)| !given.contains(&name.as_str())) {
+            assert_eq!(told[&key], default.to_string(), "{key:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 50, "{compared}");
+}
+
+#[test]
+fn the_guide_tells_the_forms_of_values() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let forms =
+        ["{ raster = ", "{ csv = ", "{ stage = ", "\"open\"", "\"wall\"", "\"periodic\"", "\"fill\"", "\"paper\""];
+    for form in forms {
+        assert!(text.contains(form), "{form}");
+    }
+}
