@@ -26,7 +26,10 @@ fn the_valleys_gauges_and_inflow_are_in_the_channel() {
     let ends = scene.flood.inflow[0].line.clone().unwrap();
     for [x, y] in gauges.chain(ends) {
         let centre = valley_centre(valley, scene.seed, x);
-        assert!((y - centre).abs() < 0.5 * valley.channel_width_m, "at x = {x} the channel's middle is at y = {centre}");
+        assert!(
+            (y - centre).abs() < 0.5 * valley.channel_width_m,
+            "at x = {x} the channel's middle is at y = {centre}"
+        );
     }
 }
 

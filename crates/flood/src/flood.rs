@@ -412,8 +412,7 @@ impl Flood {
     /// Momentum of the water, sum of its two components, kg m/s.
     fn momentum(&self) -> f64 {
         let along = |particle: &Particle| DENSITY * particle.volume * (particle.u + particle.v);
-        self.inside().map(along).sum::<f64>()
-            + self.state.falling.iter().map(|drop| along(&drop.particle)).sum::<f64>()
+        self.inside().map(along).sum::<f64>() + self.state.falling.iter().map(|drop| along(&drop.particle)).sum::<f64>()
     }
 
     /// The scene with every default that depends on ground and water filled in.

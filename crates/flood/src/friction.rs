@@ -10,17 +10,17 @@ use std::path::Path;
 /// Manning's roughness n over the ground, s/m^(1/3).
 pub(crate) enum Roughness {
     Even(f64),
-    Raster(RasterField),
+    Raster(Box<RasterField>),
 }
 
 impl Roughness {
     pub fn open(scene: &Manning, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
         Ok(match scene {
             Manning::Number(n) => Self::Even(*n),
-            Manning::Raster { raster } => Self::Raster(
-                RasterField::open(&folder.join(raster), terrain)
+            Manning::Raster { raster } => Self::Raster(Box::new(
+                RasterField::open(folder.join(raster), terrain)
                     .map_err(|error| ModelError::Setup(error.to_string()))?,
-            ),
+            )),
         })
     }
 

@@ -63,10 +63,10 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
     } else if let Some(depth) = water.depth_m {
         Box::new(move |_, _| depth)
     } else if let Some(path) = &water.depth_raster {
-        let raster = RasterField::open(&folder.join(path), terrain).map_err(setup)?;
+        let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
         Box::new(move |x, y| raster.bilinear(x, y).unwrap_or(0.0))
     } else {
-        return Err(setup(format!("flood.water[{number}] says neither level, depth, raster nor block")));
+        return Err(setup(format!("flood.water.{number} says neither level, depth, raster nor block")));
     };
     let bounds = terrain.bounds();
     let velocity = water.velocity_m_per_s;
@@ -82,7 +82,7 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
         || within.y_min > bounds.y_max;
     if apart {
         return Err(setup(format!(
-            "flood.water[{number}].polygon lies wholly outside the terrain, which spans {}: give its corners in the \
+            "flood.water.{number}.polygon lies wholly outside the terrain, which spans {}: give its corners in the \
              terrain's own coordinates",
             span(terrain)
         )));
@@ -177,7 +177,7 @@ pub(crate) fn sources(
 ) -> Result<Vec<Source>, ModelError> {
     let bounds = terrain.bounds();
     let source = |inflow: &corpuscle_scene::Inflow| {
-        let discharge = load(&inflow.discharge_m3_per_s, folder)?;
+        let discharge = inflow.load_discharge(folder).map_err(setup)?;
         let largest = discharge.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
         let points: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
             (Some(at), _) => vec![terrain.to_model(*at)],

@@ -77,7 +77,12 @@ impl Row {
 
     /// A case that did not come to its end.
     pub fn broken(case: &str, why: &str) -> Self {
-        Self { value: None, pass: Some(false), reason: Some(why.into()), ..Self::at_most(case, "completed", 0.0, "", 0.0) }
+        Self {
+            value: None,
+            pass: Some(false),
+            reason: Some(why.into()),
+            ..Self::at_most(case, "completed", 0.0, "", 0.0)
+        }
     }
 
     /// A case that needs the folder of reference data, which was not given: skipped, or failed where it is required.

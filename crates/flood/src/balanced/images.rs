@@ -49,9 +49,8 @@ impl Balanced {
             let Slopes { ground, outside, .. } = self.slopes[place as usize];
             let mut turned = Slopes { ground, outside, ..self.slopes[source as usize] };
             for (axis, rule) in [edges.along_x(image), edges.along_y(image)].into_iter().enumerate() {
-                match rule {
-                    Some(EdgeRule::Wall) => turned.mirror(axis),
-                    _ => {}
+                if rule == Some(&EdgeRule::Wall) {
+                    turned.mirror(axis);
                 }
             }
             self.slopes[place as usize] = turned;

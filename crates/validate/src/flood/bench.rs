@@ -39,7 +39,7 @@ fn rate(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) ->
 fn measure(name: &str, scheme: Scheme, particles: usize, seconds: f64) -> Result<Rate, ModelError> {
     let mut flood = waves(scheme, particles)?;
     let stop = AtomicBool::new(false);
-    let mut ahead = |flood: &mut Flood, steps: u32| {
+    let ahead = |flood: &mut Flood, steps: u32| {
         let time = flood.time() + f64::from(steps) * flood.time_step();
         flood.advance_to(time, &stop)
     };

@@ -52,7 +52,12 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let ground = Arc::clone(&terrain);
     let wet = RasterField::open(folder.join("initial-depth-20m.tif"), &terrain)
         .map_err(|e| ModelError::Setup(e.to_string()))?;
-    let mut flood = Flood::with_water(&scene, folder, terrain, &[pool(&ground, &wet, 100.0, 0.0..SEA), pool(&ground, &wet, 0.0, SEA..f64::INFINITY)])?;
+    let mut flood = Flood::with_water(
+        &scene,
+        folder,
+        terrain,
+        &[pool(&ground, &wet, 100.0, 0.0..SEA), pool(&ground, &wet, 0.0, SEA..f64::INFINITY)],
+    )?;
     let (highest, arrival) = watch(&mut flood, police.len() + gauges.len())?;
     let error = |place: usize, measured: &Place| highest[place] - measured.level;
     let police_errors: Vec<f64> = police.iter().enumerate().map(|(k, place)| error(k, place)).collect();

@@ -60,12 +60,7 @@ fn water_everywhere<'a>(
     depth: impl Fn(f64, f64) -> f64 + Sync + 'a,
     velocity: impl Fn(f64, f64) -> [f64; 2] + Sync + 'a,
 ) -> InitialWater<'a> {
-    InitialWater {
-        depth: Box::new(depth),
-        inside: Box::new(|_, _| true),
-        within: bounds,
-        velocity: Box::new(velocity),
-    }
+    InitialWater { depth: Box::new(depth), inside: Box::new(|_, _| true), within: bounds, velocity: Box::new(velocity) }
 }
 
 /// Sets up a flood and runs it to `time` s.

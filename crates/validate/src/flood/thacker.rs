@@ -51,7 +51,8 @@ fn curved(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
     let root = (1.0 - amplitude * amplitude).sqrt();
     let swing = 1.0 - amplitude * (omega() * t).cos();
     let r_squared = x * x + y * y;
-    let surface = H0 * (root / swing - 1.0 - r_squared / (A * A) * ((1.0 - amplitude * amplitude) / (swing * swing) - 1.0));
+    let surface =
+        H0 * (root / swing - 1.0 - r_squared / (A * A) * ((1.0 - amplitude * amplitude) / (swing * swing) - 1.0));
     let rate = 0.5 * omega() * amplitude * (omega() * t).sin() / swing;
     (surface, [rate * x, rate * y])
 }
