@@ -71,7 +71,7 @@ impl SceneOptions {
 pub struct RunOptions {
     #[command(flatten)]
     pub scene: SceneOptions,
-    /// Folder to write, new or empty [default: runs/<scene>-<n>]
+    /// Folder to write, new or empty [default: the next free one in runs/]
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     /// Where to compute

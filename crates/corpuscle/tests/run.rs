@@ -179,14 +179,14 @@ fn progress_rises_to_one() {
     assert_eq!(*seen.last().unwrap(), (1.0, 0.0));
 }
 
-/// All files of a folder but the summary, the log and the checkpoint, by name.
+/// All files of a folder but the checkpoint, the log, and those that tell the wall-clock time, by name.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for sub in ["", "frames", "maps"] {
         for entry in std::fs::read_dir(folder.join(sub)).unwrap() {
             let path = entry.unwrap().path();
             let name = path.strip_prefix(folder).unwrap().display().to_string();
-            if path.is_file() && !["summary.json", "log.txt"].contains(&name.as_str()) {
+            if path.is_file() && !["summary.json", "report.html", "log.txt"].contains(&name.as_str()) {
                 found.push((name, std::fs::read(path).unwrap()));
             }
         }
