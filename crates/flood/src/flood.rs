@@ -201,9 +201,15 @@ impl Flood {
             self.arrange();
         }
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
-        self.state.time_step = evaluation.time_step;
+        self.state.time_step = self.limited(evaluation.time_step);
         self.state.external = evaluation.external;
         self.look();
+    }
+
+    /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
+    fn limited(&self, step: f64) -> f64 {
+        let fall = 0.1 * (self.spacing / self.scene.flood.gravity_m_per_s2).sqrt();
+        if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
 
     /// Sorts the particles into cells as large as they need them now.
@@ -240,7 +246,7 @@ impl Flood {
         let after = self.momentum();
         self.state.momentum.book(after - before);
         self.state.external = evaluation.external;
-        self.state.time_step = evaluation.time_step;
+        self.state.time_step = self.limited(evaluation.time_step);
         self.state.steps += 1;
         self.state.particle_steps += self.state.particles.len() as u64;
         self.look();
@@ -288,12 +294,17 @@ impl Flood {
         if !edges.holds_level() {
             return;
         }
+        let gravity = self.scene.flood.gravity_m_per_s2;
         let water = self.sampler(0.0);
         let carried: Vec<(usize, [f64; 2])> = (self.state.particles.iter().enumerate())
             .filter_map(|(number, particle)| {
                 self.surroundings.stage(particle.outside)?;
                 let [x, y] = edges.before(particle.x, particle.y, particle.h);
-                Some((number, water.at(x, y).velocity))
+                let inside = water.at(x, y);
+                let outward = OUTWARD[usize::from(particle.outside?)];
+                // The outgoing invariant u + 2c is the same on both sides of the edge (Riemann).
+                let faster = 2.0 * ((gravity * inside.depth).sqrt() - (gravity * particle.depth).sqrt());
+                Some((number, [0, 1].map(|axis| inside.velocity[axis] + faster * outward[axis])))
             })
             .collect();
         for (number, velocity) in carried {

@@ -134,9 +134,11 @@ fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: 
         external_x += area_x * external_push;
         external_y += area_y * external_push;
     }
-    let inverse_volume = 1.0 / (own.depth * own.area);
+    // Ground pushes by way of pairs; a particle without any slides down its slope as any body does.
+    let volume = own.depth * own.area;
+    let slide = sloped.ground.map(|slope| -gravity * slope * sloped.alone);
     Force {
-        acceleration: [-fx.sum() * inverse_volume, -fy.sum() * inverse_volume],
-        external: [-external_x.sum(), -external_y.sum()],
+        acceleration: [slide[0] - fx.sum() / volume, slide[1] - fy.sum() / volume],
+        external: [slide[0] * volume - external_x.sum(), slide[1] * volume - external_y.sum()],
     }
 }

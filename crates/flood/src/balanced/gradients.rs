@@ -13,6 +13,9 @@ const REST: f64 = 0.05;
 /// Difference of surface over that of the ground at which water counts as tilted: below it, water lies as a lake does.
 const TILT: f64 = 0.6;
 
+/// Trace of the moment matrix (2 amid water, about 1 at its rim) from which a particle is in company.
+const COMPANY: f64 = 0.4;
+
 /// Finds the slopes of all particles.
 pub(super) fn find(gravity: f64, arrangement: &Arrangement, columns: &[Column], slopes: &mut [Slopes]) {
     slopes.par_chunks_mut(BLOCK).enumerate().for_each(|(block, slopes)| {
@@ -62,6 +65,7 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
         velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, Lanes::ZERO));
     }
     let moment = [xx.sum(), xy.sum(), yy.sum()];
+    slopes.alone = (1.0 - (moment[0] + moment[2]) / COMPANY).max(0.0);
     let b = renormalisation(moment);
     slopes.renormalisation = b;
     let turned = |x: f64, y: f64| [b[0] * x + b[1] * y, b[1] * x + b[2] * y];

@@ -47,6 +47,8 @@ struct Slopes {
     rest: f64,
     /// 1 for an image beyond an edge, 0 for a particle.
     outside: f64,
+    /// How much a particle is alone: 1 without neighbours, 0 with enough of them.
+    alone: f64,
 }
 
 /// Numbers of the scheme.

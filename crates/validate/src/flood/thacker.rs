@@ -114,7 +114,7 @@ mod tests {
     fn exact_solutions_conserve_water() {
         let e = 1e-5;
         for exact in [curved as Exact, plane] {
-            for (x, y, t) in [(0.2, 0.1, 0.3), (-0.4, 0.3, 1.1), (0.5, -0.2, 2.0)] {
+            for (x, y, t) in [(0.2, 0.1, 0.3), (-0.1, 0.2, 1.1), (0.1, -0.2, 2.0)] {
                 let depth = |x: f64, y: f64, t: f64| exact(x, y, t).0 - H0 * (x * x + y * y - 1.0);
                 assert!(depth(x, y, t) > 0.0);
                 let flux = |x: f64, y: f64, axis: usize| depth(x, y, t) * exact(x, y, t).1[axis];
