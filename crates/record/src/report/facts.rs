@@ -2,7 +2,7 @@
 
 use super::{Report, figures::FieldFigure, gauges};
 use crate::Status;
-use crate::picture::{area, number, time, volume};
+use crate::picture::{area, number, short_number, time, volume};
 use corpuscle_scene::{Scheme, Terrain};
 
 /// A key figure.
@@ -119,9 +119,9 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let (summary, scene) = (&report.summary, &report.flood);
     let ground = &report.ground;
     let [columns, rows] = ground.grid.map(|count| number(count as f64).replace(".0", ""));
-    let cell = [0, 1].map(|axis| number(ground.extent[axis] / ground.grid[axis] as f64));
+    let cell = [0, 1].map(|axis| short_number(ground.extent[axis] / ground.grid[axis] as f64));
     let cell = if cell[0] == cell[1] { format!("{} m", cell[0]) } else { format!("{} m × {} m", cell[0], cell[1]) };
-    let [low, high] = ground.height_range().map(number);
+    let [low, high] = ground.height_range().map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Balanced => "balanced",
         Scheme::Paper => "paper",
@@ -139,7 +139,7 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
         ("Simulated time", format!("{} ({status})", time(summary.simulated_time_s))),
         ("Particles", number(summary.particles as f64).replace(".0", "")),
         ("Steps", number(summary.steps as f64).replace(".0", "")),
-        ("Computed in", format!("{} on {}", time(summary.wall_time_s), summary.backend)),
+        ("Computed in", format!("{} on the {}", time(summary.wall_time_s), summary.backend.to_uppercase())),
         ("Rate", format!("{} particle steps per second", number(summary.particle_steps_per_s))),
         ("Corpuscle", format!("version {}", summary.version)),
     ]

@@ -113,7 +113,7 @@ impl Report {
     /// Area where a field has a value, m2.
     fn area_of(&self, field: &Field, wanted: impl Fn(f32) -> bool) -> f64 {
         let cells = field.values.iter().zip(&self.cell_areas);
-        cells.filter(|(value, _)| wanted(**value)).map(|(_, area)| area).sum()
+        cells.filter(|(value, _)| wanted(**value)).fold(0.0, |sum, (_, area)| sum + area)
     }
 }
 

@@ -120,11 +120,12 @@ fn class_areas(report: &Report, field: &FieldFigure) -> String {
     );
     for (name, [r, g, b], size) in areas {
         let (width, part) = (100.0 * size / largest, 100.0 * size / total);
+        let bar = format!("<span style=\"width:{width:.1}%;background:rgb({r},{g},{b})\"></span>");
         let _ = writeln!(
             html,
-            "<tr><th scope=\"row\">{}</th><td class=\"bar\"><span style=\"width:{width:.1}%;background:rgb({r},{g},{b})\">\
-             </span></td><td>{}</td><td>{part:.1} %</td></tr>",
+            "<tr><th scope=\"row\">{}</th><td class=\"bar\">{}</td><td>{}</td><td>{part:.1} %</td></tr>",
             escape(&name),
+            if size > 0.0 { bar.as_str() } else { "" },
             area(size)
         );
     }
