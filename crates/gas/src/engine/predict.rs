@@ -17,13 +17,20 @@ impl<const D: usize> Engine<D> {
     /// Finds what happens next to a ball and queues it.
     #[inline(always)]
     pub(super) fn predict<M: Mode>(&mut self, ball: usize) {
+        self.foresee::<M>(ball);
+        let event = &self.events[ball];
+        self.queue.push(event.time, ball as u32, event.stamp);
+    }
+
+    /// Finds what happens next to a ball.
+    #[inline(always)]
+    pub(super) fn foresee<M: Mode>(&mut self, ball: usize) {
         let next = self.next::<M>(ball);
         let event = &mut self.events[ball];
         event.time = next.time;
         event.what = next.what;
         event.partner_bends = next.partner_bends;
         event.stamp = event.stamp.wrapping_add(1);
-        self.queue.push(next.time, ball as u32, event.stamp);
     }
 
     #[inline(always)]

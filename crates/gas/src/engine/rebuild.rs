@@ -8,6 +8,7 @@ use super::grid::Grid;
 use super::memory;
 use super::queue::Queue;
 use super::wall::Wall;
+use multiversion::multiversion;
 
 /// A ball as it is put in.
 #[derive(Debug, Clone, Copy)]
@@ -88,10 +89,7 @@ impl<const D: usize> Engine<D> {
         self.sort();
         self.fill_cells();
         self.handled = 0;
-        self.queue = Queue::new(&[] as &[Event<D>]);
-        for ball in 0..self.balls.len() {
-            self.predict::<M>(ball);
-        }
+        foresee_all::<D, M>(self);
         self.queue = Queue::new(&self.events);
         for (ball, event) in self.events.iter().enumerate() {
             self.queue.push(event.time, ball as u32, event.stamp);
@@ -188,6 +186,13 @@ impl<const D: usize> Engine<D> {
     pub fn bytes(&self) -> usize {
         let each = size_of::<Ball<D>>() + size_of::<Event<D>>() + size_of::<Record<D>>();
         self.balls.len() * each + self.grid.bytes() + self.queue.bytes()
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn foresee_all<const D: usize, M: Mode>(engine: &mut Engine<D>) {
+    for ball in 0..engine.balls.len() {
+        engine.foresee::<M>(ball);
     }
 }
 
