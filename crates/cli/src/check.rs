@@ -6,6 +6,7 @@ use crate::refusal::in_words;
 use crate::scene_argument;
 use corpuscle::Simulation;
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -36,7 +37,8 @@ struct Report {
     ok: bool,
     title: String,
     model: &'static str,
-    terrain: Ground,
+    /// None for a model without one.
+    terrain: Option<Ground>,
     particles_at_start: usize,
     particles_to_come: usize,
     memory_bytes: f64,
@@ -58,6 +60,13 @@ struct Ground {
     rows: usize,
     cell_m: [f64; 2],
     size_m: [f64; 2],
+}
+
+impl Ground {
+    fn of(terrain: &Terrain) -> Self {
+        let grid = terrain.map_grid();
+        Self { columns: grid.columns, rows: grid.rows, cell_m: grid.cell_size(), size_m: terrain.bounds().size() }
+    }
 }
 
 /// Says what a scene would run, without writing anything.
@@ -100,22 +109,18 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let probe = Probe::run(&mut simulation)?;
     let (terrain, scene) = (simulation.terrain(), simulation.scene());
     let run = &scene.run;
-    let grid = terrain.map_grid();
+    let terrain = terrain.map(|terrain| Ground::of(terrain));
+    let cells = terrain.as_ref().map_or(0, |ground| ground.columns * ground.rows);
     let particles = (particles_at_start + particles_to_come) as f64;
     let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
     Ok(Report {
         ok: true,
         title: if scene.title.is_empty() { named.short_name } else { scene.title.clone() },
         model: simulation.model().name(),
-        terrain: Ground {
-            columns: grid.columns,
-            rows: grid.rows,
-            cell_m: grid.cell_size(),
-            size_m: terrain.bounds().size(),
-        },
+        terrain,
         particles_at_start,
         particles_to_come,
-        memory_bytes: particles * BYTES_PER_PARTICLE + (grid.columns * grid.rows) as f64 * BYTES_PER_CELL,
+        memory_bytes: particles * BYTES_PER_PARTICLE + cells as f64 * BYTES_PER_CELL,
         time_step_s: probe.time_step,
         // Where most of the water comes later its start says little about the rest.
         estimated_wall_time_s: (particles_to_come < particles_at_start)
@@ -131,7 +136,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
 
 /// Particles that the inflows bring in over the run.
 fn particles_to_come(scene: &Scene, folder: &Path) -> Result<usize, corpuscle::Error> {
-    let flood = &scene.flood;
+    let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0) };
     let Some(depth) = flood.spacing_depth_m else { return Ok(0) };
     let mut volume = 0.0;
     for inflow in &flood.inflow {
@@ -181,14 +186,9 @@ impl Probe {
 /// The report as people read it.
 fn text(report: &Report) -> String {
     let Report { title, model, terrain, .. } = report;
-    let [width, height] = terrain.size_m.map(number);
-    let [cell_x, cell_y] = terrain.cell_m.map(number);
-    let mut lines = vec![
-        format!("{title} ({model})"),
-        format!(
-            "terrain    {width} x {height} m, {} x {} cells of {cell_x} x {cell_y} m",
-            terrain.columns, terrain.rows
-        ),
+    let mut lines = vec![format!("{title} ({model})")];
+    lines.extend(terrain.as_ref().map(ground_line));
+    lines.extend([
         format!("particles  {} at the start, about {} to come", report.particles_at_start, report.particles_to_come),
         format!("memory     about {} MB", number((report.memory_bytes / 1e6).ceil())),
         format!(
@@ -198,7 +198,7 @@ fn text(report: &Report) -> String {
             report.gauge_rows,
             report.gauges.len()
         ),
-    ];
+    ]);
     if let Some(step) = report.time_step_s {
         lines.push(format!("time step  {} s at the start", number(step)));
     }
@@ -207,4 +207,9 @@ fn text(report: &Report) -> String {
     }
     lines.extend(report.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"
+}
+
+fn ground_line(ground: &Ground) -> String {
+    let ([width, height], [cell_x, cell_y]) = (ground.size_m.map(number), ground.cell_m.map(number));
+    format!("terrain    {width} x {height} m, {} x {} cells of {cell_x} x {cell_y} m", ground.columns, ground.rows)
 }

@@ -2,8 +2,9 @@
 
 use crate::{Error, Simulation};
 use corpuscle_flood::Flood;
+use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
-use corpuscle_scene::Scene;
+use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -17,17 +18,25 @@ impl Simulation {
         scene.check()?;
         scene.resolve_paths(folder);
         scene.resolve_defaults();
-        let terrain = Arc::new(Terrain::open(&scene.terrain, scene.seed, folder)?);
-        check_observed_extent(&scene, &terrain)?;
-        let flood = Flood::new(&scene, folder, terrain.clone())?;
-        let scene = flood.resolved_scene().clone();
-        Ok(Self::new(scene, terrain, Box::new(flood)))
+        match &mut scene.model {
+            ModelScene::Flood(written) => {
+                let terrain = Arc::new(Terrain::open(&written.terrain, scene.seed, folder)?);
+                check_observed_extent(&written.flood, &terrain)?;
+                let flood = Flood::new(&written.flood, scene.seed, folder, terrain.clone())?;
+                written.flood = flood.settings().clone();
+                Ok(Self::new(scene, Some(terrain), Box::new(flood)))
+            }
+            ModelScene::Gas(_) => {
+                Err(ModelError::Setup("gas: this version reads and checks gas scenes, but cannot run them".into())
+                    .into())
+            }
+        }
     }
 }
 
 /// Finds out before the run, not at its end, that the observed extent cannot be used.
-fn check_observed_extent(scene: &Scene, terrain: &Terrain) -> Result<(), Error> {
-    if let Some(observed) = &scene.flood.observed_extent {
+fn check_observed_extent(flood: &FloodSettings, terrain: &Terrain) -> Result<(), Error> {
+    if let Some(observed) = &flood.observed_extent {
         let grid = terrain.map_grid();
         compare_extent(observed, terrain, &vec![f32::NAN; grid.columns * grid.rows])?;
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Writes a run into its folder; when the run has ended, its report too.
 pub struct Recorder {
     folder: RunFolder,
-    terrain: Arc<Terrain>,
+    terrain: Option<Arc<Terrain>>,
     scene: Scene,
 }
 
@@ -50,7 +50,7 @@ impl Recorder {
     }
 
     fn new(folder: RunFolder, simulation: &Simulation) -> Self {
-        Self { folder, terrain: simulation.terrain().clone(), scene: simulation.scene().clone() }
+        Self { folder, terrain: simulation.terrain().cloned(), scene: simulation.scene().clone() }
     }
 
     /// The folder.
@@ -68,7 +68,10 @@ impl Sink for Recorder {
         if self.folder.frame_format() != FrameFormat::None {
             self.folder.write_frame(&model.frame())?;
         }
-        Ok(self.folder.write_snapshot(model.time(), &model.maps(), &self.terrain)?)
+        if let Some(terrain) = &self.terrain {
+            self.folder.write_snapshot(model.time(), &model.maps(), terrain)?;
+        }
+        Ok(())
     }
 
     fn checkpoint(&mut self, model: &dyn Model, clock: Clock) -> Result<(), Error> {
@@ -76,21 +79,22 @@ impl Sink for Recorder {
     }
 
     fn finish(&mut self, model: &dyn Model, summary: &mut Summary) -> Result<(), Error> {
-        let maps = model.maps();
-        if !maps.is_empty() {
-            self.folder.write_final_maps(&maps, &self.terrain)?;
-        }
-        if let (Some(observed), Some(depth)) =
-            (&self.scene.flood.observed_extent, maps.iter().find(|map| map.name == "max_depth"))
-        {
-            summary.extent = Some(compare_extent(observed, &self.terrain, &depth.values)?);
+        if let (Some(scene), Some(terrain)) = (self.scene.flood(), &self.terrain) {
+            let maps = model.maps();
+            if !maps.is_empty() {
+                self.folder.write_final_maps(&maps, terrain)?;
+            }
+            let depth = maps.iter().find(|map| map.name == "max_depth");
+            if let (Some(observed), Some(depth)) = (&scene.flood.observed_extent, depth) {
+                summary.extent = Some(compare_extent(observed, terrain, &depth.values)?);
+            }
         }
         for warning in &summary.warnings {
             self.folder.log(&format!("warning: {warning}"))?;
         }
         self.folder.finish(summary)?;
-        if summary.status != Status::Stopped {
-            Report::read(self.folder.path(), &self.scene, &self.terrain)?.write()?;
+        if let (Some(terrain), Status::Done | Status::Failed) = (&self.terrain, summary.status) {
+            Report::read(self.folder.path(), &self.scene, terrain)?.write()?;
         }
         Ok(())
     }

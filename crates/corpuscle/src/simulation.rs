@@ -16,7 +16,7 @@ const PAUSES: f64 = 1000.0;
 /// A scene made ready to run.
 pub struct Simulation {
     scene: Scene,
-    terrain: Arc<Terrain>,
+    terrain: Option<Arc<Terrain>>,
     model: Box<dyn Model>,
     /// Wall-clock time spent before this part of the run, s.
     wall_before: f64,
@@ -25,8 +25,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Puts together a scene with all defaults filled in, its ground and its model.
-    pub fn new(scene: Scene, terrain: Arc<Terrain>, model: Box<dyn Model>) -> Self {
+    /// Puts together a scene with all defaults filled in, its ground, if it has one, and its model.
+    pub fn new(scene: Scene, terrain: Option<Arc<Terrain>>, model: Box<dyn Model>) -> Self {
         Self { scene, terrain, model, wall_before: 0.0, resumed: false }
     }
 
@@ -35,9 +35,9 @@ impl Simulation {
         &self.scene
     }
 
-    /// The ground.
-    pub fn terrain(&self) -> &Arc<Terrain> {
-        &self.terrain
+    /// The ground, where there is one.
+    pub fn terrain(&self) -> Option<&Arc<Terrain>> {
+        self.terrain.as_ref()
     }
 
     /// The model.
@@ -52,9 +52,12 @@ impl Simulation {
 
     /// What a user should know, in sentences: of the ground, then of the model.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.terrain.warnings().to_vec();
-        let more = self.model.warnings().into_iter().filter(|warning| !self.terrain.warnings().contains(warning));
-        warnings.extend(more);
+        let mut warnings = self.terrain.as_ref().map_or_else(Vec::new, |terrain| terrain.warnings().to_vec());
+        for warning in self.model.warnings() {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
         warnings
     }
 

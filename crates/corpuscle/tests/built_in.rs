@@ -1,7 +1,7 @@
 //! The built-in scenes open, and their places are where their comments say.
 
 use corpuscle::Simulation;
-use corpuscle::scene::{BUILTIN, Scene, Terrain, builtin};
+use corpuscle::scene::{BUILTIN, FloodScene, Scene, Terrain, builtin};
 use corpuscle::terrain::valley_centre;
 use std::path::Path;
 
@@ -21,9 +21,10 @@ fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
 #[test]
 fn the_valleys_gauges_and_inflow_are_in_the_channel() {
     let scene = Scene::parse(builtin("flood/valley").unwrap().text, "flood/valley", &[]).unwrap();
-    let Terrain::Valley(valley) = &scene.terrain else { panic!("{:?}", scene.terrain) };
-    let gauges = scene.flood.gauge.iter().map(|gauge| gauge.at.unwrap());
-    let ends = scene.flood.inflow[0].line.clone().unwrap();
+    let FloodScene { terrain, flood } = scene.flood().unwrap();
+    let Terrain::Valley(valley) = terrain else { panic!("{terrain:?}") };
+    let gauges = flood.gauge.iter().map(|gauge| gauge.at.unwrap());
+    let ends = flood.inflow[0].line.clone().unwrap();
     for [x, y] in gauges.chain(ends) {
         let centre = valley_centre(valley, scene.seed, x);
         assert!(

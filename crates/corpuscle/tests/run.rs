@@ -117,8 +117,8 @@ extent = { length_m = 10.0, width_m = 10.0, cell_m = 1.0 }
 fn simulation(model: Counter) -> Simulation {
     let mut scene = Scene::parse(SCENE, "test.toml", &[]).unwrap();
     scene.resolve_defaults();
-    let terrain = Terrain::open(&scene.terrain, scene.seed, Path::new("")).unwrap();
-    Simulation::new(scene, Arc::new(terrain), Box::new(model))
+    let terrain = Terrain::open(&scene.flood().unwrap().terrain, scene.seed, Path::new("")).unwrap();
+    Simulation::new(scene, Some(Arc::new(terrain)), Box::new(model))
 }
 
 /// Notes when it was called.
@@ -261,7 +261,7 @@ fn checkpoints_come_by_the_wall_clock() {
     assert!(notes.checkpoint.is_none(), "60 s have not passed");
     let overrides = [("run.checkpoint_every_wall_s".to_owned(), "1e-9".to_owned())];
     let eager = Scene::parse(SCENE, "test.toml", &overrides).unwrap();
-    let terrain = scene.terrain().clone();
+    let terrain = scene.terrain().cloned();
     run(&mut Simulation::new(eager, terrain, Box::new(Counter::new())), &mut notes).unwrap();
     assert_eq!(notes.checkpoint.unwrap().0.time_s, 2.0);
 }

@@ -15,7 +15,7 @@ use crate::scheme::{Scheme, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
-use corpuscle_scene::{Scene, Scheme as SchemeName};
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,8 @@ const DRY_DEPTH: f64 = 0.05;
 
 /// Shallow water as particles over terrain.
 pub struct Flood {
-    scene: Scene,
+    settings: Settings,
+    seed: u64,
     surroundings: Surroundings,
     scheme: Box<dyn Scheme>,
     roughness: Roughness,
@@ -72,14 +73,15 @@ struct State {
 }
 
 impl Flood {
-    /// Sets a flood up as a scene says. `folder` is what relative paths refer to.
+    /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what
+    /// relative paths refer to.
     ///
     /// # Errors
     /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
-    pub fn new(scene: &Scene, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
         let ground = Arc::clone(&terrain);
-        let bodies = setup::initial_water(&scene.flood, &ground, folder)?;
-        Self::with_water(scene, folder, terrain, &bodies)
+        let bodies = setup::initial_water(settings, &ground, folder)?;
+        Self::with_water(settings, seed, folder, terrain, &bodies)
     }
 
     /// As [`Flood::new`], with the water at the start given as functions instead of by the scene.
@@ -87,14 +89,17 @@ impl Flood {
     /// # Errors
     /// As [`Flood::new`].
     pub fn with_water(
-        scene: &Scene,
+        settings: &Settings,
+        seed: u64,
         folder: &Path,
         terrain: Arc<Terrain>,
         bodies: &[InitialWater],
     ) -> Result<Self, ModelError> {
-        let mut scene = scene.clone();
-        scene.resolve_defaults();
-        let flood = &mut scene.flood;
+        let mut settings = settings.clone();
+        let flood = &mut settings;
+        let map_period = flood
+            .map_every_s
+            .ok_or_else(|| ModelError::Setup("flood.map_every_s is open; resolve the scene's defaults first".into()))?;
         let spacing = flood.spacing_m;
         let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
@@ -138,9 +143,10 @@ impl Flood {
             roughness: Roughness::open(&flood.manning, &terrain, folder)?,
             points: setup::point_gauges(flood, &terrain)?,
             lines: setup::line_gauges(flood, &terrain, spacing),
-            map_period: flood.map_every_s.unwrap_or(scene.run.until_s / 200.0),
+            map_period,
             surroundings: Surroundings { terrain, edges, time: 0.0 },
-            scene,
+            settings,
+            seed,
             scheme,
             sources,
             spacing,
@@ -156,10 +162,10 @@ impl Flood {
 
     /// Fills in the water at the start.
     fn fill(&mut self, bodies: &[InitialWater]) {
-        let flood = &self.scene.flood;
+        let flood = &self.settings;
         let eta = flood.balanced.smoothing;
         for (number, body) in bodies.iter().enumerate() {
-            let seed = self.scene.seed.wrapping_add(number as u64);
+            let seed = self.seed.wrapping_add(number as u64);
             let mut particles = Body {
                 depth: &*body.depth,
                 inside: &*body.inside,
@@ -178,7 +184,7 @@ impl Flood {
             }
             self.state.particles.append(&mut particles);
         }
-        let mut random = setup::random(self.scene.seed, u64::MAX);
+        let mut random = setup::random(self.seed, u64::MAX);
         for water in &flood.water {
             if let Some(block) = &water.block {
                 let terrain = &self.surroundings.terrain;
@@ -208,7 +214,7 @@ impl Flood {
 
     /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
     fn limited(&self, step: f64) -> f64 {
-        let fall = 0.1 * (self.spacing / self.scene.flood.gravity_m_per_s2).sqrt();
+        let fall = 0.1 * (self.spacing / self.settings.gravity_m_per_s2).sqrt();
         if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
 
@@ -236,13 +242,13 @@ impl Flood {
         self.arrange();
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, step);
         self.scheme.kick(&mut self.state.particles, step);
-        let impulse = match self.scene.flood.scheme {
+        let impulse = match self.settings.scheme {
             SchemeName::Balanced => [0, 1].map(|k| 0.5 * step * (self.state.external[k] + evaluation.external[k])),
             SchemeName::Paper => evaluation.external.map(|force| step * force),
         };
         impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
         let before = self.momentum();
-        self.roughness.slow(&mut self.state.particles, self.scene.flood.gravity_m_per_s2, step);
+        self.roughness.slow(&mut self.state.particles, self.settings.gravity_m_per_s2, step);
         let after = self.momentum();
         self.state.momentum.book(after - before);
         self.state.external = evaluation.external;
@@ -260,7 +266,7 @@ impl Flood {
         if self.state.particles.par_iter().all(is_inside) {
             return;
         }
-        let gravity = self.scene.flood.gravity_m_per_s2;
+        let gravity = self.settings.gravity_m_per_s2;
         let State { particles, water, momentum, .. } = &mut self.state;
         particles.retain_mut(|particle| {
             let before = [particle.u, particle.v];
@@ -294,7 +300,7 @@ impl Flood {
         if !edges.holds_level() {
             return;
         }
-        let gravity = self.scene.flood.gravity_m_per_s2;
+        let gravity = self.settings.gravity_m_per_s2;
         let water = self.sampler(0.0);
         let carried: Vec<(usize, [f64; 2])> = (self.state.particles.iter().enumerate())
             .filter_map(|(number, particle)| {
@@ -327,7 +333,7 @@ impl Flood {
             volume: self.volume,
             spacing: self.spacing,
             h: self.h,
-            seed: self.scene.seed,
+            seed: self.seed,
             next_id: self.state.next_id,
             born: Vec::new(),
         };
@@ -340,7 +346,7 @@ impl Flood {
         let Nursery { next_id, mut born, .. } = nursery;
         let landed = {
             let water = self.sampler(0.0);
-            falling.iter_mut().for_each(|drop| drop.fall(self.scene.flood.gravity_m_per_s2, step));
+            falling.iter_mut().for_each(|drop| drop.fall(self.settings.gravity_m_per_s2, step));
             falling.extract_if(.., |drop| drop.has_landed(&water)).map(|drop| drop.particle).collect::<Vec<_>>()
         };
         let state = &mut self.state;
@@ -388,7 +394,7 @@ impl Flood {
 
     /// Support of the sampling kernel over the scheme's own: the paper's h is the whole support, not half of it.
     fn smoothing(&self) -> f64 {
-        match self.scene.flood.scheme {
+        match self.settings.scheme {
             SchemeName::Balanced => 1.0,
             SchemeName::Paper => 0.5,
         }
@@ -426,9 +432,9 @@ impl Flood {
         self.inside().map(along).sum::<f64>() + self.state.falling.iter().map(|drop| along(&drop.particle)).sum::<f64>()
     }
 
-    /// The scene with every default that depends on ground and water filled in.
-    pub fn resolved_scene(&self) -> &Scene {
-        &self.scene
+    /// The `[flood]` of the scene with every default that depends on ground and water filled in.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The water at a place in model coordinates, at the time shown.
@@ -510,9 +516,9 @@ impl Model for Flood {
         let count = order.len() + self.state.falling.len();
         let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
         let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
-        let radius = |particle: &Particle| match self.scene.flood.scheme {
+        let radius = |particle: &Particle| match self.settings.scheme {
             SchemeName::Balanced => 0.5 * particle.area().sqrt(),
-            SchemeName::Paper => self.scene.flood.paper.radius_m,
+            SchemeName::Paper => self.settings.paper.radius_m,
         };
         let terrain = &self.surroundings.terrain;
         let on_ground = order.into_iter().map(|particle| {

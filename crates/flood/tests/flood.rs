@@ -2,7 +2,7 @@
 
 use corpuscle_flood::Flood;
 use corpuscle_model::Model;
-use corpuscle_scene::{Edge, Scene, Series};
+use corpuscle_scene::{Edge, FloodScene, Scene, Series};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -39,11 +39,21 @@ name = "bridge line"
 line = [[150, 180], [150, 20]]
 "#;
 
-fn river(change: impl FnOnce(&mut Scene)) -> Flood {
-    let mut scene = Scene::parse(RIVER, "river", &[]).unwrap();
+fn river(change: impl FnOnce(&mut FloodScene)) -> Flood {
+    let mut scene = parse(RIVER, &[]);
     change(&mut scene);
-    let terrain = Terrain::open(&scene.terrain, scene.seed, Path::new(".")).unwrap();
-    Flood::new(&scene, Path::new("."), Arc::new(terrain)).unwrap()
+    open(&scene)
+}
+
+fn parse(text: &str, overrides: &[(String, String)]) -> FloodScene {
+    let mut scene = Scene::parse(text, "test", overrides).unwrap();
+    scene.resolve_defaults();
+    scene.flood().unwrap().clone()
+}
+
+fn open(scene: &FloodScene) -> Flood {
+    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+    Flood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
 }
 
 fn go(flood: &mut Flood, time: f64) {
@@ -104,13 +114,12 @@ fn an_edge_held_at_a_level_fills_and_empties_a_pool() {
     for (depth, level) in [(1.0, 1.5), (1.5, 1.0)] {
         let text = "run.until_s = 200\nterrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 2 } }\n\
                     flood = { spacing_m = 2, spacing_depth_m = 1, manning = 0.1, water = [{ depth_m = 1 }] }\n";
-        let mut scene = Scene::parse(text, "pool", &[]).unwrap();
+        let mut scene = parse(text, &[]);
         scene.flood.water[0].depth_m = Some(depth);
         let edges = &mut scene.flood.edges;
         (edges.west, edges.south, edges.north) = (Edge::Wall, Edge::Wall, Edge::Wall);
         edges.east = Edge::Stage(Series::Constant(level));
-        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-        let mut flood = Flood::new(&scene, Path::new("."), Arc::new(terrain)).unwrap();
+        let mut flood = open(&scene);
         go(&mut flood, 200.0);
         let water = &flood.ledger().balances[0];
         let mean = water.now / (60.0 * 30.0);
@@ -126,9 +135,7 @@ fn both_schemes_land_what_falls() {
                     flood.spacing_m = 1\nflood.spacing_depth_m = 1\n\
                     [[flood.water]]\nblock = { from = [10, 10], to = [20, 20], height_m = 5, layers = 2 }\n";
         let set = [("flood.scheme".to_string(), scheme.to_string())];
-        let scene = Scene::parse(text, "block", &set).unwrap();
-        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-        let mut flood = Flood::new(&scene, Path::new("."), Arc::new(terrain)).unwrap();
+        let mut flood = open(&parse(text, &set));
         assert_eq!(flood.frame().sets[0].len(), 200);
         assert!(flood.particles().is_empty());
         // The upper layer's fall of 6.5 m takes 1.15 s.

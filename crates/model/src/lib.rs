@@ -1,16 +1,22 @@
-//! The contract a model fulfils, and what it gives: frames, gauges, maps and a ledger.
+//! The contract a model fulfils, and what it gives: frames, gauges, maps, charts, paths and a ledger.
 //!
 //! A model knows no screen, file or window. Whoever runs it asks for a time and reads what it shows.
 
+mod chart;
+mod container;
 mod frame;
 mod gauge;
 mod ledger;
 mod map;
+mod path;
 
+pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
+pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
 pub use ledger::{Balance, Ledger};
 pub use map::Map;
+pub use path::Path;
 
 use std::sync::atomic::AtomicBool;
 
@@ -50,7 +56,7 @@ pub trait Model: Send {
     /// Steps taken so far (gas: collisions).
     fn steps(&self) -> u64;
 
-    /// Particles moved so far, summed over the steps: the measure of work done.
+    /// Particles moved so far, summed over the steps: the measure of work done (gas: collisions).
     fn particle_steps(&self) -> u64;
 
     /// Particles in the model now.
@@ -74,6 +80,21 @@ pub trait Model: Send {
 
     /// Fields over the model's own map grid, as they stand now. Empty for a model without maps.
     fn maps(&self) -> Vec<Map>;
+
+    /// What was measured up to the time shown, as charts. Empty for a model without charts.
+    fn charts(&self) -> Vec<Chart> {
+        Vec::new()
+    }
+
+    /// The ways of the particles that are followed, up to the time shown. Empty where none is.
+    fn paths(&self) -> Vec<Path> {
+        Vec::new()
+    }
+
+    /// The box round the particles; none for a model without one.
+    fn container(&self) -> Option<Container> {
+        None
+    }
 
     /// What should be conserved, what came in and what went out.
     fn ledger(&self) -> Ledger;

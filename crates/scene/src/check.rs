@@ -1,9 +1,11 @@
 //! What a scene must hold to beyond its types.
 
 mod flood;
+mod gas;
 mod terrain;
 
-use crate::{Problem, Run, Scene, SceneError};
+use crate::series::check_rows;
+use crate::{ModelScene, Problem, Run, Scene, SceneError, Series};
 use toml::Value;
 
 type Checked = Result<(), Box<Problem>>;
@@ -25,8 +27,13 @@ impl Scene {
         let check = Check { values };
         check.all_finite()?;
         check.run(&self.run)?;
-        check.terrain(&self.terrain)?;
-        check.flood(&self.flood)
+        match &self.model {
+            ModelScene::Flood(scene) => {
+                check.terrain(&scene.terrain)?;
+                check.flood(&scene.flood)
+            }
+            ModelScene::Gas(gas) => check.gas(gas),
+        }
     }
 }
 
@@ -70,6 +77,20 @@ impl Check {
 
     fn require(&self, key: &str, holds: bool, otherwise: impl FnOnce() -> String) -> Checked {
         if holds { Ok(()) } else { Err(self.problem(key, &otherwise())) }
+    }
+
+    /// A name fit for headers of tables.
+    fn name(&self, key: &str, name: &str) -> Checked {
+        let fit = |c: char| c.is_alphanumeric() || " _-".contains(c);
+        self.require(key, !name.trim().is_empty() && name.chars().all(fit), || {
+            "a name must be of letters, digits, spaces, `_` and `-`".into()
+        })
+    }
+
+    fn series(&self, key: &str, series: &Series) -> Checked {
+        let Series::Table(rows) = series else { return Ok(()) };
+        let at = |row: usize| if rows.is_empty() { key.to_owned() } else { format!("{key}.{row}") };
+        check_rows(rows).map_err(|(row, what)| self.problem(&at(row), &what))
     }
 
     /// Exactly one of the keys is given.

@@ -1,4 +1,4 @@
-//! Scene files: what a user asks for, typed, in SI units and checked.
+//! Scene files: what a user asks for, typed and checked; in SI units, but for a gas in reduced ones.
 //!
 //! [`Scene::read`] takes a TOML file, [`Scene::parse`] its text; [`builtin`] holds the scenes that come with the program.
 //! A [`Scene`] that was read is checked: numbers are finite and in range, names unique, exactly one kind given where
@@ -9,45 +9,42 @@ mod check;
 mod document;
 mod error;
 mod flood;
+mod gas;
+mod model;
 mod parse;
+mod resolve;
 mod series;
 mod terrain;
 mod write;
+mod written;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use error::{Place, Problem, SceneError};
 pub use flood::*;
+pub use gas::*;
+pub use model::{FloodScene, ModelScene};
 pub use series::{Series, Table};
 pub use terrain::*;
 
 use serde::{Deserialize, Serialize};
 
 /// A scene: everything that a run depends on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(into = "written::Written")]
 pub struct Scene {
     /// One line: what is seen here.
-    #[serde(default)]
     pub title: String,
     /// A few sentences for the gallery and the report.
-    #[serde(default)]
     pub description: String,
     /// Seed of everything random.
-    #[serde(default = "default_seed")]
     pub seed: u64,
     /// How long to run and how often to look.
     pub run: Run,
-    /// The ground.
-    pub terrain: Terrain,
-    /// The flood model.
-    pub flood: Flood,
+    /// What is moved.
+    pub model: ModelScene,
 }
 
-fn default_seed() -> u64 {
-    1
-}
-
-/// How long to run and how often to look.
+/// How long to run and how often to look. For a gas in reduced units read its unit of time for s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
@@ -77,15 +74,5 @@ impl Run {
     /// Time between gauge rows, s: as given, or a two-hundredth of the run.
     pub fn gauge_period_s(&self) -> f64 {
         self.gauge_every_s.unwrap_or(self.until_s / 200.0)
-    }
-}
-
-impl Scene {
-    /// Fills in what was left out and does not depend on the ground or the water: frame, gauge and map periods.
-    pub fn resolve_defaults(&mut self) {
-        let gauge_period = self.run.gauge_period_s();
-        self.run.frame_every_s = Some(self.run.frame_period_s());
-        self.run.gauge_every_s = Some(gauge_period);
-        self.flood.map_every_s.get_or_insert(gauge_period);
     }
 }

@@ -1,6 +1,7 @@
 //! From text to a scene.
 
 use crate::document::Document;
+use crate::written::Written;
 use crate::{Problem, Scene, SceneError};
 use serde::Deserialize;
 use std::path::Path;
@@ -23,13 +24,17 @@ impl Scene {
     /// [`SceneError::Invalid`] with the line and key of the first thing that is not as it must be.
     pub fn parse(text: &str, name: &str, overrides: &[(String, String)]) -> Result<Self, SceneError> {
         let document = Document::parse(text, name, overrides)?;
-        let scene = Self::deserialize(toml::de::ValueDeserializer::from(document.root()))
+        let written = Written::deserialize(toml::de::ValueDeserializer::from(document.root()))
             .map_err(|error| explain(&error, &document))?;
-        scene.find_problem().and_then(|()| all_was_read(&scene, &document)).map_err(|mut problem| {
-            problem.place = document.place_of(&problem.key);
-            problem
-        })?;
-        Ok(scene)
+        let checked = written.into_scene().and_then(|scene| {
+            scene.find_problem()?;
+            all_was_read(&scene, &document)?;
+            Ok(scene)
+        });
+        checked.map_err(|mut problem| {
+            problem.place = document.place_of(&problem.key).or_else(|| Some(document.whole()));
+            problem.into()
+        })
     }
 }
 
@@ -69,10 +74,7 @@ fn what_to_give(path: &str, name: &str) -> String {
     match path {
         "run" => "give a table [run] with until_s, the end of the run in seconds".into(),
         "run.until_s" => "give the end of the run in seconds, as in until_s = 600".into(),
-        "terrain" => "give the ground, as in [terrain.file] with path = \"dem.tif\", or one of [terrain.valley], \
-                      [terrain.rough-hills], [terrain.plane], [terrain.bump], [terrain.bowl]"
-            .into(),
-        "flood" => "give a table [flood] with spacing_m and the water of the scene".into(),
+        "gas.size" => "give the sides of the box, two or three numbers, as in size = [800.0, 600.0]".into(),
         _ if name == "name" => "give a name, unique in the scene, as in name = \"P1\"".into(),
         _ if name == "line" => "give the points of a line, as in line = [[0, 0], [100, 0]]".into(),
         _ if name == "discharge_m3_per_s" => {
@@ -115,6 +117,7 @@ fn wrong_type(message: &str) -> String {
         ("expected usize", "expected a whole number, 0 or more"),
         ("expected a boolean", "expected true or false"),
         ("expected a string", "expected text in quotes"),
+        ("expected a map", "expected a table, as in { key = 1.0 }"),
         ("expected path string", "expected a file's path in quotes"),
         ("expected an array of length 2", "expected two numbers, as in [1.0, 2.0]"),
         ("expected a sequence", "expected a list in [ ]; for tables write their header in double brackets"),

@@ -1,6 +1,6 @@
 //! From a scene to text.
 
-use crate::{Edge, Manning, Scene, SceneError, Series, Terrain};
+use crate::{Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, Terrain, Wall};
 use std::path::{Path, PathBuf};
 
 impl Scene {
@@ -16,34 +16,48 @@ impl Scene {
     pub fn resolve_paths(&mut self, folder: &Path) {
         // Where the current folder is gone the path stays relative, and opening the file says so.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        for path in self.paths() {
+        let paths = match &mut self.model {
+            ModelScene::Flood(scene) => flood_paths(scene),
+            ModelScene::Gas(gas) => gas_paths(gas),
+        };
+        for path in paths {
             *path = folder.join(&*path);
         }
     }
+}
 
-    /// Every path in the scene.
-    fn paths(&mut self) -> Vec<&mut PathBuf> {
-        let flood = &mut self.flood;
-        let mut paths = Vec::new();
-        if let Terrain::File(file) = &mut self.terrain {
-            paths.push(&mut file.path);
-        }
-        if let Manning::Raster { raster } = &mut flood.manning {
-            paths.push(raster);
-        }
-        let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
-        for edge in edges {
-            if let Edge::Stage(Series::File { csv }) = edge {
-                paths.push(csv);
-            }
-        }
-        for inflow in &mut flood.inflow {
-            if let Series::File { csv } = &mut inflow.discharge_m3_per_s {
-                paths.push(csv);
-            }
-        }
-        paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
-        paths.extend(flood.observed_extent.as_mut());
-        paths
+fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
+    let FloodScene { terrain, flood } = scene;
+    let mut paths = Vec::new();
+    if let Terrain::File(file) = terrain {
+        paths.push(&mut file.path);
     }
+    if let Manning::Raster { raster } = &mut flood.manning {
+        paths.push(raster);
+    }
+    let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
+    for edge in edges {
+        if let Edge::Stage(Series::File { csv }) = edge {
+            paths.push(csv);
+        }
+    }
+    for inflow in &mut flood.inflow {
+        if let Series::File { csv } = &mut inflow.discharge_m3_per_s {
+            paths.push(csv);
+        }
+    }
+    paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
+    paths.extend(flood.observed_extent.as_mut());
+    paths
+}
+
+fn gas_paths(gas: &mut Gas) -> Vec<&mut PathBuf> {
+    let walls = &mut gas.walls;
+    let always = [&mut walls.x_min, &mut walls.x_max, &mut walls.y_min, &mut walls.y_max];
+    let all = always.into_iter().chain(walls.z_min.as_mut()).chain(walls.z_max.as_mut());
+    all.filter_map(|wall| match wall {
+        Wall::Motion(Motion::Displacement(Series::File { csv })) => Some(csv),
+        _ => None,
+    })
+    .collect()
 }

@@ -1,6 +1,6 @@
 //! Every way a scene can be wrong is refused with its line, key, value and what would be right.
 
-use corpuscle_scene::Scene;
+use corpuscle_scene::{ModelScene, Scene};
 
 /// A scene without fault; each test spoils one line of it.
 const GOOD: &str = r#"title = "test"
@@ -130,6 +130,12 @@ fn missing_keys_and_tables() {
     for (text, words) in [
         ("", ["test.toml: run is missing", "until_s"]),
         ("[run]\nuntil_s = 1\n[flood]\n", ["test.toml: terrain is missing", "[terrain.file]"]),
+        ("[run]\nuntil_s = 1\n", ["test.toml: the scene has no model", "[gas]"]),
+        (
+            "[run]\nuntil_s = 1\n[terrain.plane]\n[gas]\nsize = [1, 1]\n",
+            ["test.toml:3:2: terrain", "no ground below a gas"],
+        ),
+        ("[run]\nuntil_s = 1\n[flood]\n[gas]\nsize = [1, 1]\n", ["test.toml:3:1: flood", "one model"]),
         ("[run]\nuntil_s = 1\n[terrain.plane]\n", ["test.toml: flood is missing", "[flood]"]),
         ("[run]\nuntil_s = 1\n[terrain]\n[flood]\n", ["test.toml:3:1: terrain", "exactly one"]),
         ("[run]\nuntil_s = 1\n[terrain.bowl]\n[terrain.plane]\n[flood]\n", ["terrain", "exactly one kind, found more"]),
@@ -230,7 +236,8 @@ fn overrides_are_named() {
 #[test]
 fn a_scene_made_in_memory_is_checked_too() {
     let mut scene = Scene::parse(GOOD, "test.toml", &[]).unwrap();
-    scene.flood.spacing_m = f64::NAN;
+    let ModelScene::Flood(flood) = &mut scene.model else { panic!("{scene:?}") };
+    flood.flood.spacing_m = f64::NAN;
     assert_eq!(scene.check().unwrap_err().to_string(), "flood.spacing_m = nan: must be a finite number");
 }
 

@@ -100,7 +100,8 @@ fn full(terrain: Terrain) -> Scene {
         observed_extent: Some("a".into()),
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
-    Scene { title: String::new(), description: String::new(), seed: 1, run, terrain, flood }
+    let model = ModelScene::Flood(Box::new(FloodScene { terrain, flood }));
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A scene written and read again is the same scene, and no text makes the parser panic.
 
-use corpuscle_scene::{BUILTIN, Manning, Scene, Series, Terrain, builtin};
+use corpuscle_scene::{BUILTIN, FloodScene, Manning, Scene, Series, Terrain, builtin};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -51,11 +51,12 @@ discharge_m3_per_s = { csv = "q.csv" }
 fn paths_become_absolute_and_round_trip() {
     let mut scene = parse(FILES);
     scene.resolve_paths(Path::new("/data/scene"));
-    let Terrain::File(file) = &scene.terrain else { panic!("{:?}", scene.terrain) };
+    let FloodScene { terrain, flood } = scene.flood().unwrap();
+    let Terrain::File(file) = terrain else { panic!("{terrain:?}") };
     assert_eq!(file.path, Path::new("/data/scene/dem.tif"));
-    assert_eq!(scene.flood.manning, Manning::Raster { raster: "/data/scene/n.tif".into() });
-    assert_eq!(scene.flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into() });
-    assert_eq!(scene.flood.observed_extent.as_deref(), Some(Path::new("/abs/seen.geojson")));
+    assert_eq!(flood.manning, Manning::Raster { raster: "/data/scene/n.tif".into() });
+    assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into() });
+    assert_eq!(flood.observed_extent.as_deref(), Some(Path::new("/abs/seen.geojson")));
     let written = scene.to_toml().unwrap();
     assert!(written.contains("/data/scene/tide.csv") && written.contains("/data/scene/sub/depth.tif"), "{written}");
     assert_eq!(parse(&written), scene);
@@ -79,10 +80,11 @@ fn overrides_change_numbers_words_rows_and_kinds() {
     ]);
     assert_eq!(scene.run.until_s, 10.0);
     assert_eq!(scene.title, "Two words");
-    assert_eq!(scene.flood.inflow[0].discharge_m3_per_s, Series::Table(vec![[0.0, 1.0], [5.0, 2.0]]));
-    assert_eq!(scene.flood.gauge[1].at, Some([3.0, 4.0]));
-    assert!(!scene.flood.paper.control_force);
-    assert_eq!(set(&[("terrain", "{ plane = {} }")]).terrain, Terrain::Plane(Default::default()));
+    let flood = &scene.flood().unwrap().flood;
+    assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::Table(vec![[0.0, 1.0], [5.0, 2.0]]));
+    assert_eq!(flood.gauge[1].at, Some([3.0, 4.0]));
+    assert!(!flood.paper.control_force);
+    assert_eq!(set(&[("terrain", "{ plane = {} }")]).flood().unwrap().terrain, Terrain::Plane(Default::default()));
 }
 
 proptest! {
@@ -114,7 +116,7 @@ proptest! {
     fn any_override_of_a_number_is_read_or_refused(value in any::<f64>()) {
         let overrides = [("flood.spacing_m".to_owned(), format!("{value:?}"))];
         match Scene::parse(BUILTIN[0].text, "valley", &overrides) {
-            Ok(scene) => prop_assert_eq!(scene.flood.spacing_m.to_bits(), value.to_bits()),
+            Ok(scene) => prop_assert_eq!(scene.flood().unwrap().flood.spacing_m.to_bits(), value.to_bits()),
             Err(error) => prop_assert!(error.to_string().contains("flood.spacing_m"), "{}", error),
         }
     }

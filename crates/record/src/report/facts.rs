@@ -32,7 +32,7 @@ pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
         add(
             "Flooded area",
             area(wet),
-            format!("{part:.1} % of the terrain, deeper than {} m", report.scene.flood.wet_depth_m),
+            format!("{part:.1} % of the terrain, deeper than {} m", report.flood.flood.wet_depth_m),
         );
     }
     for (name, label, unit) in [("max_depth", "Largest depth", "m"), ("max_speed", "Largest speed", "m/s")] {
@@ -91,7 +91,7 @@ pub(super) fn ledger(report: &Report) -> Table {
 /// First water, largest depth and speed at each gauge.
 pub(super) fn gauge_peaks(report: &Report) -> Table {
     let all = gauges::series(report);
-    let wet = report.scene.flood.wet_depth_m;
+    let wet = report.flood.flood.wet_depth_m;
     let of = |gauge: &str, quantity: &str| all.iter().find(|s| s.gauge == gauge && s.quantity == quantity);
     let peak = |gauge: &str, quantity: &str| of(gauge, quantity).and_then(gauges::GaugeSeries::peak);
     let value = |peak: Option<[f64; 2]>| peak.map_or("–".into(), |peak| number(peak[1]));
@@ -116,7 +116,7 @@ pub(super) fn gauge_peaks(report: &Report) -> Table {
 
 /// Name and value of what was run.
 pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
-    let (summary, scene) = (&report.summary, &report.scene);
+    let (summary, scene) = (&report.summary, &report.flood);
     let ground = &report.ground;
     let [columns, rows] = ground.grid.map(|count| number(count as f64).replace(".0", ""));
     let cell = [0, 1].map(|axis| number(ground.extent[axis] / ground.grid[axis] as f64));

@@ -41,7 +41,7 @@ impl GaugeSeries {
 /// What the report draws over time: the gauges, and the inflows as the scene prescribes them.
 pub(super) fn series(report: &Report) -> Vec<GaugeSeries> {
     let mut all = gauge_series(&report.gauges);
-    all.extend(report.scene.flood.inflow.iter().filter_map(|inflow| prescribed(inflow, report)));
+    all.extend(report.flood.flood.inflow.iter().filter_map(|inflow| prescribed(inflow, report)));
     all
 }
 

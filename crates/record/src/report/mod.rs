@@ -10,7 +10,7 @@ use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
-use corpuscle_scene::Scene;
+use corpuscle_scene::{Flood, FloodScene, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
@@ -22,6 +22,7 @@ use std::path::{Path, PathBuf};
 pub struct Report {
     folder: PathBuf,
     scene: Scene,
+    flood: FloodScene,
     scene_text: String,
     summary: Summary,
     gauges: GaugeTable,
@@ -51,6 +52,8 @@ impl Report {
     pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, RecordError> {
         let scene_path = folder.join("scene.toml");
         let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let no_flood = || RecordError::content(&scene_path, "it is not the scene of a flood");
+        let flood = scene.flood().ok_or_else(no_flood)?;
         let grid = terrain.map_grid();
         let cells = grid.columns * grid.rows;
         let maps = folder.join("maps");
@@ -64,12 +67,13 @@ impl Report {
         Ok(Self {
             folder: folder.to_owned(),
             scene: scene.clone(),
+            flood: flood.clone(),
             scene_text,
             summary: Summary::read(folder)?,
             gauges: GaugeTable::read(&folder.join("gauges.csv"))?,
             ground: Ground::of(terrain),
             cell_areas: (0..cells).map(|cell| grid.cell_area(cell % grid.columns, cell / grid.columns)).collect(),
-            places: places(scene, terrain),
+            places: places(&flood.flood, terrain),
             fields,
             snapshots: snapshots::read(&maps, cells)?,
         })
@@ -124,8 +128,7 @@ fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, RecordError> {
 }
 
 /// What the scene names on the ground, in the terrain's own coordinates.
-fn places(scene: &Scene, terrain: &Terrain) -> Vec<Place> {
-    let flood = &scene.flood;
+fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
     let sections = flood.section.iter().map(|section| Place {
         kind: PlaceKind::Section,
         name: section.name.clone(),

@@ -64,7 +64,7 @@ pub fn scene() -> Scene {
 }
 
 pub fn terrain(scene: &Scene) -> Terrain {
-    Terrain::open(&scene.terrain, scene.seed, Path::new(".")).unwrap()
+    Terrain::open(&scene.flood().unwrap().terrain, scene.seed, Path::new(".")).unwrap()
 }
 
 /// A flood wave that is a function of place and time: a level that rises, travels down the valley and falls.
@@ -161,7 +161,7 @@ impl<'a> Wave<'a> {
 
     pub fn gauge_row(&self, scene: &Scene, time: f64) -> Vec<f64> {
         let mut row = Vec::new();
-        for gauge in &scene.flood.gauge {
+        for gauge in &scene.flood().unwrap().flood.gauge {
             let place = gauge.at.unwrap();
             let [depth, speed] = self.at(place, time).unwrap_or([0.0, 0.0]);
             row.extend([depth, self.terrain.height(place[0], place[1]) + depth, speed, -0.1 * speed]);
@@ -182,7 +182,7 @@ pub fn gauge_columns(scene: &Scene) -> Vec<GaugeColumn> {
             column(&gauge.name, "velocity_north", "m_per_s"),
         ]
     };
-    let mut columns: Vec<GaugeColumn> = scene.flood.gauge.iter().flat_map(of_gauge).collect();
+    let mut columns: Vec<GaugeColumn> = scene.flood().unwrap().flood.gauge.iter().flat_map(of_gauge).collect();
     columns.extend([
         column("mid-valley", "discharge", "m3_per_s"),
         column("water", "stored", "m3"),

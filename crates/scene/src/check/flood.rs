@@ -1,7 +1,6 @@
 //! Checks of `[flood]`.
 
 use super::{Check, Checked};
-use crate::series::check_rows;
 use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Paper, Problem, Series, Water};
 use std::collections::HashMap;
 
@@ -140,12 +139,6 @@ impl Check {
         })
     }
 
-    fn series(&self, key: &str, series: &Series) -> Checked {
-        let Series::Table(rows) = series else { return Ok(()) };
-        let at = |row: usize| if rows.is_empty() { key.to_owned() } else { format!("{key}.{row}") };
-        check_rows(rows).map_err(|(row, what)| self.problem(&at(row), &what))
-    }
-
     fn gauge(&self, key: &str, gauge: &Gauge) -> Checked {
         self.exactly_one(key, &[("at", gauge.at.is_some()), ("lon_lat", gauge.lon_lat.is_some())])?;
         let Some([longitude, latitude]) = gauge.lon_lat else { return Ok(()) };
@@ -189,10 +182,7 @@ impl Check {
             .chain(inflows.enumerate().map(|named| ("inflow", named)));
         for (kind, (index, name)) in all {
             let key = format!("flood.{kind}.{index}.name");
-            let fit = |c: char| c.is_alphanumeric() || " _-".contains(c);
-            self.require(&key, !name.trim().is_empty() && name.chars().all(fit), || {
-                "a name must be of letters, digits, spaces, `_` and `-`".into()
-            })?;
+            self.name(&key, name)?;
             if let Some(other) = seen.insert(name, key.clone()) {
                 return Err(Problem::new(key, format!(" = {name:?}: this name is taken by {other}; give another")));
             }

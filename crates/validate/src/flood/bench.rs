@@ -1,6 +1,6 @@
 //! Rates of the flood model.
 
-use super::{run, scene, water_everywhere};
+use super::{run, settings, water_everywhere};
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::Flood;
 use corpuscle_model::{Model, ModelError};
@@ -67,10 +67,10 @@ fn waves(scheme: Scheme, particles: usize) -> Result<Flood, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: side, y_min: 0.0, y_max: side };
     let terrain = Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()));
     let walls = Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall };
-    let mut scene = scene(1e6, 1.0, 1.0, walls);
-    scene.flood.scheme = scheme;
-    scene.flood.manning = Manning::Number(0.03);
+    let mut settings = settings(1e6, 1.0, 1.0, walls);
+    settings.scheme = scheme;
+    settings.manning = Manning::Number(0.03);
     let ground = Arc::clone(&terrain);
     let depth = move |x: f64, y: f64| 1.0 + 0.1 * (0.05 * x).sin() - ground.height(x, y);
-    run(&scene, &terrain, &[water_everywhere(bounds, depth, |_, y| [(0.07 * y).sin(), 0.0])], 0.0)
+    run(&settings, &terrain, &[water_everywhere(bounds, depth, |_, y| [(0.07 * y).sin(), 0.0])], 0.0)
 }

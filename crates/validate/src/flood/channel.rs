@@ -1,10 +1,10 @@
 //! Steady flow along channels.
 
-use super::{GRAVITY, order, rows, run, scene, strip, water_everywhere};
+use super::{GRAVITY, order, rows, run, settings, strip, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Edge, Manning, Scene};
+use corpuscle_scene::{Edge, Flood as Settings, Manning};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -36,8 +36,8 @@ struct Channel {
 fn bump(_: &Options) -> Vec<Row> {
     let channel = Channel { length: 25.0, discharge: 4.42, depth: depth_over_bump, terrain: bump_ground };
     let error = |spacing: f64| {
-        let scene = scene(20.0, spacing, 2.0, strip(&Edge::Periodic));
-        channel.run(&scene, |x| channel.discharge / depth_over_bump(x))
+        let settings = settings(20.0, spacing, 2.0, strip(&Edge::Periodic));
+        channel.run(&settings, 20.0, |x| channel.discharge / depth_over_bump(x))
     };
     let measure = || {
         let [fine, coarse] = [error(0.1)?, error(0.4)?];
@@ -53,9 +53,9 @@ fn bump(_: &Options) -> Vec<Row> {
 fn macdonald(_: &Options) -> Vec<Row> {
     let channel = Channel { length: 1000.0, discharge: 2.0, depth: macdonald_depth, terrain: macdonald_ground };
     let error = |spacing: f64| {
-        let mut scene = scene(1500.0, spacing, 1.125, strip(&Edge::Periodic));
-        scene.flood.manning = Manning::Number(MACDONALD_MANNING);
-        channel.run(&scene, |_| 0.0)
+        let mut settings = settings(1500.0, spacing, 1.125, strip(&Edge::Periodic));
+        settings.manning = Manning::Number(MACDONALD_MANNING);
+        channel.run(&settings, 1500.0, |_| 0.0)
     };
     let measure = || {
         let [fine, coarse] = [error(5.0)?, error(20.0)?];
@@ -76,13 +76,13 @@ struct Errors {
 }
 
 impl Channel {
-    /// Runs the channel from its exact depth and the given velocity, and compares.
-    fn run(&self, scene: &Scene, velocity: impl Fn(f64) -> f64 + Sync) -> Result<Errors, ModelError> {
-        let width = 14.0 * scene.flood.spacing_m;
+    /// Runs the channel to `time` s from its exact depth and the given velocity, and compares.
+    fn run(&self, settings: &Settings, time: f64, velocity: impl Fn(f64) -> f64 + Sync) -> Result<Errors, ModelError> {
+        let width = 14.0 * settings.spacing_m;
         let bounds = Bounds { x_min: 0.0, x_max: self.length, y_min: 0.0, y_max: width };
-        let terrain = Arc::new((self.terrain)(bounds, scene.flood.spacing_m));
+        let terrain = Arc::new((self.terrain)(bounds, settings.spacing_m));
         let water = water_everywhere(bounds, |x, _| (self.depth)(x), move |x, _| [velocity(x), 0.0]);
-        let flood = run(scene, &terrain, &[water], scene.run.until_s)?;
+        let flood = run(settings, &terrain, &[water], time)?;
         Ok(self.compare(&flood, width))
     }
 

@@ -1,6 +1,6 @@
 //! Dam breaks with exact solutions.
 
-use super::{GRAVITY, order, rows, run, scene, strip};
+use super::{GRAVITY, order, rows, run, settings, strip};
 use crate::{Case, Options, Row};
 use corpuscle_flood::InitialWater;
 use corpuscle_model::ModelError;
@@ -62,7 +62,7 @@ fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
     if downstream > 0.0 {
         water.push(pool(downstream, DAM, LENGTH));
     }
-    let flood = run(&scene(TIME, spacing, UPSTREAM, strip(&Edge::Wall)), &terrain, &water, TIME)?;
+    let flood = run(&settings(TIME, spacing, UPSTREAM, strip(&Edge::Wall)), &terrain, &water, TIME)?;
     let lines = 7;
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in 0..LENGTH as usize {

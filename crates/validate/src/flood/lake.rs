@@ -1,6 +1,6 @@
 //! Water at rest stays at rest.
 
-use super::{rows, run, scene, water_everywhere};
+use super::{rows, run, settings, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Particle;
 use corpuscle_model::ModelError;
@@ -34,9 +34,9 @@ fn fastest(level: f64) -> Result<f64, ModelError> {
         (height, [-dx, -dy].map(|d| d / (width * width) * height))
     }));
     let walls = Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall };
-    let scene = scene(60.0, 1.0, 6.0, walls);
+    let settings = settings(60.0, 1.0, 6.0, walls);
     let ground = Arc::clone(&terrain);
     let water = water_everywhere(bounds, move |x, y| level - ground.height(x, y), |_, _| [0.0; 2]);
-    let flood = run(&scene, &terrain, &[water], 60.0)?;
+    let flood = run(&settings, &terrain, &[water], 60.0)?;
     Ok(flood.particles().iter().map(Particle::speed).fold(0.0, f64::max))
 }

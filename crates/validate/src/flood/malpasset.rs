@@ -1,10 +1,10 @@
 //! The dam of Malpasset, 2 December 1959.
 
-use super::{rows, scene};
+use super::{SEED, rows, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edges, Gauge, Manning, NoData, Scene, Terrain as TerrainScene, TerrainFile};
+use corpuscle_scene::{Edges, Flood as Settings, Gauge, Manning, NoData, Terrain as TerrainScene, TerrainFile};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::ops::Range;
 use std::path::Path;
@@ -46,14 +46,17 @@ fn malpasset(options: &Options) -> Vec<Row> {
 fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let police = read(&folder.join("police-survey.csv"))?;
     let gauges = read(&folder.join("scale-model-gauges.csv"))?;
-    let scene = malpasset_scene(folder, police.iter().chain(&gauges));
-    let terrain = Terrain::open(&scene.terrain, scene.seed, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
+    let settings = malpasset_settings(police.iter().chain(&gauges));
+    let ground = TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall };
+    let terrain =
+        Terrain::open(&TerrainScene::File(ground), SEED, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
     let terrain = Arc::new(terrain);
     let ground = Arc::clone(&terrain);
     let wet = RasterField::open(folder.join("initial-depth-20m.tif"), &terrain)
         .map_err(|e| ModelError::Setup(e.to_string()))?;
     let mut flood = Flood::with_water(
-        &scene,
+        &settings,
+        SEED,
         folder,
         terrain,
         &[pool(&ground, &wet, 100.0, 0.0..SEA), pool(&ground, &wet, 0.0, SEA..f64::INFINITY)],
@@ -93,15 +96,13 @@ fn watch(flood: &mut Flood, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), Model
     Ok((highest, arrival))
 }
 
-fn malpasset_scene<'a>(folder: &Path, places: impl Iterator<Item = &'a Place>) -> Scene {
-    let mut scene = scene(TIME, 15.0, 22.5, Edges::default());
-    scene.terrain =
-        TerrainScene::File(TerrainFile { path: folder.join("bed-20m.tif"), crs: None, no_data: NoData::Wall });
-    scene.flood.manning = Manning::Number(0.033);
-    scene.flood.map_every_s = Some(TIME);
+fn malpasset_settings<'a>(places: impl Iterator<Item = &'a Place>) -> Settings {
+    let mut settings = settings(TIME, 15.0, 22.5, Edges::default());
+    settings.manning = Manning::Number(0.033);
+    settings.map_every_s = Some(TIME);
     let gauge = |place: &Place| Gauge { name: place.name.clone(), at: Some(place.at), lon_lat: None };
-    scene.flood.gauge = places.map(gauge).collect();
-    scene
+    settings.gauge = places.map(gauge).collect();
+    settings
 }
 
 /// Water at rest at a level where the raster of the initial depth has some, between two x.

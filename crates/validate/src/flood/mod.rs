@@ -10,7 +10,7 @@ mod thacker;
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Edges, Flood as FloodScene, Manning, Plane, Run, Scene, Terrain as TerrainScene};
+use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -30,22 +30,19 @@ pub(crate) const CASES: &[Case] = &[
     malpasset::MALPASSET,
 ];
 
-/// A frictionless scene with the given particle distance in water of the given depth; its ground comes by itself.
-fn scene(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Scene {
-    Scene {
-        title: String::new(),
-        description: String::new(),
-        seed: 1,
-        run: Run { until_s, frame_every_s: None, gauge_every_s: None, checkpoint_every_wall_s: f64::MAX },
-        terrain: TerrainScene::Plane(Plane::default()),
-        flood: FloodScene {
-            spacing_m,
-            spacing_depth_m: Some(depth),
-            gravity_m_per_s2: GRAVITY,
-            manning: Manning::Number(0.0),
-            edges,
-            ..FloodScene::default()
-        },
+/// Seed of where particles stand at the start.
+const SEED: u64 = 1;
+
+/// Water without friction with the given particle distance in the given depth; its maps look two hundred times.
+fn settings(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Settings {
+    Settings {
+        spacing_m,
+        spacing_depth_m: Some(depth),
+        gravity_m_per_s2: GRAVITY,
+        manning: Manning::Number(0.0),
+        map_every_s: Some(until_s / 200.0),
+        edges,
+        ..Settings::default()
     }
 }
 
@@ -64,8 +61,8 @@ fn water_everywhere<'a>(
 }
 
 /// Sets up a flood and runs it to `time` s.
-fn run(scene: &Scene, terrain: &Arc<Terrain>, water: &[InitialWater], time: f64) -> Result<Flood, ModelError> {
-    let mut flood = Flood::with_water(scene, Path::new("."), Arc::clone(terrain), water)?;
+fn run(settings: &Settings, terrain: &Arc<Terrain>, water: &[InitialWater], time: f64) -> Result<Flood, ModelError> {
+    let mut flood = Flood::with_water(settings, SEED, Path::new("."), Arc::clone(terrain), water)?;
     flood.advance_to(time, &AtomicBool::new(false))?;
     Ok(flood)
 }

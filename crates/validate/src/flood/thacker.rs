@@ -1,6 +1,6 @@
 //! Water swinging in a paraboloid (Thacker 1981): wetting and drying with exact solutions.
 
-use super::{GRAVITY, order, rows, run, scene, water_everywhere};
+use super::{GRAVITY, order, rows, run, settings, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Edges;
@@ -88,9 +88,9 @@ fn error(exact: Exact, period: f64, spacing: f64) -> Result<f64, ModelError> {
     let ground = Arc::clone(&terrain);
     let depth = move |x: f64, y: f64| exact(x, y, 0.0).0 - ground.height(x, y);
     let water = water_everywhere(bounds(), depth, move |x, y| exact(x, y, 0.0).1);
-    let mut scene = scene(period, spacing, H0, Edges::default());
-    scene.flood.wet_depth_m = 1e-3;
-    let flood = run(&scene, &terrain, &[water], period)?;
+    let mut settings = settings(period, spacing, H0, Edges::default());
+    settings.wet_depth_m = 1e-3;
+    let flood = run(&settings, &terrain, &[water], period)?;
     let cells = 200;
     let at = |k: usize| -2.0 + 4.0 * (k as f64 + 0.5) / cells as f64;
     let (mut wrong, mut right) = (0.0, 0.0);

@@ -1,0 +1,10 @@
+//! The box round the particles.
+
+/// The box that holds the particles, as it stands at the time shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Container {
+    /// Corner at the smallest coordinates, m; the third 0 in two dimensions.
+    pub from: [f64; 3],
+    /// Corner at the largest coordinates, m; the third 0 in two dimensions.
+    pub to: [f64; 3],
+}

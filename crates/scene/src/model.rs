@@ -1,0 +1,39 @@
+//! Which model a scene is for.
+
+use crate::{Flood, Gas, Scene, Terrain};
+
+/// What a scene says about what is moved: that of one model.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelScene {
+    /// Shallow water: the tables `[terrain]` and `[flood]`.
+    Flood(Box<FloodScene>),
+    /// Colliding balls: the table `[gas]`.
+    Gas(Box<Gas>),
+}
+
+/// A flood and the ground that it runs over.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FloodScene {
+    /// The ground.
+    pub terrain: Terrain,
+    /// The flood model.
+    pub flood: Flood,
+}
+
+impl Scene {
+    /// The flood and its ground, where the scene is one of a flood.
+    pub fn flood(&self) -> Option<&FloodScene> {
+        match &self.model {
+            ModelScene::Flood(flood) => Some(flood),
+            ModelScene::Gas(_) => None,
+        }
+    }
+
+    /// The gas, where the scene is one of a gas.
+    pub fn gas(&self) -> Option<&Gas> {
+        match &self.model {
+            ModelScene::Flood(_) => None,
+            ModelScene::Gas(gas) => Some(gas),
+        }
+    }
+}
