@@ -5,7 +5,8 @@
 //! entry from a table for each axis, laid out so that cells near each other in space are near each other in memory: blocks
 //! of 64 cells, interleaved within. A border of empty cells surrounds walls; across periodic sides the tables wrap round.
 
-use super::ball::NONE;
+use crate::memory;
+use crate::world::NONE;
 
 /// Number of cells along a side of a block, as a power of two, in two and three dimensions.
 const fn block_bits(dimensions: usize) -> u32 {
@@ -20,8 +21,6 @@ const MOST_CELLS: usize = 60_000;
 pub(crate) struct Grid<const D: usize> {
     /// Where the first cell begins.
     pub low: [f64; D],
-    /// The box's length along each axis.
-    pub length: [f64; D],
     pub periodic: [bool; D],
     pub levels: Vec<Level<D>>,
     /// First ball in each cell.
@@ -71,13 +70,13 @@ impl<const D: usize> Grid<D> {
             }
             let mut total = 0;
             let levels = (0..=top).map(|level| Level::new(length, periodic, counts.map(|count| count >> level), &mut total)).collect();
-            return Some(Grid { low, length, periodic, levels, heads: super::memory::filled(total as usize, NONE) });
+            return Some(Grid { low, periodic, levels, heads: memory::filled(total as usize, NONE) });
         }
     }
 
     /// The level for a ball of this diameter.
     pub fn level_of(&self, diameter: f64) -> u8 {
-        let fits = |level: &Level<D>| level.size.iter().zip(self.periodic).all(|(&size, _)| size >= diameter);
+        let fits = |level: &Level<D>| level.size.iter().all(|&size| size >= diameter);
         self.levels.iter().position(fits).unwrap_or(self.levels.len() - 1) as u8
     }
 

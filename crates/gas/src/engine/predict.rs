@@ -1,9 +1,9 @@
 //! What happens next to a ball.
 
 use super::Engine;
-use super::ball::{Ball, Event, NONE, What};
-use super::contact::{Field, Mode, Near, ROOM};
-use super::wall::first_contact;
+use super::event::{Event, What};
+use super::near::{Near, ROOM};
+use crate::world::{Ball, Field, Mode, NONE, first_contact};
 
 /// The earliest thing found so far.
 #[derive(Debug, Clone, Copy)]
@@ -45,10 +45,10 @@ impl<const D: usize> Engine<D> {
         } else {
             self.neighbours::<M, false>(ball, &event, &mut next);
         }
-        if !self.walls.is_empty() {
+        if !self.world.walls.is_empty() {
             self.walls::<M>(ball, &event, &mut next);
         }
-        next.time = next.time.max(self.now);
+        next.time = next.time.max(self.world.now);
         next
     }
 
@@ -56,19 +56,19 @@ impl<const D: usize> Engine<D> {
     #[inline(always)]
     fn cell_edges<M: Mode>(&self, ball: usize, event: &Event<D>, next: &mut Next) {
         let level = &self.grid.levels[event.level as usize];
-        let ball = &self.balls[ball];
+        let ball = &self.world.balls[ball];
         for axis in 0..D {
             let cell = event.cell[axis];
             let low = self.grid.low[axis] + f64::from(cell - 1) * level.size[axis];
             let high = self.grid.low[axis] + f64::from(cell) * level.size[axis];
             let open_up = self.grid.periodic[axis] | (cell < level.count[axis]);
             let open_down = self.grid.periodic[axis] | (cell > 1);
-            let (time, up) = if M::FALLS && self.field.gravity[axis] != 0.0 {
-                let (position, velocity) = self.field.state::<M>(ball, self.now);
-                let (x, v, g) = (position[axis], velocity[axis], self.field.gravity[axis]);
+            let (time, up) = if M::FALLS && self.world.field.gravity[axis] != 0.0 {
+                let (position, velocity) = self.world.field.state::<M>(ball, self.world.now);
+                let (x, v, g) = (position[axis], velocity[axis], self.world.field.gravity[axis]);
                 let climbs = if open_up { first_contact(high - x, -v, -g) } else { f64::INFINITY };
                 let sinks = if open_down { first_contact(x - low, v, g) } else { f64::INFINITY };
-                (self.now + climbs.min(sinks), climbs < sinks)
+                (self.world.now + climbs.min(sinks), climbs < sinks)
             } else {
                 let v = ball.velocity[axis];
                 let up = v > 0.0;
@@ -123,8 +123,9 @@ impl<const D: usize> Engine<D> {
     /// Compares the ball with those at the heads of cells and all that follow them.
     #[inline(always)]
     fn chains<M: Mode, const WRAP: bool>(&mut self, ball: usize, found: &mut [u32; ROOM], count: usize, next: &mut Next) {
-        let Engine { balls, events, kinds, near, field, alike, .. } = self;
-        let (balls, events, kinds, near) = (&balls[..], &events[..], &kinds[..], &mut **near);
+        let Engine { world, events, near, alike, .. } = self;
+        let (balls, kinds, field) = (&world.balls[..], &world.kinds[..], &world.field);
+        let (events, near) = (&events[..], &mut **near);
         let me = &balls[ball];
         let radius = kinds[me.kind as usize].radius;
         let mut count = count;
@@ -208,11 +209,11 @@ impl<const D: usize> Engine<D> {
         if !border && !self.walls_roam {
             return;
         }
-        let me = &self.balls[ball];
-        let radius = self.kinds[me.kind as usize].radius;
-        for (number, wall) in self.walls.iter().enumerate() {
-            let time = wall.meeting::<D, M>(me, radius, &self.field);
-            if wall.present && time < next.time {
+        let me = &self.world.balls[ball];
+        let radius = self.world.kinds[me.kind as usize].radius;
+        for (number, wall) in self.world.walls.iter().enumerate() {
+            let time = wall.meeting::<D, M>(me, radius, &self.world.field);
+            if time < next.time {
                 *next = Next { time, what: What::wall(number), partner_bends: wall.bends };
             }
         }

@@ -5,7 +5,9 @@
 //! time is in the ball's own record. Entries are not taken out when a ball's event is replaced: their number no longer
 //! fits, and they are passed over when their bucket comes up.
 
-use super::ball::{Event, NONE};
+use super::event::Event;
+use crate::memory;
+use crate::world::NONE;
 
 /// How many entries a bucket has when it comes up, about.
 const PER_BUCKET: f64 = 8.0;
@@ -73,8 +75,8 @@ impl Queue {
         let buckets = events.len().next_power_of_two().max(64);
         Queue {
             per_time,
-            ring: super::memory::filled(buckets, NONE),
-            chunks: super::memory::reserved(events.len() / 2),
+            ring: memory::filled(buckets, NONE),
+            chunks: memory::reserved(events.len() / 2),
             free: NONE,
             front_bucket: 0,
             front: Vec::with_capacity(64),

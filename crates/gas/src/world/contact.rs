@@ -81,97 +81,24 @@ impl<const D: usize> Field<D> {
     }
 }
 
-/// How many balls are compared with one at a time, at most.
-pub(crate) const ROOM: usize = 64;
-
-/// How many numbers the compiler is invited to work on at once.
-const LANES: usize = 8;
-
-/// Balls near one, number by number, and what comes of comparing them with it.
-#[derive(Debug)]
-#[repr(C, align(64))]
-pub(crate) struct Near<const D: usize> {
-    position: [[f64; ROOM]; D],
-    velocity: [[f64; ROOM]; D],
-    time: [f64; ROOM],
-    reach: [f64; ROOM],
-    /// Later of the two balls' times.
-    start: [f64; ROOM],
-    /// Half the rate of change of the distance squared at `start`.
-    b: [f64; ROOM],
-    /// Distance squared at `start`, less that at contact.
-    c: [f64; ROOM],
-    /// Relative speed squared.
-    a: [f64; ROOM],
-}
-
-impl<const D: usize> Near<D> {
-    pub fn new() -> Self {
-        let zero = [0.0; ROOM];
-        Near { position: [zero; D], velocity: [zero; D], time: zero, reach: zero, start: zero, b: zero, c: zero, a: zero }
-    }
-
-    #[inline(always)]
-    pub fn set(&mut self, at: usize, ball: &Ball<D>, reach: f64) {
-        let at = at & (ROOM - 1);
-        for axis in 0..D {
-            self.position[axis][at] = ball.position[axis];
-            self.velocity[axis][at] = ball.velocity[axis];
-        }
-        self.time[at] = ball.time;
-        self.reach[at] = reach;
-    }
-
-    /// Compares the first `count` balls with `me`; a bit is set for each that is met, perhaps, before `limit`. With `WRAP`,
-    /// across periodic sides too.
-    #[inline(always)]
-    pub fn compare<M: Mode, const WRAP: bool>(&mut self, count: usize, me: &Ball<D>, field: &Field<D>, limit: f64) -> u64 {
-        let mine = Path { position: me.position, velocity: me.velocity, time: me.time };
-        let mut met = 0;
-        for block in 0..count.div_ceil(LANES) {
-            let mut maybe = [false; LANES];
-            for (lane, maybe) in maybe.iter_mut().enumerate() {
-                let at = (block * LANES + lane) & (ROOM - 1);
-                let position: [f64; D] = std::array::from_fn(|axis| self.position[axis][at]);
-                let velocity: [f64; D] = std::array::from_fn(|axis| self.velocity[axis][at]);
-                let other = Path { position, velocity, time: self.time[at] };
-                let quadratic = Quadratic::new::<D, M, WRAP>(&mine, &other, self.reach[at], field);
-                *maybe = quadratic.maybe_before::<M>(limit);
-                (self.start[at], self.a[at], self.b[at], self.c[at]) =
-                    (quadratic.start, quadratic.a, quadratic.b, quadratic.c);
-            }
-            let bits = maybe.iter().enumerate().fold(0_u64, |bits, (lane, &maybe)| bits | u64::from(maybe) << lane);
-            met |= bits << (block * LANES & (ROOM - 1));
-        }
-        if count < ROOM { met & ((1 << count) - 1) } else { met }
-    }
-
-    /// When a ball for which [`Near::compare`] set a bit is met.
-    #[inline(always)]
-    pub fn meeting<M: Mode>(&self, at: usize) -> f64 {
-        let at = at & (ROOM - 1);
-        Quadratic { start: self.start[at], a: self.a[at], b: self.b[at], c: self.c[at] }.root::<M>()
-    }
-}
-
 /// A ball's path.
-struct Path<const D: usize> {
-    position: [f64; D],
-    velocity: [f64; D],
-    time: f64,
+pub(crate) struct Path<const D: usize> {
+    pub position: [f64; D],
+    pub velocity: [f64; D],
+    pub time: f64,
 }
 
 /// The distance squared of two balls, less that at contact: a t^2 + 2 b t + c from `start` on.
-struct Quadratic {
-    start: f64,
-    a: f64,
-    b: f64,
-    c: f64,
+pub(crate) struct Quadratic {
+    pub start: f64,
+    pub a: f64,
+    pub b: f64,
+    pub c: f64,
 }
 
 impl Quadratic {
     #[inline(always)]
-    fn new<const D: usize, M: Mode, const WRAP: bool>(a: &Path<D>, b: &Path<D>, reach: f64, field: &Field<D>) -> Self {
+    pub fn new<const D: usize, M: Mode, const WRAP: bool>(a: &Path<D>, b: &Path<D>, reach: f64, field: &Field<D>) -> Self {
         let start = if a.time > b.time { a.time } else { b.time };
         let (since_a, since_b) = (start - a.time, start - b.time);
         let mut apart = [0.0; D];
@@ -211,7 +138,7 @@ impl Quadratic {
 
     /// False where the balls do not meet, or not before `limit`: the meeting is later than c / (-2 b).
     #[inline(always)]
-    fn maybe_before<M: Mode>(&self, limit: f64) -> bool {
+    pub fn maybe_before<M: Mode>(&self, limit: f64) -> bool {
         let meets = self.b * self.b >= self.a * self.c;
         if M::GROWS {
             return meets & ((self.b < 0.0) | (self.a < 0.0));
@@ -221,7 +148,7 @@ impl Quadratic {
 
     /// The meeting, where there is one: the first root, in the form that loses no digits.
     #[inline(always)]
-    fn root<M: Mode>(&self) -> f64 {
+    pub fn root<M: Mode>(&self) -> f64 {
         let root = (self.b * self.b - self.a * self.c).sqrt();
         if M::GROWS && self.b > 0.0 {
             // Balls that part, and are caught up by their growth.
@@ -229,11 +156,4 @@ impl Quadratic {
         }
         self.start + self.c / (root - self.b)
     }
-}
-
-/// When two balls meet; infinite for never. The same, to the bit, as [`Near`] finds.
-pub(crate) fn meeting_of<const D: usize, M: Mode>(a: &Ball<D>, b: &Ball<D>, reach: f64, field: &Field<D>) -> f64 {
-    let path = |ball: &Ball<D>| Path { position: ball.position, velocity: ball.velocity, time: ball.time };
-    let quadratic = Quadratic::new::<D, M, true>(&path(a), &path(b), reach, field);
-    if quadratic.maybe_before::<M>(f64::INFINITY) { quadratic.root::<M>() } else { f64::INFINITY }
 }

@@ -33,13 +33,31 @@ pub(crate) struct Wall {
     pub temperature: Option<f64>,
     /// Opening in the wall, from and to along each of the other axes.
     pub hole: Option<Vec<[f64; 2]>>,
-    /// True for a wall that stays at the edge of the grid: only balls in the outermost cells can hit it.
-    pub at_edge: bool,
+    /// False for a wall that stays where it is.
+    pub moves: bool,
     /// False once it is lifted.
     pub present: bool,
 }
 
 impl Wall {
+    /// A wall at rest that reflects.
+    pub fn fixed(axis: usize, facing: Facing, place: f64) -> Self {
+        Wall {
+            axis,
+            facing,
+            place,
+            speed: 0.0,
+            acceleration: 0.0,
+            since: 0.0,
+            bends: 0,
+            mass: None,
+            temperature: None,
+            hole: None,
+            moves: false,
+            present: true,
+        }
+    }
+
     pub fn place_at(&self, time: f64) -> f64 {
         let since = time - self.since;
         self.place + self.speed * since + 0.5 * self.acceleration * since * since
@@ -49,7 +67,7 @@ impl Wall {
         self.speed + self.acceleration * (time - self.since)
     }
 
-    /// Goes on from `time` with the place it has there.
+    /// Goes on from `time` at another speed, from the place it has there.
     pub fn bend(&mut self, time: f64, speed: f64) {
         (self.place, self.speed, self.since) = (self.place_at(time), speed, time);
         self.bends = self.bends.wrapping_add(1);
@@ -58,6 +76,9 @@ impl Wall {
     /// When a ball hits the wall; infinite for never.
     #[inline(always)]
     pub fn meeting<const D: usize, M: Mode>(&self, ball: &Ball<D>, radius: f64, field: &Field<D>) -> f64 {
+        if !self.present {
+            return f64::INFINITY;
+        }
         let start = ball.time.max(self.since);
         let (position, velocity) = field.state::<M>(ball, start);
         let above = position[self.axis] - self.place_at(start);
