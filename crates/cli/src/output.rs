@@ -44,8 +44,8 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// A rate in words: `4.91 M particle-steps/s`.
-pub fn rate(per_second: f64) -> String {
-    format!("{:.2} M particle-steps/s", per_second * 1e-6)
+pub fn rate(per_second: f64, counted: &str) -> String {
+    format!("{:.2} M {counted}/s", per_second * 1e-6)
 }
 
 #[cfg(test)]

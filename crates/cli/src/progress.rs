@@ -1,6 +1,6 @@
 //! The progress bar.
 
-use crate::output::{duration, rate};
+use crate::output::{duration, number, rate};
 use corpuscle::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -23,11 +23,11 @@ impl Bar {
         let left = progress.left_s.map(|left| format!(", {} left", duration(left))).unwrap_or_default();
         self.0.set_position((progress.fraction() * TICKS as f64) as u64);
         self.0.set_message(format!(
-            "t = {:.1} of {:.1} s, {} particles, {}{left}",
-            progress.time,
-            progress.until,
+            "t = {} of {}, {} particles, {}{left}",
+            number(progress.time),
+            number(progress.until),
             progress.particles,
-            rate(progress.particle_steps_per_s),
+            rate(progress.particle_steps_per_s, progress.counted),
         ));
     }
 

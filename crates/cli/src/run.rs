@@ -31,7 +31,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let folder = recorder.path().display();
     let summary = ended.map_err(anyhow::Error::from).with_context(|| {
         let time = number(simulation.model().time());
-        format!("the run ended at t = {time} s; what was written up to there stays readable in {folder}")
+        format!("the run ended at t = {time}; what was written up to there stays readable in {folder}")
     })?;
     tell(&summary, recorder.path());
     if as_json {
@@ -65,21 +65,31 @@ fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
     Ok(stop)
 }
 
+/// What was done and how fast, in words.
+fn work(summary: &Summary) -> String {
+    match (summary.collisions, summary.collisions_per_s, summary.particle_steps_per_s) {
+        (Some(collisions), Some(per_second), _) => {
+            format!("{collisions} collisions, {}", rate(per_second, "collisions"))
+        }
+        (_, _, Some(per_second)) => format!("{} steps, {}", summary.steps, rate(per_second, "particle-steps")),
+        _ => format!("{} steps", summary.steps),
+    }
+}
+
 /// Tells people how it went.
 fn tell(summary: &Summary, folder: &Path) {
     let folder = folder.display();
     if summary.status == Status::Stopped {
         let time = number(summary.simulated_time_s);
-        eprintln!("interrupted at t = {time} s; go on with\n    corpuscle run --resume {folder}");
+        eprintln!("interrupted at t = {time}; go on with\n    corpuscle run --resume {folder}");
         return;
     }
     eprintln!(
-        "done in {}: {} s simulated, {} particles, {} steps, {}",
+        "done in {}: t = {}, {} particles, {}",
         duration(summary.wall_time_s),
         number(summary.simulated_time_s),
         summary.particles,
-        summary.steps,
-        rate(summary.particle_steps_per_s)
+        work(summary)
     );
     for (quantity, entry) in &summary.ledger {
         let [initial, inflow, outflow, end] = [entry.initial, entry.inflow, entry.outflow, entry.end].map(number);

@@ -9,8 +9,10 @@ pub struct Progress {
     pub until: f64,
     /// Particles now.
     pub particles: usize,
-    /// Particles moved per second of wall-clock time, since the start or the resumption.
+    /// Particles moved (of a gas: collisions) per second of wall-clock time, since the start or the resumption.
     pub particle_steps_per_s: f64,
+    /// What is counted so, in words: `particle-steps` or `collisions`.
+    pub counted: &'static str,
     /// Wall-clock time left if it goes on like this, s; none before the first step.
     pub left_s: Option<f64>,
 }

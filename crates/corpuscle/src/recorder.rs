@@ -2,7 +2,7 @@
 
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_record::{Clock, FrameFormat, Report, RunFolder, Status, Summary, compare_extent};
+use corpuscle_record::{Clock, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -71,6 +71,9 @@ impl Sink for Recorder {
         if let Some(terrain) = &self.terrain {
             self.folder.write_snapshot(model.time(), &model.maps(), terrain)?;
         }
+        if self.scene.gas().is_some() {
+            GasReport::new(self.folder.path(), &self.scene, model)?.write_moment()?;
+        }
         Ok(())
     }
 
@@ -93,8 +96,13 @@ impl Sink for Recorder {
             self.folder.log(&format!("warning: {warning}"))?;
         }
         self.folder.finish(summary)?;
-        if let (Some(terrain), Status::Done | Status::Failed) = (&self.terrain, summary.status) {
-            Report::read(self.folder.path(), &self.scene, terrain)?.write()?;
+        self.folder.write_charts(&model.charts(), &model.paths())?;
+        if summary.status == Status::Stopped {
+            return Ok(());
+        }
+        match &self.terrain {
+            Some(terrain) => Report::read(self.folder.path(), &self.scene, terrain)?.write()?,
+            None => GasReport::new(self.folder.path(), &self.scene, model)?.write()?,
         }
         Ok(())
     }

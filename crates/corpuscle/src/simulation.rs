@@ -108,7 +108,8 @@ impl Simulation {
         let gauges = Schedule::new(run.gauge_period_s(), until);
         let frames = Schedule::new(run.frame_period_s(), until);
         let pauses = Schedule::new(until / PAUSES, until);
-        let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps() };
+        let counted = if self.scene.gas().is_some() { "collisions" } else { "particle-steps" };
+        let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
         if !self.resumed {
             for sink in &mut *sinks {
                 sink.gauges(&*self.model)?;
@@ -154,6 +155,8 @@ impl Simulation {
     fn summary(&self, status: Status, start: Instant) -> Summary {
         let model = &*self.model;
         let wall_time_s = self.wall_time(start);
+        let rate = model.particle_steps() as f64 / wall_time_s;
+        let is_gas = self.scene.gas().is_some();
         Summary {
             model: model.name().into(),
             backend: "cpu".into(),
@@ -163,7 +166,9 @@ impl Simulation {
             steps: model.steps(),
             simulated_time_s: model.time(),
             wall_time_s,
-            particle_steps_per_s: model.particle_steps() as f64 / wall_time_s,
+            particle_steps_per_s: (!is_gas).then_some(rate),
+            collisions: is_gas.then(|| model.steps()),
+            collisions_per_s: is_gas.then(|| model.steps() as f64 / wall_time_s),
             warnings: self.warnings(),
             ledger: ledger_entries(&model.ledger()),
             extent: None,
@@ -176,6 +181,7 @@ struct Meter {
     start: Instant,
     time: f64,
     particle_steps: u64,
+    counted: &'static str,
 }
 
 impl Meter {
@@ -187,6 +193,7 @@ impl Meter {
             until,
             particles: model.particles(),
             particle_steps_per_s: (model.particle_steps() - self.particle_steps) as f64 / wall,
+            counted: self.counted,
             left_s: (done > 0.0).then(|| wall * (until - model.time()) / done),
         }
     }

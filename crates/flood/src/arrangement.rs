@@ -1,7 +1,8 @@
 //! Particles in cell order, together with their images beyond the edges.
 
 use crate::edges::{EdgeRules, Image};
-use corpuscle_sph::{Cells, NeighbourLists};
+use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
+use rayon::prelude::*;
 
 /// One place in the arrangement: a particle itself, or its image beyond an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,7 +46,8 @@ pub struct Arrangement {
 
 #[derive(Debug, Default)]
 struct Unsorted {
-    entries: Vec<Entry>,
+    /// The images, which stand behind the particles.
+    images: Vec<Entry>,
     x: Vec<f64>,
     y: Vec<f64>,
     reach: Vec<f64>,
@@ -53,38 +55,47 @@ struct Unsorted {
 }
 
 impl Arrangement {
-    /// Arranges particles given as (x, y, reach) and their images beyond the edges.
-    pub fn arrange(&mut self, particles: impl Iterator<Item = (f64, f64, f64)>, edges: &EdgeRules, cell_size: f64) {
+    /// Arranges `particles`, which `reaching` tells as (x, y, reach), and their images beyond the edges.
+    pub fn arrange<T: Sync>(
+        &mut self,
+        particles: &[T],
+        reaching: impl Fn(&T) -> (f64, f64, f64) + Sync,
+        edges: &EdgeRules,
+        cell_size: f64,
+    ) {
         let before = &mut self.unsorted;
-        before.entries.clear();
-        before.x.clear();
-        before.y.clear();
-        before.reach.clear();
-        for (from, (x, y, reach)) in particles.enumerate() {
-            let mut put = |image: Image, x: f64, y: f64| {
-                before.entries.push(Entry { from: from as u32, image });
-                before.x.push(x);
-                before.y.push(y);
-                before.reach.push(reach);
-            };
-            put(Image::NONE, x, y);
-            edges.images(x, y, IMAGE_MARGIN * reach, put);
+        for values in [&mut before.x, &mut before.y, &mut before.reach] {
+            values.resize(particles.len(), 0.0);
         }
+        let places = before.x.par_iter_mut().zip(&mut before.y).zip(&mut before.reach).zip(particles);
+        places.with_min_len(FEWEST).for_each(|(((x, y), reach), particle)| (*x, *y, *reach) = reaching(particle));
+        before.add_images(edges);
         let order = self.cells.sort(&before.x, &before.y, cell_size);
-        gather(&mut self.entries, order, &before.entries);
         gather(&mut self.x, order, &before.x);
         gather(&mut self.y, order, &before.y);
         gather(&mut self.reach, order, &before.reach);
-        self.reach_squared.clear();
-        self.reach_squared.extend(self.reach.iter().map(|reach| reach * reach));
+        let squared = self.reach.par_iter().with_min_len(FEWEST).map(|reach| reach * reach);
+        squared.collect_into_vec(&mut self.reach_squared);
+        let count = particles.len();
+        let entry = |&from: &u32| match (from as usize).checked_sub(count) {
+            None => Entry { from, image: Image::NONE },
+            Some(image) => before.images[image],
+        };
+        order.par_iter().with_min_len(FEWEST).map(entry).collect_into_vec(&mut self.entries);
         self.cells.set_reach(&self.reach);
-        self.find_images();
+        self.tell_apart(count);
     }
 
-    fn find_images(&mut self) {
+    /// Finds which places hold particles and which images.
+    fn tell_apart(&mut self, count: usize) {
+        self.images.clear();
+        if count == self.entries.len() {
+            (0..count as u32).into_par_iter().with_min_len(FEWEST).collect_into_vec(&mut self.real);
+            self.particle.clone_from(&self.real);
+            return;
+        }
         let place_of = &mut self.unsorted.place_of;
-        place_of.clear();
-        place_of.resize(self.entries.len(), 0);
+        place_of.resize(count, 0);
         self.real.clear();
         self.particle.clear();
         for (place, entry) in self.entries.iter().enumerate() {
@@ -94,19 +105,16 @@ impl Arrangement {
                 self.real.push(place as u32);
             } else {
                 self.particle.push(IMAGE);
+                self.images.push((place as u32, entry.from));
             }
         }
-        self.images.clear();
-        if self.real.len() < self.entries.len() {
-            let images = self.entries.iter().enumerate().filter(|(_, entry)| entry.image != Image::NONE);
-            self.images.extend(images.map(|(place, entry)| (place as u32, place_of[entry.from as usize])));
-        }
+        self.images.iter_mut().for_each(|(_, shown)| *shown = place_of[*shown as usize]);
     }
 
     /// Brings `particles` into sorted order, by way of `spare`.
-    pub fn sort<T: Copy>(&self, particles: &mut Vec<T>, spare: &mut Vec<T>) {
-        spare.clear();
-        spare.extend(self.real.iter().map(|&place| particles[self.entries[place as usize].from as usize]));
+    pub fn sort<T: Copy + Send + Sync>(&self, particles: &mut Vec<T>, spare: &mut Vec<T>) {
+        let from = |&place: &u32| particles[self.entries[place as usize].from as usize];
+        self.real.par_iter().with_min_len(FEWEST).map(from).collect_into_vec(spare);
         std::mem::swap(particles, spare);
     }
 
@@ -121,7 +129,25 @@ impl Arrangement {
     }
 }
 
-fn gather<T: Copy>(out: &mut Vec<T>, order: &[u32], values: &[T]) {
-    out.clear();
-    out.extend(order.iter().map(|&from| values[from as usize]));
+impl Unsorted {
+    /// Adds the images of the particles near the edges.
+    fn add_images(&mut self, edges: &EdgeRules) {
+        self.images.clear();
+        for from in 0..self.x.len() {
+            let (x, y, reach) = (self.x[from], self.y[from], self.reach[from]);
+            if edges.bounds.holds_disc(x, y, IMAGE_MARGIN * reach) {
+                continue;
+            }
+            edges.images(x, y, IMAGE_MARGIN * reach, |image, x, y| {
+                self.images.push(Entry { from: from as u32, image });
+                self.x.push(x);
+                self.y.push(y);
+                self.reach.push(reach);
+            });
+        }
+    }
+}
+
+fn gather(out: &mut Vec<f64>, order: &[u32], values: &[f64]) {
+    order.par_iter().with_min_len(FEWEST).map(|&from| values[from as usize]).collect_into_vec(out);
 }

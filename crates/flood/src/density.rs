@@ -1,7 +1,7 @@
 //! How many particles stand on a square metre.
 
 use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{Lanes, Searched};
+use corpuscle_sph::{Lanes, LanesExt, Neighbours, PairSum, Simd, SimdBase};
 
 /// Number density of particles, and how it changes with the smoothing length.
 #[derive(Debug, Clone, Copy, Default)]
@@ -12,20 +12,29 @@ pub struct Density {
     pub slope_in_h: f64,
 }
 
+/// Sums densities; holds the squares of the reaches, twice the smoothing lengths.
+pub struct Densities<'a> {
+    /// Squares of the reaches, m2.
+    pub reach_squared: &'a [f64],
+}
+
+impl PairSum<Density> for Densities<'_> {
+    #[inline(always)]
+    fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> Density {
+        Density::sum(simd, found, 0.5 * self.reach_squared[particle].sqrt())
+    }
+}
+
 impl Density {
     /// Sums over one particle's neighbours.
     #[inline(always)]
-    pub fn sum(found: &Searched, h: f64) -> Self {
-        let inverse_h = Lanes::splat(1.0 / h);
-        let mut number = Lanes::ZERO;
-        let mut r_slope = Lanes::ZERO;
-        // Distances beyond the support count as the support's end, where the kernel vanishes.
-        let end = Lanes::splat(4.0 * h * h);
-        for r_squared in found.lanes() {
-            let r_squared = r_squared.min(end).max(Lanes::splat(1e-24 * h * h));
-            let r = r_squared.sqrt();
+    fn sum<S: Simd>(simd: S, found: Neighbours, h: f64) -> Self {
+        let inverse_h = Lanes::splat(simd, 1.0 / h);
+        let mut number = Lanes::splat(simd, 0.0);
+        let mut r_slope = Lanes::splat(simd, 0.0);
+        for (_, r) in found.lanes(simd) {
             number += cubic_spline::value(r, inverse_h);
-            r_slope += r_squared * cubic_spline::slope_over_r(r, Lanes::splat(1.0) / r, inverse_h);
+            r_slope += r * cubic_spline::slope(r, inverse_h);
         }
         let number = number.sum() + cubic_spline::value_of_one(0.0, h);
         Density { number, slope_in_h: (r_slope.sum() - 2.0 * number) / h }
@@ -44,6 +53,7 @@ impl Density {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use corpuscle_sph::{FAR_AWAY, LANES, Level, dispatch};
 
     #[test]
     fn smoothing_length_settles_where_number_and_length_agree() {
@@ -55,9 +65,11 @@ mod tests {
         let mut h = 0.9;
         let mut density = Density::default();
         for _ in 0..8 {
-            let mut near: Vec<f64> = squares.iter().copied().filter(|&r| r < 4.0 * h * h).collect();
-            near.resize(near.len().next_multiple_of(corpuscle_sph::LANES), f64::INFINITY);
-            density = Density::sum(&Searched { particle: 0, r_squared: &near }, h);
+            let mut distance: Vec<f64> = squares.iter().filter(|&&r| r < 4.0 * h * h).map(|r| r.sqrt()).collect();
+            distance.resize(distance.len().next_multiple_of(LANES), FAR_AWAY);
+            let index = vec![0; distance.len()];
+            let found = Neighbours { index: &index, distance: &distance };
+            density = dispatch!(Level::new(), simd => Density::sum(simd, found, h));
             h = density.next_h(h, 1.25);
         }
         assert!((density.number - 1.0).abs() < 2e-2, "{}", density.number);

@@ -16,6 +16,7 @@ use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
+use corpuscle_sph::BLOCK;
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,8 @@ pub struct Flood {
     h: f64,
     map_period: f64,
     state: State,
+    /// Working memory.
+    of_blocks: Vec<f64>,
     /// The time shown, s; up to one step after the state's.
     shown: f64,
 }
@@ -153,6 +156,7 @@ impl Flood {
             volume,
             h,
             state,
+            of_blocks: Vec::new(),
             shown: 0.0,
         };
         model.fill(bodies);
@@ -221,12 +225,16 @@ impl Flood {
     /// Sorts the particles into cells as large as they need them now.
     fn arrange(&mut self) {
         let State { particles, cell_size, .. } = &mut self.state;
-        for particle in particles.iter_mut() {
-            particle.h = particle.next_h;
-        }
+        let renew_block = |particles: &mut [Particle]| {
+            let renewed = particles.iter_mut().map(|particle| {
+                particle.h = particle.next_h;
+                particle.h
+            });
+            renewed.sum::<f64>()
+        };
+        particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.of_blocks);
         if !particles.is_empty() {
-            let mean = particles.iter().map(|particle| particle.h).sum::<f64>() / particles.len() as f64;
-            *cell_size = CELL_OVER_H * mean;
+            *cell_size = CELL_OVER_H * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
         }
         self.scheme.arrange(particles, &self.surroundings, *cell_size);
     }
@@ -247,10 +255,9 @@ impl Flood {
             SchemeName::Paper => evaluation.external.map(|force| step * force),
         };
         impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
-        let before = self.momentum();
-        self.roughness.slow(&mut self.state.particles, self.settings.gravity_m_per_s2, step);
-        let after = self.momentum();
-        self.state.momentum.book(after - before);
+        let gravity = self.settings.gravity_m_per_s2;
+        let slowed = self.roughness.slow(&mut self.state.particles, gravity, step, &mut self.of_blocks);
+        self.state.momentum.book(DENSITY * slowed);
         self.state.external = evaluation.external;
         self.state.time_step = self.limited(evaluation.time_step);
         self.state.steps += 1;
@@ -379,7 +386,7 @@ impl Flood {
 
     fn check(&self, step: f64) -> Result<(), ModelError> {
         let next = self.state.time_step;
-        if next.is_finite() && next > 1e-9 * self.spacing && self.momentum().is_finite() {
+        if next.is_finite() && next > 1e-9 * self.spacing {
             return Ok(());
         }
         Err(ModelError::Breakdown {

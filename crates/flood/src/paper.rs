@@ -11,16 +11,16 @@ use crate::arrangement::{Arrangement, IMAGE};
 use crate::edges::EdgeRule;
 use crate::particle::Particle;
 use crate::scheme::{Evaluation, Scheme, Surroundings};
+use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::Paper as Parameters;
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
-use corpuscle_sph::{BLOCK, LANES, Lanes, Searched};
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, PairSum, Simd, SimdBase, dispatch, gather};
 use corpuscle_terrain::Terrain;
-use multiversion::multiversion;
 use rayon::prelude::*;
 
-/// What the force pass reads of a particle or image.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(align(64))]
+/// What the force pass reads of a particle or image: one cache line, a row of numbers to gather.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C, align(64))]
 struct Parcel {
     x: f64,
     y: f64,
@@ -63,13 +63,13 @@ impl Paper {
         self.densities.resize(x.len(), 0.0);
         // All particles hold much the same water; the sum over W alone times the own mass is exact where they hold the
         // same, and each list is read once only.
-        lists.search(cells, x, y, reach_squared, &mut self.densities, |found| number_density(&found, reach_squared));
+        lists.search(cells, x, y, reach_squared, &mut self.densities, &NumberDensities { reach_squared });
         debug_assert_eq!(entries.len(), x.len());
         particles.par_iter_mut().zip(&*real).for_each(|(particle, &place)| {
             let density = rho0 * particle.volume * self.densities[place as usize];
             particle.depth = density / rho0;
             particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
-            (particle.ground, _) = surroundings.ground(particle.x, particle.y);
+            (particle.ground, particle.ground_slope) = surroundings.ground(particle.x, particle.y);
         });
     }
 
@@ -117,7 +117,7 @@ impl Paper {
                 return;
             }
             let [mut ax, mut ay] = self.accelerations[place as usize];
-            let (_, slope) = surroundings.ground(particle.x, particle.y);
+            let slope = particle.ground_slope;
             ax -= self.gravity * slope[0];
             ay -= self.gravity * slope[1];
             if self.parameters.control_force && step > 0.0 {
@@ -158,41 +158,53 @@ impl Paper {
     }
 }
 
-/// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2.
-#[inline(always)]
-fn number_density(found: &Searched, reach_squared: &[f64]) -> f64 {
-    let h_squared = reach_squared[found.particle];
-    let own = poly6(0.0, h_squared.sqrt());
-    let mut sum = Lanes::ZERO;
-    for r_squared in found.lanes() {
-        let inside = (-(r_squared * (1.0 / h_squared)) + 1.0).positive();
-        sum += inside * inside * inside;
+/// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2; from the squares of the reaches h.
+struct NumberDensities<'a> {
+    reach_squared: &'a [f64],
+}
+
+impl PairSum<f64> for NumberDensities<'_> {
+    #[inline(always)]
+    fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> f64 {
+        let h_squared = self.reach_squared[particle];
+        let own = poly6(0.0, h_squared.sqrt());
+        let mut sum = Lanes::splat(simd, 0.0);
+        for (_, r) in found.lanes(simd) {
+            let inside = (1.0 - r * r * (1.0 / h_squared)).positive();
+            sum += inside * inside * inside;
+        }
+        own * (1.0 + sum.sum())
     }
-    own * (1.0 + sum.sum())
 }
 
 /// Pressure and viscosity on the particles of one block: accelerations, m/s2.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn pair_forces(viscosity: f64, arrangement: &Arrangement, parcels: &[Parcel], first: usize, out: &mut [[f64; 2]]) {
+#[inline(always)]
+fn pair_forces<S: Simd>(
+    simd: S,
+    viscosity: f64,
+    arrangement: &Arrangement,
+    parcels: &[Parcel],
+    first: usize,
+    out: &mut [[f64; 2]],
+) {
+    let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(parcels);
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
         let own = parcels[i];
         // Kernels at h_i: their constants once, the powers of (h - r) in each pair.
         let spiky = spiky_slope(0.0, own.h) / (own.h * own.h);
         let viscous = viscosity_laplacian(0.0, own.h) / own.h;
-        let [mut fx, mut fy] = [Lanes::ZERO; 2];
-        for index in arrangement.lists.of(i).chunks_exact(LANES) {
-            let near: [&Parcel; LANES] = std::array::from_fn(|lane| &parcels[index[lane] as usize]);
-            let of = |value: fn(&Parcel) -> f64| Lanes::from_fn(|lane| value(near[lane]));
-            let (ex, ey) = (of(|p| p.x) - own.x, of(|p| p.y) - own.y);
-            let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-9 * own.h));
-            let inside = (-r + own.h).positive();
-            let share = of(|p| p.mass) / of(|p| p.density);
+        let [mut fx, mut fy] = [Lanes::splat(simd, 0.0); 2];
+        for (index, r) in arrangement.lists.of(i).lanes(simd) {
+            let [x, y, u, v, mass, density, pressure, _] = gather(simd, rows, index);
+            let (ex, ey) = (x - own.x, y - own.y);
+            let inside = (own.h - r).positive();
+            let share = mass / density;
             // f = -sum m_j (p_i + p_j)/(2 rho_j) grad W + mu sum m_j (v_j - v_i)/rho_j lap W
-            let push = share * (of(|p| p.pressure) + own.pressure) * inside * inside * (0.5 * spiky) / r;
+            let push = share * (pressure + own.pressure) * inside * inside * (0.5 * spiky) / r;
             let drag = share * inside * (viscosity * viscous);
-            fx += drag * (of(|p| p.u) - own.u) - push * ex;
-            fy += drag * (of(|p| p.v) - own.v) - push * ey;
+            fx += drag * (u - own.u) - push * ex;
+            fy += drag * (v - own.v) - push * ey;
         }
         *out = [fx.sum() / own.density, fy.sum() / own.density];
     }
@@ -207,8 +219,7 @@ impl Scheme for Paper {
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64) {
-        let reaching = particles.iter().map(|p| (p.x, p.y, p.h));
-        self.arrangement.arrange(reaching, &surroundings.edges, cell_size);
+        self.arrangement.arrange(particles, |p| (p.x, p.y, p.h), &surroundings.edges, cell_size);
         self.arrangement.sort(particles, &mut self.spare);
     }
 
@@ -217,7 +228,8 @@ impl Scheme for Paper {
         self.fill_parcels(particles, surroundings);
         self.accelerations.resize(self.arrangement.len(), [0.0; 2]);
         self.accelerations.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
-            pair_forces(self.parameters.viscosity, &self.arrangement, &self.parcels, block * BLOCK, out);
+            let (viscosity, first) = (self.parameters.viscosity, block * BLOCK);
+            dispatch!(Level::new(), simd => pair_forces(simd, viscosity, &self.arrangement, &self.parcels, first, out));
         });
         let external = self.take_over(particles, surroundings, step);
         Evaluation { time_step: self.parameters.time_step_s, external }

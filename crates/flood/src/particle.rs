@@ -27,6 +27,8 @@ pub struct Particle {
     pub depth: f64,
     /// Height of the ground, m.
     pub ground: f64,
+    /// Slope of the ground `[east, north]`.
+    pub ground_slope: [f64; 2],
     /// Slope of the water's surface.
     pub surface_slope: [f64; 2],
     /// The side over which it has left (0 west, 1 east, 2 south, 3 north): then it is not of this water any more, and goes
@@ -51,6 +53,7 @@ impl Particle {
             next_h: h,
             depth: 0.0,
             ground: 0.0,
+            ground_slope: [0.0; 2],
             surface_slope: [0.0; 2],
             outside: None,
             id,
@@ -69,6 +72,6 @@ impl Particle {
 
     /// Speed, m/s.
     pub fn speed(&self) -> f64 {
-        self.u.hypot(self.v)
+        (self.u * self.u + self.v * self.v).sqrt()
     }
 }

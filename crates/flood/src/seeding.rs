@@ -4,11 +4,11 @@
 //! of five; a disordered but even arrangement behaves the same in every direction.
 
 use crate::arrangement::Arrangement;
-use crate::density::Density;
+use crate::density::{Densities, Density};
 use crate::edges::EdgeRules;
 use crate::particle::Particle;
 use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{LANES, Lanes};
+use corpuscle_sph::{Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch};
 use corpuscle_terrain::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -122,11 +122,10 @@ impl Body<'_> {
         edges: &EdgeRules,
     ) {
         let mean_h = particles.iter().map(|p| p.h).sum::<f64>() / particles.len().max(1) as f64;
-        let reaching = particles.iter().map(|p| (p.x, p.y, 2.0 * p.h));
-        arrangement.arrange(reaching, edges, 1.2 * mean_h.max(1e-12));
+        arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), edges, 1.2 * mean_h.max(1e-12));
         arrangement.sort(particles, spare);
         let Arrangement { cells, lists, x, y, reach_squared, .. } = arrangement;
-        lists.search(cells, x, y, reach_squared, &mut vec![(); x.len()], |_| ());
+        lists.search(cells, x, y, reach_squared, &mut vec![(); x.len()], &());
     }
 
     /// Moves each particle away from where its neighbours crowd, along -sum V grad W.
@@ -137,16 +136,8 @@ impl Body<'_> {
         particles.par_iter_mut().zip(real).for_each(|(particle, &place)| {
             let i = place as usize;
             let h = particle.h;
-            let [mut push_x, mut push_y] = [0.0; 2];
-            for index in lists.of(i).chunks_exact(LANES) {
-                let ex = Lanes::from_fn(|lane| x[index[lane] as usize] - x[i]);
-                let ey = Lanes::from_fn(|lane| y[index[lane] as usize] - y[i]);
-                let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-9 * h));
-                let slope = cubic_spline::slope_over_r(r, Lanes::splat(1.0) / r, Lanes::splat(1.0 / h));
-                let weight = slope * Lanes::from_fn(|lane| area[index[lane] as usize]);
-                push_x += (weight * ex).sum();
-                push_y += (weight * ey).sum();
-            }
+            let list = lists.of(i);
+            let [push_x, push_y] = dispatch!(Level::new(), simd => crowding(simd, x, y, &area, list, i, h));
             let longest = LONGEST_SHIFT * h / self.eta;
             let shift = [push_x, push_y].map(|push| -0.2 * h * h * push);
             let clip = (longest / shift[0].hypot(shift[1]).max(1e-300)).min(1.0);
@@ -176,9 +167,7 @@ impl Body<'_> {
             self.arrange(arrangement, particles, spare, edges);
             let Arrangement { cells, lists, x, y, reach_squared, real, .. } = arrangement;
             densities.resize(x.len(), Density::default());
-            lists.search(cells, x, y, reach_squared, &mut densities, |found| {
-                Density::sum(&found, reach_squared[found.particle].sqrt() / 2.0)
-            });
+            lists.search(cells, x, y, reach_squared, &mut densities, &Densities { reach_squared });
             for (particle, &place) in particles.iter_mut().zip(real.iter()) {
                 let density = densities[place as usize];
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);
@@ -188,4 +177,19 @@ impl Body<'_> {
             }
         }
     }
+}
+
+/// How the neighbours in `list` crowd particle `i`: sum of V grad W over them, 1/m.
+#[inline(always)]
+fn crowding<S: Simd>(simd: S, x: &[f64], y: &[f64], area: &[f64], list: Neighbours, i: usize, h: f64) -> [f64; 2] {
+    let [mut push_x, mut push_y] = [Lanes::splat(simd, 0.0); 2];
+    let inverse_h = Lanes::splat(simd, 1.0 / h);
+    for (index, r) in list.lanes(simd) {
+        let of = |values: &[f64]| Lanes::from_fn(simd, |lane| values[index[lane]]);
+        let (ex, ey) = (of(x) - x[i], of(y) - y[i]);
+        let weight = cubic_spline::slope(r, inverse_h) / r * of(area);
+        push_x += weight * ex;
+        push_y += weight * ey;
+    }
+    [push_x.sum(), push_y.sum()]
 }

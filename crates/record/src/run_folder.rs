@@ -1,12 +1,13 @@
 //! A run's folder while the run goes on.
 
+use crate::charts::{write_chart, write_paths};
 use crate::checkpoint::{Progress, checksum};
 use crate::frames::{FrameFormat, write_pvd};
 use crate::gauges::GaugeWriter;
 use crate::maps::{self, SNAPSHOT};
 use crate::whole::write_bytes;
 use crate::{Clock, RecordError, Summary, write_extent};
-use corpuscle_model::{Frame, GaugeColumn, Map};
+use corpuscle_model::{Chart, Frame, GaugeColumn, Map};
 use corpuscle_terrain::Terrain;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -167,6 +168,18 @@ impl RunFolder {
             Some(depth) => write_extent(&folder.join("extent.geojson"), terrain, &depth.values),
             None => Ok(()),
         }
+    }
+
+    /// Writes charts as tables, `charts/NAME.csv`, and paths, `path.csv`. A model without them writes none.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_charts(&self, charts: &[Chart], paths: &[corpuscle_model::Path]) -> Result<(), RecordError> {
+        if !charts.is_empty() {
+            let folder = self.subfolder("charts")?;
+            charts.iter().try_for_each(|chart| write_chart(&folder, chart))?;
+        }
+        if paths.is_empty() { Ok(()) } else { write_paths(&self.path, paths) }
     }
 
     /// Writes the checkpoint over the one before.

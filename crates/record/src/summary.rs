@@ -29,8 +29,15 @@ pub struct Summary {
     pub simulated_time_s: f64,
     /// Wall-clock time, s, over all parts of an interrupted run.
     pub wall_time_s: f64,
-    /// Particles moved per second of wall-clock time.
-    pub particle_steps_per_s: f64,
+    /// Particles moved per second of wall-clock time (of a model that steps; a gas counts collisions).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub particle_steps_per_s: Option<f64>,
+    /// Collisions (of a gas).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collisions: Option<u64>,
+    /// Collisions per second of wall-clock time (of a gas).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collisions_per_s: Option<f64>,
     /// Things a user should know, in sentences.
     pub warnings: Vec<String>,
     /// The balances, by quantity: `water_m3`.
@@ -118,7 +125,9 @@ mod tests {
             steps: 20,
             simulated_time_s: 0.1 + 0.2,
             wall_time_s: 1.0,
-            particle_steps_per_s: 200.0,
+            particle_steps_per_s: Some(200.0),
+            collisions: None,
+            collisions_per_s: None,
             warnings: vec!["no reference system".into()],
             ledger: ledger_entries(&Ledger { balances: vec![water] }),
             extent: None,

@@ -111,7 +111,7 @@ fn elongated_terrain_is_stretched_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     let channel = "bump]\nextent = { length_m = 1000.0, width_m = 4.0, cell_m = 1.0 }\nheight_m = 0.5";
     let html = small_run(folder.path(), channel, |cell| cell % 1000 < 500);
-    assert!(html.contains("stretched 25.0 times north–south"));
+    assert!(html.contains("stretched 25 times north–south"));
 }
 
 #[test]

@@ -33,6 +33,7 @@ fn collect(name: &str, value: &Value, keys: &mut BTreeMap<Key, Value>) {
         let below = match (name, key.as_str()) {
             ("scene", key) => key.to_owned(),
             (_, "extent") => "extent".to_owned(),
+            ("gas.walls", _) => "side".to_owned(),
             (name, key) => format!("{name}.{key}"),
         };
         match value {
@@ -46,8 +47,12 @@ fn collect(name: &str, value: &Value, keys: &mut BTreeMap<Key, Value>) {
 }
 
 fn keys_of(scene: &Scene) -> BTreeMap<Key, Value> {
+    keys_of_value("scene", &Value::try_from(scene).unwrap())
+}
+
+fn keys_of_value(name: &str, value: &Value) -> BTreeMap<Key, Value> {
     let mut keys = BTreeMap::new();
-    collect("scene", &Value::try_from(scene).unwrap(), &mut keys);
+    collect(name, value, &mut keys);
     keys
 }
 
@@ -104,10 +109,73 @@ fn full(terrain: Terrain) -> Scene {
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 
+/// A gas with every key written, whether or not they go together. No field is left to a default.
+fn full_gas(method: Method) -> Scene {
+    let both = Some(vec![0.0; 2]);
+    let moving = Wall::Moving { velocity: 1.0, until_s: Some(1.0) };
+    let walls = Walls {
+        x_min: Wall::Thermal { temperature: 1.0 },
+        x_max: Wall::Piston { mass: 1.0, pressure: 1.0, velocity: 1.0 },
+        y_min: moving,
+        y_max: Wall::Motion(Motion::Sinusoid { amplitude: 1.0, period_s: 1.0 }),
+        z_min: Some(Wall::Motion(Motion::Displacement(Series::Constant(0.0)))),
+        z_max: Some(Wall::Fixed),
+    };
+    let hole = Some(Hole { from: vec![0.0], to: vec![1.0] });
+    let gas = Gas {
+        size: vec![1.0; 2],
+        units: Units::Si,
+        method,
+        gravity: both.clone(),
+        restitution: 1.0,
+        contact_time_s: Some(1.0),
+        reversed_at_s: Some(1.0),
+        follow: Some(0),
+        walls,
+        partition: Some(Partition { axis: Axis::X, at: 0.5, lifted_at_s: Some(1.0), hole }),
+        measure: Measure {
+            from_s: Some(1.0),
+            speed_bins: 1,
+            profile_axis: Axis::X,
+            profile_bins: 1,
+            pair_distance: Some(1.0),
+            pair_bins: 1,
+        },
+        ball: vec![Ball {
+            name: "a".into(),
+            position: vec![0.0; 2],
+            velocity: both.clone(),
+            radius: 1.0,
+            mass: 1.0,
+            colour: Some("a".into()),
+        }],
+        species: vec![Species {
+            name: "a".into(),
+            count: Some(1),
+            packing: Some(1.0),
+            radius: 1.0,
+            mass: 1.0,
+            temperature: 1.0,
+            speeds: Speeds::Maxwell,
+            velocity: both,
+            region: Some(Region { from: vec![0.0; 2], to: vec![1.0; 2] }),
+            start: Start::Random,
+            colour: Some("a".into()),
+        }],
+    };
+    let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
+    let model = ModelScene::Gas(Box::new(gas));
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+}
+
 #[test]
 fn the_guide_tells_every_key_and_no_other() {
-    let known: BTreeSet<Key> =
-        all_terrains().into_iter().flat_map(|terrain| keys_of(&full(terrain)).into_keys()).collect();
+    let floods = all_terrains().map(full);
+    let gases = [Method::EventDriven, Method::FixedStep { time_step_s: 1.0 }].map(full_gas);
+    let mut known: BTreeSet<Key> = floods.iter().chain(&gases).flat_map(|scene| keys_of(scene).into_keys()).collect();
+    // A side is one of several tables, or a word.
+    let fixed = Walls { z_min: Some(Wall::Fixed), z_max: Some(Wall::Fixed), ..Walls::default() };
+    known.extend(keys_of_value("gas.walls", &Value::try_from(fixed).unwrap()).into_keys());
     let mut told: BTreeSet<Key> = told().into_keys().collect();
     // Its value is the table that follows.
     assert!(told.remove(&("flood.water".into(), "block".into())));
@@ -123,21 +191,48 @@ fn the_guide_tells_the_defaults() {
     for kind in ["file = { path = \"a\" }", "valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"] {
         let text = format!("run.until_s = 1\nflood = {{ water = [{{ level_m = 1 }}] }}\nterrain.{kind}");
         let scene = Scene::parse(&text, "smallest", &[]).unwrap();
-        let given = ["path", "until_s", "level_m", "water", "inflow", "gauge", "section"];
-        for (key, default) in keys_of(&scene).into_iter().filter(|((_, name), _)| !given.contains(&name.as_str())) {
-            assert_eq!(told[&key], default.to_string(), "{key:?}");
-            compared += 1;
-        }
+        compared += compare_defaults(&scene, &told);
     }
-    assert!(compared > 50, "{compared}");
+    let gas = "run.until_s = 1\ngas = { size = [9, 9], ball = [{ position = [2, 2], radius = 1, mass = 1 }], species = [\
+               { name = \"a\", count = 1, radius = 1, mass = 1, temperature = 1 }], walls = { x_max = { piston = { \
+               mass = 1, pressure = 1 } } } }";
+    compared += compare_defaults(&Scene::parse(gas, "smallest", &[]).unwrap(), &told);
+    assert!(compared > 65, "{compared}");
+}
+
+/// Compares the values of keys that the scene does not give with what is told; gives their number.
+fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
+    let given = ["level_m", "water", "inflow", "gauge", "section", "count"];
+    let is_default = |key: &Key| !given.contains(&key.1.as_str()) && told[key] != "required";
+    let mut compared = 0;
+    for (key, default) in keys_of(scene).into_iter().filter(|(key, _)| is_default(key)) {
+        assert_eq!(told[&key], default.to_string(), "{key:?}");
+        compared += 1;
+    }
+    compared
 }
 
 #[test]
 fn the_guide_tells_the_forms_of_values() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md");
     let text = std::fs::read_to_string(path).unwrap();
-    let forms =
-        ["{ raster = ", "{ csv = ", "{ stage = ", "\"open\"", "\"wall\"", "\"periodic\"", "\"fill\"", "\"paper\""];
+    let forms = [
+        "{ raster = ",
+        "{ csv = ",
+        "{ stage = ",
+        "{ thermal = ",
+        "{ piston = ",
+        "{ moving = ",
+        "{ motion = ",
+        "\"si\"",
+        "\"list\"",
+        "\"lattice\"",
+        "\"open\"",
+        "\"wall\"",
+        "\"periodic\"",
+        "\"fill\"",
+        "\"paper\"",
+    ];
     for form in forms {
         assert!(text.contains(form), "{form}");
     }

@@ -1,5 +1,7 @@
 //! Square cells over the particles: counting sort, so that those of one cell and of one row of cells lie together.
 
+use rayon::prelude::*;
+
 /// A grid of square cells with the particles of each, as ranges of the sorted order.
 #[derive(Debug, Default)]
 pub struct Cells {
@@ -14,8 +16,13 @@ pub struct Cells {
     cell: Vec<u32>,
     /// Largest reach that touches each cell: how far a particle in it must look.
     reach: Vec<f64>,
+    /// The same from the particles of the cell's own row.
+    along_rows: Vec<f64>,
     order: Vec<u32>,
 }
+
+/// Fewer particles or cells than this are not worth a thread of their own.
+pub const FEWEST: usize = 2048;
 
 impl Cells {
     /// Sorts the places `x`, `y` into cells of about `size` (larger where the area would take too many) and returns the
@@ -23,21 +30,21 @@ impl Cells {
     pub fn sort(&mut self, x: &[f64], y: &[f64], size: f64) -> &[u32] {
         self.lay_over(x, y, size);
         let cells = self.columns * self.rows;
+        let (x_min, y_min, size, columns, rows) = (self.x_min, self.y_min, self.size, self.columns, self.rows);
+        let cell_of = |(&x, &y): (&f64, &f64)| {
+            let column = ((x - x_min) / size) as usize;
+            let row = ((y - y_min) / size) as usize;
+            (row.min(rows - 1) * columns + column.min(columns - 1)) as u32
+        };
+        x.par_iter().zip(y).with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut self.cell);
         self.start.clear();
         self.start.resize(cells + 1, 0);
-        self.cell.clear();
-        self.cell.extend(x.iter().zip(y).map(|(&x, &y)| {
-            let column = ((x - self.x_min) / self.size) as usize;
-            let row = ((y - self.y_min) / self.size) as usize;
-            (row.min(self.rows - 1) * self.columns + column.min(self.columns - 1)) as u32
-        }));
         for &cell in &self.cell {
             self.start[cell as usize + 1] += 1;
         }
         for cell in 0..cells {
             self.start[cell + 1] += self.start[cell];
         }
-        self.order.clear();
         self.order.resize(x.len(), 0);
         for (particle, &cell) in self.cell.iter().enumerate() {
             let place = &mut self.start[cell as usize];
@@ -63,31 +70,47 @@ impl Cells {
 
     /// Learns how far particles look: `reach[k]` of the k-th particle in sorted order. After this a search from any
     /// place covers all particles that reach it, whether or not it reaches them.
+    ///
+    /// A reach spreads to the cells that it touches first along the rows, then from row to row: a few cells more than a
+    /// circle would touch, for far less work.
     pub fn set_reach(&mut self, reach: &[f64]) {
-        self.reach.clear();
-        self.reach.resize(self.columns * self.rows, 0.0);
-        for row in 0..self.rows {
-            for column in 0..self.columns {
-                let cell = row * self.columns + column;
-                let inside = self.start[cell] as usize..self.start[cell + 1] as usize;
+        let Self { size, columns, rows, .. } = *self;
+        let in_cells = |reach: f64| (reach / size) as usize + 1;
+        self.along_rows.resize(columns * rows, 0.0);
+        let (start, along_rows) = (&self.start, &mut self.along_rows);
+        let rows_together = (FEWEST / columns).max(1);
+        let spread_along_row = |(row, line): (usize, &mut [f64])| {
+            line.fill(0.0);
+            for column in 0..columns {
+                let cell = row * columns + column;
+                let inside = start[cell] as usize..start[cell + 1] as usize;
                 let largest = reach[inside].iter().copied().fold(0.0, f64::max);
                 if largest > 0.0 {
-                    self.touch(column, row, largest);
+                    let cells = in_cells(largest);
+                    let touched = column.saturating_sub(cells)..(column + cells + 1).min(columns);
+                    line[touched].iter_mut().for_each(|seen| *seen = seen.max(largest));
                 }
             }
-        }
-    }
-
-    fn touch(&mut self, column: usize, row: usize, reach: f64) {
-        let cells = (reach / self.size) as usize + 1;
-        for row in row.saturating_sub(cells)..(row + cells + 1).min(self.rows) {
-            let line = row * self.columns;
-            for seen in
-                &mut self.reach[line + column.saturating_sub(cells)..line + (column + cells + 1).min(self.columns)]
-            {
-                *seen = seen.max(reach);
+            line.iter().copied().fold(0.0, f64::max)
+        };
+        let lines = along_rows.par_chunks_mut(columns).enumerate().with_min_len(rows_together);
+        let largest = lines.map(spread_along_row).reduce(|| 0.0, f64::max);
+        let farthest = in_cells(largest);
+        let along_rows = &self.along_rows;
+        let spread_to_rows = |(row, line): (usize, &mut [f64])| {
+            line.copy_from_slice(&along_rows[row * columns..][..columns]);
+            for other in row.saturating_sub(farthest)..(row + farthest + 1).min(rows) {
+                // What touches this row from that one reaches farther than the rows between them.
+                let between = (row.abs_diff(other).saturating_sub(1)) as f64 * size;
+                for (seen, &near) in line.iter_mut().zip(&along_rows[other * columns..][..columns]) {
+                    if near >= between && near > *seen {
+                        *seen = near;
+                    }
+                }
             }
-        }
+        };
+        self.reach.resize(columns * rows, 0.0);
+        self.reach.par_chunks_mut(columns).enumerate().with_min_len(rows_together).for_each(spread_to_rows);
     }
 
     /// How far a search from (x, y) must look to find all particles that reach it.
@@ -112,7 +135,7 @@ impl Cells {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.start.capacity() + self.cell.capacity() + self.order.capacity()) + 8 * self.reach.capacity()
+        4 * (self.start.capacity() + self.cell.capacity() + self.order.capacity()) + 16 * self.reach.capacity()
     }
 }
 
@@ -120,7 +143,9 @@ fn range(values: &[f64]) -> (f64, f64) {
     if values.is_empty() {
         return (0.0, 0.0);
     }
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+    let none = || (f64::INFINITY, f64::NEG_INFINITY);
+    let ranges = values.par_iter().with_min_len(FEWEST).map(|&value| (value, value));
+    ranges.reduce(none, |(low, high), (lower, higher)| (low.min(lower), high.max(higher)))
 }
 
 #[cfg(test)]

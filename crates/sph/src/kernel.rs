@@ -3,7 +3,7 @@
 //! Each says its formula, its normalisation, its support and where it comes from. `r` is the distance of two
 //! particles, `h` the smoothing length.
 
-use crate::Lanes;
+use crate::{Lanes, LanesExt, Simd};
 use std::f64::consts::PI;
 
 /// Cubic spline (Monaghan & Lattanzio 1985), support 2h.
@@ -18,21 +18,20 @@ pub mod cubic_spline {
 
     /// W(r, h), 1/m2.
     #[inline(always)]
-    pub fn value(r: Lanes, inverse_h: Lanes) -> Lanes {
+    pub fn value<S: Simd>(r: Lanes<S>, inverse_h: Lanes<S>) -> Lanes<S> {
         let q = r * inverse_h;
-        let outer = (Lanes::splat(2.0) - q).positive();
-        let inner = (Lanes::splat(1.0) - q).positive();
+        let outer = (2.0 - q).positive();
+        let inner = (1.0 - q).positive();
         (outer * outer * outer - inner * inner * inner * 4.0) * (inverse_h * inverse_h * SIGMA)
     }
 
-    /// -dW/dr / r, 1/m4: times the vector from i to j it is the gradient of W with respect to the place of i.
-    /// `r` must be above 0 in every lane.
+    /// -dW/dr, 1/m3: times the unit vector from i to j it is the gradient of W with respect to the place of i.
     #[inline(always)]
-    pub fn slope_over_r(r: Lanes, inverse_r: Lanes, inverse_h: Lanes) -> Lanes {
+    pub fn slope<S: Simd>(r: Lanes<S>, inverse_h: Lanes<S>) -> Lanes<S> {
         let q = r * inverse_h;
-        let outer = (Lanes::splat(2.0) - q).positive();
-        let inner = (Lanes::splat(1.0) - q).positive();
-        (outer * outer - inner * inner * 4.0) * (inverse_h * inverse_h * inverse_h * (3.0 * SIGMA)) * inverse_r
+        let outer = (2.0 - q).positive();
+        let inner = (1.0 - q).positive();
+        (outer * outer - inner * inner * 4.0) * (inverse_h * inverse_h * inverse_h * (3.0 * SIGMA))
     }
 
     /// W(r, h) of one pair, 1/m2.
@@ -72,6 +71,7 @@ pub fn viscosity_laplacian(r: f64, h: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Level, SimdBase, dispatch};
 
     /// Integral of f(r) over the plane inside `support`, by the midpoint rule.
     fn over_the_plane(support: f64, f: impl Fn(f64) -> f64) -> f64 {
@@ -97,16 +97,22 @@ mod tests {
         assert!((over_the_plane(h, |r| 0.25 * r * r * viscosity_laplacian(r, h)) - 1.0).abs() < 1e-6);
     }
 
-    #[test]
-    fn lanes_agree_with_one_pair_and_with_the_difference_quotient() {
+    #[inline(always)]
+    fn agree<S: Simd>(simd: S) {
         let h = 0.7;
+        let splat = |value: f64| Lanes::splat(simd, value);
         for r in [0.05, 0.3, 0.69, 0.71, 1.2, 1.39, 1.5] {
-            let w = cubic_spline::value(Lanes::splat(r), Lanes::splat(1.0 / h)).0[5];
+            let w = cubic_spline::value(splat(r), splat(1.0 / h))[5];
             assert!((w - cubic_spline::value_of_one(r, h)).abs() < 1e-13);
             let e = 1e-6;
             let difference = (cubic_spline::value_of_one(r + e, h) - cubic_spline::value_of_one(r - e, h)) / (2.0 * e);
-            let slope = cubic_spline::slope_over_r(Lanes::splat(r), Lanes::splat(1.0 / r), Lanes::splat(1.0 / h)).0[0];
-            assert!((-slope * r - difference).abs() < 1e-6, "at {r}: {} against {difference}", -slope * r);
+            let slope = cubic_spline::slope(splat(r), splat(1.0 / h))[0];
+            assert!((-slope - difference).abs() < 1e-6, "at {r}: {} against {difference}", -slope);
         }
+    }
+
+    #[test]
+    fn lanes_agree_with_one_pair_and_with_the_difference_quotient() {
+        dispatch!(Level::new(), simd => agree(simd));
     }
 }

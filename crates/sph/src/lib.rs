@@ -8,6 +8,6 @@ pub mod kernel;
 mod lanes;
 mod neighbours;
 
-pub use cells::Cells;
-pub use lanes::{LANES, Lanes};
-pub use neighbours::{BLOCK, NeighbourLists, Searched};
+pub use cells::{Cells, FEWEST};
+pub use lanes::{LANES, Lanes, LanesExt, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, gather};
+pub use neighbours::{BLOCK, FAR_AWAY, NeighbourLists, Neighbours, PairSum};

@@ -1,7 +1,8 @@
 //! Lists of neighbours: pairs of particles of which at least one reaches the other.
 
+use crate::lanes::{Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
 use crate::{Cells, LANES, Lanes};
-use multiversion::multiversion;
+use fearless_simd::{mask32x8, u32x8};
 use rayon::prelude::*;
 
 /// Particles of one block of lists; work is shared out by blocks, so results never depend on the number of threads.
@@ -18,20 +19,36 @@ pub struct NeighbourLists {
 struct Block {
     start: Vec<u32>,
     index: Vec<u32>,
+    distance: Vec<f64>,
 }
 
-/// What a search over one particle's candidates found, in the lists' order.
-pub struct Searched<'a> {
-    /// The particle.
-    pub particle: usize,
-    /// Squared distances of the neighbours, m2; filled up to a multiple of [`LANES`] with `f64::INFINITY`.
-    pub r_squared: &'a [f64],
+/// The neighbours of one particle, filled up with the particle itself to a multiple of [`LANES`].
+#[derive(Clone, Copy)]
+pub struct Neighbours<'a> {
+    /// Their numbers.
+    pub index: &'a [u32],
+    /// Their distances, m: never 0; where the list is filled up, [`FAR_AWAY`].
+    pub distance: &'a [f64],
+}
+
+/// Distance at which nothing is felt, m; its square is still a number.
+pub const FAR_AWAY: f64 = 1e150;
+
+/// A sum over the neighbours of a particle.
+pub trait PairSum<T>: Sync {
+    /// Sums over the neighbours found of `particle`.
+    fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> T;
+}
+
+/// No sum: for who wants the lists only.
+impl PairSum<()> for () {
+    fn sum<S: Simd>(&self, _: S, _: usize, _: Neighbours) {}
 }
 
 impl NeighbourLists {
     /// Finds the neighbours of all particles. `x`, `y` and `reach` are in the order of `cells`, whose reach is set. Two
-    /// particles are neighbours where their distance is below the larger of their reaches. `each` is called once for
-    /// every particle with what was found, and its result goes to `out`.
+    /// particles are neighbours where their distance is below the larger of their reaches. `sum` is called once for every
+    /// particle with what was found, and its result goes to `out`.
     pub fn search<T: Send>(
         &mut self,
         cells: &Cells,
@@ -39,101 +56,133 @@ impl NeighbourLists {
         y: &[f64],
         reach_squared: &[f64],
         out: &mut [T],
-        each: impl Fn(Searched) -> T + Sync,
+        sum: &impl PairSum<T>,
     ) {
         self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
+        let places = Places { x, y, reach_squared };
         self.blocks.par_iter_mut().zip(out.par_chunks_mut(BLOCK)).enumerate().for_each(|(number, (block, out))| {
             let first = number * BLOCK;
-            search_block(block, cells, x, y, reach_squared, first, out, &each);
+            dispatch!(Level::new(), simd => search_block(simd, block, cells, places, first, out, sum));
         });
     }
 
-    /// The neighbours of particle `i`, filled up with `i` itself to a multiple of [`LANES`].
+    /// The neighbours of particle `i`.
     #[inline(always)]
-    pub fn of(&self, i: usize) -> &[u32] {
+    pub fn of(&self, i: usize) -> Neighbours<'_> {
         let block = &self.blocks[i / BLOCK];
         let k = i % BLOCK;
-        &block.index[block.start[k] as usize..block.start[k + 1] as usize]
+        let list = block.start[k] as usize..block.start[k + 1] as usize;
+        Neighbours { index: &block.index[list.clone()], distance: &block.distance[list] }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.blocks.iter().map(|block| 4 * (block.start.capacity() + block.index.capacity())).sum()
+        self.blocks.iter().map(|block| 4 * block.start.capacity() + 12 * block.index.capacity()).sum()
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn search_block<T>(
+/// Where the particles are and the squares of how far they reach, in the order of the cells.
+#[derive(Clone, Copy)]
+struct Places<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    reach_squared: &'a [f64],
+}
+
+#[inline(always)]
+fn search_block<S: Simd, T>(
+    simd: S,
     block: &mut Block,
     cells: &Cells,
-    x: &[f64],
-    y: &[f64],
-    reach_squared: &[f64],
+    places: Places,
     first: usize,
     out: &mut [T],
-    each: &impl Fn(Searched) -> T,
+    sum: &impl PairSum<T>,
 ) {
-    block.start.clear();
-    block.index.clear();
-    block.start.push(0);
-    let mut r_squared = Vec::new();
+    let Block { start, index, distance } = block;
+    start.clear();
+    start.push(0);
+    let mut end = 0;
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
-        let begin = block.index.len();
-        r_squared.clear();
-        let (xi, yi) = (x[i], y[i]);
+        let begin = end;
+        let (xi, yi) = (places.x[i], places.y[i]);
+        let mut found = 0;
         for range in cells.ranges(xi, yi, cells.reach_at(xi, yi)) {
-            append_within(block, &mut r_squared, x, y, reach_squared, i, range);
+            // Room for every candidate and for the lanes written beyond the last.
+            let room = begin + found + range.len() + 2 * LANES;
+            if index.len() < room {
+                index.resize(room, 0);
+                distance.resize(room, 0.0);
+            }
+            let rest = begin + found;
+            found += keep_near(simd, &mut index[rest..], &mut distance[rest..], places, i, range);
         }
-        let found = block.index.len() - begin;
-        let full = found.next_multiple_of(LANES);
-        block.index.resize(begin + full, i as u32);
-        r_squared.resize(full, f64::INFINITY);
-        block.start.push(block.index.len() as u32);
-        *out = each(Searched { particle: i, r_squared: &r_squared });
+        end = begin + found.next_multiple_of(LANES);
+        index[begin + found..end].fill(i as u32);
+        distance[begin + found..end].fill(FAR_AWAY * FAR_AWAY);
+        start.push(end as u32);
+        let nearest_squared = 1e-24 * places.reach_squared[i];
+        for lanes in distance[begin..end].chunks_exact_mut(LANES) {
+            Lanes::from_slice(simd, lanes).max(nearest_squared).sqrt().store_slice(lanes);
+        }
+        let found = Neighbours { index: &index[begin..end], distance: &distance[begin..end] };
+        *out = sum.sum(simd, i, found);
     }
 }
 
-/// Appends those of `range` that are neighbours of `i`. Every candidate is written and only the neighbours are kept, so
-/// that there is no branch to mispredict.
+/// Writes those of `range` that are neighbours of `i`, and their squared distances, and says how many they are. What
+/// stands behind them is left undefined.
 #[inline(always)]
-fn append_within(
-    block: &mut Block,
-    r_squared: &mut Vec<f64>,
-    x: &[f64],
-    y: &[f64],
-    reach_squared: &[f64],
+fn keep_near<S: Simd>(
+    simd: S,
+    index: &mut [u32],
+    distance: &mut [f64],
+    places: Places,
     i: usize,
     range: std::ops::Range<usize>,
-) {
-    let (xi, yi, reach) = (x[i], y[i], reach_squared[i]);
-    let begin = block.index.len();
-    block.index.resize(begin + range.len(), 0);
-    let distances = r_squared.len();
-    r_squared.resize(distances + range.len(), 0.0);
-    let index = &mut block.index[begin..];
-    let kept_distance = &mut r_squared[distances..];
+) -> usize {
+    let (xi, yi, reach) = (places.x[i], places.y[i], places.reach_squared[i]);
+    let counting = u32x8::from_fn(simd, |lane| lane as u32);
     let mut kept = 0;
-    let (xs, ys, reaches) = (&x[range.clone()], &y[range.clone()], &reach_squared[range.clone()]);
-    for (k, ((&xj, &yj), &reach_j)) in xs.iter().zip(ys).zip(reaches).enumerate() {
-        let (dx, dy) = (xj - xi, yj - yi);
-        let distance = dx * dx + dy * dy;
-        let j = range.start + k;
-        index[kept] = j as u32;
-        kept_distance[kept] = distance;
-        let near = (distance < if reach > reach_j { reach } else { reach_j }) & (j != i);
-        kept += usize::from(near);
+    let mut at = range.start;
+    while at < range.end {
+        let lanes = (range.end - at).min(LANES);
+        let (x, y, reaches) = if at + LANES <= places.x.len() {
+            let load = |values: &[f64]| Lanes::from_slice(simd, &values[at..at + LANES]);
+            (load(places.x), load(places.y), load(places.reach_squared))
+        } else {
+            let load = |values: &[f64]| Lanes::from_fn(simd, |lane| values[(at + lane).min(values.len() - 1)]);
+            (load(places.x), load(places.y), load(places.reach_squared))
+        };
+        let (dx, dy) = (x - xi, y - yi);
+        let r_squared = dx * dx + dy * dy;
+        let mut near = r_squared.simd_lt(reaches.max(reach)).to_bitmask() & ((1 << lanes) - 1);
+        if at <= i && i < at + lanes {
+            near &= !(1 << (i - at));
+        }
+        let numbers = counting + at as u32;
+        let mask = mask32x8::from_bitmask(simd, near);
+        numbers.compress(mask).store_slice(&mut index[kept..kept + LANES]);
+        r_squared
+            .compress(fearless_simd::mask64x8::from_bitmask(simd, near))
+            .store_slice(&mut distance[kept..kept + LANES]);
+        kept += near.count_ones() as usize;
+        at += LANES;
     }
-    block.index.truncate(begin + kept);
-    r_squared.truncate(distances + kept);
+    kept
 }
 
-/// Reads lanes from squared distances.
-impl Searched<'_> {
-    /// The squared distances, [`LANES`] at a time.
+impl Neighbours<'_> {
+    /// [`LANES`] neighbours at a time: their numbers and distances.
     #[inline(always)]
-    pub fn lanes(&self) -> impl Iterator<Item = Lanes> + '_ {
-        self.r_squared.chunks_exact(LANES).map(|chunk| Lanes::from_fn(|lane| chunk[lane]))
+    pub fn lanes<S: Simd>(self, simd: S) -> impl Iterator<Item = ([usize; LANES], Lanes<S>)> {
+        self.index.chunks_exact(LANES).zip(self.distance.chunks_exact(LANES)).map(
+            #[inline(always)]
+            move |(index, distance)| {
+                (std::array::from_fn(|lane| index[lane] as usize), Lanes::from_slice(simd, distance))
+            },
+        )
     }
 }
 
@@ -141,6 +190,14 @@ impl Searched<'_> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    struct Count;
+
+    impl PairSum<usize> for Count {
+        fn sum<S: Simd>(&self, _: S, _: usize, found: Neighbours) -> usize {
+            found.distance.iter().filter(|&&r| r < FAR_AWAY).count()
+        }
+    }
 
     proptest! {
         #[test]
@@ -158,18 +215,16 @@ mod tests {
             let squared: Vec<f64> = reach.iter().map(|r| r * r).collect();
             let mut lists = NeighbourLists::default();
             let mut counts = vec![0; x.len()];
-            lists.search(&cells, &x, &y, &squared, &mut counts, |found| {
-                found.r_squared.iter().filter(|r| r.is_finite()).count()
-            });
+            lists.search(&cells, &x, &y, &squared, &mut counts, &Count);
             for i in 0..x.len() {
                 let mut expected: Vec<u32> = (0..x.len())
                     .filter(|&j| j != i && (x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2) < squared[i].max(squared[j]))
                     .map(|j| j as u32)
                     .collect();
                 prop_assert_eq!(counts[i], expected.len());
-                prop_assert_eq!(lists.of(i).len() % LANES, 0);
-                let mut found = lists.of(i)[..expected.len()].to_vec();
-                prop_assert!(lists.of(i)[expected.len()..].iter().all(|&j| j as usize == i));
+                prop_assert_eq!(lists.of(i).index.len() % LANES, 0);
+                let mut found = lists.of(i).index[..expected.len()].to_vec();
+                prop_assert!(lists.of(i).index[expected.len()..].iter().all(|&j| j as usize == i));
                 found.sort_unstable();
                 expected.sort_unstable();
                 prop_assert_eq!(found, expected);

@@ -19,6 +19,11 @@ impl Bounds {
         (self.x_min..=self.x_max).contains(&x) && (self.y_min..=self.y_max).contains(&y)
     }
 
+    /// True where a disc of `radius` m round (x, y) is inside.
+    pub fn holds_disc(&self, x: f64, y: f64, radius: f64) -> bool {
+        self.x_min + radius < x && x < self.x_max - radius && self.y_min + radius < y && y < self.y_max - radius
+    }
+
     /// Extent `[east, north]`, m.
     pub fn size(&self) -> [f64; 2] {
         [self.x_max - self.x_min, self.y_max - self.y_min]

@@ -3,8 +3,7 @@
 use super::{Column, Slopes};
 use crate::arrangement::Arrangement;
 use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{BLOCK, LANES, Lanes};
-use multiversion::multiversion;
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch, gather};
 use rayon::prelude::*;
 
 /// What acts on a particle.
@@ -29,12 +28,13 @@ pub(super) fn find(
     forces: &mut [Force],
 ) {
     forces.par_chunks_mut(BLOCK).enumerate().for_each(|(block, forces)| {
-        find_block(gravity, arrangement, columns, slopes, block * BLOCK, forces);
+        dispatch!(Level::new(), simd => find_block(simd, gravity, arrangement, columns, slopes, block * BLOCK, forces));
     });
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn find_block(
+#[inline(always)]
+fn find_block<S: Simd>(
+    simd: S,
     gravity: f64,
     arrangement: &Arrangement,
     columns: &[Column],
@@ -43,94 +43,91 @@ fn find_block(
     forces: &mut [Force],
 ) {
     for (k, force) in forces.iter_mut().enumerate() {
-        *force = on_one(gravity, columns, slopes, arrangement.lists.of(first + k), first + k);
+        *force = on_one(simd, gravity, columns, slopes, arrangement.lists.of(first + k), first + k);
     }
 }
 
 /// Monotonised central limiter (van Leer 1977) of the two one-sided differences `a` and `b`.
 #[inline(always)]
-fn limited(a: Lanes, b: Lanes) -> Lanes {
+fn limited<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
+    let zero = a * 0.0;
     let magnitude = ((a.abs()).min(b.abs()) * 2.0).min((a + b).abs() * 0.5);
-    let signed = a.select_below(Lanes::ZERO, -magnitude, magnitude);
-    (a * b).select_below(Lanes::splat(f64::MIN_POSITIVE), Lanes::ZERO, signed)
+    let signed = a.select_below(zero, -magnitude, magnitude);
+    (a * b).select_below(zero + f64::MIN_POSITIVE, zero, signed)
 }
 
 #[inline(always)]
-fn on_one(gravity: f64, columns: &[Column], slopes: &[Slopes], list: &[u32], i: usize) -> Force {
+fn on_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], slopes: &[Slopes], list: Neighbours, i: usize) -> Force {
+    let column_rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
+    let slope_rows: &[[f64; LANES]] = bytemuck::must_cast_slice(slopes);
     let own = columns[i];
     let sloped = slopes[i];
-    let inverse_h = Lanes::splat(1.0 / own.h);
+    let inverse_h = Lanes::splat(simd, own.inverse_h);
     let ground = own.surface - own.depth;
     let [bxx, bxy, byy] = sloped.renormalisation;
     let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
-    let [mut fx, mut fy, mut external_x, mut external_y] = [Lanes::ZERO; 4];
-    for index in list.chunks_exact(LANES) {
-        let near: [&Column; LANES] = std::array::from_fn(|lane| &columns[index[lane] as usize]);
-        let near_slopes: [&Slopes; LANES] = std::array::from_fn(|lane| &slopes[index[lane] as usize]);
-        let of = |value: fn(&Column) -> f64| Lanes::from_fn(|lane| value(near[lane]));
-        let of_slopes = |value: fn(&Slopes) -> f64| Lanes::from_fn(|lane| value(near_slopes[lane]));
+    let [mut fx, mut fy, mut external_x, mut external_y] = [Lanes::splat(simd, 0.0); 4];
+    for (index, r) in list.lanes(simd) {
+        let [x, y, u, v, surface, depth, area, near_inverse_h] = gather(simd, column_rows, index);
+        let [near_bxx, near_bxy, near_byy, surface_x, surface_y, ground_x, ground_y, outside] =
+            gather(simd, slope_rows, index.map(|near| 2 * near));
+        let [u_x, u_y, v_x, v_y, wave_speed, ..] = gather(simd, slope_rows, index.map(|near| 2 * near + 1));
 
-        let ex = of(|c| c.x) - own.x;
-        let ey = of(|c| c.y) - own.y;
-        let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-12 * own.h));
-        let inverse_r = Lanes::splat(1.0) / r;
+        let ex = x - own.x;
+        let ey = y - own.y;
+        let inverse_r = 1.0 / r;
 
         // Pair area A = V_i V_j [B_i grad W(h_i) + B_j grad W(h_j)], antisymmetric in i and j.
-        let own_slope = cubic_spline::slope_over_r(r, inverse_r, inverse_h);
-        let near_slope = cubic_spline::slope_over_r(r, inverse_r, Lanes::splat(1.0) / of(|c| c.h));
-        let xx = own_slope * bxx + near_slope * of_slopes(|s| s.renormalisation[0]);
-        let xy = own_slope * bxy + near_slope * of_slopes(|s| s.renormalisation[1]);
-        let yy = own_slope * byy + near_slope * of_slopes(|s| s.renormalisation[2]);
-        let areas = of(|c| c.area) * own.area;
+        let own_slope = cubic_spline::slope(r, inverse_h);
+        let near_slope = cubic_spline::slope(r, near_inverse_h);
+        let xx = own_slope * bxx + near_slope * near_bxx;
+        let xy = own_slope * bxy + near_slope * near_bxy;
+        let yy = own_slope * byy + near_slope * near_byy;
+        let areas = area * own.area * inverse_r;
         let area_x = (xx * ex + xy * ey) * areas;
         let area_y = (xy * ex + yy * ey) * areas;
 
         // Reconstruction to the middle, surface and velocity along the pair (positive from i to j).
-        let surface = of(|c| c.surface);
         let surface_step = surface - own.surface;
-        let along = |x: Lanes, y: Lanes| x * ex + y * ey;
+        let along = |x: Lanes<S>, y: Lanes<S>| x * ex + y * ey;
         let own_change = ex * sloped.surface[0] + ey * sloped.surface[1];
-        let near_change = along(of_slopes(|s| s.surface[0]), of_slopes(|s| s.surface[1]));
+        let near_change = along(surface_x, surface_y);
         let surface_i = limited(own_change * 2.0 - surface_step, surface_step) * 0.5 + own.surface;
         let surface_j = surface - limited(near_change * 2.0 - surface_step, surface_step) * 0.5;
 
         let w_i = (ex * own.u + ey * own.v) * inverse_r;
-        let w_j = (ex * of(|c| c.u) + ey * of(|c| c.v)) * inverse_r;
+        let w_j = (ex * u + ey * v) * inverse_r;
         let w_step = w_j - w_i;
         let own_change = along(ex * sloped.u[0] + ey * sloped.u[1], ex * sloped.v[0] + ey * sloped.v[1]) * inverse_r;
-        let near_change = along(
-            along(of_slopes(|s| s.u[0]), of_slopes(|s| s.u[1])),
-            along(of_slopes(|s| s.v[0]), of_slopes(|s| s.v[1])),
-        ) * inverse_r;
+        let near_change = along(along(u_x, u_y), along(v_x, v_y)) * inverse_r;
         let w_i = w_i + limited(own_change * 2.0 - w_step, w_step) * 0.5;
         let w_j = w_j - limited(near_change * 2.0 - w_step, w_step) * 0.5;
 
         // Ground in the middle from heights and slopes at both ends (cubic Hermite); symmetric in i and j.
-        let depth = of(|c| c.depth);
-        let bend = (-of_slopes(|s| s.ground[0]) + sloped.ground[0]) * ex
-            + (-of_slopes(|s| s.ground[1]) + sloped.ground[1]) * ey;
+        let bend = (sloped.ground[0] - ground_x) * ex + (sloped.ground[1] - ground_y) * ey;
         let middle = ((surface - depth) + ground) * 0.5 + bend * 0.125;
         // Thin water on a slope must not feel the whole depth of its deep neighbour: that would shake it to pieces.
-        let middle = middle.max(Lanes::splat(own.surface - SHARED * own.depth)).max(surface - depth * SHARED);
+        let middle = middle.max(own.surface - SHARED * own.depth).max(surface - depth * SHARED);
 
-        // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the Riemann problem in Lagrangian form.
-        let depth_i = (surface_i - middle).max(Lanes::splat(1e-6 * own.depth));
+        // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the Riemann problem in Lagrangian form, acoustic,
+        // with the wave speeds of the two columns.
+        let depth_i = (surface_i - middle).max(1e-6 * own.depth);
         let depth_j = (surface_j - middle).max(depth * 1e-6);
         let pressure_i = depth_i * depth_i * (0.5 * gravity);
         let pressure_j = depth_j * depth_j * (0.5 * gravity);
-        let impedance_i = depth_i * (depth_i * gravity).sqrt();
-        let impedance_j = depth_j * (depth_j * gravity).sqrt();
+        let impedance_i = depth_i * sloped.wave_speed;
+        let impedance_j = depth_j * wave_speed;
         let pressure =
             ((impedance_j * pressure_i + impedance_i * pressure_j + impedance_i * impedance_j * (w_i - w_j))
                 / (impedance_i + impedance_j))
                 .positive();
 
         // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
-        let own_depth = (-middle + own.surface).positive();
-        let ground_push = -(own_depth * own_depth) * (0.5 * gravity) + own_pressure;
+        let own_depth = (own.surface - middle).positive();
+        let ground_push = own_pressure - (own_depth * own_depth) * (0.5 * gravity);
         fx += area_x * (pressure + ground_push);
         fy += area_y * (pressure + ground_push);
-        let external_push = pressure * of_slopes(|s| s.outside) + ground_push;
+        let external_push = pressure * outside + ground_push;
         external_x += area_x * external_push;
         external_y += area_y * external_push;
     }

@@ -3,8 +3,7 @@
 use super::{Column, Slopes};
 use crate::arrangement::Arrangement;
 use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{BLOCK, LANES, Lanes};
-use multiversion::multiversion;
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch, gather};
 use rayon::prelude::*;
 
 /// Difference of surface over depth, or of velocity over wave speed, at which water counts as moving.
@@ -19,50 +18,57 @@ const COMPANY: f64 = 0.4;
 /// Finds the slopes of all particles.
 pub(super) fn find(gravity: f64, arrangement: &Arrangement, columns: &[Column], slopes: &mut [Slopes]) {
     slopes.par_chunks_mut(BLOCK).enumerate().for_each(|(block, slopes)| {
-        find_block(gravity, arrangement, columns, block * BLOCK, slopes);
+        dispatch!(Level::new(), simd => find_block(simd, gravity, arrangement, columns, block * BLOCK, slopes));
     });
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
-fn find_block(gravity: f64, arrangement: &Arrangement, columns: &[Column], first: usize, slopes: &mut [Slopes]) {
+#[inline(always)]
+fn find_block<S: Simd>(
+    simd: S,
+    gravity: f64,
+    arrangement: &Arrangement,
+    columns: &[Column],
+    first: usize,
+    slopes: &mut [Slopes],
+) {
     for (k, slopes) in slopes.iter_mut().enumerate() {
-        of_one(gravity, columns, arrangement.lists.of(first + k), first + k, slopes);
+        of_one(simd, gravity, columns, arrangement.lists.of(first + k), first + k, slopes);
     }
 }
 
 #[inline(always)]
-fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut Slopes) {
+fn of_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], list: Neighbours, i: usize, slopes: &mut Slopes) {
+    let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
     let own = columns[i];
-    let inverse_h = Lanes::splat(1.0 / own.h);
-    let end = Lanes::splat(2.0 * own.h);
-    let [mut xx, mut xy, mut yy] = [Lanes::ZERO; 3];
-    let [mut surface_x, mut surface_y, mut u_x, mut u_y, mut v_x, mut v_y] = [Lanes::ZERO; 6];
-    let [mut surface_step, mut velocity_step, mut ground_step] = [Lanes::ZERO; 3];
-    for index in list.chunks_exact(LANES) {
-        let near: [&Column; LANES] = std::array::from_fn(|lane| &columns[index[lane] as usize]);
-        let ex = Lanes::from_fn(|lane| near[lane].x) - own.x;
-        let ey = Lanes::from_fn(|lane| near[lane].y) - own.y;
-        let r = (ex * ex + ey * ey).sqrt().max(Lanes::splat(1e-12 * own.h));
-        // The gradient of W at i is slope * (ex, ey); slope is 0 beyond the support.
-        let slope = cubic_spline::slope_over_r(r, Lanes::splat(1.0) / r, inverse_h);
-        let weight = slope * Lanes::from_fn(|lane| near[lane].area);
+    let inverse_h = Lanes::splat(simd, own.inverse_h);
+    let end = Lanes::splat(simd, 2.0 / own.inverse_h);
+    let zero = Lanes::splat(simd, 0.0);
+    let [mut xx, mut xy, mut yy] = [zero; 3];
+    let [mut surface_x, mut surface_y, mut u_x, mut u_y, mut v_x, mut v_y] = [zero; 6];
+    let [mut surface_step, mut velocity_step, mut ground_step] = [zero; 3];
+    for (index, r) in list.lanes(simd) {
+        let [x, y, u, v, surface, depth, area, _] = gather(simd, rows, index);
+        let ex = x - own.x;
+        let ey = y - own.y;
+        // The gradient of W at i is slope / r * (ex, ey); slope is 0 beyond the support.
+        let weight = cubic_spline::slope(r, inverse_h) / r * area;
         let (weight_x, weight_y) = (weight * ex, weight * ey);
         xx += weight_x * ex;
         xy += weight_x * ey;
         yy += weight_y * ey;
-        let ds = Lanes::from_fn(|lane| near[lane].surface) - own.surface;
-        let du = Lanes::from_fn(|lane| near[lane].u) - own.u;
-        let dv = Lanes::from_fn(|lane| near[lane].v) - own.v;
+        let ds = surface - own.surface;
+        let du = u - own.u;
+        let dv = v - own.v;
         surface_x += weight_x * ds;
         surface_y += weight_y * ds;
         u_x += weight_x * du;
         u_y += weight_y * du;
         v_x += weight_x * dv;
         v_y += weight_y * dv;
-        surface_step = surface_step.max(r.select_below(end, ds.abs(), Lanes::ZERO));
-        let dz = ds - (Lanes::from_fn(|lane| near[lane].depth) - own.depth);
-        ground_step = ground_step.max(r.select_below(end, dz.abs(), Lanes::ZERO));
-        velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, Lanes::ZERO));
+        surface_step = surface_step.max(r.select_below(end, ds.abs(), zero));
+        let dz = ds - (depth - own.depth);
+        ground_step = ground_step.max(r.select_below(end, dz.abs(), zero));
+        velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, zero));
     }
     let moment = [xx.sum(), xy.sum(), yy.sum()];
     slopes.alone = (1.0 - (moment[0] + moment[2]) / COMPANY).max(0.0);
@@ -73,6 +79,7 @@ fn of_one(gravity: f64, columns: &[Column], list: &[u32], i: usize, slopes: &mut
     slopes.u = turned(u_x.sum(), u_y.sum());
     slopes.v = turned(v_x.sum(), v_y.sum());
     let wave = (gravity * own.depth).sqrt();
+    slopes.wave_speed = wave;
     let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
     let tilt = surface_step.largest() / (TILT * ground_step.largest()).max(1e-12 * own.depth);
     slopes.rest = (-(unrest.min(tilt)).powi(2)).exp();

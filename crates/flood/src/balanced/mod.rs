@@ -12,15 +12,17 @@ mod gradients;
 mod images;
 
 use crate::arrangement::{Arrangement, IMAGE};
-use crate::density::Density;
+use crate::density::{Densities, Density};
 use crate::particle::Particle;
 use crate::scheme::{Evaluation, Scheme, Surroundings};
+use bytemuck::{Pod, Zeroable};
+use corpuscle_sph::BLOCK;
 use forces::Force;
 use rayon::prelude::*;
 
-/// What the passes read of a particle or image: one cache line.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(align(64))]
+/// What the passes read of a particle or image: one cache line, a row of numbers to gather.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C, align(64))]
 struct Column {
     x: f64,
     y: f64,
@@ -31,24 +33,29 @@ struct Column {
     depth: f64,
     /// Area that the particle stands for, 1/n, m2.
     area: f64,
-    h: f64,
+    /// 1 / h, 1/m.
+    inverse_h: f64,
 }
 
-/// First-order exact slopes, and what goes with them.
-#[derive(Debug, Clone, Copy, Default)]
+/// First-order exact slopes, and what goes with them: two rows of numbers to gather.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C, align(64))]
 struct Slopes {
     /// Renormalisation matrix B (symmetric): xx, xy, yy.
     renormalisation: [f64; 3],
     surface: [f64; 2],
-    u: [f64; 2],
-    v: [f64; 2],
     ground: [f64; 2],
-    /// How much at rest the water is here: 1 at rest, 0 in motion.
-    rest: f64,
     /// 1 for an image beyond an edge, 0 for a particle.
     outside: f64,
+    u: [f64; 2],
+    v: [f64; 2],
+    /// Speed of shallow waves, m/s.
+    wave_speed: f64,
+    /// How much at rest the water is here: 1 at rest, 0 in motion.
+    rest: f64,
     /// How much a particle is alone: 1 without neighbours, 0 with enough of them.
     alone: f64,
+    unused: f64,
 }
 
 /// Numbers of the scheme.
@@ -77,6 +84,7 @@ pub(crate) struct Balanced {
     densities: Vec<Density>,
     slopes: Vec<Slopes>,
     forces: Vec<Force>,
+    evaluations: Vec<Evaluation>,
     spare: Vec<Particle>,
 }
 
@@ -89,6 +97,7 @@ impl Balanced {
             densities: Vec::new(),
             slopes: Vec::new(),
             forces: Vec::new(),
+            evaluations: Vec::new(),
             spare: Vec::new(),
         }
     }
@@ -96,9 +105,7 @@ impl Balanced {
     fn find_densities(&mut self) {
         let Arrangement { cells, lists, x, y, reach_squared, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), Density::default());
-        lists.search(cells, x, y, reach_squared, &mut self.densities, |found| {
-            Density::sum(&found, reach_squared[found.particle].sqrt() / 2.0)
-        });
+        lists.search(cells, x, y, reach_squared, &mut self.densities, &Densities { reach_squared });
     }
 
     /// Hands depth, ground and next smoothing length to the particles.
@@ -108,14 +115,14 @@ impl Balanced {
             let density = &self.densities[place as usize];
             particle.depth = particle.volume * density.number;
             particle.next_h = density.next_h(particle.h, eta).min(largest_h);
-            (particle.ground, _) = surroundings.ground(particle.x, particle.y);
+            (particle.ground, particle.ground_slope) = surroundings.ground(particle.x, particle.y);
             if let Some(level) = surroundings.stage(particle.outside) {
                 particle.depth = (level - particle.ground).max(SHALLOWEST_STAGE * particle.depth);
             }
         });
     }
 
-    fn fill_columns(&mut self, particles: &[Particle], surroundings: &Surroundings, ahead: f64) {
+    fn fill_columns(&mut self, particles: &[Particle], ahead: f64) {
         let places = self.arrangement.len();
         self.columns.resize(places, Column::default());
         self.slopes.resize(places, Slopes::default());
@@ -133,38 +140,48 @@ impl Balanced {
                 surface: particle.surface(),
                 depth: particle.depth,
                 area: 1.0 / density.number,
-                h: particle.h,
+                inverse_h: 1.0 / particle.h,
             };
-            slopes.ground = surroundings.ground(particle.x, particle.y).1;
+            slopes.ground = particle.ground_slope;
             slopes.outside = f64::from(u8::from(particle.outside.is_some()));
         });
     }
 
     /// Hands the accelerations to the particles; the largest sound time step and what acted from outside.
-    fn take_over(&self, particles: &mut [Particle]) -> Evaluation {
-        let Parameters { gravity, cfl, longest_step, .. } = self.parameters;
-        let time_step = particles
-            .par_iter_mut()
-            .zip(&self.arrangement.real)
-            .map(|(particle, &place)| {
-                let slopes = &self.slopes[place as usize];
-                particle.surface_slope = slopes.surface;
-                if particle.outside.is_some() {
-                    [particle.ax, particle.ay] = [0.0; 2];
-                    return longest_step;
-                }
-                [particle.ax, particle.ay] = self.forces[place as usize].acceleration;
-                let wave = (gravity * particle.depth).sqrt();
-                let squeeze = 2.0 * particle.h * (-(slopes.u[0] + slopes.v[1])).max(0.0);
-                let pull = (particle.h * particle.ax.hypot(particle.ay)).sqrt();
-                cfl * particle.h / (wave + squeeze).max(pull)
-            })
-            .reduce(|| longest_step, f64::min);
-        let inside = particles.iter().zip(&self.arrangement.real).filter(|(particle, _)| particle.outside.is_none());
-        let external = inside
-            .map(|(_, &place)| self.forces[place as usize].external)
-            .fold([0.0; 2], |sum, force| [sum[0] + force[0], sum[1] + force[1]]);
-        Evaluation { time_step, external }
+    fn take_over(&mut self, particles: &mut [Particle]) -> Evaluation {
+        let Self { parameters, slopes, forces, .. } = self;
+        let blocks = particles.par_chunks_mut(BLOCK).zip(self.arrangement.real.par_chunks(BLOCK));
+        let of_block = |(particles, places): (&mut [Particle], &[u32])| {
+            let mut evaluation = Evaluation { time_step: parameters.longest_step, external: [0.0; 2] };
+            for (particle, &place) in particles.iter_mut().zip(places) {
+                parameters.take_over_one(particle, &slopes[place as usize], &forces[place as usize], &mut evaluation);
+            }
+            evaluation
+        };
+        blocks.map(of_block).collect_into_vec(&mut self.evaluations);
+        let none = Evaluation { time_step: parameters.longest_step, external: [0.0; 2] };
+        self.evaluations.iter().fold(none, |all, block| Evaluation {
+            time_step: all.time_step.min(block.time_step),
+            external: [0, 1].map(|k| all.external[k] + block.external[k]),
+        })
+    }
+}
+
+impl Parameters {
+    fn take_over_one(&self, particle: &mut Particle, slopes: &Slopes, force: &Force, evaluation: &mut Evaluation) {
+        particle.surface_slope = slopes.surface;
+        if particle.outside.is_some() {
+            [particle.ax, particle.ay] = [0.0; 2];
+            return;
+        }
+        [particle.ax, particle.ay] = force.acceleration;
+        let wave = (self.gravity * particle.depth).sqrt();
+        let squeeze = 2.0 * particle.h * (-(slopes.u[0] + slopes.v[1])).max(0.0);
+        let pull = (particle.h * (particle.ax * particle.ax + particle.ay * particle.ay).sqrt()).sqrt();
+        let longest = self.cfl * particle.h / (wave + squeeze).max(pull);
+        // What is not a number must not be lost in a minimum: it ends the run.
+        evaluation.time_step = if longest.is_nan() { 0.0 } else { evaluation.time_step.min(longest) };
+        evaluation.external = [0, 1].map(|k| evaluation.external[k] + force.external[k]);
     }
 }
 
@@ -179,15 +196,14 @@ impl Scheme for Balanced {
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64) {
-        let reaching = particles.iter().map(|p| (p.x, p.y, 2.0 * p.h));
-        self.arrangement.arrange(reaching, &surroundings.edges, cell_size);
+        self.arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), &surroundings.edges, cell_size);
         self.arrangement.sort(particles, &mut self.spare);
     }
 
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
         self.find_densities();
         self.find_depths(particles, surroundings);
-        self.fill_columns(particles, surroundings, 0.5 * step);
+        self.fill_columns(particles, 0.5 * step);
         self.show_images(surroundings);
         gradients::find(self.parameters.gravity, &self.arrangement, &self.columns, &mut self.slopes);
         self.turn_images(&surroundings.edges);

@@ -20,6 +20,14 @@ pub(crate) struct Series {
     pub filled: bool,
 }
 
+impl Series {
+    /// Time, s, and value of the largest value, the first of equal ones; none where nothing was measured.
+    pub(crate) fn peak(&self) -> Option<[f64; 2]> {
+        let finite = self.points.iter().copied().filter(|point| point[1].is_finite());
+        finite.reduce(|best, point| if point[1] > best[1] { point } else { best })
+    }
+}
+
 /// Quantities of one unit over the time of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Chart {
@@ -44,6 +52,10 @@ const LEFT: f64 = 48.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 34.0;
 const SPACE_OF_LETTER: f64 = 6.6;
+/// Height of a step of the vertical axis at least.
+const SPACE_OF_STEP: f64 = 23.0;
+/// Steps below this have their power of ten written out.
+const LEAST_PLAIN_STEP: f64 = 1e-4;
 
 /// Where values lie on the page.
 struct Axes {
@@ -108,9 +120,11 @@ impl Chart {
         let high = finite().fold(0.0, f64::max);
         let span = if high > low { high - low } else { 1.0 };
         let bottom = if self.time_named { BOTTOM } else { BOTTOM - 12.0 };
-        let most = ((self.size[1] - top - bottom) / 34.0).max(2.0) as usize;
-        let step = ticks::step(span * 1.02, most);
-        let range = [(low / step).floor() * step, ((low + span * 1.02) / step).ceil() * step];
+        let most = ((self.size[1] - top - bottom) / SPACE_OF_STEP).max(2.0) as usize;
+        let step = ticks::step(span, most);
+        // A value on a tick but for rounding needs no further step.
+        let slack = 1e-9 * span / step;
+        let range = [(low / step + slack).floor() * step, ((low + span) / step - slack).ceil() * step];
         let longest = range.map(|value| value_label(value, step).chars().count() as f64 * SPACE_OF_LETTER);
         let left = LEFT.max(longest[0].max(longest[1]) + 12.0);
         let [from, to] = self.span;
@@ -150,7 +164,8 @@ fn draw_axes(svg: &mut Svg, axes: &Axes, time_named: bool) {
 
 /// A value on an axis, with thousands grouped.
 fn value_label(value: f64, step: f64) -> String {
-    if value.abs() >= 1000.0 { number(value) } else { ticks::label(value, step) }
+    let plain = value.abs() < 1000.0 && (step >= LEAST_PLAIN_STEP || value == 0.0);
+    if plain { ticks::label(value, if value == 0.0 { 1.0 } else { step }) } else { number(value) }
 }
 
 fn draw_series(svg: &mut Svg, axes: &Axes, series: &Series) {
@@ -171,9 +186,8 @@ fn draw_series(svg: &mut Svg, axes: &Axes, series: &Series) {
 }
 
 fn draw_peak(svg: &mut Svg, axes: &Axes, series: &Series) {
-    let finite = series.points.iter().filter(|point| point[1].is_finite());
-    let Some(peak) = finite.max_by(|a, b| a[1].total_cmp(&b[1])).filter(|peak| peak[1] > 0.0) else { return };
-    svg.circle(axes.place(*peak), 3.2, &format!("peak s{}", series.colour % 6));
+    let Some(peak) = series.peak().filter(|peak| peak[1] > 0.0) else { return };
+    svg.circle(axes.place(peak), 3.2, &format!("peak s{}", series.colour % 6));
 }
 
 /// At most about [`MOST_POINTS`] points: of each stretch the first, lowest and highest, and the last of all.
@@ -237,6 +251,16 @@ mod tests {
             let text = chart(points).figure().inline();
             assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
         }
+    }
+
+    #[test]
+    fn axes_end_near_the_values_and_tiny_values_have_labels() {
+        for (largest, top) in [(9.97, 10.0), (4.48, 6.0), (12_000.0, 15_000.0), (6e-16, 6e-16)] {
+            let axes = chart(vec![[0.0, 0.0], [3600.0, largest]]).axes(40.0);
+            assert!((axes.range[1] / top - 1.0).abs() < 1e-9, "{largest}: {:?}", axes.range);
+        }
+        let text = chart(vec![[0.0, 0.0], [3600.0, 6e-16]]).figure().inline();
+        assert!(text.contains("4.0\u{2009}×\u{2009}10⁻¹⁶") && !text.contains("0.0000"), "{text}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Classes of values and their colours, as a legend shows them.
 
+use super::text::short_number;
 use super::ticks::{self, TimeUnit};
 
 /// A colour: red, green, blue.
@@ -50,8 +51,8 @@ pub(crate) struct Classes {
     pub labels: Vec<String>,
     /// A colour for each class.
     pub colours: Vec<Colour>,
-    /// A name for each class, where classes have names.
-    pub names: Option<&'static [&'static str]>,
+    /// A name for each class; none where classes have no names.
+    pub names: Vec<String>,
 }
 
 impl Classes {
@@ -68,6 +69,15 @@ impl Classes {
                 let labels = edges.iter().map(|edge| edge.to_string()).collect();
                 Self::new(ramp, title.to_owned(), edges, labels)
             }
+            Ramp::Arrival | Ramp::Duration if quantile(0.0) == quantile(1.0) => {
+                let unit = TimeUnit::of(quantile(1.0));
+                let name = match sorted.first() {
+                    Some(_) => format!("{} everywhere", short_number(quantile(1.0) / unit.seconds)),
+                    None => "nowhere".into(),
+                };
+                let classes = Self::new(ramp, format!("{title}, {}", unit.name), Vec::new(), Vec::new());
+                Self { names: vec![name], ..classes }
+            }
             Ramp::Arrival | Ramp::Duration => {
                 let (edges, labels, unit) = time_edges(quantile(0.005), quantile(0.995));
                 Self::new(ramp, format!("{title}, {unit}"), edges, labels)
@@ -75,7 +85,7 @@ impl Classes {
             Ramp::Hazard => {
                 let labels = ["0.75", "1.25", "2"].map(str::to_owned).to_vec();
                 let classes = Self::new(ramp, title.to_owned(), vec![0.75, 1.25, 2.0], labels);
-                Self { names: Some(&HAZARD), ..classes }
+                Self { names: HAZARD.map(str::to_owned).to_vec(), ..classes }
             }
         }
     }
@@ -89,7 +99,7 @@ impl Classes {
         };
         let colours = (0..count).map(|class| all[pick(class)]);
         let colours = colours.map(|hex| [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]).collect();
-        Self { title, edges, labels, colours, names: None }
+        Self { title, edges, labels, colours, names: Vec::new() }
     }
 
     /// The class of a value: edges belong to the class above.
@@ -97,17 +107,23 @@ impl Classes {
         self.edges.partition_point(|edge| *edge <= value)
     }
 
-    /// A class in words: `0.5 – 1`, or its name and range.
-    pub(crate) fn range(&self, class: usize) -> String {
+    /// The values of a class: `0.5 – 1`; empty where there is only one class.
+    pub(crate) fn values(&self, class: usize) -> String {
         let below = class.checked_sub(1).map(|edge| &self.labels[edge]);
-        let range = match (below, self.labels.get(class)) {
+        match (below, self.labels.get(class)) {
             (None, Some(high)) => format!("below {high}"),
             (Some(low), None) => format!("{low} and above"),
             (Some(low), Some(high)) => format!("{low} – {high}"),
-            (None, None) => "all".into(),
-        };
-        match self.names {
-            Some(names) => format!("{} ({range})", names[class]),
+            (None, None) => String::new(),
+        }
+    }
+
+    /// A class in words: its values, or its name and values.
+    pub(crate) fn range(&self, class: usize) -> String {
+        let range = self.values(class);
+        match self.names.get(class) {
+            Some(name) if range.is_empty() => name.clone(),
+            Some(name) => format!("{name} ({range})"),
             None => range,
         }
     }
@@ -171,6 +187,14 @@ mod tests {
         assert_eq!(classes.title, "Arrival, min");
         assert_eq!(classes.edges, [300.0, 600.0, 900.0, 1200.0, 1500.0]);
         assert_eq!(classes.labels[1], "10");
+    }
+
+    #[test]
+    fn a_time_that_is_the_same_everywhere_is_one_class_with_its_value() {
+        assert_eq!(Classes::of(Ramp::Arrival, "Arrival", &[f32::NAN]).range(0), "nowhere");
+        let classes = Classes::of(Ramp::Duration, "Time under water", &[60.0, f32::NAN, 60.0]);
+        assert_eq!((classes.colours.len(), classes.range(0).as_str()), (1, "60 everywhere"));
+        assert_eq!(classes.title, "Time under water, s");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use super::png::{encode_indexed, encode_rgb};
 use super::relief::{contour_interval, relief};
 use super::resample::resample;
 use super::svg::{Anchor, Figure, Svg};
-use super::text::number;
+use super::text::{number, short_number};
 use super::ticks;
 
 /// How large a map is drawn, and how much stands round it.
@@ -130,6 +130,14 @@ impl Layer {
             std::iter::once([0; 4]).chain(colours).chain([[last[0], last[1], last[2], 200]]).collect();
         encode_indexed(width as u32, height as u32, &indices, &palette)
     }
+}
+
+/// A title and a subtitle alone, for several maps together.
+pub(crate) fn heading(title: &str, subtitle: &str) -> Figure {
+    let mut svg = Svg::default();
+    svg.text([1.0, 20.0], Anchor::Start, "title heading", title);
+    svg.text([1.0, 40.0], Anchor::Start, "small", subtitle);
+    svg.finish([440.0, 50.0], title)
 }
 
 /// The classes of a field without a map, for several maps together.
@@ -272,13 +280,15 @@ impl MapFigure<'_> {
         let space = 0.6 * (right - left);
         if let Some(layer) = self.layer {
             svg.text([left, top], Anchor::Start, "text", &layer.classes.title);
-            match layer.classes.names {
-                Some(names) => draw_named_classes(svg, &layer.classes, names, [left, top + 9.0], space),
-                None => draw_class_bar(svg, &layer.classes, [left, top + 9.0], space),
+            if layer.classes.names.is_empty() {
+                draw_class_bar(svg, &layer.classes, [left, top + 9.0], space);
+            } else {
+                draw_named_classes(svg, &layer.classes, [left, top + 9.0], space);
             }
         }
         self.draw_scale_bar(svg, frame, [right, top], 0.3 * (right - left));
-        top + 40.0
+        let has_values = self.layer.is_some_and(|layer| !layer.classes.names.is_empty());
+        top + if has_values { 54.0 } else { 40.0 }
     }
 
     /// A bar of a round length in two light and two dark parts, ending at `[right, top]`.
@@ -337,9 +347,9 @@ impl MapFigure<'_> {
         let [width, height] = ground.pixels.map(|count| count as f64);
         let stretch = (height / north) / (width / east);
         if stretch > 1.02 {
-            remarks.push(format!("stretched {} times north–south", number(stretch)));
+            remarks.push(format!("stretched {} times north–south", short_number(stretch)));
         } else if stretch < 0.98 {
-            remarks.push(format!("stretched {} times east–west", number(1.0 / stretch)));
+            remarks.push(format!("stretched {} times east–west", short_number(1.0 / stretch)));
         }
         remarks.join("  ·  ")
     }
@@ -370,9 +380,11 @@ fn draw_place(svg: &mut Svg, kind: PlaceKind, points: &[[f64; 2]]) -> Option<[f6
 /// Writes a name beside a point, where it covers least of what is there and stays on the map.
 fn draw_name(svg: &mut Svg, frame: &Frame, [x, y]: [f64; 2], name: &str, taken: &mut Vec<[f64; 4]>) {
     let width = name.chars().count() as f64 * 7.0;
+    // Beside a point at the upper or lower edge, but not beyond it.
+    let beside = (y + 4.0).clamp(frame.corner[1] + 14.0, (frame.bottom() - 6.0).max(frame.corner[1] + 14.0));
     let sides = [
-        ([x + 9.0, y + 4.0], Anchor::Start, x + 9.0),
-        ([x - 9.0, y + 4.0], Anchor::End, x - 9.0 - width),
+        ([x + 9.0, beside], Anchor::Start, x + 9.0),
+        ([x - 9.0, beside], Anchor::End, x - 9.0 - width),
         ([x, y - 10.0], Anchor::Middle, x - 0.5 * width),
         ([x, y + 19.0], Anchor::Middle, x - 0.5 * width),
     ];
@@ -380,7 +392,8 @@ fn draw_name(svg: &mut Svg, frame: &Frame, [x, y]: [f64; 2], name: &str, taken: 
     let cost = |left: f64, baseline: f64| {
         let own = [left, baseline - 11.0, left + width, baseline + 3.0];
         let outside = width * 14.0 - overlap(own, map);
-        outside * 4.0 + taken.iter().map(|other| overlap(own, *other)).sum::<f64>()
+        // In whole pixels, so that rounding does not choose between equals.
+        (outside * 4.0 + taken.iter().map(|other| overlap(own, *other)).sum::<f64>()).round()
     };
     let best = sides.into_iter().min_by(|a, b| cost(a.2, a.0[1]).total_cmp(&cost(b.2, b.0[1])));
     let Some((place, anchor, left)) = best else { return };
@@ -412,13 +425,14 @@ fn draw_class_bar(svg: &mut Svg, classes: &Classes, [x, y]: [f64; 2], space: f64
     }
 }
 
-/// Classes side by side, with their names below.
-fn draw_named_classes(svg: &mut Svg, classes: &Classes, names: &[&str], [x, y]: [f64; 2], space: f64) {
+/// Classes side by side, with their names and values below.
+fn draw_named_classes(svg: &mut Svg, classes: &Classes, [x, y]: [f64; 2], space: f64) {
     let width = (space / classes.colours.len() as f64).min(120.0);
     for (class, colour) in classes.colours.iter().enumerate() {
         let left = x + class as f64 * width;
         svg.swatch([left, y], [width, 12.0], &hex(*colour));
-        svg.text([left + 0.5 * width, y + 26.0], Anchor::Middle, "number", names[class]);
+        svg.text([left + 0.5 * width, y + 26.0], Anchor::Middle, "number", &classes.names[class]);
+        svg.text([left + 0.5 * width, y + 40.0], Anchor::Middle, "number", &classes.values(class));
     }
 }
 

@@ -1,9 +1,11 @@
 //! Pictures: charts and maps as SVG, and as PNG from the same SVG. They know no physics.
 
+mod balls;
 mod chart;
 mod classes;
 mod ground;
 mod map;
+mod plot;
 mod png;
 mod relief;
 mod resample;
@@ -12,11 +14,13 @@ mod svg;
 mod text;
 mod ticks;
 
+pub(crate) use balls::{Across, Balls, Disc, Key, Side, from_hex, of_speed};
 pub(crate) use chart::{Chart, Series};
-pub(crate) use classes::{Classes, Ramp};
+pub(crate) use classes::{Classes, Colour, Ramp};
 pub(crate) use ground::Ground;
-pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image, legend};
-pub(crate) use png::{data_url, svg_to_png};
+pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image, heading, legend};
+pub(crate) use plot::plot;
+pub(crate) use png::{data_url, svg_to_png, svg_url};
 pub(crate) use style::{FIGURE_CSS, Theme};
 pub(crate) use svg::{Figure, beside, escape, stack};
-pub(crate) use text::{area, number, time, volume};
+pub(crate) use text::{area, number, short_number, time, volume};

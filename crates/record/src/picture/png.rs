@@ -39,6 +39,11 @@ pub(crate) fn encode_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>,
     encode(width, height, rgb, |encoder| encoder.set_color(png::ColorType::Rgb))
 }
 
+/// A picture of red, green, blue and opacity bytes.
+pub(crate) fn encode_rgba(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, String> {
+    encode(width, height, rgba, |encoder| encoder.set_color(png::ColorType::Rgba))
+}
+
 /// A picture of one byte for each pixel that chooses a colour (red, green, blue, opacity).
 pub(crate) fn encode_indexed(width: u32, height: u32, indices: &[u8], palette: &[[u8; 4]]) -> Result<Vec<u8>, String> {
     encode(width, height, indices, |encoder| {
@@ -67,6 +72,11 @@ fn encode(
 /// A PNG as a URL that holds it.
 pub(crate) fn data_url(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
+}
+
+/// An SVG file as a URL that holds it.
+pub(crate) fn svg_url(svg: &[u8]) -> String {
+    format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg))
 }
 
 #[cfg(test)]

@@ -94,8 +94,35 @@ impl Svg {
         self.put(format_args!(r#"<text x="{x}" y="{y}" text-anchor="{anchor}" class="{class}">{text}</text>"#));
     }
 
+    /// A circle of a class, with declarations of its own.
+    pub(crate) fn styled_circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str, style: &str) {
+        let [x, y, radius] = [x, y, radius].map(at);
+        self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}" class="{class}" style="{style}"/>"#));
+    }
+
+    /// Circles of one class and fill.
+    pub(crate) fn circles(&mut self, circles: impl IntoIterator<Item = ([f64; 2], f64)>, fill: &str, class: &str) {
+        self.put(format_args!(r#"<g fill="{fill}" class="{class}">"#));
+        for ([x, y], radius) in circles {
+            let [x, y, radius] = [x, y, radius].map(at);
+            self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}"/>"#));
+        }
+        self.put(format_args!("</g>"));
+    }
+
     /// A line through places, closed or not; one that is not a number breaks it.
     pub(crate) fn path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str) {
+        self.styled_path(places, closed, class, "");
+    }
+
+    /// A [`Svg::path`] with declarations of its own.
+    pub(crate) fn styled_path(
+        &mut self,
+        places: impl IntoIterator<Item = [f64; 2]>,
+        closed: bool,
+        class: &str,
+        style: &str,
+    ) {
         let mut data = String::new();
         let mut command = 'M';
         for place in places {
@@ -110,7 +137,8 @@ impl Svg {
         if closed {
             data.push('Z');
         }
-        self.put(format_args!(r#"<path d="{data}" class="{class}"/>"#));
+        let style = if style.is_empty() { String::new() } else { format!(r#" style="{style}""#) };
+        self.put(format_args!(r#"<path d="{data}" class="{class}"{style}/>"#));
     }
 
     /// A picture stretched over a rectangle.
@@ -131,6 +159,12 @@ impl Svg {
     pub(crate) fn place(&mut self, [x, y]: [f64; 2], figure: &Figure) {
         let ([x, y], body) = ([x, y].map(at), &figure.body);
         self.put(format_args!(r#"<g transform="translate({x} {y})">{body}</g>"#));
+    }
+
+    /// Another drawing, moved and made larger or smaller.
+    pub(crate) fn place_scaled(&mut self, [x, y]: [f64; 2], scale: f64, figure: &Figure) {
+        let ([x, y], body) = ([x, y].map(at), &figure.body);
+        self.put(format_args!(r#"<g transform="translate({x} {y}) scale({scale:.4})">{body}</g>"#));
     }
 
     /// The finished drawing; `title` says what is seen.

@@ -18,6 +18,12 @@ pub(crate) fn number(value: f64) -> String {
     .replace('-', "−")
 }
 
+/// About three figures without zeros at the end, for what is often whole: `20`, `14.2`.
+pub(crate) fn short_number(value: f64) -> String {
+    let text = number(value);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 fn trimmed(value: f64, decimals: usize) -> String {
     format!("{value:.decimals$}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
@@ -77,7 +83,7 @@ pub(crate) fn time(seconds: f64) -> String {
         3599.5.. => format!("{} h {minutes:02} min", whole / 3600),
         119.5.. if whole.is_multiple_of(60) => format!("{minutes} min"),
         119.5.. => format!("{minutes} min {:02} s", whole % 60),
-        _ => format!("{} s", number(seconds)),
+        _ => format!("{} s", short_number(seconds)),
     }
 }
 
@@ -108,7 +114,8 @@ mod tests {
     fn times_read_as_a_clock() {
         for (seconds, text) in [
             (0.5, "0.5 s"),
-            (45.0, "45.0 s"),
+            (45.0, "45 s"),
+            (14.25, "14.2 s"),
             (600.0, "10 min"),
             (605.0, "10 min 05 s"),
             (3900.0, "1 h 05 min"),

@@ -1,25 +1,9 @@
 //! Numbers in the report: key figures and tables, as cells of text.
 
+use super::parts::{KeyFigure, Table, how_it_ended};
 use super::{Report, figures::FieldFigure, gauges};
-use crate::Status;
-use crate::picture::{area, number, time, volume};
+use crate::picture::{area, number, short_number, time, volume};
 use corpuscle_scene::{Scheme, Terrain};
-
-/// A key figure.
-pub(super) struct KeyFigure {
-    /// What it is.
-    pub label: &'static str,
-    /// The value with its unit.
-    pub value: String,
-    /// A remark below.
-    pub remark: String,
-}
-
-/// A table: head and rows of cells.
-pub(super) struct Table {
-    pub head: Vec<&'static str>,
-    pub rows: Vec<Vec<String>>,
-}
 
 /// The handful of numbers that come first.
 pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
@@ -69,25 +53,6 @@ pub(super) fn areas_by_class(report: &Report, figure: &FieldFigure) -> Vec<(Stri
     classes.colours.iter().enumerate().map(|(class, colour)| (classes.range(class), *colour, area(class))).collect()
 }
 
-/// The balances.
-pub(super) fn ledger(report: &Report) -> Table {
-    let row = |(name, entry): (&String, &crate::LedgerEntry)| {
-        let (quantity, unit) = name.rsplit_once('_').unwrap_or((name, ""));
-        let unit = match unit {
-            "m3" => "m³",
-            other => other,
-        };
-        let values = [entry.initial, entry.inflow, entry.outflow, entry.end, entry.relative_error].map(number);
-        std::iter::once(if unit.is_empty() { quantity.to_owned() } else { format!("{quantity}, {unit}") })
-            .chain(values)
-            .collect()
-    };
-    Table {
-        head: vec!["quantity", "at the start", "came in", "went out", "at the end", "relative error"],
-        rows: report.summary.ledger.iter().map(row).collect(),
-    }
-}
-
 /// First water, largest depth and speed at each gauge.
 pub(super) fn gauge_peaks(report: &Report) -> Table {
     let all = gauges::series(report);
@@ -119,28 +84,23 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let (summary, scene) = (&report.summary, &report.flood);
     let ground = &report.ground;
     let [columns, rows] = ground.grid.map(|count| number(count as f64).replace(".0", ""));
-    let cell = [0, 1].map(|axis| number(ground.extent[axis] / ground.grid[axis] as f64));
+    let cell = [0, 1].map(|axis| short_number(ground.extent[axis] / ground.grid[axis] as f64));
     let cell = if cell[0] == cell[1] { format!("{} m", cell[0]) } else { format!("{} m × {} m", cell[0], cell[1]) };
-    let [low, high] = ground.height_range().map(number);
+    let [low, high] = ground.height_range().map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Balanced => "balanced",
         Scheme::Paper => "paper",
-    };
-    let status = match summary.status {
-        Status::Done => "came to its end",
-        Status::Stopped => "stopped before its end",
-        Status::Failed => "broke down before its end",
     };
     vec![
         ("Model", format!("{}, scheme {scheme}", summary.model)),
         ("Terrain", terrain_words(&scene.terrain)),
         ("Grid", format!("{columns} × {rows} cells of {cell}; heights {low} to {high} m")),
         ("Reference system", ground.system.clone().unwrap_or_else(|| "none (metres)".into())),
-        ("Simulated time", format!("{} ({status})", time(summary.simulated_time_s))),
+        ("Simulated time", format!("{} ({})", time(summary.simulated_time_s), how_it_ended(summary))),
         ("Particles", number(summary.particles as f64).replace(".0", "")),
         ("Steps", number(summary.steps as f64).replace(".0", "")),
-        ("Computed in", format!("{} on {}", time(summary.wall_time_s), summary.backend)),
-        ("Rate", format!("{} particle steps per second", number(summary.particle_steps_per_s))),
+        ("Computed in", format!("{} on the {}", time(summary.wall_time_s), summary.backend.to_uppercase())),
+        ("Rate", format!("{} particle steps per second", number(summary.particle_steps_per_s.unwrap_or(f64::NAN)))),
         ("Corpuscle", format!("version {}", summary.version)),
     ]
 }

@@ -3,8 +3,8 @@
 use super::snapshots::Snapshot;
 use super::{Report, gauges};
 use crate::picture::{
-    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, legend, stack, svg_to_png,
-    time,
+    Chart, Classes, Figure, Layer, MapFigure, Ramp, Size, beside, data_url, ground_image, heading, legend, stack,
+    svg_to_png, time,
 };
 
 use rayon::prelude::*;
@@ -113,7 +113,7 @@ impl Figures {
         let wide = [1000.0, 250.0];
         let charts = [
             ("discharge", gauges::together(&all, "m³/s", "Discharge", span, wide)),
-            ("volume", gauges::together(&all, "m³", "Volume of water", span, wide)),
+            ("volume", gauges::together(&gauges::changing_volumes(&all), "m³", "Volume of water", span, wide)),
         ];
         let drawn = |(name, chart): (&'static str, Option<Chart>)| Some((name, chart?.figure()));
         Ok(Self {
@@ -200,6 +200,8 @@ fn draw_snapshots(
     };
     let drawn: Vec<(Figure, Figure)> = report.snapshots.par_iter().map(draw).collect::<Result<_, String>>()?;
     let (on_page, in_file): (Vec<Figure>, Vec<Figure>) = drawn.into_iter().unzip();
-    let file = (!in_file.is_empty()).then(|| stack(&[beside(&in_file, 3, [12.0, 8.0]), legend(&classes)], 0.0));
+    let heading = heading("Depth over time", &report.title());
+    let file =
+        (!in_file.is_empty()).then(|| stack(&[heading, beside(&in_file, 3, [12.0, 8.0]), legend(&classes)], 0.0));
     Ok((on_page, file))
 }

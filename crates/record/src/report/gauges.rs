@@ -28,9 +28,17 @@ pub(super) struct GaugeSeries {
 impl GaugeSeries {
     /// Time, s, and value of the largest value; none where nothing was measured.
     pub(super) fn peak(&self) -> Option<[f64; 2]> {
-        let finite = self.points.iter().copied().filter(|point| point[1].is_finite());
-        // The first of equal ones.
-        finite.reduce(|best, point| if point[1] > best[1] { point } else { best })
+        self.line("", 0, false).peak()
+    }
+
+    fn changes(&self) -> bool {
+        self.points.iter().any(|point| point[1] != self.points[0][1])
+    }
+
+    /// The peak in words: `max 2.5 m at 10 s`.
+    fn peak_in_words(&self) -> String {
+        self.peak()
+            .map_or_else(String::new, |peak| format!("max {} {} at {}", number(peak[1]), self.unit, time(peak[0])))
     }
 
     fn line(&self, name: &str, colour: usize, filled: bool) -> Series {
@@ -89,9 +97,7 @@ pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Ve
     let is_wet = |series: &&GaugeSeries| series.peak().is_some_and(|peak| peak[1] > 0.0);
     let depths = all.iter().filter(|series| series.quantity == "depth").filter(is_wet).take(MOST_GAUGES);
     let chart = |series: Option<&GaugeSeries>, title: String, unit: &str, height: f64, colour: usize| Chart {
-        remark: series.and_then(GaugeSeries::peak).map_or_else(String::new, |peak| {
-            format!("max {} {} at {}", number(peak[1]), series.map_or("", |s| s.unit), time(peak[0]))
-        }),
+        remark: series.map_or_else(String::new, GaugeSeries::peak_in_words),
         unit: unit.to_owned(),
         size: [width, height],
         span,
@@ -109,6 +115,11 @@ pub(super) fn hydrographs(all: &[GaugeSeries], span: [f64; 2], width: f64) -> Ve
     depths.map(pair).collect()
 }
 
+/// Volumes that change: what neither came in nor went out has no line, and all is left out where nothing changes.
+pub(super) fn changing_volumes(all: &[GaugeSeries]) -> Vec<GaugeSeries> {
+    all.iter().filter(|series| series.unit == "m³" && series.changes()).cloned().collect()
+}
+
 /// One chart of all columns in a unit; none where there is none.
 pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64; 2], size: [f64; 2]) -> Option<Chart> {
     let chosen: Vec<&GaugeSeries> = all.iter().filter(|series| series.unit == unit).collect();
@@ -123,7 +134,10 @@ pub(super) fn together(all: &[GaugeSeries], unit: &str, title: &str, span: [f64;
         chosen.iter().enumerate().map(|(colour, series)| series.line(&named(series), colour, chosen.len() == 1));
     (!chosen.is_empty()).then(|| Chart {
         title: title.to_owned(),
-        remark: String::new(),
+        remark: match chosen.as_slice() {
+            [only] => format!("{}: {}", named(only), only.peak_in_words()),
+            _ => String::new(),
+        },
         unit: unit.to_owned(),
         size,
         span,
@@ -163,12 +177,23 @@ mod tests {
     }
 
     #[test]
+    fn volumes_that_stay_the_same_have_no_line() {
+        let columns = ["water.stored_m3", "water.total_inflow_m3", "water.total_outflow_m3"].map(str::to_owned);
+        let rows = vec![vec![9.0, 0.0, 0.0], vec![8.0, 0.0, 1.0]];
+        let all = gauge_series(&GaugeTable { columns: columns.to_vec(), times: vec![0.0, 10.0], rows });
+        let kept: Vec<String> = changing_volumes(&all).into_iter().map(|series| series.quantity).collect();
+        assert_eq!(kept, ["stored", "total_outflow"]);
+        assert!(changing_volumes(&all[1..2]).is_empty());
+    }
+
+    #[test]
     fn charts_for_what_is_there() {
         let all = gauge_series(&table());
         let [depth, speed] = &hydrographs(&all, [0.0, 10.0], 300.0)[0];
         assert_eq!((depth.series.len(), speed.series.len()), (1, 1));
-        assert_eq!(depth.remark, "max 2.00 m at 10.0 s");
-        assert!(together(&all, "m³/s", "Discharge", [0.0, 10.0], [900.0, 240.0]).is_some());
+        assert_eq!(depth.remark, "max 2.00 m at 10 s");
+        let discharge = together(&all, "m³/s", "Discharge", [0.0, 10.0], [900.0, 240.0]).unwrap();
+        assert_eq!(discharge.remark, "weir: max 7.00 m³/s at 10 s");
         assert!(together(&all, "m³", "Volume", [0.0, 10.0], [900.0, 240.0]).is_none());
     }
 }

@@ -1,9 +1,11 @@
-//! The report: what a planner would show, made from a run's folder.
+//! The report of a run: of a flood what a planner would show, of a gas what a teacher would.
 
 mod facts;
 mod figures;
+mod gas;
 mod gauges;
 mod page;
+mod parts;
 mod snapshots;
 
 use crate::maps::read_map;
@@ -14,10 +16,12 @@ use corpuscle_scene::{Flood, FloodScene, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
+
+pub use gas::GasReport;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A finished run as its report needs it.
+/// A finished flood as its report needs it.
 #[derive(Debug)]
 pub struct Report {
     folder: PathBuf,
@@ -100,21 +104,30 @@ impl Report {
 
     /// The scene's title, or the folder's name.
     fn title(&self) -> String {
-        match self.scene.title.trim() {
-            "" => self.folder_name(),
-            title => title.to_owned(),
-        }
+        title_or_folder(&self.scene, &self.folder)
     }
 
     fn folder_name(&self) -> String {
-        self.folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
+        folder_name(&self.folder)
     }
 
     /// Area where a field has a value, m2.
     fn area_of(&self, field: &Field, wanted: impl Fn(f32) -> bool) -> f64 {
         let cells = field.values.iter().zip(&self.cell_areas);
-        cells.filter(|(value, _)| wanted(**value)).map(|(_, area)| area).sum()
+        cells.filter(|(value, _)| wanted(**value)).fold(0.0, |sum, (_, area)| sum + area)
     }
+}
+
+/// A scene's title, or the name of its run's folder.
+fn title_or_folder(scene: &Scene, folder: &Path) -> String {
+    match scene.title.trim() {
+        "" => folder_name(folder),
+        title => title.to_owned(),
+    }
+}
+
+fn folder_name(folder: &Path) -> String {
+    folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
 }
 
 fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, RecordError> {

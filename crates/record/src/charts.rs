@@ -1,0 +1,78 @@
+//! `charts/`: what was measured, as tables; `path.csv`: where followed particles went.
+
+use crate::RecordError;
+use crate::number::Shortest;
+use crate::whole::write_bytes;
+use corpuscle_model::{Chart, ChartSeries, Path as Way};
+use std::path::Path;
+
+/// Writes a chart: one row for each point, `series,x,y,error`; the last is empty where there is none.
+pub(crate) fn write_chart(folder: &Path, chart: &Chart) -> Result<(), RecordError> {
+    let rows = |series: &ChartSeries| {
+        let error =
+            |index: usize| series.errors.get(index).map_or_else(String::new, |error| Shortest(*error).to_string());
+        let row = |(index, [x, y]): (usize, &[f64; 2])| {
+            [series.name.clone(), Shortest(*x).to_string(), Shortest(*y).to_string(), error(index)]
+        };
+        series.points.iter().enumerate().map(row).collect::<Vec<_>>()
+    };
+    let path = folder.join(format!("{}.csv", chart.name));
+    write_table(&path, ["series", "x", "y", "error"], chart.series.iter().flat_map(rows))
+}
+
+/// Writes `path.csv`: `path,time_s,x,y,z`, one row for each point.
+pub(crate) fn write_paths(folder: &Path, ways: &[Way]) -> Result<(), RecordError> {
+    let rows = |way: &Way| {
+        let row = |(time, [x, y, z]): (&f64, &[f64; 3])| {
+            let [time, x, y, z] = [time, x, y, z].map(|value| Shortest(*value).to_string());
+            [way.name.clone(), time, x, y, z]
+        };
+        way.times.iter().zip(&way.points).map(row).collect::<Vec<_>>()
+    };
+    write_table(&folder.join("path.csv"), ["path", "time_s", "x", "y", "z"], ways.iter().flat_map(rows))
+}
+
+fn write_table<const N: usize>(
+    path: &Path,
+    head: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> Result<(), RecordError> {
+    let table = || {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(head)?;
+        for row in rows {
+            writer.write_record(row)?;
+        }
+        writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+    };
+    write_bytes(path, &table().map_err(|error| RecordError::content(path, error))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn charts_and_paths_are_tables() {
+        let folder = tempfile::tempdir().unwrap();
+        let series = |name: &str, errors| ChartSeries {
+            name: name.into(),
+            points: vec![[0.5, 1e-7], [1.5, f64::NAN]],
+            errors,
+            ..ChartSeries::default()
+        };
+        let series = vec![series("measured, all", vec![0.1, 0.2]), series("Maxwell", vec![])];
+        write_chart(folder.path(), &Chart { name: "speeds".into(), series, ..Chart::default() }).unwrap();
+        let text = fs::read_to_string(folder.path().join("speeds.csv")).unwrap();
+        assert_eq!(
+            text,
+            "series,x,y,error\n\"measured, all\",0.5,1e-7,0.1\n\"measured, all\",1.5,NaN,0.2\n\
+             Maxwell,0.5,1e-7,\nMaxwell,1.5,NaN,\n"
+        );
+        let way = Way { name: "ball 0".into(), times: vec![0.25], points: vec![[1.0, 2.0, 0.0]] };
+        write_paths(folder.path(), &[way]).unwrap();
+        let text = fs::read_to_string(folder.path().join("path.csv")).unwrap();
+        assert_eq!(text, "path,time_s,x,y,z\nball 0,0.25,1,2,0\n");
+    }
+}

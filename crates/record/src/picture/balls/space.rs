@@ -1,0 +1,191 @@
+//! Balls in three dimensions: shaded spheres in a box drawn in perspective.
+
+use super::colour::mix;
+use super::paint::{Seen, Spheres};
+use super::{Balls, MOST, Side};
+use crate::picture::png::data_url;
+use crate::picture::svg::{Figure, Svg};
+
+/// The eye looks from this direction: turned to the right of the front, and raised, in radians.
+const TURNED: f64 = 0.55;
+const RAISED: f64 = 0.33;
+
+/// Distance of the eye from the middle of the box, in diagonals of the box.
+const DISTANCE: f64 = 2.2;
+
+/// How much of the far end's colours is lost in the haze.
+const HAZE: f64 = 0.55;
+
+/// Pixels of the painted picture for a CSS pixel.
+const FINENESS: f64 = 1.6;
+
+/// Space round the box, CSS pixels.
+const MARGIN: f64 = 10.0;
+
+/// How the eye sees the box.
+struct Eye {
+    middle: [f64; 3],
+    distance: f64,
+    diagonal: f64,
+    /// CSS pixels for a unit of length at the middle of the box.
+    scale: f64,
+    /// Corners of the picture in those units, y downwards.
+    corner: [f64; 2],
+    size: [f64; 2],
+}
+
+/// A place as the eye sees it: place in CSS pixels, distance from the eye, and how much larger than at the middle.
+struct Sight {
+    place: [f64; 2],
+    distance: f64,
+    nearer: f64,
+}
+
+impl Eye {
+    fn on(view: [[f64; 3]; 2]) -> Self {
+        let [from, to] = view;
+        let side: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+        let diagonal = side.iter().map(|length| length * length).sum::<f64>().sqrt();
+        let middle = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
+        let mut eye =
+            Self { middle, distance: DISTANCE * diagonal, diagonal, scale: 1.0, corner: [0.0; 2], size: [0.0; 2] };
+        let places = corners(from, to).map(|corner| eye.see(corner).place);
+        let low = [0, 1].map(|k| places.iter().map(|place| place[k]).fold(f64::INFINITY, f64::min));
+        let high = [0, 1].map(|k| places.iter().map(|place| place[k]).fold(f64::NEG_INFINITY, f64::max));
+        eye.scale = (MOST[0] / (high[0] - low[0])).min(MOST[1] / (high[1] - low[1]));
+        eye.corner = low.map(|place| place * eye.scale - MARGIN);
+        eye.size = [0, 1].map(|k| (high[k] - low[k]) * eye.scale + 2.0 * MARGIN);
+        eye
+    }
+
+    fn see(&self, position: [f64; 3]) -> Sight {
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| position[k] - self.middle[k]);
+        let ((sin_t, cos_t), (sin_r, cos_r)) = (TURNED.sin_cos(), RAISED.sin_cos());
+        let (right, away) = (x * cos_t + y * sin_t, y * cos_t - x * sin_t);
+        let (up, away) = (z * cos_r + away * sin_r, away * cos_r - z * sin_r);
+        let distance = self.distance + away;
+        let nearer = self.distance / distance;
+        let place = [right * nearer * self.scale - self.corner[0], -up * nearer * self.scale - self.corner[1]];
+        Sight { place, distance, nearer }
+    }
+}
+
+/// The eight corners of a box; the number's bits choose the ends along x, y and z.
+fn corners(from: [f64; 3], to: [f64; 3]) -> [[f64; 3]; 8] {
+    std::array::from_fn(|number| {
+        std::array::from_fn(|axis| if number >> axis & 1 == 1 { to[axis] } else { from[axis] })
+    })
+}
+
+/// Width and height of the picture.
+pub(super) fn size(balls: &Balls) -> [f64; 2] {
+    Eye::on(balls.view).size
+}
+
+/// The picture.
+pub(super) fn picture(balls: &Balls, shown_at: f64) -> Result<Figure, String> {
+    let eye = Eye::on(balls.view);
+    let mut svg = Svg::default();
+    svg.rectangle([0.0, 0.0], eye.size, "paper");
+    draw_edges(&mut svg, balls, &eye, false);
+    let url = data_url(&paint(balls, &eye, FINENESS * shown_at)?);
+    svg.image([0.0, 0.0], eye.size, &url, 1.0);
+    draw_faces(&mut svg, balls, &eye);
+    draw_edges(&mut svg, balls, &eye, true);
+    if !balls.way.is_empty() {
+        for class in ["way-under", "way"] {
+            svg.path(balls.way.iter().map(|point| eye.see(*point).place), false, class);
+        }
+    }
+    Ok(svg.finish(eye.size, "Balls in their box"))
+}
+
+fn paint(balls: &Balls, eye: &Eye, fineness: f64) -> Result<Vec<u8>, String> {
+    let mut canvas = Spheres::new(eye.size.map(|length| (length * fineness).ceil() as usize));
+    let near = eye.distance - 0.5 * eye.diagonal;
+    for disc in &balls.discs {
+        let sight = eye.see(disc.position);
+        let haze = HAZE * ((sight.distance - near) / eye.diagonal).clamp(0.0, 1.0);
+        canvas.sphere(&Seen {
+            place: sight.place.map(|length| length * fineness),
+            distance: sight.distance * eye.scale * fineness,
+            radius: disc.radius * sight.nearer * eye.scale * fineness,
+            colour: mix(disc.colour, [0xfc, 0xfd, 0xfe], haze),
+        });
+    }
+    canvas.png()
+}
+
+/// Edges of the box: those that meet in the farthest corner behind the balls, the others before them.
+fn draw_edges(svg: &mut Svg, balls: &Balls, eye: &Eye, front: bool) {
+    let places = corners(balls.from, balls.to);
+    let sights = places.map(|corner| eye.see(corner));
+    let farthest = (0..8).max_by(|a, b| sights[*a].distance.total_cmp(&sights[*b].distance)).unwrap_or(0);
+    for corner in 0..8usize {
+        for axis in (0..3).filter(|axis| corner >> axis & 1 == 0) {
+            let other = corner | 1 << axis;
+            let behind = corner == farthest || other == farthest;
+            if behind == front {
+                continue;
+            }
+            // An edge lies between two sides; it is one of a wall if either is.
+            let open = (0..3).filter(|k| *k != axis).all(|k| balls.sides[k][corner >> k & 1] == Side::Open);
+            let class = match (open, front) {
+                (true, _) => "wall-open",
+                (false, true) => "edge edge-front",
+                (false, false) => "edge",
+            };
+            svg.line(sights[corner].place, sights[other].place, class);
+        }
+    }
+}
+
+/// Pistons and a partition, as faces that one sees through.
+fn draw_faces(svg: &mut Svg, balls: &Balls, eye: &Eye) {
+    let face = |svg: &mut Svg, axis: usize, at: f64, from: [f64; 3], to: [f64; 3]| {
+        let [one, other] = [(axis + 1) % 3, (axis + 2) % 3];
+        let corner = |ends: [[f64; 3]; 2]| {
+            let mut place = [at; 3];
+            (place[one], place[other]) = (ends[0][one], ends[1][other]);
+            eye.see(place).place
+        };
+        svg.path([corner([from, from]), corner([to, from]), corner([to, to]), corner([from, to])], true, "face");
+    };
+    for axis in 0..3 {
+        for (end, place) in [balls.from, balls.to].into_iter().enumerate() {
+            if balls.sides[axis][end] == Side::Piston {
+                face(svg, axis, place[axis], balls.from, balls.to);
+            }
+        }
+    }
+    let Some(partition) = &balls.partition else { return };
+    face(svg, partition.axis, partition.at, balls.from, balls.to);
+    let Some(hole) = &partition.hole else { return };
+    let ends: Vec<[f64; 3]> = hole.iter().map(|end| spread(end, partition.axis, partition.at)).collect();
+    face(svg, partition.axis, partition.at, ends[0], ends[1]);
+}
+
+/// A place on a face from its two coordinates there.
+fn spread(coordinates: &[f64], axis: usize, at: f64) -> [f64; 3] {
+    let mut rest = coordinates.iter().copied();
+    std::array::from_fn(|k| if k == axis { at } else { rest.next().unwrap_or(0.0) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_box_fills_the_picture_and_near_things_are_larger() {
+        let (from, to) = ([0.0; 3], [2e-9, 1e-9, 3e-9]);
+        let eye = Eye::on([from, to]);
+        for corner in corners(from, to) {
+            let place = eye.see(corner).place;
+            let inside = (0..2).all(|k| place[k] >= MARGIN - 1e-6 && place[k] <= eye.size[k] - MARGIN + 1e-6);
+            assert!(inside, "{place:?} in {:?}", eye.size);
+        }
+        let front = eye.see([1e-9, 0.0, 1.5e-9]);
+        let back = eye.see([1e-9, 1e-9, 1.5e-9]);
+        assert!(front.nearer > 1.0 && back.nearer < 1.0 && front.distance < back.distance);
+    }
+}

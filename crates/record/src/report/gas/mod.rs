@@ -1,0 +1,131 @@
+//! The report of balls in a box: what a teacher would put on a slide.
+
+mod charts;
+mod facts;
+mod page;
+mod picture;
+
+use super::title_or_folder;
+use crate::picture::{Figure, plot, svg_to_png};
+use crate::whole::write_bytes;
+use crate::{GaugeTable, RecordError, Summary};
+use corpuscle_model::{Chart, Model};
+use corpuscle_scene::{Gas, Scene};
+use rayon::prelude::*;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Moments that the report shows.
+const MOMENTS: usize = 6;
+
+/// Width and height of a chart, CSS pixels.
+const CHART: [f64; 2] = [482.0, 310.0];
+
+/// The run of a gas, for its report.
+pub struct GasReport<'a> {
+    folder: &'a Path,
+    scene: &'a Scene,
+    gas: &'a Gas,
+    model: &'a dyn Model,
+}
+
+/// What is drawn for the report.
+struct Drawn {
+    balls: Figure,
+    charts: Vec<(String, Figure)>,
+    /// Pictures of moments, as SVG files.
+    moments: Vec<Vec<u8>>,
+}
+
+impl<'a> GasReport<'a> {
+    /// The report of a run into `folder`. `scene` has its defaults resolved; `model` shows the time of the picture.
+    ///
+    /// # Errors
+    /// [`RecordError::Content`] where the scene is not one of a gas.
+    pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, RecordError> {
+        let no_gas = || RecordError::content(&folder.join("scene.toml"), "it is not the scene of a gas");
+        Ok(Self { folder, scene, gas: scene.gas().ok_or_else(no_gas)?, model })
+    }
+
+    /// Draws the balls at the time shown, if this is one of the moments that the report will show:
+    /// `pictures/frame_NNNNNN.svg`, with the number of the particle file.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
+    pub fn write_moment(&self) -> Result<(), RecordError> {
+        let number = frame_number(self.model.time(), self.scene.run.frame_period_s());
+        if !self.moments().contains(&number) {
+            return Ok(());
+        }
+        let caption = format!("t = {}", facts::time(self.gas, self.model.time()));
+        let figure = picture::balls(self.gas, self.model).moment(&caption).map_err(|what| self.drawing(what))?;
+        self.make_folder()?;
+        write_bytes(&self.moment_path(number), figure.standalone().as_bytes())
+    }
+
+    /// Writes `pictures/*.png`, `pictures/balls.svg` and `report.html`.
+    ///
+    /// # Errors
+    /// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), RecordError> {
+        let summary = Summary::read(self.folder)?;
+        let scene_path = self.folder.join("scene.toml");
+        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let gauges = GaugeTable::read(&self.folder.join("gauges.csv"))?;
+        let charts = [self.model.charts(), charts::over_time(self.gas, &self.model.gauge_columns(), &gauges)].concat();
+        let title = title_or_folder(self.scene, self.folder);
+        let drawn = self.draw(&charts, &title)?;
+        let content = page::content(self, &summary, &drawn, &title, &scene_text);
+        write_bytes(&self.folder.join("report.html"), content.as_bytes())
+    }
+
+    fn draw(&self, charts: &[Chart], title: &str) -> Result<Drawn, RecordError> {
+        self.make_folder()?;
+        let balls = picture::balls(self.gas, self.model);
+        let subtitle = format!("t = {}", facts::time(self.gas, self.model.time()));
+        let file = balls.figure(Some([title, &subtitle])).map_err(|what| self.drawing(what))?;
+        write_bytes(&self.picture_path("balls.svg"), file.with_margin(16.0).standalone().as_bytes())?;
+        let on_page = balls.figure(None).map_err(|what| self.drawing(what))?;
+        let charts: Vec<(String, Figure)> =
+            charts.iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect();
+        let files = charts.iter().cloned().chain([("balls".to_owned(), file)]);
+        let pngs = files.collect::<Vec<_>>().into_par_iter();
+        let pngs = pngs.map(|(name, figure)| Ok((name, svg_to_png(&figure.with_margin(16.0))?)));
+        for (name, png) in pngs.collect::<Result<Vec<_>, String>>().map_err(|what| self.drawing(what))? {
+            write_bytes(&self.picture_path(&format!("{name}.png")), &png)?;
+        }
+        // Moments that were not reached, as in a run that broke down, have no file.
+        let moments = self.moments().into_iter().filter_map(|number| fs::read(self.moment_path(number)).ok()).collect();
+        Ok(Drawn { balls: on_page, charts, moments })
+    }
+
+    /// Numbers of the frames that are shown, evenly spread from the first to the last.
+    fn moments(&self) -> Vec<usize> {
+        let last = frame_number(self.scene.run.until_s, self.scene.run.frame_period_s());
+        let mut numbers: Vec<usize> = (0..MOMENTS).map(|k| (k * last + (MOMENTS - 1) / 2) / (MOMENTS - 1)).collect();
+        numbers.dedup();
+        numbers
+    }
+
+    fn moment_path(&self, number: usize) -> PathBuf {
+        self.picture_path(&format!("frame_{number:06}.svg"))
+    }
+
+    fn picture_path(&self, name: &str) -> PathBuf {
+        self.folder.join("pictures").join(name)
+    }
+
+    fn make_folder(&self) -> Result<(), RecordError> {
+        let pictures = self.folder.join("pictures");
+        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))
+    }
+
+    fn drawing(&self, what: String) -> RecordError {
+        RecordError::content(&self.folder.join("pictures"), what)
+    }
+}
+
+/// Number of the frame at a time: they come at multiples of the period and at the end.
+fn frame_number(time: f64, period: f64) -> usize {
+    (time / period - 1e-6).ceil().max(0.0) as usize
+}

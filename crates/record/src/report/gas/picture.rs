@@ -1,0 +1,112 @@
+//! From what a model shows of a gas to the picture of it.
+
+use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_speed};
+use corpuscle_model::{Container, Frame, Model, ParticleSet};
+use corpuscle_scene::{Axis, Gas, Units, Wall, padded};
+
+/// The largest speed that is told apart, over the root mean square at the start.
+const FASTEST: f64 = 2.0;
+
+/// What has no colour of its own.
+const GREY: Colour = [0x6b, 0x78, 0x85];
+
+/// The gas at the time that the model shows. Kinds of balls are told apart by their colours; balls of one kind by speed.
+pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
+    let frame = model.frame();
+    let container = model.container().unwrap_or(Container { from: [0.0; 3], to: padded(&gas.size) });
+    let size = padded(&gas.size);
+    let key = key(gas, &frame);
+    Balls {
+        dimensions: gas.dimensions(),
+        from: container.from,
+        to: container.to,
+        view: [
+            std::array::from_fn(|k| container.from[k].min(0.0)),
+            std::array::from_fn(|k| container.to[k].max(size[k])),
+        ],
+        sides: Axis::ALL.map(|axis| gas.walls.along(axis).map(side)),
+        partition: partition(gas, model.time()),
+        discs: frame.sets.iter().flat_map(|set| discs(gas, set, &key)).collect(),
+        way: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
+        followed: gas.follow.and_then(|id| followed(gas, &frame, id, &key)),
+        key,
+        unit: match gas.units {
+            Units::Reduced => "",
+            Units::Si => "m",
+        },
+    }
+}
+
+fn side(wall: &Wall) -> Side {
+    match wall {
+        Wall::Fixed => Side::Wall,
+        Wall::Periodic => Side::Open,
+        Wall::Thermal { .. } => Side::Hot,
+        Wall::Moving { .. } | Wall::Motion(_) | Wall::Piston { .. } => Side::Piston,
+    }
+}
+
+fn partition(gas: &Gas, time: f64) -> Option<Across> {
+    let partition = gas.partition.as_ref()?;
+    let stands = partition.lifted_at_s.is_none_or(|lifted| time < lifted);
+    stands.then(|| Across {
+        axis: partition.axis.index(),
+        at: partition.at,
+        hole: partition.hole.as_ref().map(|hole| [hole.from.clone(), hole.to.clone()]),
+    })
+}
+
+fn key(gas: &Gas, frame: &Frame) -> Key {
+    if let [_] = frame.sets[..] {
+        let unit = match gas.units {
+            Units::Reduced => "",
+            Units::Si => "m/s",
+        };
+        return Key::Speed { most: fastest(gas, frame), unit };
+    }
+    let kind = |set: &ParticleSet| {
+        let count = if set.len() == 1 { String::new() } else { format!(": {}", number(set.len() as f64)) };
+        (format!("{}{count}", set.name), colour_of(gas, &set.name))
+    };
+    Key::Kinds(frame.sets.iter().map(kind).collect())
+}
+
+/// The speed that has the last colour: the same at all times, so that pictures can be compared.
+fn fastest(gas: &Gas, frame: &Frame) -> f64 {
+    let freedom = gas.dimensions() as f64 * gas.units.boltzmann();
+    let thermal = gas.species.iter().map(|species| (freedom * species.temperature / species.mass).sqrt());
+    let given = gas.ball.iter().filter_map(|ball| ball.velocity.as_deref()).map(|velocity| length(padded(velocity)));
+    let from_start = FASTEST * thermal.fold(0.0, f64::max);
+    let now = || frame.sets.iter().flat_map(|set| &set.velocity).map(|velocity| length(*velocity)).fold(0.0, f64::max);
+    [from_start, given.fold(0.0, f64::max), now()].into_iter().find(|speed| *speed > 0.0).unwrap_or(1.0)
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|component| component * component).sum::<f64>().sqrt()
+}
+
+/// The colour that the scene gives to a set.
+fn colour_of(gas: &Gas, name: &str) -> Colour {
+    let species = gas.species.iter().filter(|species| species.name == name).map(|species| &species.colour);
+    let balls = gas.ball.iter().filter(|ball| ball.name == name).map(|ball| &ball.colour);
+    let colour = species.chain(balls).flatten().next();
+    colour.and_then(|colour| from_hex(colour)).unwrap_or(GREY)
+}
+
+fn discs<'a>(gas: &Gas, set: &'a ParticleSet, key: &Key) -> impl Iterator<Item = Disc> + use<'a> {
+    let of_kind = colour_of(gas, &set.name);
+    let most = match key {
+        Key::Speed { most, .. } => Some(*most),
+        Key::Kinds(_) => None,
+    };
+    (0..set.len()).map(move |i| Disc {
+        position: set.position[i],
+        radius: set.radius[i],
+        colour: most.map_or(of_kind, |most| of_speed(length(set.velocity[i]) / most)),
+    })
+}
+
+fn followed(gas: &Gas, frame: &Frame, id: u64, key: &Key) -> Option<Disc> {
+    let (set, index) = frame.sets.iter().find_map(|set| Some((set, set.id.iter().position(|found| *found == id)?)))?;
+    discs(gas, set, key).nth(index)
+}
