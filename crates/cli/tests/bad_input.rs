@@ -126,10 +126,7 @@ fn files_that_a_scene_names_and_that_are_not_there_are_refused() {
         ("water = [{ depth_raster = \"nothing.tif\" }]", "nothing.tif"),
         ("water = [{ depth_m = 1 }]\nmanning = { raster = \"none.tif\" }", "none.tif"),
         ("water = [{ depth_m = 1 }]\nobserved_extent = \"none.geojson\"", "none.geojson"),
-        (
-            "inflow = [{ name = \"river\", at = [300, 200], discharge_m3_per_s = { csv = \"none.csv\" } }]",
-            "none.csv",
-        ),
+        ("inflow = [{ name = \"river\", at = [300, 200], discharge_m3_per_s = { csv = \"none.csv\" } }]", "none.csv"),
     ] {
         refused(&place, rest, &[words]);
     }

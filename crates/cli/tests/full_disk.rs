@@ -16,8 +16,7 @@ const SLOSHING: &str = "--set=flood.spacing_m=0.5 --set=flood.water.0.velocity_m
 fn with_small_disk(place: &Place, script: &str) -> Option<()> {
     fs::create_dir(place.path("disk")).unwrap();
     let script = format!("mount -t tmpfs -o size=1500k tmpfs disk || exit 77\nC={}\n{script}", binary());
-    let ended =
-        Command::new("unshare").args(["-rm", "sh", "-c", &script]).current_dir(place.path("")).output().ok()?;
+    let ended = Command::new("unshare").args(["-rm", "sh", "-c", &script]).current_dir(place.path("")).output().ok()?;
     let text = String::from_utf8_lossy(&ended.stderr).into_owned();
     match ended.status.code() {
         Some(0) => Some(()),
