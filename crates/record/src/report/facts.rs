@@ -89,7 +89,8 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let [low, high] = whole.heights.map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Balanced => "balanced",
-        Scheme::Paper => "paper",
+        Scheme::Paper if scene.flood.paper.control_force => "paper, control force on",
+        Scheme::Paper => "paper, control force off",
     };
     vec![
         ("Model", format!("{}, scheme {scheme}", summary.model)),
