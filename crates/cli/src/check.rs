@@ -24,7 +24,7 @@ const PROBE_STEPS: u64 = 50;
 const SHORTEST_PROBE: f64 = 1e-3;
 
 /// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
-const BYTES_PER_PARTICLE: f64 = 650.0;
+const BYTES_PER_PARTICLE: f64 = 1000.0;
 
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
