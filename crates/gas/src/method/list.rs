@@ -14,9 +14,12 @@ const EVENTS_PER_WINDOW: u64 = 1_000_000;
 
 /// With what a ball meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum With {
+pub enum With {
+    /// Nothing at all.
     Nothing,
+    /// Another ball, by its number.
     Ball(usize),
+    /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
     Side(usize, i32),
@@ -24,8 +27,10 @@ pub(crate) enum With {
 
 /// The nearest event of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
+    /// When; infinite for never.
     pub time: f64,
+    /// With whom.
     pub with: With,
 }
 

@@ -1,7 +1,14 @@
 //! Cases of the gas model.
 
+mod adiabatic;
+mod brownian;
+mod enskog;
 mod equation_of_state;
+mod figure;
+mod frames;
+mod granular;
 mod maxwell;
+mod mixing;
 mod theory;
 
 use crate::{Case, Row};
@@ -9,7 +16,17 @@ use corpuscle_gas::{Gas, Setup};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-pub(crate) const CASES: &[Case] = &[maxwell::MAXWELL, equation_of_state::EQUATION_OF_STATE];
+pub(crate) const CASES: &[Case] = &[
+    maxwell::MAXWELL,
+    equation_of_state::EQUATION_OF_STATE,
+    enskog::ENSKOG,
+    adiabatic::ADIABATIC,
+    figure::FIGURE_11,
+    granular::GRANULAR,
+    mixing::MIXING,
+    frames::FRAME_INDEPENDENCE,
+    brownian::BROWNIAN,
+];
 
 /// Seed of everything random.
 const SEED: u64 = 1;
