@@ -2,7 +2,7 @@
 
 use super::{SEED, advance, rows, theory};
 use crate::{Case, Options, Row};
-use corpuscle_gas::{Amount, Gas, Setup, Side, Species, ball_volume};
+use corpuscle_gas::{Amount, Setup, Side, Species};
 use corpuscle_model::ModelError;
 
 pub(super) const ADIABATIC: Case = Case {
@@ -16,8 +16,8 @@ pub(super) const ADIABATIC: Case = Case {
 fn adiabatic(_: &Options) -> Vec<Row> {
     let measure = || {
         let mut rows = Compression { size: [1000.0, 500.0], packing: 0.001, to: 0.5, speed: 0.01 }.rows("dilute")?;
-        rows.extend(Compression { size: [300.0, 60.0, 60.0], packing: 0.001, to: 0.5, speed: 0.01 }.rows("dilute")?);
-        rows.extend(Compression { size: [300.0, 12.0], packing: 0.3, to: 0.75, speed: 0.03 }.rows("30")?);
+        rows.extend(Compression { size: [300.0, 20.0, 20.0], packing: 0.001, to: 0.5, speed: 0.003 }.rows("dilute")?);
+        rows.extend(Compression { size: [300.0, 12.0], packing: 0.3, to: 0.75, speed: 0.05 }.rows("30")?);
         rows.extend(Compression { size: [300.0, 6.0, 6.0], packing: 0.3, to: 0.8, speed: 0.2 }.rows("30")?);
         rows.push(reflection()?);
         Ok(rows)
@@ -34,13 +34,14 @@ struct Compression<const D: usize> {
     speed: f64,
 }
 
+/// Time for which the piston rests before and after.
+const REST: f64 = 20.0;
+
 impl<const D: usize> Compression<D> {
     fn rows(&self, named: &str) -> Result<Vec<Row>, ModelError> {
         let mut gas = self.setup().build()?;
         let (energy, temperature) = (gas.energy(), gas.temperature());
-        let rest = 20.0;
-        let way = (1.0 - self.to) * self.size[0];
-        advance(&mut gas, way / self.speed + 2.0 * rest)?;
+        advance(&mut gas, self.way() / self.speed + 2.0 * REST)?;
         let found = gas.temperature() / temperature;
         let gained = gas.energy() - energy;
         let row = |measure: &str, value: f64, bound: f64| {
@@ -52,13 +53,15 @@ impl<const D: usize> Compression<D> {
         ])
     }
 
+    fn way(&self) -> f64 {
+        (1.0 - self.to) * self.size[0]
+    }
+
     /// At rest for a while, then at a constant speed to the end of its way.
     fn setup(&self) -> Setup<D> {
-        let rest = 20.0;
-        let way = (1.0 - self.to) * self.size[0];
-        let end = rest + way / self.speed;
+        let end = REST + self.way() / self.speed;
         let mut setup = Setup::new(self.size).periodic().seed(SEED);
-        setup.sides[0] = [Side::Fixed, Side::Displaced(vec![[rest, 0.0], [end, -way]])];
+        setup.sides[0] = [Side::Fixed, Side::Displaced(vec![[REST, 0.0], [end, -self.way()]])];
         setup.species(Species::new("balls", Amount::Packing(self.packing)))
     }
 

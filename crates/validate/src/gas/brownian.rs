@@ -52,7 +52,9 @@ impl Watched {
     /// Growth of the mean-square displacement from one lag to another in a unit of time.
     fn slope(places: &[[f64; 3]], lags: [usize; 2], step: f64) -> f64 {
         let displacement = |lag: usize| {
-            let squares = places.windows(lag + 1).map(|way| (0..3).map(|axis| (way[lag][axis] - way[0][axis]).powi(2)).sum::<f64>());
+            let squares = places
+                .windows(lag + 1)
+                .map(|way| (0..3).map(|axis| (way[lag][axis] - way[0][axis]).powi(2)).sum::<f64>());
             squares.sum::<f64>() / (places.len() - lag) as f64
         };
         (displacement(lags[1]) - displacement(lags[0])) / ((lags[1] - lags[0]) as f64 * step)
@@ -66,7 +68,7 @@ impl Watched {
 }
 
 fn measure() -> Result<Vec<Row>, ModelError> {
-    let watched = watch(10_000.0, 0.5)?;
+    let watched = watch(4000.0, 0.5)?;
     let energy = Watched::parts(&watched.energy, |part| part.iter().sum::<f64>() / part.len() as f64);
     // The ball forgets its velocity within about 1: all lags are late.
     let lags = |from: f64, to: f64| [from, to].map(|lag| (lag / watched.step) as usize);
@@ -76,7 +78,11 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     Ok(vec![
         row("energy_less_light_ones_in_standard_errors", (energy.mean - 1.0).abs() / energy.error, 3.0),
         row("relative_standard_error_of_energy", energy.error, 0.03),
-        row("late_slope_less_early_in_standard_errors", (late.mean - early.mean).abs() / late.error.hypot(early.error), 3.0),
+        row(
+            "late_slope_less_early_in_standard_errors",
+            (late.mean - early.mean).abs() / late.error.hypot(early.error),
+            3.0,
+        ),
         row("relative_standard_error_of_slope", late.error / late.mean, 0.1),
     ])
 }

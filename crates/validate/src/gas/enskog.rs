@@ -1,7 +1,7 @@
 //! How often balls collide, and how far they wander.
 
-use super::{measured_fluid, rows, theory, time_of};
 use super::{SEED, advance};
+use super::{measured_fluid, rows, theory, time_of};
 use crate::{Case, Options, Row};
 use corpuscle_gas::{Estimate, Gas, Setup};
 use corpuscle_model::ModelError;

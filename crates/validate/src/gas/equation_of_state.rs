@@ -41,12 +41,9 @@ fn named<const D: usize>(measure: &str, packing: f64) -> String {
     format!("{measure}_{D}d_{:.0}", 100.0 * packing)
 }
 
-/// Balls of a run.
-const COUNT: usize = 4000;
-
 /// Against the equation of state.
 fn periodic<const D: usize>(packing: f64) -> Result<Vec<Row>, ModelError> {
-    let gas = measured_fluid(Setup::<D>::fluid(COUNT, packing), packing, 100.0, 1500.0)?;
+    let gas = measured_fluid(Setup::<D>::fluid(4000, packing), packing, 100.0, 1500.0)?;
     let (found, known) = (gas.compressibility(), theory::compressibility::<D>(packing));
     let row = |measure: &str, value: f64, bound: f64| {
         Row::at_most(EQUATION_OF_STATE.name, &named::<D>(measure, packing), value, "", bound)
@@ -62,9 +59,10 @@ fn periodic<const D: usize>(packing: f64) -> Result<Vec<Row>, ModelError> {
 /// Centres have the box less a radius at each side for themselves; with its volume and areas the two are the same
 /// on average, by the virial theorem, whatever the size of the box.
 fn walled<const D: usize>(packing: f64) -> Result<Vec<Row>, ModelError> {
-    let side = (COUNT as f64 * ball_volume::<D>(0.5) / packing).powf(1.0 / D as f64);
-    let setup = Setup::new([side; D]).species(Species::new("balls", Amount::Count(COUNT)));
-    let gas = measured_fluid(setup, packing, 100.0, 400.0)?;
+    let count = 1000;
+    let side = (count as f64 * ball_volume::<D>(0.5) / packing).powf(1.0 / D as f64);
+    let setup = Setup::new([side; D]).species(Species::new("balls", Amount::Count(count)));
+    let gas = measured_fluid(setup, packing, 100.0, 2500.0)?;
     let open = side / (side - 1.0);
     let thermal = theory::density::<D>(packing) * open.powi(D as i32);
     let virial = gas.pressure_virial().times(open.powi(D as i32) / thermal);

@@ -17,12 +17,18 @@ fn figure_11(_: &Options) -> Vec<Row> {
     rows(FIGURE_11.name, measure())
 }
 
-const [A, B, C, D]: [usize; 4] = [0, 1, 2, 3];
+const A: usize = 0;
+const B: usize = 1;
+const C: usize = 2;
+const D: usize = 3;
 
-/// A falls towards E, the box's floor, and is met by B before; D runs into C, which then runs into B.
+/// E is the floor: the lower wall along y, the third of the box.
+const E: With = With::Wall(2);
+
+/// A falls towards E, and is met by B before; D runs into C, which then runs into B.
 fn setup(method: Method) -> Setup<2> {
     Setup::new([40.0, 40.0])
-        .ball([10.0, 6.0], [1.0, -1.0], 1.0, 1.0)
+        .ball([12.0, 5.0], [1.0, -1.0], 1.0, 1.0)
         .ball([18.0, 3.0], [-1.0, 0.0], 1.0, 1.0)
         .ball([23.0, 3.0], [0.0, 0.0], 1.0, 1.0)
         .ball([27.0, 3.0], [-4.0, 0.0], 1.0, 1.0)
@@ -35,24 +41,24 @@ struct Stage {
     velocity_x: [f64; 4],
 }
 
-/// By hand: A and B touch at 3; D and C at 1/2; C and B at 1/2 + 3.5/3; then B, at -4, and A at the first root of
-/// (14/3 - 5 s)^2 + (s - 4/3)^2 = 4, s the time since. C would meet A at 4.2. A would be at E at 5, which is never its nearest.
+/// By hand: A and B touch at 2; D and C at 1/2; C and B at 1/2 + 3.5/3; then B, at -4, and A at the first root of
+/// (8/3 - 5 s)^2 + (s - 1/3)^2 = 4, s the time since. C would meet A at 3.2. A would be at E at 4, which is never its nearest.
 fn stages() -> [Stage; 3] {
     let never = (f64::INFINITY, With::Nothing);
     let second = 0.5 + 3.5 / 3.0;
-    let (half, rest) = (14.0 / 3.0 * 5.0 + 4.0 / 3.0, (14.0_f64 / 3.0).powi(2) + (4.0_f64 / 3.0).powi(2) - 4.0);
+    let (half, rest): (f64, f64) = (5.0 * 8.0 / 3.0 + 1.0 / 3.0, (64.0 + 1.0) / 9.0 - 4.0);
     let third = second + (half - (half * half - 26.0 * rest).sqrt()) / 26.0;
     [
         Stage {
-            nearest: [(3.0, With::Ball(B)), (3.0, With::Ball(A)), (0.5, With::Ball(D)), (0.5, With::Ball(C))],
+            nearest: [(2.0, With::Ball(B)), (2.0, With::Ball(A)), (0.5, With::Ball(D)), (0.5, With::Ball(C))],
             velocity_x: [1.0, -1.0, 0.0, -4.0],
         },
         Stage {
-            nearest: [(3.0, With::Ball(B)), (second, With::Ball(C)), (second, With::Ball(B)), never],
+            nearest: [(2.0, With::Ball(B)), (second, With::Ball(C)), (second, With::Ball(B)), never],
             velocity_x: [1.0, -1.0, -4.0, 0.0],
         },
         Stage {
-            nearest: [(third, With::Ball(B)), (third, With::Ball(A)), (4.2, With::Ball(A)), never],
+            nearest: [(third, With::Ball(B)), (third, With::Ball(A)), (3.2, With::Ball(A)), never],
             velocity_x: [1.0, -4.0, -1.0, 0.0],
         },
     ]
@@ -63,15 +69,24 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let mut fast = setup(Method::EventDriven).build()?;
     let (mut wrong, mut late, mut apart) = (0, 0.0_f64, 0);
     // Between the events.
-    for (stage, time) in stages().iter().zip([0.0, 1.0, 2.0]) {
+    for (events, (stage, time)) in stages().iter().zip([0.0, 1.0, 1.7]).enumerate() {
         advance(&mut list, time)?;
         advance(&mut fast, time)?;
         let found = list.nearest().unwrap_or_default();
-        wrong += usize::from(list.collisions() != time as u64) + differences(&list, &found, stage);
-        late = stage.nearest.iter().zip(&found).filter(|(known, _)| known.0.is_finite())
-            .map(|(known, found)| (known.0 - found.time).abs()).fold(late, f64::max);
+        wrong += usize::from(list.collisions() != events as u64) + differences(&list, &found, stage);
+        late = stage
+            .nearest
+            .iter()
+            .zip(&found)
+            .filter(|(known, _)| known.0.is_finite())
+            .map(|(known, found)| (known.0 - found.time).abs())
+            .fold(late, f64::max);
         apart += usize::from(list.states() != fast.states());
     }
+    // Without the others A would be at E.
+    let mut alone = setup(Method::List);
+    alone.balls.truncate(1);
+    wrong += usize::from(alone.build()?.nearest() != Some(vec![Nearest { time: 4.0, with: E }]));
     let row = |measure, value, bound| Row::at_most(FIGURE_11.name, measure, value, "", bound);
     Ok(vec![
         row("events_and_velocities_that_differ", wrong as f64, 0.0),
