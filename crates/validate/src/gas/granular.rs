@@ -2,7 +2,7 @@
 
 use super::{advance, rows, theory};
 use crate::{Case, Options, Row};
-use corpuscle_gas::Setup;
+use corpuscle_gas::{Estimate, Setup};
 use corpuscle_model::{Model, ModelError};
 
 pub(super) const GRANULAR: Case = Case {
@@ -15,12 +15,11 @@ pub(super) const GRANULAR: Case = Case {
 
 const RESTITUTION: f64 = 0.95;
 const PACKING: f64 = 0.1;
-const RUNS: u64 = 6;
 
 fn granular(_: &Options) -> Vec<Row> {
     let measure = || {
-        let mut rows = cooling::<2>(400)?;
-        rows.extend(cooling::<3>(4000)?);
+        let mut rows = cooling::<2>(800, 16)?;
+        rows.extend(cooling::<3>(4000, 6)?);
         Ok(rows)
     };
     rows(GRANULAR.name, measure())
@@ -32,31 +31,33 @@ fn kurtosis(d: f64) -> f64 {
     16.0 * (1.0 - e) * (1.0 - 2.0 * e * e) / (9.0 + 24.0 * d + (8.0 * d - 41.0) * e + 30.0 * e * e * (1.0 - e))
 }
 
-fn cooling<const D: usize>(count: usize) -> Result<Vec<Row>, ModelError> {
+/// 1 / sqrt(T) is a straight line, whose slope is 1 / tau.
+fn cooling<const D: usize>(count: usize, runs: u64) -> Result<Vec<Row>, ModelError> {
     // Each collision takes (1 - e^2) T on average; for each ball there are rate / 2 of them, and d T / 2 of energy.
     let loss = (1.0 - RESTITUTION * RESTITUTION) * (1.0 + 3.0 / 16.0 * kurtosis(D as f64));
     let tau = 2.0 * D as f64 / (theory::collision_rate::<D>(PACKING) * loss);
     let (fall, looks) = (9.0, 90);
-    let mut roots = vec![0.0; looks + 1];
+    let (mut roots, mut times) = (vec![0.0; looks + 1], Vec::new());
     let mut unbalanced = 0.0_f64;
-    for seed in 1..=RUNS {
+    for seed in 1..=runs {
         let mut gas = Setup::<D>::fluid(count, PACKING).restitution(RESTITUTION).seed(seed).build()?;
         let start = gas.temperature();
-        for (look, root) in roots.iter_mut().enumerate() {
+        for (look, mean) in roots.iter_mut().enumerate() {
             advance(&mut gas, fall * tau * look as f64 / looks as f64)?;
-            *root += (start / gas.temperature()).sqrt() / RUNS as f64;
+            *mean += (start / gas.temperature()).sqrt() / runs as f64;
         }
+        times.push(fall / ((start / gas.temperature()).sqrt() - 1.0));
         unbalanced = unbalanced.max(gas.ledger().balances[0].relative_error().abs());
     }
-    // 1 / sqrt(T) is a straight line, whose slope is 1 / tau.
-    let found = fall * tau / (roots[looks] - 1.0);
-    let line = |look: usize| 1.0 + fall * tau * look as f64 / looks as f64 / found;
+    let found = Estimate::of(&times);
+    let line = |look: usize| 1.0 + (roots[looks] - 1.0) * look as f64 / looks as f64;
     let bent = (0..=looks).map(|look| (roots[look] / line(look) - 1.0).abs()).fold(0.0, f64::max);
     let row = |measure: &str, value: f64, bound: f64| {
         Row::at_most(GRANULAR.name, &format!("{measure}_{D}d"), value, "", bound)
     };
     Ok(vec![
-        row("relative_error_of_cooling_time", (found / tau - 1.0).abs(), 0.02),
+        row("relative_error_of_cooling_time", (found.mean - 1.0).abs(), 0.02),
+        row("standard_error_of_cooling_time", found.error, 0.01),
         row("deviation_from_straight_line", bent, 0.02),
         row("energy_relative_error", unbalanced, 1e-12),
     ])
