@@ -6,7 +6,6 @@
 //! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::engine::STANDSTILL;
 use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
 
 /// Events between windows.
@@ -82,7 +81,7 @@ impl<const D: usize> List<D> {
             }
             self.handled += 1;
             self.happen(ball);
-            if self.world.standstill > STANDSTILL {
+            if self.world.stands_still() {
                 return Pause::Standstill;
             }
         }
