@@ -3,10 +3,9 @@
 //!
 //! The earliest event of the list is taken; it changes the balls involved, whose events go; they, and the balls that lost their
 //! partners ("disturbed"), find new ones among all others. The cost of an event grows with the number of balls. The moments
-//! are those of the fast engine to the bit, which is tested against this one.
+//! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::engine::STANDSTILL;
 use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
 
 /// Events between windows.
@@ -14,9 +13,12 @@ const EVENTS_PER_WINDOW: u64 = 1_000_000;
 
 /// With what a ball meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum With {
+pub enum With {
+    /// Nothing at all.
     Nothing,
+    /// Another ball, by its number.
     Ball(usize),
+    /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
     Side(usize, i32),
@@ -24,8 +26,10 @@ pub(crate) enum With {
 
 /// The nearest event of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
+    /// When; infinite for never.
     pub time: f64,
+    /// With whom.
     pub with: With,
 }
 
@@ -77,7 +81,7 @@ impl<const D: usize> List<D> {
             }
             self.handled += 1;
             self.happen(ball);
-            if self.world.standstill > STANDSTILL {
+            if self.world.stands_still() {
                 return Pause::Standstill;
             }
         }
@@ -183,11 +187,8 @@ impl<const D: usize> List<D> {
             if (0..D).any(|axis| shift[axis] != 0 && world.field.period[axis] == 0.0) {
                 continue;
             }
-            let mut other = path(b);
-            for axis in 0..D {
-                other.position[axis] += f64::from(shift[axis]) * world.field.period[axis];
-            }
-            let quadratic = Quadratic::new::<D, M, false>(&path(a), &other, reach, &world.field);
+            let offset = std::array::from_fn(|axis| f64::from(shift[axis]) * world.field.period[axis]);
+            let quadratic = Quadratic::new::<D, M>(&path(a), &path(b), &offset, reach, &world.field);
             if quadratic.maybe_before::<M>(f64::INFINITY) {
                 first = first.min(quadratic.root::<M>());
             }
