@@ -4,6 +4,8 @@
 //! both for a scene. The gas is moved on exactly, by the collisions that it has: see `engine`.
 
 #![warn(missing_docs)]
+// Loops over axes read several arrays at once.
+#![allow(clippy::needless_range_loop)]
 
 mod engine;
 mod error;
@@ -22,6 +24,4 @@ pub use error::SetupError;
 pub use gas::Gas;
 pub use measure::Estimate;
 pub use scene::open;
-pub use setup::{
-    Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, ball_volume,
-};
+pub use setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, ball_volume};

@@ -69,7 +69,9 @@ impl<const D: usize> Grid<D> {
                 return None;
             }
             let mut total = 0;
-            let levels = (0..=top).map(|level| Level::new(length, periodic, counts.map(|count| count >> level), &mut total)).collect();
+            let levels = (0..=top)
+                .map(|level| Level::new(length, periodic, counts.map(|count| count >> level), &mut total))
+                .collect();
             return Some(Grid { low, periodic, levels, heads: memory::filled(total as usize, NONE) });
         }
     }
@@ -109,7 +111,8 @@ impl<const D: usize> Level<D> {
         let mut stride = 1_u32 << (bits * D as u32);
         let table = std::array::from_fn(|axis| {
             let number = |cell: usize| {
-                let inside = (0..bits).map(|bit| ((cell >> bit & 1) as u32) << (bit * D as u32 + axis as u32)).sum::<u32>();
+                let inside =
+                    (0..bits).map(|bit| ((cell >> bit & 1) as u32) << (bit * D as u32 + axis as u32)).sum::<u32>();
                 inside + (cell >> bits) as u32 * stride
             };
             let mut table: Vec<u32> = (0..count[axis] + 2).map(number).collect();
@@ -143,7 +146,7 @@ mod tests {
 
     #[test]
     fn every_cell_of_every_level_has_its_own_number() {
-        let grid = Grid::<3>::new([0.0; 3], [10.0, 12.0, 7.0], [true, false, false], 1.0, 3.0, 1_000_000).unwrap();
+        let grid = Grid::<3>::new([0.0; 3], [13.0, 12.0, 7.0], [true, false, false], 1.0, 3.0, 1_000_000).unwrap();
         assert_eq!(grid.levels.len(), 3);
         let mut seen = std::collections::HashSet::new();
         for (number, level) in grid.levels.iter().enumerate() {

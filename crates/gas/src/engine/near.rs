@@ -29,7 +29,16 @@ pub(crate) struct Near<const D: usize> {
 impl<const D: usize> Near<D> {
     pub fn new() -> Self {
         let zero = [0.0; ROOM];
-        Near { position: [zero; D], velocity: [zero; D], time: zero, reach: zero, start: zero, b: zero, c: zero, a: zero }
+        Near {
+            position: [zero; D],
+            velocity: [zero; D],
+            time: zero,
+            reach: zero,
+            start: zero,
+            b: zero,
+            c: zero,
+            a: zero,
+        }
     }
 
     #[inline(always)]
@@ -46,7 +55,13 @@ impl<const D: usize> Near<D> {
     /// Compares the first `count` balls with `me`; a bit is set for each that is met, perhaps, before `limit`. With `WRAP`,
     /// across periodic sides too.
     #[inline(always)]
-    pub fn compare<M: Mode, const WRAP: bool>(&mut self, count: usize, me: &Ball<D>, field: &Field<D>, limit: f64) -> u64 {
+    pub fn compare<M: Mode, const WRAP: bool>(
+        &mut self,
+        count: usize,
+        me: &Ball<D>,
+        field: &Field<D>,
+        limit: f64,
+    ) -> u64 {
         let mine = Path { position: me.position, velocity: me.velocity, time: me.time };
         let mut met = 0;
         for block in 0..count.div_ceil(LANES) {
@@ -62,7 +77,7 @@ impl<const D: usize> Near<D> {
                     (quadratic.start, quadratic.a, quadratic.b, quadratic.c);
             }
             let bits = maybe.iter().enumerate().fold(0_u64, |bits, (lane, &maybe)| bits | u64::from(maybe) << lane);
-            met |= bits << (block * LANES & (ROOM - 1));
+            met |= bits << ((block * LANES) & (ROOM - 1));
         }
         if count < ROOM { met & ((1 << count) - 1) } else { met }
     }

@@ -122,7 +122,13 @@ impl<const D: usize> Engine<D> {
 
     /// Compares the ball with those at the heads of cells and all that follow them.
     #[inline(always)]
-    fn chains<M: Mode, const WRAP: bool>(&mut self, ball: usize, found: &mut [u32; ROOM], count: usize, next: &mut Next) {
+    fn chains<M: Mode, const WRAP: bool>(
+        &mut self,
+        ball: usize,
+        found: &mut [u32; ROOM],
+        count: usize,
+        next: &mut Next,
+    ) {
         let Engine { world, events, near, alike, .. } = self;
         let (balls, kinds, field) = (&world.balls[..], &world.kinds[..], &world.field);
         let (events, near) = (&events[..], &mut **near);
@@ -138,12 +144,12 @@ impl<const D: usize> Engine<D> {
             found[count & (ROOM - 1)] = other.next;
             count += usize::from(other.next != NONE);
             if count == ROOM && done < count {
-                nearest::<D, M, WRAP>(near, events, me, field, &found[..done], next);
+                nearest::<D, M, WRAP>(near, events, (ball, me), field, &found[..done], next);
                 found.copy_within(done..count, 0);
                 (count, done) = (count - done, 0);
             }
         }
-        nearest::<D, M, WRAP>(near, events, me, field, &found[..done], next);
+        nearest::<D, M, WRAP>(near, events, (ball, me), field, &found[..done], next);
     }
 
     /// As [`Engine::neighbours`], among the balls of other sizes.
@@ -157,7 +163,8 @@ impl<const D: usize> Engine<D> {
             let (low, high) = self.range(event, level);
             let mut cell = low;
             'cells: loop {
-                let number: u32 = (0..D).map(|axis| self.grid.levels[level].table[axis][self.wrapped(level, axis, cell[axis])]).sum();
+                let number: u32 =
+                    (0..D).map(|axis| self.grid.levels[level].table[axis][self.wrapped(level, axis, cell[axis])]).sum();
                 found[0] = self.grid.heads[number as usize];
                 if found[0] != NONE {
                     self.chains::<M, true>(ball, &mut found, 1, next);
@@ -222,12 +229,13 @@ impl<const D: usize> Engine<D> {
 
 /// The first meeting of `me` with one of the balls in `near`.
 ///
-/// A ball that has something else to do before the meeting is passed over: when it has done that, it looks for itself.
+/// A ball that has something else to do before the meeting is passed over: when it has done that, it looks for itself. `me` is
+/// among them, too, and does not meet itself; but a growing ball would, by the same formula.
 #[inline(always)]
 fn nearest<const D: usize, M: Mode, const WRAP: bool>(
     near: &mut Near<D>,
     events: &[Event<D>],
-    me: &Ball<D>,
+    (ball, me): (usize, &Ball<D>),
     field: &Field<D>,
     found: &[u32],
     next: &mut Next,
@@ -237,6 +245,9 @@ fn nearest<const D: usize, M: Mode, const WRAP: bool>(
         let at = met.trailing_zeros() as usize;
         met &= met - 1;
         let (other, meets) = (found[at], near.meeting::<M>(at));
+        if M::GROWS && other as usize == ball {
+            continue;
+        }
         if meets < next.time || (meets == next.time && next.what.ball().is_some_and(|rival| other < rival as u32)) {
             let theirs = &events[other as usize];
             if meets < theirs.time {

@@ -58,9 +58,8 @@ impl<const D: usize> Engine<D> {
         let nth = (diameters.len() * 9 / 10).min(diameters.len().saturating_sub(1));
         let usual = if diameters.is_empty() { 1.0 } else { *diameters.select_nth_unstable_by(nth, f64::total_cmp).1 };
         let finest = if largest < 2.0 * usual { largest } else { usual };
-        let grid = |finest: f64, largest: f64| {
-            Grid::new(world.low, world.length, periodic, finest, largest, 8 * count + 64)
-        };
+        let grid =
+            |finest: f64, largest: f64| Grid::new(world.low, world.length, periodic, finest, largest, 8 * count + 64);
         grid(finest.max(thin) * SLACK, largest * SLACK)
             .or_else(|| grid(finest * SLACK, largest * SLACK))
             .or_else(|| grid(largest * SLACK, largest * SLACK))
@@ -71,9 +70,12 @@ impl<const D: usize> Engine<D> {
     fn sort(&mut self) {
         let key = |ball: &Ball<D>| -> u64 {
             let cell = self.grid.cell_of(0, &ball.position);
-            (0..16).map(|bit| (0..D).map(|axis| u64::from(cell[axis] >> bit & 1) << (bit * D + axis)).sum::<u64>()).sum()
+            (0..16)
+                .map(|bit| (0..D).map(|axis| u64::from(cell[axis] >> bit & 1) << (bit * D + axis)).sum::<u64>())
+                .sum()
         };
-        let mut keys: Vec<(u64, u32)> = self.world.balls.iter().zip(0..).map(|(ball, number)| (key(ball), number)).collect();
+        let mut keys: Vec<(u64, u32)> =
+            self.world.balls.iter().zip(0..).map(|(ball, number)| (key(ball), number)).collect();
         keys.sort_unstable();
         let order: Vec<u32> = keys.into_iter().map(|(_, from)| from).collect();
         self.world.reorder(&order);

@@ -38,7 +38,8 @@ impl<const D: usize> Engine<D> {
     /// Takes back what is to come, for a world that was taken back before; `None` where it does not fit.
     pub fn restore(&mut self, saved: &Saved) -> Option<()> {
         let count = self.world.balls.len();
-        let lengths = [saved.time.len(), saved.what.len(), saved.partner_bends.len(), saved.bends.len(), saved.level.len()];
+        let lengths =
+            [saved.time.len(), saved.what.len(), saved.partner_bends.len(), saved.bends.len(), saved.level.len()];
         if lengths.iter().any(|&len| len != count) || saved.cell.len() != count * D {
             return None;
         }

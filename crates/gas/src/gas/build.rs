@@ -59,6 +59,9 @@ impl<const D: usize> Gas<D> {
     }
 }
 
+/// All balls at their places, with velocities; the table of kinds; the sets.
+type Contents<const D: usize> = (Vec<Start<D>>, Vec<Kind>, Vec<Set>);
+
 impl Plan {
     /// Takes the knots that are at time 0.
     fn start(&mut self, wall: &mut crate::world::Wall) {
@@ -71,8 +74,8 @@ impl Plan {
 }
 
 impl<const D: usize> Setup<D> {
-    /// All balls at their places, with velocities; the table of kinds; the sets.
-    fn starts(&self) -> Result<(Vec<Start<D>>, Vec<Kind>, Vec<Set>), SetupError> {
+    /// What is in the box at the start.
+    fn starts(&self) -> Result<Contents<D>, SetupError> {
         self.check()?;
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let places = self.places(&mut random)?;

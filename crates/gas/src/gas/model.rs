@@ -52,7 +52,8 @@ impl<const D: usize> Gas<D> {
         if let Some((overlaps, missed, _)) = self.faults() {
             rows.extend([("overlaps", "", overlaps as f64), ("missed_hits", "", missed as f64)]);
         }
-        let mut gauges: Vec<_> = rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
+        let mut gauges: Vec<_> =
+            rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
         gauges.extend(self.moving_walls());
         gauges.extend(self.set_gauges());
         gauges
@@ -173,7 +174,8 @@ impl<const D: usize> Model for Gas<D> {
     }
 
     fn gauge_columns(&self) -> Vec<GaugeColumn> {
-        let column = |(gauge, quantity, unit, _)| GaugeColumn { gauge, quantity, unit: if self.si { unit } else { "" } };
+        let column =
+            |(gauge, quantity, unit, _)| GaugeColumn { gauge, quantity, unit: if self.si { unit } else { "" } };
         self.gauges().into_iter().map(column).collect()
     }
 

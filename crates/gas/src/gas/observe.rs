@@ -72,7 +72,8 @@ impl<const D: usize> Gas<D> {
             };
             world.mass(ball) * (0..D).map(along).sum::<f64>()
         };
-        let potential = if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
+        let potential =
+            if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
         self.kinetic_energy() + potential
     }
 
@@ -134,7 +135,8 @@ impl<const D: usize> Gas<D> {
         let extents: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, now));
         let largest = (0..world.balls.len()).map(|ball| world.radius(ball)).fold(0.0, f64::max);
         let length = extents.map(|[low, high]| high - low);
-        let mut hash = Hash::new(extents.map(|[low, _]| low), length, world.field.period, 2.0 * largest, world.balls.len());
+        let mut hash =
+            Hash::new(extents.map(|[low, _]| low), length, world.field.period, 2.0 * largest, world.balls.len());
         let smallest = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
         for ball in 0..world.balls.len() {
             let (position, radius) = (world.state(ball, now).0, world.radius(ball));
@@ -315,7 +317,8 @@ impl<const D: usize> Gas<D> {
         let (kinetic, freedom) = (kinetic.value(), self.setup.degrees_of_freedom(world.balls.len()));
         let bound = freedom < (D * world.balls.len()) as f64;
         let drift = if bound { momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass) } else { 0.0 };
-        let lengths: [f64; D] = std::array::from_fn(|axis| world.extent(axis, now)).map(|[low, high]: [f64; 2]| high - low);
+        let lengths: [f64; D] =
+            std::array::from_fn(|axis| world.extent(axis, now)).map(|[low, high]: [f64; 2]| high - low);
         let area = |axis: usize| (0..D).filter(|&other| other != axis).map(|other| lengths[other]).product();
         Sample {
             time,

@@ -27,7 +27,13 @@ impl Context<'_> {
     }
 
     fn series(&self, set: usize, style: ChartStyle, points: Vec<[f64; 2]>) -> ChartSeries {
-        ChartSeries { name: self.names[set].clone(), style, points, errors: Vec::new(), colour: self.colours[set].clone() }
+        ChartSeries {
+            name: self.names[set].clone(),
+            style,
+            points,
+            errors: Vec::new(),
+            colour: self.colours[set].clone(),
+        }
     }
 }
 
@@ -169,8 +175,6 @@ fn theory(name: &str, points: Vec<[f64; 2]>) -> ChartSeries {
 fn density(counts: &[u64], low: f64, high: f64) -> Vec<[f64; 2]> {
     let all: u64 = counts.iter().sum();
     let width = (high - low) / counts.len() as f64;
-    let point = |(bar, &count): (usize, &u64)| {
-        [low + (bar as f64 + 0.5) * width, count as f64 / (all as f64 * width)]
-    };
+    let point = |(bar, &count): (usize, &u64)| [low + (bar as f64 + 0.5) * width, count as f64 / (all as f64 * width)];
     counts.iter().enumerate().map(point).collect()
 }

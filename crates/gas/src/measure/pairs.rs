@@ -63,9 +63,8 @@ impl Pairs {
         let step = self.reach / self.counts.len() as f64;
         let ball = crate::ball_volume::<D>;
         let shell = |bin: usize| ball((bin + 1) as f64 * step) - ball(bin as f64 * step);
-        let point = |(bin, &count): (usize, &u64)| {
-            [(bin as f64 + 0.5) * step, count as f64 / (self.expected * shell(bin))]
-        };
+        let point =
+            |(bin, &count): (usize, &u64)| [(bin as f64 + 0.5) * step, count as f64 / (self.expected * shell(bin))];
         self.counts.iter().enumerate().map(point).collect()
     }
 }

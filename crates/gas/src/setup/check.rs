@@ -114,7 +114,8 @@ impl<const D: usize> Setup<D> {
 
     /// No ball overlaps another, a wall or the partition.
     pub(crate) fn check_overlaps(&self, places: &[Placed<D>]) -> Result<(), SetupError> {
-        let period = std::array::from_fn(|axis| if self.sides[axis][0] == Side::Periodic { self.size[axis] } else { 0.0 });
+        let period =
+            std::array::from_fn(|axis| if self.sides[axis][0] == Side::Periodic { self.size[axis] } else { 0.0 });
         let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
         let mut hash = Hash::new([0.0; D], self.size, period, 2.0 * largest, places.len());
         for (number, placed) in places.iter().enumerate() {
@@ -123,7 +124,11 @@ impl<const D: usize> Setup<D> {
                 let x = placed.position[axis];
                 let depth = placed.radius - x.min(self.size[axis] - x);
                 if depth > TOUCH * placed.radius {
-                    return Err(SetupError::Overlap { what: what(), other: format!("a wall across {}", AXES[axis]), depth });
+                    return Err(SetupError::Overlap {
+                        what: what(),
+                        other: format!("a wall across {}", AXES[axis]),
+                        depth,
+                    });
                 }
             }
             if let Some(partition) = &self.partition {

@@ -40,7 +40,8 @@ impl<const D: usize> Setup<D> {
     /// True along axes where a region goes on beyond its end at its beginning.
     pub(super) fn repeats(&self, region: &[[f64; D]; 2]) -> [bool; D] {
         std::array::from_fn(|axis| {
-            self.sides[axis][0] == Side::Periodic && region[1][axis] - region[0][axis] >= self.size[axis] * (1.0 - 1e-12)
+            self.sides[axis][0] == Side::Periodic
+                && region[1][axis] - region[0][axis] >= self.size[axis] * (1.0 - 1e-12)
         })
     }
 

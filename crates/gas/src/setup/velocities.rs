@@ -54,7 +54,8 @@ impl<const D: usize> Setup<D> {
                 momentum[axis] += mass * velocities.iter().map(|v| v[axis]).sum::<f64>();
             }
         }
-        let others: f64 = masses().zip(velocities.iter()).filter(|(_, v)| v.len() > 1).map(|(m, v)| m * v.len() as f64).sum();
+        let others: f64 =
+            masses().zip(velocities.iter()).filter(|(_, v)| v.len() > 1).map(|(m, v)| m * v.len() as f64).sum();
         let singles = velocities.iter().any(|velocities| velocities.len() == 1);
         if !singles || others == 0.0 {
             return;

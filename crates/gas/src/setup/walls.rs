@@ -53,8 +53,11 @@ fn straight(rows: &[[f64; 2]]) -> Vec<Knot> {
         Some(next) => (next[1] - rows[row][1]) / (next[0] - rows[row][0]),
         None => 0.0,
     };
-    let knot = |(row, &[time, displacement]): (usize, &[f64; 2])| {
-        Knot { time, displacement, speed: speed_after(row), acceleration: 0.0 }
+    let knot = |(row, &[time, displacement]): (usize, &[f64; 2])| Knot {
+        time,
+        displacement,
+        speed: speed_after(row),
+        acceleration: 0.0,
     };
     rows.iter().enumerate().map(knot).collect()
 }

@@ -98,7 +98,12 @@ pub(crate) struct Quadratic {
 
 impl Quadratic {
     #[inline(always)]
-    pub fn new<const D: usize, M: Mode, const WRAP: bool>(a: &Path<D>, b: &Path<D>, reach: f64, field: &Field<D>) -> Self {
+    pub fn new<const D: usize, M: Mode, const WRAP: bool>(
+        a: &Path<D>,
+        b: &Path<D>,
+        reach: f64,
+        field: &Field<D>,
+    ) -> Self {
         let start = if a.time > b.time { a.time } else { b.time };
         let (since_a, since_b) = (start - a.time, start - b.time);
         let mut apart = [0.0; D];

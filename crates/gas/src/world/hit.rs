@@ -39,7 +39,11 @@ impl<const D: usize> World<D> {
         let mut push = self.walls[wall].speed_at(self.now);
         if M::GROWS {
             // The ball's surface must part from the wall, not its centre.
-            let away = if position_is_above(&self.walls[wall], self.balls[ball].position[axis], self.now) { 1.0 } else { -1.0 };
+            let away = if position_is_above(&self.walls[wall], self.balls[ball].position[axis], self.now) {
+                1.0
+            } else {
+                -1.0
+            };
             push += away * radius * self.field.growth;
         }
         let mut after = before;
@@ -76,7 +80,11 @@ impl<const D: usize> World<D> {
         tally.momentum.add(mass * (before[axis] - after[axis]));
         for axis in 0..D {
             let gain = 0.5 * mass * (after[axis] - before[axis]) * (after[axis] + before[axis]);
-            if gain >= 0.0 { tally.gained.add(gain) } else { tally.lost.add(-gain) }
+            if gain >= 0.0 {
+                tally.gained.add(gain)
+            } else {
+                tally.lost.add(-gain)
+            }
             if axis != self.walls[wall].axis {
                 tally.dragged.add(mass * (after[axis] - before[axis]));
             }

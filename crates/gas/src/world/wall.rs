@@ -90,7 +90,8 @@ impl Wall {
             Facing::Both => above > 0.0,
         };
         let side = if up { 1.0 } else { -1.0 };
-        let (reach, growth) = if M::GROWS { (radius * field.scale_at::<M>(start), radius * field.growth) } else { (radius, 0.0) };
+        let (reach, growth) =
+            if M::GROWS { (radius * field.scale_at::<M>(start), radius * field.growth) } else { (radius, 0.0) };
         let gap = side * above - reach;
         // A ball that lies across a partition is in its hole.
         if self.facing == Facing::Both && gap < -1e-9 * reach {
