@@ -25,6 +25,27 @@ south = \"wall\"
 north = \"wall\"
 ";
 
+/// Balls in a box, one of them heavy and followed: runs in a blink.
+#[allow(dead_code, reason = "not every test uses it")]
+pub const BALLS: &str = "[run]
+until_s = 2.0
+frame_every_s = 1.0
+[gas]
+size = [60.0, 40.0]
+follow = 0
+[[gas.ball]]
+name = \"heavy\"
+position = [30.0, 20.0]
+radius = 4.0
+mass = 50.0
+[[gas.species]]
+name = \"light\"
+count = 100
+radius = 1.0
+mass = 1.0
+temperature = 100.0
+";
+
 /// An ESRI ASCII grid with a valley down its middle.
 #[allow(dead_code, reason = "not every test uses it")]
 pub const SMALL_TERRAIN: &str = "ncols 5\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n\

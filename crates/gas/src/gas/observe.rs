@@ -305,11 +305,12 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let now = world.in_window(time);
         let mut kinetic = ExactSum::default();
-        let (mut mass, mut momentum) = (0.0, [0.0; D]);
+        let (mut mass, mut momentum, mut under_way) = (0.0, [0.0; D], 0.0);
         for ball in 0..world.balls.len() {
             let (own, velocity) = (world.mass(ball), world.state(ball, now).1);
             kinetic.add(0.5 * own * velocity.iter().map(|v| v * v).sum::<f64>());
             mass += own;
+            under_way += speed(&velocity) * (now - world.balls[ball].time);
             for axis in 0..D {
                 momentum[axis] += own * velocity[axis];
             }
@@ -327,7 +328,7 @@ impl<const D: usize> Gas<D> {
             volume: lengths.iter().product(),
             collisions: world.tally.collisions,
             virial: world.tally.virial,
-            path: world.tally.path,
+            path: world.tally.path + under_way,
             walls: world.wall_tallies.iter().map(|tally| tally.momentum.value()).collect(),
             areas: world.walls.iter().map(|wall| area(wall.axis)).collect(),
             displacement: Vec::new(),
