@@ -75,17 +75,6 @@ pub enum SetupError {
         /// What must hold.
         must: &'static str,
     },
-    /// Walls that move by plan and leave no room.
-    #[error(
-        "gas: the moving walls leave no room: at t = {time} the balls would have to fill more of the box than close packing, \
-         {limit:.4}, allows. Stop the walls earlier, end the run earlier, or take fewer or smaller balls"
-    )]
-    Crushed {
-        /// When that is seen.
-        time: f64,
-        /// Largest part of the box that can be filled.
-        limit: f64,
-    },
     /// Things that do not go together.
     #[error("gas: {0}")]
     Contradiction(String),

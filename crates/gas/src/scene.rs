@@ -62,7 +62,6 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
         pair_distance: written.measure.pair_distance,
         pair_bins: written.measure.pair_bins,
     };
-    setup.check_room(until)?;
     let mut made = setup.build()?;
     let colours = written.ball.iter().map(|ball| (&ball.name, &ball.colour));
     for (name, colour) in colours.chain(written.species.iter().map(|species| (&species.name, &species.colour))) {

@@ -1,8 +1,6 @@
 //! The walls of a set-up, and how those that move by plan do it.
 
-use super::place::closest;
-use super::{Setup, Side, ball_volume};
-use crate::SetupError;
+use super::{Setup, Side};
 use crate::world::{Facing, Wall};
 use std::f64::consts::TAU;
 
@@ -45,29 +43,6 @@ impl Schedule {
         match self {
             Self::Knots(knots) => knots.get(number).copied(),
             Self::Swing { amplitude, period } => Some(arc(*amplitude, *period, number)),
-        }
-    }
-}
-
-/// Knots of a plan that are looked at, at most: those of a swing come round again.
-const MOST_KNOTS: usize = 100_000;
-
-impl Schedule {
-    /// Times at which the motion changes, up to an end.
-    fn changes(&self, until: f64) -> impl Iterator<Item = f64> {
-        let times = (0..MOST_KNOTS).map_while(|number| self.knot(number)).map(|knot| knot.time);
-        times.take_while(move |&time| time < until)
-    }
-
-    /// Displacement at a time.
-    fn displacement(&self, time: f64) -> f64 {
-        match self {
-            Self::Swing { amplitude, period } => amplitude * (TAU * time / period).sin(),
-            Self::Knots(knots) => {
-                let passed = knots.partition_point(|knot| knot.time <= time);
-                let last = passed.checked_sub(1).map(|last| knots[last]);
-                last.map_or(0.0, |knot| knot.displacement + knot.speed * (time - knot.time))
-            }
         }
     }
 }
@@ -120,36 +95,6 @@ impl<const D: usize> Setup<D> {
         walls
     }
 
-    /// Walls that move by plan leave room for the balls up to an end: otherwise there would be no end of collisions.
-    pub(crate) fn check_room(&self, until: f64) -> Result<(), SetupError> {
-        let planned: Vec<(Wall, Schedule)> =
-            self.walls().into_iter().filter_map(|(wall, plan)| Some((wall, plan?))).collect();
-        let mut times: Vec<f64> = planned.iter().flat_map(|(_, plan)| plan.changes(until)).collect();
-        times.push(until);
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let balls: Vec<(usize, f64)> = self.balls.iter().map(|ball| (1, ball.radius)).collect();
-        let crowds = self.species.iter().map(|species| (self.count_of(species), species.radius));
-        let all: Vec<(usize, f64)> = balls.into_iter().chain(crowds).collect();
-        let filled: f64 = all.iter().map(|&(count, radius)| count as f64 * ball_volume::<D>(radius)).sum();
-        let widest = 2.0 * all.iter().map(|&(_, radius)| radius).fold(0.0, f64::max);
-        let alike = all.windows(2).all(|pair| pair[0].1 == pair[1].1);
-        // Balls of several sizes can lie closer than equal ones.
-        let limit = if alike { closest::<D>() } else { 1.0 };
-        for time in times.into_iter().filter(|_| !planned.is_empty()) {
-            let mut lengths = self.size;
-            for (wall, plan) in &planned {
-                let inward = if wall.facing == Facing::Up { 1.0 } else { -1.0 };
-                lengths[wall.axis] -= inward * plan.displacement(time);
-            }
-            let packing = filled / lengths.iter().product::<f64>();
-            if lengths.iter().any(|&length| length < widest) || packing > limit {
-                return Err(SetupError::Crushed { time, limit });
-            }
-        }
-        Ok(())
-    }
-
     fn wall(&self, axis: usize, end: usize, side: &Side) -> Wall {
         let (facing, place) = if end == 0 { (Facing::Up, 0.0) } else { (Facing::Down, self.size[axis]) };
         let mut wall = Wall::fixed(axis, facing, place);
@@ -171,23 +116,6 @@ impl<const D: usize> Setup<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Amount, Species};
-
-    #[test]
-    fn walls_that_would_crush_the_balls_are_refused() {
-        let gas = || Setup::<2>::new([10.0, 10.0]).species(Species::new("balls", Amount::Packing(0.4)));
-        let moving = |until| gas().side(0, 1, Side::Moving { velocity: -1.0, until });
-        assert!(moving(None).check_room(5.0).is_ok());
-        assert!(matches!(moving(None).check_room(6.0), Err(SetupError::Crushed { time: 6.0, .. })));
-        assert!(moving(Some(5.0)).check_room(60.0).is_ok());
-        let swing = |amplitude| gas().side(1, 0, Side::Swinging { amplitude, period: 3.0 });
-        assert!(swing(5.0).check_room(60.0).is_ok() && swing(5.0).check_room(0.1).is_ok());
-        assert!(swing(6.0).check_room(60.0).is_err() && swing(11.0).check_room(60.0).is_err());
-        let both = Side::Displaced(vec![[0.0, 0.0], [2.0, -3.0], [4.0, 0.0]]);
-        let other = Side::Displaced(vec![[0.0, 0.0], [2.0, 3.0]]);
-        assert!(gas().side(0, 1, both.clone()).check_room(9.0).is_ok());
-        assert!(gas().side(0, 1, both).side(0, 0, other).check_room(9.0).is_err());
-    }
 
     #[test]
     fn a_swinging_wall_meets_the_sine_at_every_knot() {
