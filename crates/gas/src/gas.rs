@@ -31,6 +31,8 @@ pub struct Gas<const D: usize> {
     /// Energy and momentum at the start.
     initial: [f64; 2],
     shown: f64,
+    /// Path and number of its ends at the last check of the balls' room.
+    checked: (f64, u64),
     si: bool,
 }
 

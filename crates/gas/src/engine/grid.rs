@@ -40,7 +40,7 @@ pub(crate) struct Level<const D: usize> {
 
 impl<const D: usize> Grid<D> {
     /// A grid over a box whose finest cells have sides of at least `finest`, with levels up to balls of diameter `largest`.
-    /// `None` where a periodic side is shorter than three of the largest cells.
+    /// `None` where a periodic side is shorter than three of the largest balls.
     pub fn new(
         low: [f64; D],
         length: [f64; D],
@@ -49,7 +49,11 @@ impl<const D: usize> Grid<D> {
         largest: f64,
         most_cells: usize,
     ) -> Option<Self> {
-        let mut finest = finest;
+        // More levels than these would be needed by no more than a handful of balls.
+        let mut finest = finest.max(largest / MOST_CELLS as f64);
+        if (0..D).any(|axis| periodic[axis] && length[axis] < 3.0 * largest) {
+            return None;
+        }
         loop {
             let mut top = 0;
             while finest * f64::from(1_u32 << top) < largest {
@@ -57,16 +61,15 @@ impl<const D: usize> Grid<D> {
             }
             let across = |axis: usize| {
                 let coarse = (length[axis] / (finest * f64::from(1_u32 << top))).floor();
-                (coarse.max(1.0) * f64::from(1_u32 << top)) as usize
+                // Of three cells each is next to the other two on one side only: no two balls are looked at twice.
+                let least = if periodic[axis] { 3.0 } else { 1.0 };
+                (coarse.max(least) * f64::from(1_u32 << top)) as usize
             };
             let counts: [usize; D] = std::array::from_fn(across);
             let cells: f64 = counts.iter().map(|&count| count as f64).product();
             if cells > most_cells as f64 || counts.iter().any(|&count| count > MOST_CELLS) {
                 finest *= 1.25;
                 continue;
-            }
-            if (0..D).any(|axis| periodic[axis] && counts[axis] >> top < 3) {
-                return None;
             }
             let mut total = 0;
             let levels = (0..=top)

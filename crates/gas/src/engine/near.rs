@@ -14,6 +14,8 @@ const LANES: usize = 8;
 pub(crate) struct Near<const D: usize> {
     position: [[f64; ROOM]; D],
     velocity: [[f64; ROOM]; D],
+    /// From where a ball is to the image of it that is near.
+    offset: [[f64; ROOM]; D],
     time: [f64; ROOM],
     reach: [f64; ROOM],
     /// Later of the two balls' times.
@@ -32,6 +34,7 @@ impl<const D: usize> Near<D> {
         Near {
             position: [zero; D],
             velocity: [zero; D],
+            offset: [zero; D],
             time: zero,
             reach: zero,
             start: zero,
@@ -42,18 +45,21 @@ impl<const D: usize> Near<D> {
     }
 
     #[inline(always)]
-    pub fn set(&mut self, at: usize, ball: &Ball<D>, reach: f64) {
+    pub fn set<const WRAP: bool>(&mut self, at: usize, ball: &Ball<D>, offset: &[f64; D], reach: f64) {
         let at = at & (ROOM - 1);
         for axis in 0..D {
             self.position[axis][at] = ball.position[axis];
             self.velocity[axis][at] = ball.velocity[axis];
+            if WRAP {
+                self.offset[axis][at] = offset[axis];
+            }
         }
         self.time[at] = ball.time;
         self.reach[at] = reach;
     }
 
     /// Compares the first `count` balls with `me`; a bit is set for each that is met, perhaps, before `limit`. With `WRAP`,
-    /// across periodic sides too.
+    /// in the images that were told.
     #[inline(always)]
     pub fn compare<M: Mode, const WRAP: bool>(
         &mut self,
@@ -70,8 +76,9 @@ impl<const D: usize> Near<D> {
                 let at = (block * LANES + lane) & (ROOM - 1);
                 let position: [f64; D] = std::array::from_fn(|axis| self.position[axis][at]);
                 let velocity: [f64; D] = std::array::from_fn(|axis| self.velocity[axis][at]);
+                let offset = std::array::from_fn(|axis| if WRAP { self.offset[axis][at] } else { 0.0 });
                 let other = Path { position, velocity, time: self.time[at] };
-                let quadratic = Quadratic::new::<D, M, WRAP>(&mine, &other, self.reach[at], field);
+                let quadratic = Quadratic::new::<D, M>(&mine, &other, &offset, self.reach[at], field);
                 *maybe = quadratic.maybe_before::<M>(limit);
                 (self.start[at], self.a[at], self.b[at], self.c[at]) =
                     (quadratic.start, quadratic.a, quadratic.b, quadratic.c);

@@ -82,39 +82,48 @@ impl<const D: usize> Engine<D> {
         }
     }
 
-    /// The ball that it meets first, of those in cells around it.
+    /// The ball that it meets first, of those in cells around it. With `WRAP`, some of them may be across periodic sides.
     #[inline(always)]
     fn neighbours<M: Mode, const WRAP: bool>(&mut self, ball: usize, event: &Event<D>, next: &mut Next) {
         let mut found = [0_u32; ROOM];
+        let mut offsets = [[0.0; D]; ROOM];
         let mut count = 0;
-        let table = &self.grid.levels[event.level as usize].table;
-        let column = |axis: usize| -> [u32; 3] {
+        let level = &self.grid.levels[event.level as usize];
+        let column = |axis: usize| -> [(u32, f64); 3] {
             let at = event.cell[axis] as usize;
-            let table = &table[axis][at - 1..at + 2];
-            [table[0], table[1], table[2]]
+            let table = &level.table[axis][at - 1..at + 2];
+            let period = self.world.field.period[axis];
+            let below = if WRAP && at == 1 { -period } else { 0.0 };
+            let above = if WRAP && at == level.count[axis] as usize { period } else { 0.0 };
+            [(table[0], below), (table[1], 0.0), (table[2], above)]
         };
+        let heads = &self.grid.heads;
+        let mut look = |number: u32, offset: [f64; D]| {
+            let head = heads[number as usize];
+            found[count & (ROOM - 1)] = head;
+            if WRAP {
+                offsets[count & (ROOM - 1)] = offset;
+            }
+            count += usize::from(head != NONE);
+        };
+        let (xs, ys) = (column(0), column(1));
         if D == 2 {
-            let (xs, ys) = (column(0), column(1));
             for x in xs {
                 for y in ys {
-                    let head = self.grid.heads[(x + y) as usize];
-                    found[count & (ROOM - 1)] = head;
-                    count += usize::from(head != NONE);
+                    look(x.0 + y.0, std::array::from_fn(|axis| [x.1, y.1][axis & 1]));
                 }
             }
         } else {
-            let (xs, ys, zs) = (column(0), column(1), column(D - 1));
+            let zs = column(D - 1);
             for x in xs {
                 for y in ys {
                     for z in zs {
-                        let head = self.grid.heads[(x + y + z) as usize];
-                        found[count & (ROOM - 1)] = head;
-                        count += usize::from(head != NONE);
+                        look(x.0 + y.0 + z.0, std::array::from_fn(|axis| [x.1, y.1, z.1][axis]));
                     }
                 }
             }
         }
-        self.chains::<M, WRAP>(ball, &mut found, count, next);
+        self.chains::<M, WRAP>(ball, &mut found, &mut offsets, count, next);
         if self.grid.levels.len() > 1 {
             self.other_levels::<M>(ball, event, next);
         }
@@ -126,6 +135,7 @@ impl<const D: usize> Engine<D> {
         &mut self,
         ball: usize,
         found: &mut [u32; ROOM],
+        offsets: &mut [[f64; D]; ROOM],
         count: usize,
         next: &mut Next,
     ) {
@@ -139,13 +149,20 @@ impl<const D: usize> Engine<D> {
         while done < count {
             let other = &balls[found[done & (ROOM - 1)] as usize];
             let reach = radius + if *alike { radius } else { kinds[other.kind as usize].radius };
-            near.set(done, other, reach);
+            let offset = offsets[done & (ROOM - 1)];
+            near.set::<WRAP>(done, other, &offset, reach);
             done += 1;
             found[count & (ROOM - 1)] = other.next;
+            if WRAP {
+                offsets[count & (ROOM - 1)] = offset;
+            }
             count += usize::from(other.next != NONE);
             if count == ROOM && done < count {
                 nearest::<D, M, WRAP>(near, events, (ball, me), field, &found[..done], next);
                 found.copy_within(done..count, 0);
+                if WRAP {
+                    offsets.copy_within(done..count, 0);
+                }
                 (count, done) = (count - done, 0);
             }
         }
@@ -156,6 +173,8 @@ impl<const D: usize> Engine<D> {
     #[cold]
     fn other_levels<M: Mode>(&mut self, ball: usize, event: &Event<D>, next: &mut Next) {
         let mut found = [0_u32; ROOM];
+        let mut offsets = [[0.0; D]; ROOM];
+        let mut count = 0;
         for level in 0..self.grid.levels.len() {
             if level == event.level as usize {
                 continue;
@@ -163,11 +182,14 @@ impl<const D: usize> Engine<D> {
             let (low, high) = self.range(event, level);
             let mut cell = low;
             'cells: loop {
-                let number: u32 =
-                    (0..D).map(|axis| self.grid.levels[level].table[axis][self.wrapped(level, axis, cell[axis])]).sum();
-                found[0] = self.grid.heads[number as usize];
-                if found[0] != NONE {
-                    self.chains::<M, true>(ball, &mut found, 1, next);
+                let (head, offset) = self.head(level, &cell);
+                if head != NONE {
+                    (found[count], offsets[count]) = (head, offset);
+                    count += 1;
+                }
+                if count == ROOM / 2 {
+                    self.chains::<M, true>(ball, &mut found, &mut offsets, count, next);
+                    count = 0;
                 }
                 for axis in 0..D {
                     cell[axis] += 1;
@@ -179,6 +201,24 @@ impl<const D: usize> Engine<D> {
                 break;
             }
         }
+        self.chains::<M, true>(ball, &mut found, &mut offsets, count, next);
+    }
+
+    /// The first ball in a cell, which may be beyond the box where it repeats, and where the cell is from there.
+    fn head(&self, level: usize, cell: &[i64; D]) -> (u32, [f64; D]) {
+        let grid = &self.grid.levels[level];
+        let (mut number, mut offset) = (0, [0.0; D]);
+        for axis in 0..D {
+            let mut within = cell[axis];
+            if self.grid.periodic[axis] {
+                let count = i64::from(grid.count[axis]);
+                let images = (within - 1).div_euclid(count);
+                within -= images * count;
+                offset[axis] = images as f64 * self.world.field.period[axis];
+            }
+            number += grid.table[axis][within as usize];
+        }
+        (self.grid.heads[number as usize], offset)
     }
 
     /// First and last cell along each axis, in another level, of the neighbourhood that a ball's pairs are looked for in.
@@ -201,11 +241,6 @@ impl<const D: usize> Engine<D> {
             }
         }
         (low, high)
-    }
-
-    fn wrapped(&self, level: usize, axis: usize, cell: i64) -> usize {
-        let count = i64::from(self.grid.levels[level].count[axis]);
-        if self.grid.periodic[axis] { ((cell - 1).rem_euclid(count) + 1) as usize } else { cell as usize }
     }
 
     /// The wall that the ball hits first.

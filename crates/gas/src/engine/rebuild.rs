@@ -58,11 +58,7 @@ impl<const D: usize> Engine<D> {
         let nth = (diameters.len() * 9 / 10).min(diameters.len().saturating_sub(1));
         let usual = if diameters.is_empty() { 1.0 } else { *diameters.select_nth_unstable_by(nth, f64::total_cmp).1 };
         let finest = if largest < 2.0 * usual { largest } else { usual };
-        let grid =
-            |finest: f64, largest: f64| Grid::new(world.low, world.length, periodic, finest, largest, 8 * count + 64);
-        grid(finest.max(thin) * SLACK, largest * SLACK)
-            .or_else(|| grid(finest * SLACK, largest * SLACK))
-            .or_else(|| grid(largest * SLACK, largest * SLACK))
+        Grid::new(world.low, world.length, periodic, finest.max(thin) * SLACK, largest * SLACK, 8 * count + 64)
             .expect("checked before: the box is at least three of the largest balls wide across periodic sides")
     }
 

@@ -8,6 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Events between two looks at whether to stop.
 const AT_A_TIME: u64 = 20_000;
 
+/// Shortest mean path between two hits, over the radius, to which walls may press a gas together.
+const LEAST_ROOM: f64 = 1e-4;
+
 impl<const D: usize> Gas<D> {
     /// Moves on to `time`, or to where it was told to stop.
     pub(super) fn advance(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
@@ -80,7 +83,7 @@ impl<const D: usize> Gas<D> {
     }
 
     /// Numbers are numbers, and the box can hold its balls.
-    fn check(&self) -> Result<(), ModelError> {
+    fn check(&mut self) -> Result<(), ModelError> {
         let world = self.mover.world();
         if !world.balls.iter().all(|ball| ball.position.iter().chain(&ball.velocity).all(|x| x.is_finite())) {
             return Err(self.broken("a ball's place or velocity is no longer a number"));
@@ -91,7 +94,24 @@ impl<const D: usize> Gas<D> {
                 return Err(self.broken("two walls have met: nothing is left of the box"));
             }
         }
-        Ok(())
+        match self.room() {
+            Some(room) if room < LEAST_ROOM => Err(self.broken(&format!(
+                "walls that close in leave the balls hardly any room: between two hits they fly {room:.1e} of a radius, \
+                 and would hit each other ever faster without end. Stop the wall earlier, or take fewer or smaller balls"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Where walls move: length of path between two hits of a ball since the last check, over the smallest radius.
+    fn room(&mut self) -> Option<f64> {
+        let world = self.mover.world();
+        let hits = world.wall_tallies.iter().map(|tally| tally.hits).sum::<u64>();
+        let now = (world.tally.path, 2 * world.tally.collisions + hits);
+        let (path, ends) = std::mem::replace(&mut self.checked, now);
+        let radius = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
+        let moves = world.walls.iter().any(|wall| wall.moves);
+        (moves && now.1 > ends).then(|| (now.0 - path) / (now.1 - ends) as f64 / radius)
     }
 
     fn broken(&self, what: &str) -> ModelError {
@@ -109,9 +129,10 @@ impl<const D: usize> Gas<D> {
             Due::Knot(wall) => self.bend_wall(wall, time),
             Due::Lift => {
                 self.lifted = true;
-                if let Some(wall) = self.partition {
-                    let wall = &mut self.mover.world_mut().walls[wall];
+                if let Some(number) = self.partition {
+                    let wall = &mut self.mover.world_mut().walls[number];
                     (wall.present, wall.bends) = (false, wall.bends.wrapping_add(1));
+                    self.mover.wall_bent(number);
                 }
             }
             Due::Reverse => {

@@ -52,6 +52,7 @@ impl<const D: usize> Gas<D> {
             measures,
             initial: [0.0; 2],
             shown: 0.0,
+            checked: (0.0, 0),
             si: false,
         };
         gas.initial = [gas.energy(), gas.momentum().iter().sum()];
@@ -80,6 +81,7 @@ impl<const D: usize> Setup<D> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         let places = self.places(&mut random)?;
         self.check_overlaps(&places)?;
+        self.check_plans(&places)?;
         let mut table = Table::default();
         let mut starts = Vec::with_capacity(places.len());
         let mut at = places.iter();

@@ -128,7 +128,8 @@ impl<const D: usize> Gas<D> {
         Some([wall.place_at(self.now()), wall.speed_at(self.now())])
     }
 
-    /// Deepest overlap of two balls, or of a ball and a wall, at the time shown, over the smaller radius; 0 for none.
+    /// Deepest overlap of two balls over the smallest radius of all, or of a ball and a wall over its own, at the time shown; 0 for
+    /// none.
     pub fn deepest_overlap(&self) -> f64 {
         let world = self.mover.world();
         let (mut deepest, now) = (0.0_f64, self.now());

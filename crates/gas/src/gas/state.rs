@@ -23,6 +23,7 @@ struct State {
     measures: Measures,
     initial: [f64; 2],
     shown: f64,
+    checked: (f64, u64),
 }
 
 #[derive(Serialize, Deserialize)]
@@ -72,6 +73,7 @@ impl<const D: usize> Gas<D> {
             measures: self.measures.clone(),
             initial: self.initial,
             shown: self.shown,
+            checked: self.checked,
         };
         postcard::to_stdvec(&state).unwrap_or_default()
     }
@@ -101,6 +103,7 @@ impl<const D: usize> Gas<D> {
         }
         (self.lifted, self.reversed, self.next_look) = (state.lifted, state.reversed, state.next_look);
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
+        self.checked = state.checked;
         Ok(())
     }
 }

@@ -132,7 +132,12 @@ impl<const D: usize> FixedStep<D> {
                     self.overlap::<M>(a, b, reach - apart2.sqrt());
                     continue;
                 }
-                let exact = Quadratic::new::<D, M, true>(&before[a], &before[b], reach, &world.field);
+                let mut then: [f64; D] =
+                    std::array::from_fn(|axis| before[b].position[axis] - before[a].position[axis]);
+                let direct = then;
+                world.field.nearest(&mut then);
+                let offset = std::array::from_fn(|axis| then[axis] - direct[axis]);
+                let exact = Quadratic::new::<D, M>(&before[a], &before[b], &offset, reach, &world.field);
                 if exact.maybe_before::<M>(now) && exact.c > 0.0 && exact.root::<M>() <= now {
                     self.faults.missed += 1;
                 }

@@ -3,7 +3,7 @@
 //!
 //! The earliest event of the list is taken; it changes the balls involved, whose events go; they, and the balls that lost their
 //! partners ("disturbed"), find new ones among all others. The cost of an event grows with the number of balls. The moments
-//! are those of the fast engine to the bit, which is tested against this one.
+//! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
 use crate::engine::STANDSTILL;
@@ -183,11 +183,8 @@ impl<const D: usize> List<D> {
             if (0..D).any(|axis| shift[axis] != 0 && world.field.period[axis] == 0.0) {
                 continue;
             }
-            let mut other = path(b);
-            for axis in 0..D {
-                other.position[axis] += f64::from(shift[axis]) * world.field.period[axis];
-            }
-            let quadratic = Quadratic::new::<D, M, false>(&path(a), &other, reach, &world.field);
+            let offset = std::array::from_fn(|axis| f64::from(shift[axis]) * world.field.period[axis]);
+            let quadratic = Quadratic::new::<D, M>(&path(a), &path(b), &offset, reach, &world.field);
             if quadratic.maybe_before::<M>(f64::INFINITY) {
                 first = first.min(quadratic.root::<M>());
             }

@@ -95,6 +95,27 @@ impl<const D: usize> Setup<D> {
         walls
     }
 
+    /// Lengths of the box along an axis at the times when the plan of a wall changes, as far as walls stop in the end or swing.
+    pub(super) fn planned_lengths(&self, axis: usize) -> Vec<(f64, f64)> {
+        let plans = [0, 1].map(|end| Schedule::of(&self.sides[axis][end]));
+        let knots = |plan: &Option<Schedule>| match plan {
+            Some(Schedule::Knots(knots)) => knots.clone(),
+            Some(swing) => (0..(16 * ARCS) as usize).map_while(|number| swing.knot(number)).collect(),
+            None => Vec::new(),
+        };
+        let (low, high) = (knots(&plans[0]), knots(&plans[1]));
+        let displacement =
+            |knots: &[Knot], time: f64| match knots.partition_point(|knot| knot.time <= time).checked_sub(1) {
+                Some(last) => {
+                    let since = time - knots[last].time;
+                    knots[last].displacement + since * (knots[last].speed + 0.5 * knots[last].acceleration * since)
+                }
+                None => 0.0,
+            };
+        let length = |time: f64| (time, self.size[axis] + displacement(&high, time) - displacement(&low, time));
+        low.iter().chain(&high).map(|knot| length(knot.time)).collect()
+    }
+
     fn wall(&self, axis: usize, end: usize, side: &Side) -> Wall {
         let (facing, place) = if end == 0 { (Facing::Up, 0.0) } else { (Facing::Down, self.size[axis]) };
         let mut wall = Wall::fixed(axis, facing, place);

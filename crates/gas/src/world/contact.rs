@@ -1,7 +1,8 @@
 //! When balls meet.
 //!
 //! The moment at which two balls meet is counted from the later of their own times. So it depends only on their two
-//! paths, not on when it is asked for: every method finds the same moments, to the bit.
+//! paths, not on when it is asked for: every method finds the same moments, to the bit. (Where the box repeats, to rounding
+//! errors: a path is told from the image of the box where the ball is.)
 
 use super::ball::Ball;
 
@@ -97,10 +98,13 @@ pub(crate) struct Quadratic {
 }
 
 impl Quadratic {
+    /// Of the image of `b` that is `offset` from where `b` is. It must be told: when the counting starts, balls that meet after
+    /// long ways across a periodic box may be nearest in other images.
     #[inline(always)]
-    pub fn new<const D: usize, M: Mode, const WRAP: bool>(
+    pub fn new<const D: usize, M: Mode>(
         a: &Path<D>,
         b: &Path<D>,
+        offset: &[f64; D],
         reach: f64,
         field: &Field<D>,
     ) -> Self {
@@ -118,10 +122,7 @@ impl Quadratic {
                 place_b += 0.5 * gravity * since_b * since_b;
                 approach[axis] = (b.velocity[axis] + gravity * since_b) - (a.velocity[axis] + gravity * since_a);
             }
-            apart[axis] = place_b - place_a;
-        }
-        if WRAP {
-            field.nearest(&mut apart);
+            apart[axis] = (place_b - place_a) + offset[axis];
         }
         let (mut a, mut b, mut apart2) = (0.0, 0.0, 0.0);
         for axis in 0..D {

@@ -61,6 +61,8 @@ impl<const D: usize> World<D> {
         }
         self.balls[ball].velocity = after;
         self.book_hit(wall, mass, &before, &after);
+        // The wall pushes the ball's surface, not its centre: with this the virial's pressure is that on the walls.
+        self.tally.virial += radius * mass * (before[axis] - after[axis]).abs();
         self.watch(flown * (before[axis] - push).abs() * radius, radius * radius);
         self.note_bend(ball);
     }

@@ -60,7 +60,8 @@ pub(crate) struct World<const D: usize> {
 pub(crate) struct Tally {
     /// Collisions of two balls.
     pub collisions: u64,
-    /// Sum over collisions of (place of one as seen from the other) . (momentum given to it).
+    /// Sum over collisions of (place of one as seen from the other) . (momentum given to it), and over hits of walls of (place of
+    /// the centre as seen from the wall) . (momentum given to the ball).
     pub virial: f64,
     /// Length of all paths up to the last time that each was bent.
     pub path: f64,

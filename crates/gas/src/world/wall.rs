@@ -15,6 +15,9 @@ pub(crate) enum Facing {
     Both,
 }
 
+/// A ball's path without a hit crosses a plane no more than twice; to go in and out are two passages.
+const MOST_PASSAGES: usize = 6;
+
 /// A plane across one axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wall {
@@ -79,6 +82,9 @@ impl Wall {
         if !self.present {
             return f64::INFINITY;
         }
+        if let Some(hole) = &self.hole {
+            return self.meeting_past_hole::<D, M>(hole, ball, radius, field);
+        }
         let start = ball.time.max(self.since);
         let (position, velocity) = field.state::<M>(ball, start);
         let above = position[self.axis] - self.place_at(start);
@@ -92,16 +98,42 @@ impl Wall {
         let side = if up { 1.0 } else { -1.0 };
         let (reach, growth) =
             if M::GROWS { (radius * field.scale_at::<M>(start), radius * field.growth) } else { (radius, 0.0) };
-        let gap = side * above - reach;
-        // A ball that lies across a partition is in its hole.
-        if self.facing == Facing::Both && gap < -1e-9 * reach {
-            return f64::INFINITY;
+        start + first_contact(side * above - reach, side * rising - growth, side * bending)
+    }
+
+    /// As [`Wall::meeting`], for a partition with a hole: a ball that comes to the plane before the hole goes through and may come
+    /// back.
+    #[cold]
+    fn meeting_past_hole<const D: usize, M: Mode>(
+        &self,
+        hole: &[[f64; 2]],
+        ball: &Ball<D>,
+        radius: f64,
+        field: &Field<D>,
+    ) -> f64 {
+        let bending = if M::FALLS { field.gravity[self.axis] } else { 0.0 };
+        let mut time = ball.time.max(self.since);
+        let motion = |time: f64| {
+            let (position, velocity) = field.state::<M>(ball, time);
+            (position[self.axis] - self.place, velocity[self.axis])
+        };
+        let mut inside = motion(time).0.abs() < radius * (1.0 - 1e-9);
+        for _ in 0..MOST_PASSAGES {
+            let (above, rising) = motion(time);
+            if inside {
+                let up = first_contact(radius - above, -rising, -bending);
+                let down = first_contact(radius + above, rising, bending);
+                time += up.min(down);
+            } else {
+                let side = if above > 0.0 { 1.0 } else { -1.0 };
+                time += first_contact(side * above - radius, side * rising, side * bending);
+            }
+            if time == f64::INFINITY || (!inside && !self.passes(hole, &field.state::<M>(ball, time).0)) {
+                return time;
+            }
+            inside = !inside;
         }
-        let meets = start + first_contact(gap, side * rising - growth, side * bending);
-        match &self.hole {
-            Some(hole) if meets.is_finite() && self.passes(hole, &field.state::<M>(ball, meets).0) => f64::INFINITY,
-            _ => meets,
-        }
+        f64::INFINITY
     }
 
     /// True where a ball's centre at `position` lies before the hole.
