@@ -33,19 +33,28 @@ pub(super) fn over_time(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable, 
     KINDS.iter().filter_map(drawn).collect()
 }
 
-/// False for what says nothing in this gas: one pressure for all of a box with a partition in it, or else that on each wall;
-/// energy that is all kinetic; agreement with Maxwell where it was there from the start.
+/// False for what says nothing in this gas: one pressure for all of a box with a partition or gravity in it, or else that on
+/// each wall; energy that is all kinetic, or goes as the temperature does; agreement with Maxwell where it was there from the
+/// start; mixing where nothing parts the kinds at first.
 fn is_told(gas: &Gas, column: &GaugeColumn) -> bool {
-    let parted = gas.partition.as_ref().map(|partition| ["x", "y", "z"][partition.axis.index()]);
+    let parted = gas.partition.as_ref().map(|partition| partition.axis.index());
+    let uneven = parted.or_else(|| gas.gravity().iter().position(|&gravity| gravity != 0.0));
     match column.quantity {
-        "pressure_virial" | "pressure_walls" => parted.is_none(),
-        "pressure" => parted.is_some_and(|axis| column.gauge.starts_with(axis)),
+        "pressure_virial" | "pressure_walls" => uneven.is_none(),
+        "pressure" => uneven.is_some_and(|axis| column.gauge.starts_with(["x", "y", "z"][axis])),
         "energy" => gas.gravity() != [0.0; 3],
+        "kinetic_energy" => gas.restitution == 1.0,
         "maxwell_p_value" => gas.species.iter().any(|species| species.speeds == Speeds::Equal),
-        // Where there is no partition to be lifted nothing mixes.
-        "mixing_entropy" => parted.is_some(),
+        "mixing_entropy" => gas.partition.as_ref().is_some_and(|partition| partition.lifted_at_s.is_some()),
         _ => true,
     }
+}
+
+/// The colour of a kind of balls.
+fn colour_of(gas: &Gas, name: &str) -> Option<String> {
+    let species = gas.species.iter().map(|species| (&species.name, &species.colour));
+    let balls = gas.ball.iter().map(|ball| (&ball.name, &ball.colour));
+    species.chain(balls).find(|(known, _)| *known == name)?.1.clone()
 }
 
 /// True where a column has different values, beyond rounding.
@@ -72,7 +81,7 @@ fn chart(
             (false, words) => words.to_owned(),
         };
         let points = table.times.iter().zip(&table.rows).map(|(time, row)| [*time, row[index]]).collect();
-        ChartSeries { name, points, ..ChartSeries::default() }
+        ChartSeries { name, points, colour: colour_of(gas, gauge), ..ChartSeries::default() }
     });
     let time = if gas.units == Units::Si { "s" } else { "" };
     Chart {
