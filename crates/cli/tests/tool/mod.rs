@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A small lake over a bump: runs in a blink.
+#[allow(dead_code, reason = "not every test uses it")]
 pub const LAKE: &str = "[run]
 until_s = 2.0
 frame_every_s = 1.0
