@@ -24,5 +24,6 @@ mod world;
 pub use error::SetupError;
 pub use gas::Gas;
 pub use measure::Estimate;
+pub use method::{Nearest, With};
 pub use scene::open;
 pub use setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, ball_volume};

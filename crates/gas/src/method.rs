@@ -5,6 +5,7 @@ mod list;
 
 pub(crate) use fixed_step::{Faults, FixedStep};
 pub(crate) use list::List;
+pub use list::{Nearest, With};
 
 use crate::engine::Engine;
 use crate::world::World;

@@ -316,11 +316,13 @@ impl<const D: usize> Setup<D> {
     }
 
     /// The guard time against inelastic collapse that is taken where none is given: a ten-thousandth of the time in which a ball
-    /// at the mean thermal speed flies its own radius, the shortest of all species; 0 without loss.
+    /// at the mean thermal speed (one told by itself: at its own) flies its own radius, the shortest of all; 0 without loss.
     pub fn contact_time(&self) -> f64 {
         let thermal =
             |species: &Species<D>| 1e-4 * species.radius / (self.boltzmann * species.temperature / species.mass).sqrt();
-        let shortest = self.species.iter().map(thermal).filter(|time| time.is_finite()).fold(f64::INFINITY, f64::min);
+        let own = |ball: &Ball<D>| 1e-4 * ball.radius / crate::world::speed(&ball.velocity);
+        let times = self.species.iter().map(thermal).chain(self.balls.iter().map(own));
+        let shortest = times.filter(|time| time.is_finite()).fold(f64::INFINITY, f64::min);
         match self.contact_time {
             Some(time) => time,
             None if self.restitution < 1.0 && shortest.is_finite() => shortest,

@@ -4,8 +4,6 @@
 //! a calendar. A ball whose partner is hit by another is disturbed: its event is found out of date when its time comes,
 //! and a new one is looked for then; nothing can have happened to it earlier.
 
-pub(crate) use run::STANDSTILL;
-
 mod event;
 mod grid;
 mod near;

@@ -8,9 +8,6 @@ use multiversion::multiversion;
 /// Events handled for each ball before a new window begins.
 const EVENTS_PER_WINDOW: u64 = 60;
 
-/// Collisions in a row between which nothing moves, at which the engine gives up.
-pub(crate) const STANDSTILL: u32 = 10_000;
-
 impl<const D: usize> Engine<D> {
     /// Handles events up to `until` (in the window), `most` at most.
     pub fn run(&mut self, until: f64, most: u64) -> Pause {
@@ -46,7 +43,7 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
         for &ball in &touched[..count] {
             engine.predict::<M>(ball);
         }
-        if engine.world.standstill > STANDSTILL {
+        if engine.world.stands_still() {
             return Pause::Standstill;
         }
     }

@@ -4,7 +4,7 @@ use super::Gas;
 use crate::hash::Hash;
 use crate::measure::estimate::{average, change, duration};
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
-use crate::method::Mover;
+use crate::method::{Mover, Nearest};
 use crate::sum::ExactSum;
 use crate::world::speed;
 
@@ -160,6 +160,13 @@ impl<const D: usize> Gas<D> {
             Mover::FixedStep(steps) => Some((steps.faults.overlaps, steps.faults.missed, steps.faults.deepest)),
             _ => None,
         }
+    }
+
+    /// The list of the published method: the nearest event of each ball; none for the others.
+    pub fn nearest(&self) -> Option<Vec<Nearest>> {
+        let Mover::List(list) = &self.mover else { return None };
+        let origin = list.world.origin.value();
+        Some(list.nearest.iter().map(|event| Nearest { time: origin + event.time, ..*event }).collect())
     }
 
     /// Cell edges crossed and partners lost so far: what the event-driven method does besides collisions.

@@ -9,7 +9,8 @@ const PER_CELL: f64 = 25.0;
 /// bias of small counts taken off (Miller 1955): 0 apart, N ln 2 for two equal parts fully mixed.
 pub(crate) fn mixing_entropy<const D: usize>(snapshot: &Snapshot<D>, sets: usize) -> f64 {
     let balls = snapshot.position.len();
-    let across = ((balls as f64 / PER_CELL).powf(1.0 / D as f64) as usize).max(1);
+    // An even number, so that the middle of the box, where halves meet, is not within cells.
+    let across = (2 * ((balls as f64 / PER_CELL).powf(1.0 / D as f64) / 2.0).round() as usize).max(1);
     let cells = across.pow(D as u32);
     let mut counts = vec![0.0; cells * sets];
     for (position, &set) in snapshot.position.iter().zip(&snapshot.set) {

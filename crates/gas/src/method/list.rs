@@ -6,7 +6,6 @@
 //! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::engine::STANDSTILL;
 use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
 
 /// Events between windows.
@@ -14,9 +13,12 @@ const EVENTS_PER_WINDOW: u64 = 1_000_000;
 
 /// With what a ball meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum With {
+pub enum With {
+    /// Nothing at all.
     Nothing,
+    /// Another ball, by its number.
     Ball(usize),
+    /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
     Side(usize, i32),
@@ -24,8 +26,10 @@ pub(crate) enum With {
 
 /// The nearest event of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
+    /// When; infinite for never.
     pub time: f64,
+    /// With whom.
     pub with: With,
 }
 
@@ -77,7 +81,7 @@ impl<const D: usize> List<D> {
             }
             self.handled += 1;
             self.happen(ball);
-            if self.world.standstill > STANDSTILL {
+            if self.world.stands_still() {
                 return Pause::Standstill;
             }
         }

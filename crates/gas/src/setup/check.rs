@@ -15,6 +15,11 @@ const MOST_BALLS: f64 = 1e9;
 /// Depth over the radius at which balls overlap and not just touch.
 const TOUCH: f64 = 1e-12;
 
+/// True for balls that do more than touch, or are nowhere.
+fn overlaps(depth: f64, radius: f64) -> bool {
+    depth.is_nan() || depth > TOUCH * radius
+}
+
 fn number(what: impl Into<String>, value: f64, good: bool, must: &'static str) -> Result<(), SetupError> {
     if good && value.is_finite() { Ok(()) } else { Err(SetupError::Value { what: what.into(), value, must }) }
 }
@@ -95,7 +100,9 @@ impl<const D: usize> Setup<D> {
         let inside = partition.at > 0.0 && partition.at < self.size[partition.axis];
         number("the place of the partition", partition.at, inside, "inside the box")?;
         match &partition.hole {
-            Some(hole) if hole.len() != D - 1 || hole.iter().any(|[from, to]| !(from < to)) => {
+            Some(hole)
+                if hole.len() != D - 1 || hole.iter().any(|[from, to]| from.is_nan() || to.is_nan() || from >= to) =>
+            {
                 Err(SetupError::Contradiction(
                     "a hole must have, along each axis but the partition's, a beginning and an end".into(),
                 ))
@@ -221,7 +228,7 @@ impl<const D: usize> Setup<D> {
             for axis in (0..D).filter(|&axis| period[axis] == 0.0) {
                 let x = placed.position[axis];
                 let depth = placed.radius - x.min(self.size[axis] - x);
-                if !(depth <= TOUCH * placed.radius) {
+                if overlaps(depth, placed.radius) {
                     return Err(SetupError::Overlap {
                         what: what(),
                         other: format!("a wall across {}", AXES[axis]),
@@ -231,12 +238,12 @@ impl<const D: usize> Setup<D> {
             }
             if let Some(partition) = &self.partition {
                 let depth = placed.radius - (placed.position[partition.axis] - partition.at).abs();
-                if !(depth <= TOUCH * placed.radius) {
+                if overlaps(depth, placed.radius) {
                     return Err(SetupError::Overlap { what: what(), other: "the partition".into(), depth });
                 }
             }
             if let Some((other, depth)) = hash.overlap(&placed.position, placed.radius)
-                && !(depth <= TOUCH * placed.radius)
+                && overlaps(depth, placed.radius)
             {
                 return Err(SetupError::Overlap { what: what(), other: format!("ball {other}"), depth });
             }

@@ -61,7 +61,7 @@ impl<const D: usize> World<D> {
     fn lossy(&mut self, a: usize, b: usize, energy: f64) -> f64 {
         let last = self.records[a].collided.max(self.records[b].collided);
         (self.records[a].collided, self.records[b].collided) = (self.now, self.now);
-        if self.now - last <= self.rebound.contact_time {
+        if self.now - last < self.rebound.contact_time {
             return 2.0;
         }
         let e = self.rebound.restitution;
@@ -73,6 +73,19 @@ impl<const D: usize> World<D> {
     #[inline(always)]
     pub fn watch(&mut self, path: f64, apart2: f64) {
         self.standstill = if path > SHORTEST * apart2 { 0 } else { self.standstill + 1 };
+    }
+}
+
+/// Collisions in a row between which nothing moves, at which a gas is given up: with loss and without a guard they are a collapse
+/// that rounding errors may end; else balls are jammed.
+const STANDSTILL: [u32; 2] = [20, 10_000];
+
+impl<const D: usize> World<D> {
+    /// True where collisions follow each other without anything moving.
+    #[inline(always)]
+    pub fn stands_still(&self) -> bool {
+        let unguarded = self.rebound.restitution < 1.0 && self.rebound.contact_time == 0.0;
+        self.standstill > STANDSTILL[usize::from(!unguarded)]
     }
 }
 

@@ -39,10 +39,11 @@ fn virial_and_walls_tell_the_same_pressure() {
 
 #[test]
 fn equal_speeds_become_maxwells() {
-    let mut setup = Setup::<2>::fluid(2000, 0.2);
+    let mut setup = Setup::<2>::fluid(2000, 0.2).seed(1);
     setup.species[0].speeds = Speeds::Equal;
     let mut gas = setup.build().unwrap();
     assert!(gas.maxwell_p_value() < 1e-6);
+    // 25 collisions a ball.
     advance(&mut gas, 20.0);
     assert!(gas.maxwell_p_value() > 0.01, "{}", gas.maxwell_p_value());
 }
@@ -51,12 +52,13 @@ fn equal_speeds_become_maxwells() {
 fn mixing_ends_at_full_entropy() {
     let half = |name: &str, from: f64| Species {
         region: Some([[from, 0.0], [from + 30.0, 30.0]]),
+        radius: 0.2,
         ..Species::new(name, Amount::Count(400))
     };
     let mut gas = Setup::<2>::new([60.0, 30.0]).species(half("red", 0.0)).species(half("blue", 30.0)).build().unwrap();
     let full = 800.0 * std::f64::consts::LN_2;
-    assert!(gas.mixing_entropy() < 0.1 * full);
-    advance(&mut gas, 400.0);
+    assert!(gas.mixing_entropy() < 0.01 * full);
+    advance(&mut gas, 1500.0);
     assert!((gas.mixing_entropy() / full - 1.0).abs() < 0.03, "{} of {full}", gas.mixing_entropy());
 }
 
@@ -90,7 +92,7 @@ fn charts_gauges_and_path_are_given() {
         assert!(row[at].is_finite(), "{quantity} is {}", row[at]);
     }
     let path = &gas.paths()[0];
-    assert!(path.times.len() > 10 && path.times.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert!(path.times.len() > 3 && path.times.windows(2).all(|pair| pair[0] <= pair[1]));
     assert_eq!(*path.times.last().unwrap(), 20.0);
     // Straight from bend to bend, at the ball's speed: every density integrates to one.
     let speeds =

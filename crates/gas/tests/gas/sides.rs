@@ -6,7 +6,7 @@ use corpuscle_gas::{Partition, Setup, Side};
 #[test]
 fn a_moving_wall_reflects_at_twice_its_speed_less_the_balls() {
     let wall = Side::Moving { velocity: -0.75, until: None };
-    let mut gas = Setup::<2>::new([10.0, 4.0]).side(0, 1, wall).ball([5.0, 2.0], [1.3, 0.5], 0.5, 2.0).build().unwrap();
+    let mut gas = Setup::<2>::new([10.0, 6.0]).side(0, 1, wall).ball([5.0, 2.0], [1.3, 0.5], 0.5, 2.0).build().unwrap();
     advance(&mut gas, 3.0);
     assert_eq!(gas.states()[0].1, [2.0 * -0.75 - 1.3, 0.5]);
     // Met where ball and wall are at one time: 5.5 + 1.3 t = 10 - 0.75 t.
@@ -45,10 +45,11 @@ fn a_piston_finds_its_balance_and_energy_is_kept() {
     for step in 1..=40 {
         advance(&mut gas, f64::from(step));
         assert!((total(&gas) / start - 1.0).abs() < 1e-11);
-        assert!(((gas.energy() - energy) / gas.work() - 1.0).abs() < 1e-10);
+        assert!((gas.energy() - energy - gas.work()).abs() < 1e-12 * energy);
         assert!(deepest(&setup, &gas, [false; 2]) < 1e-9);
     }
-    assert!(gas.collisions() > 500 && gas.wall(0, 1).unwrap()[0] < 39.0);
+    let moved = (gas.wall(0, 1).unwrap()[0] - 40.0).abs();
+    assert!(gas.collisions() > 300 && moved > 0.05, "{} {moved}", gas.collisions());
 }
 
 #[test]
