@@ -46,7 +46,7 @@ fn a_run_fills_its_folder_and_prints_its_summary() {
     // The scene as written gives the same run again, on any number of threads.
     let scene = folder.join("scene.toml").display().to_string();
     place.run(&["run", &scene, "-o", "again", "--frames", "csv", "--threads", "1"]).expect_status(0);
-    for file in ["scene.toml", "gauges.csv", "frames/frame_000002.csv", "path.csv", "charts/pair_distribution.csv"] {
+    for file in ["scene.toml", "gauges.csv", "frames/frame_000002.csv", "path.csv", "charts/density_profile.csv"] {
         assert_eq!(place.read(&format!("again/{file}")), place.read(&format!("runs/balls-1/{file}")), "{file}");
     }
 }

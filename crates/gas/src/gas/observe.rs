@@ -271,7 +271,7 @@ impl<const D: usize> Gas<D> {
         let count = self.len() as f64;
         self.measures.estimate(self.setup.measure.from, |samples| {
             let thermal = count * self.setup.boltzmann * average(samples, |sample| sample.temperature);
-            pressure_virial::<D>(samples) * average(samples, |sample| sample.open) / thermal
+            pressure_virial::<D>(samples) * average(samples, |sample| sample.volume) / thermal
         })
     }
 
@@ -374,7 +374,7 @@ impl<const D: usize> Gas<D> {
         let radius = self.mean_radius();
         let open: [f64; D] =
             std::array::from_fn(|axis| lengths[axis] - if self.setup.repeats_along(axis) { 0.0 } else { 2.0 * radius });
-        let area = |axis: usize| (0..D).filter(|&other| other != axis).map(|other| open[other]).product();
+        let area = |axis: usize| (0..D).filter(|&other| other != axis).map(|other| lengths[other]).product();
         Sample {
             time,
             temperature: 2.0 * (kinetic - drift) / (freedom * self.setup.boltzmann),
@@ -422,12 +422,11 @@ impl<const D: usize> Gas<D> {
     }
 }
 
-/// Pressure from the virial between the first and the last of some samples, over the area (in three dimensions volume) open
-/// to centres: that is where the virial theorem has the walls.
+/// Pressure from the virial between the first and the last of some samples.
 pub(super) fn pressure_virial<const D: usize>(samples: &[Sample]) -> f64 {
     let kinetic = 2.0 * average(samples, |sample| sample.kinetic);
     let virial = change(samples, |sample| sample.virial) / duration(samples);
-    (kinetic + virial) / (D as f64 * average(samples, |sample| sample.open))
+    (kinetic + virial) / (D as f64 * average(samples, |sample| sample.volume))
 }
 
 fn pressure_on(samples: &[Sample], wall: usize) -> f64 {

@@ -17,7 +17,7 @@ pub(crate) struct Sample {
     pub path: f64,
     /// Momentum given to each wall since the start.
     pub walls: Vec<f64>,
-    /// Area of each wall, as far as it is open to the balls' centres.
+    /// Area of each wall.
     pub areas: Vec<f64>,
     /// Mean-square displacement of each set since averages began.
     pub displacement: Vec<f64>,
