@@ -68,13 +68,13 @@ pub fn atmosphere<const D: usize>(mean: f64, weight: f64) -> Vec<f64> {
         let pressure = |packing: f64| packing * compressibility::<D>(packing);
         (pressure(packing + step) - pressure(packing - step)) / (2.0 * step)
     };
-    let fall = |packing: f64| -weight * packing / stiffness(packing);
+    let fall = |packing: f64| -weight / stiffness(packing);
     let above = |ground: f64| {
         let width = 1.0 / STEPS as f64;
         let mut packings = vec![ground];
         for step in 0..STEPS {
-            let half = packings[step] + 0.5 * width * fall(packings[step]);
-            packings.push(packings[step] + width * fall(half));
+            let half = packings[step] * (0.5 * width * fall(packings[step])).exp();
+            packings.push(packings[step] * (width * fall(half)).exp());
         }
         packings
     };
