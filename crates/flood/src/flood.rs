@@ -114,6 +114,7 @@ impl Flood {
                     gravity: flood.gravity_m_per_s2,
                     eta: flood.balanced.smoothing,
                     largest_h: flood.balanced.largest_smoothing * h,
+                    viscosity: flood.balanced.viscosity,
                     cfl: flood.balanced.cfl,
                     longest_step: flood.balanced.cfl * h / shallow,
                 };

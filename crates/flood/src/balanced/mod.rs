@@ -67,6 +67,8 @@ pub(crate) struct Parameters {
     pub eta: f64,
     /// Largest smoothing length, m.
     pub largest_h: f64,
+    /// Artificial viscosity, in shares of the dissipation of an unreconstructed Riemann problem.
+    pub viscosity: f64,
     /// Time step over (smoothing length / wave speed).
     pub cfl: f64,
     /// Time step where nothing moves, s.
@@ -208,7 +210,7 @@ impl Scheme for Balanced {
         gradients::find(self.parameters.gravity, &self.arrangement, &self.columns, &mut self.slopes);
         self.turn_images(&surroundings.edges);
         self.forces.resize(self.arrangement.len(), Force::default());
-        forces::find(self.parameters.gravity, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
+        forces::find(&self.parameters, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
         self.take_over(particles)
     }
 
