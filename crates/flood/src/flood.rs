@@ -225,6 +225,7 @@ impl Flood {
 
     /// Sorts the particles into cells as large as they need them now.
     fn arrange(&mut self) {
+        let smoothing = self.smoothing();
         let State { particles, cell_size, .. } = &mut self.state;
         let renew_block = |particles: &mut [Particle]| {
             let renewed = particles.iter_mut().map(|particle| {
@@ -235,7 +236,7 @@ impl Flood {
         };
         particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.of_blocks);
         if !particles.is_empty() {
-            *cell_size = CELL_OVER_H * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
+            *cell_size = CELL_OVER_H * smoothing * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
         }
         self.scheme.arrange(particles, &self.surroundings, *cell_size);
     }

@@ -135,8 +135,8 @@ fn on_one<S: Simd>(
         let ground_push = own_pressure - (own_depth * own_depth) * (0.5 * gravity);
         fx += area_x * (pressure + ground_push);
         fy += area_y * (pressure + ground_push);
-        // Artificial viscosity, a signal-speed one (after Monaghan 1997, J. Comput. Phys. 136, 298), by the whole difference in velocity: without it the reconstruction
-        // takes the noise of disordered particles for slopes, and rough fast water never calms.
+        // Artificial viscosity at signal speed (after Monaghan 1997, J. Comput. Phys. 136, 298), by the whole difference in
+        // velocity: the reconstruction takes the noise of disordered particles for slopes, and rough fast water never calms.
         let drag = ((area_x * ex + area_y * ey) * inverse_r).positive() * both * viscosity;
         let drag_x = drag * (own.u - u);
         let drag_y = drag * (own.v - v);
