@@ -2,7 +2,6 @@
 
 use crate::{Error, Simulation};
 use corpuscle_flood::Flood;
-use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
 use corpuscle_terrain::Terrain;
@@ -26,9 +25,9 @@ impl Simulation {
                 written.flood = flood.settings().clone();
                 Ok(Self::new(scene, Some(terrain), Box::new(flood)))
             }
-            ModelScene::Gas(_) => {
-                Err(ModelError::Setup("gas: this version reads and checks gas scenes, but cannot run them".into())
-                    .into())
+            ModelScene::Gas(gas) => {
+                let model = corpuscle_gas::open(gas, scene.seed, scene.run.until_s, folder)?;
+                Ok(Self::new(scene, None, model))
             }
         }
     }

@@ -200,8 +200,8 @@ fn it_has_the_balls_the_charts_and_the_ledger_and_needs_nothing_else() {
         "12\u{2009}345",
         "chi-square p = 0.43",
         "Maxwell",
-        "Pressure over time",
-        "walls",
+        "Pressure",
+        "on the walls",
         "energy",
         "way of one ball",
         "wall at a temperature",
@@ -212,9 +212,14 @@ fn it_has_the_balls_the_charts_and_the_ledger_and_needs_nothing_else() {
         assert!(html.contains(text), "`{text}` is not in the report");
     }
     assert!(!html.contains("NaN") && !html.contains("src=\"http") && !html.contains("<script"));
-    for file in
-        ["balls.svg", "balls.png", "speeds.png", "pressure_over_time.png", "frame_000000.svg", "frame_000020.svg"]
-    {
+    for file in [
+        "balls.svg",
+        "balls.png",
+        "speeds.png",
+        "pressure_virial_over_time.png",
+        "frame_000000.svg",
+        "frame_000020.svg",
+    ] {
         assert!(path.join("pictures").join(file).is_file(), "{file}");
     }
     assert!(path.join("charts/speeds.csv").is_file() && path.join("path.csv").is_file());

@@ -16,8 +16,23 @@ macro_rules! builtin_scenes {
 }
 
 /// All of them; the first is what runs when no scene is named.
-pub const BUILTIN: &[Builtin] =
-    builtin_scenes!["flood/valley", "flood/rough-terrain", "flood/dam-break", "flood/lake-at-rest"];
+pub const BUILTIN: &[Builtin] = builtin_scenes![
+    "flood/valley",
+    "flood/rough-terrain",
+    "flood/dam-break",
+    "flood/lake-at-rest",
+    "gas/maxwell",
+    "gas/paper-2000",
+    "gas/piston",
+    "gas/mixing",
+    "gas/brownian",
+    "gas/free-expansion",
+    "gas/granular",
+    "gas/effusion",
+    "gas/atmosphere",
+    "gas/argon",
+    "gas/million",
+];
 
 /// The built-in scene called `name`.
 pub fn builtin(name: &str) -> Option<Builtin> {

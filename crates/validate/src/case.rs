@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 /// One measure of one case, against its bound.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,6 +27,7 @@ pub struct Row {
 }
 
 /// A case with a known answer.
+#[derive(Debug, Clone, Copy)]
 pub struct Case {
     /// Name: the model and words, `flood/stoker`.
     pub name: &'static str,
@@ -48,7 +50,8 @@ pub struct Options {
 
 /// All cases.
 pub fn cases() -> &'static [Case] {
-    crate::flood::CASES
+    static ALL: LazyLock<Vec<Case>> = LazyLock::new(|| [crate::flood::CASES, crate::gas::CASES].concat());
+    &ALL
 }
 
 impl Row {

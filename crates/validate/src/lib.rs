@@ -6,6 +6,7 @@
 mod bench;
 mod case;
 mod flood;
+mod gas;
 
 pub use bench::{Bench, BenchOptions, Rate, benches};
 pub use case::{Case, Options, Row, cases};

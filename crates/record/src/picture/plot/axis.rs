@@ -76,7 +76,7 @@ impl Axis {
     pub(super) fn label(&self, axis: &ChartAxis) -> String {
         let power = if self.power == 0 { String::new() } else { power_of_ten(self.power) };
         let unit = [power, axis.unit.clone()].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
-        if unit.is_empty() { axis.label.clone() } else { format!("{}, {unit}", axis.label) }
+        [axis.label.clone(), unit].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
     }
 }
 

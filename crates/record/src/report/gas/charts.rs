@@ -4,62 +4,66 @@ use crate::GaugeTable;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn};
 use corpuscle_scene::{Gas, Units};
 
-/// A chart for each kind of quantity: columns with the same first word and unit. Columns without any value, and those
-/// that count up (`collisions`), have none.
-pub(super) fn over_time(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable) -> Vec<Chart> {
-    let mut groups: Vec<(String, &'static str, Vec<usize>)> = Vec::new();
-    for (index, column) in columns.iter().enumerate() {
-        let some = table.rows.iter().any(|row| row[index].is_finite());
-        if !some || column.quantity == "collisions" {
-            continue;
-        }
-        let kind = first_word(column.quantity).0;
-        match groups.iter_mut().find(|(word, unit, _)| word == kind && *unit == column.unit) {
-            Some((_, _, members)) => members.push(index),
-            None => groups.push((kind.to_owned(), column.unit, vec![index])),
-        }
-    }
-    groups.into_iter().map(|(kind, unit, members)| chart(gas, columns, table, &kind, unit, &members)).collect()
+/// What is charted, and the quantities that belong there; in the report's order.
+const KINDS: [(&str, &[(&str, &str)]); 9] = [
+    ("Pressure", &[("pressure_virial", "from collisions"), ("pressure_walls", "on the walls")]),
+    ("Temperature", &[("temperature", "")]),
+    ("Energy", &[("kinetic_energy", "kinetic"), ("energy", "all"), ("work", "work and heat")]),
+    ("Place of the wall", &[("position", "")]),
+    ("Collisions of a ball in a unit of time", &[("collision_rate", "")]),
+    ("Mean free path", &[("mean_free_path", "")]),
+    ("Entropy of mixing", &[("mixing_entropy", "")]),
+    ("Agreement with Maxwell: p-value", &[("maxwell_p_value", "")]),
+    ("Faults of equal steps", &[("overlaps", "overlaps"), ("missed_hits", "missed hits")]),
+];
+
+/// A chart for each kind of quantity that changes. What the model charts itself has none.
+pub(super) fn over_time(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable, known: &[Chart]) -> Vec<Chart> {
+    let drawn = |(title, quantities): &(&str, &[(&str, &str)])| {
+        let of_kind = |index: &usize| quantities.iter().any(|(quantity, _)| columns[*index].quantity == *quantity);
+        let members: Vec<usize> = (0..columns.len()).filter(of_kind).filter(|index| changes(table, *index)).collect();
+        let name = quantities[0].0;
+        let is_known = known.iter().any(|chart| chart.name == name);
+        (!members.is_empty() && !is_known).then(|| chart(gas, columns, table, (title, quantities), &members))
+    };
+    KINDS.iter().filter_map(drawn).collect()
 }
 
-/// `pressure_virial` as `pressure` and `virial`; quantities of two words stay whole.
-fn first_word(quantity: &str) -> (&str, &str) {
-    const WHOLE: [&str; 6] =
-        ["kinetic_energy", "potential_energy", "mixing_entropy", "collision_rate", "mean_free_path", "piston_work"];
-    match quantity.split_once('_') {
-        Some((word, rest)) if !WHOLE.contains(&quantity) => (word, rest),
-        _ => (quantity, ""),
-    }
+/// True where a column has different values, beyond rounding.
+fn changes(table: &GaugeTable, index: usize) -> bool {
+    let values = table.rows.iter().map(|row| row[index]).filter(|value| value.is_finite());
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    high - low > 1e-9 * high.abs().max(low.abs())
 }
 
-fn chart(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable, kind: &str, unit: &str, members: &[usize]) -> Chart {
+fn chart(
+    gas: &Gas,
+    columns: &[GaugeColumn],
+    table: &GaugeTable,
+    (title, quantities): (&str, &[(&str, &str)]),
+    members: &[usize],
+) -> Chart {
     let several = members.iter().any(|index| columns[*index].gauge != columns[members[0]].gauge);
-    let title = capitalised(&kind.replace('_', " "));
     let series = members.iter().map(|&index| {
-        let column = &columns[index];
-        let rest = first_word(column.quantity).1.replace('_', " ");
-        let name = match (several, rest.is_empty()) {
-            (false, false) => rest,
-            (true, false) => format!("{}, {rest}", column.gauge),
-            _ => column.gauge.clone(),
+        let GaugeColumn { gauge, quantity, .. } = &columns[index];
+        let words = quantities.iter().find(|(known, _)| known == quantity).map_or("", |(_, words)| *words);
+        let name = match (several, words) {
+            (true, "") => gauge.clone(),
+            (true, words) => format!("{gauge}, {words}"),
+            (false, words) => words.to_owned(),
         };
         let points = table.times.iter().zip(&table.rows).map(|(time, row)| [*time, row[index]]).collect();
         ChartSeries { name, points, ..ChartSeries::default() }
     });
     let time = if gas.units == Units::Si { "s" } else { "" };
     Chart {
-        name: format!("{kind}_over_time"),
-        title: format!("{title} over time"),
+        name: format!("{}_over_time", quantities[0].0),
+        title: title.into(),
         x: ChartAxis { label: "Time".into(), unit: time.into(), logarithmic: false },
-        y: ChartAxis { label: title, unit: printed(unit), logarithmic: false },
+        y: ChartAxis { label: String::new(), unit: printed(columns[members[0]].unit), logarithmic: false },
         series: series.collect(),
         note: String::new(),
     }
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// A unit of a file's header as it is printed: `m2_per_s` as `m²/s`.
@@ -89,16 +93,18 @@ mod tests {
         let table = GaugeTable {
             columns: columns.iter().map(GaugeColumn::header).collect(),
             times: vec![0.0, 1.0],
-            rows: vec![vec![1.0, 1.0, 1.0, 1.0, 1.0, 1.0, f64::NAN]; 2],
+            rows: vec![vec![1.0; 7], vec![2.0, 2.0, 2.0, 2.0, 2.0, 1.0, f64::NAN]],
         };
-        let charts = over_time(&gas, &columns, &table);
-        let told: Vec<_> =
-            charts.iter().map(|chart| (chart.name.as_str(), chart.series.len(), chart.y.unit.as_str())).collect();
-        assert_eq!(
-            told,
-            [("pressure_over_time", 2, "N/m"), ("temperature_over_time", 2, "K"), ("kinetic_energy_over_time", 1, "J")]
-        );
-        assert_eq!(charts[0].series[1].name, "walls");
+        let told = |known: &[Chart]| -> Vec<_> {
+            let charts = over_time(&gas, &columns, &table, known);
+            charts.into_iter().map(|chart| (chart.name, chart.series.len(), chart.y.unit)).collect()
+        };
+        let entry = |name: &str, series, unit: &str| (name.to_owned(), series, unit.to_owned());
+        let pressure = entry("pressure_virial_over_time", 2, "N/m");
+        assert_eq!(told(&[]), [pressure.clone(), entry("temperature_over_time", 2, "K")]);
+        assert_eq!(told(&[Chart { name: "temperature".into(), ..Chart::default() }]), [pressure]);
+        let charts = over_time(&gas, &columns, &table, &[]);
+        assert_eq!(charts[0].series[1].name, "on the walls");
         assert_eq!(charts[1].series[1].name, "heavy");
     }
 }

@@ -72,7 +72,8 @@ impl<'a> GasReport<'a> {
         let scene_path = self.folder.join("scene.toml");
         let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
         let gauges = GaugeTable::read(&self.folder.join("gauges.csv"))?;
-        let charts = [self.model.charts(), charts::over_time(self.gas, &self.model.gauge_columns(), &gauges)].concat();
+        let mut charts = self.model.charts();
+        charts.extend(charts::over_time(self.gas, &self.model.gauge_columns(), &gauges, &charts));
         let title = title_or_folder(self.scene, self.folder);
         let drawn = self.draw(&charts, &title)?;
         let content = page::content(self, &summary, &drawn, &title, &scene_text);

@@ -1,0 +1,68 @@
+//! The event-driven engine: the earliest event, what it changes, what comes next of those it touched; again and again.
+//!
+//! Each ball keeps its own nearest event (Deng, Hu, Li and Zhang 2012). It is looked for in the cells around the ball and queued in
+//! a calendar. A ball whose partner is hit by another is disturbed: its event is found out of date when its time comes,
+//! and a new one is looked for then; nothing can have happened to it earlier.
+
+mod event;
+mod grid;
+mod near;
+mod predict;
+mod queue;
+mod rebuild;
+mod run;
+mod saved;
+
+pub(crate) use saved::Saved;
+
+use crate::world::{Facing, World};
+use event::Event;
+use grid::Grid;
+use near::Near;
+use queue::Queue;
+
+/// Balls in a box and all that is to come of them.
+#[derive(Debug)]
+pub(crate) struct Engine<const D: usize> {
+    pub world: World<D>,
+    events: Vec<Event<D>>,
+    grid: Grid<D>,
+    queue: Queue,
+    near: Box<Near<D>>,
+    /// True where all balls have the same radius.
+    alike: bool,
+    /// True where a wall is not only met in the outermost cells.
+    walls_roam: bool,
+    /// Events handled since the window was moved on.
+    handled: u64,
+    /// Cell edges crossed, and looks at what comes next because a partner was lost.
+    pub crossings: u64,
+    pub disturbed: u64,
+}
+
+impl<const D: usize> Engine<D> {
+    /// Takes over a world and finds out what comes next of everything in it.
+    pub fn new(world: World<D>) -> Self {
+        let grid = Grid::new([0.0; D], [1.0; D], [false; D], 1.0, 1.0, 1).expect("one cell without periodic sides");
+        let mut engine = Engine {
+            events: crate::memory::reserved(world.balls.len()),
+            alike: world.kinds.windows(2).all(|pair| pair[0].radius == pair[1].radius),
+            walls_roam: world.walls.iter().any(|wall| wall.facing == Facing::Both || wall.moves),
+            world,
+            grid,
+            queue: Queue::new::<D>(&[]),
+            near: Box::new(Near::new()),
+            handled: 0,
+            crossings: 0,
+            disturbed: 0,
+        };
+        engine.rebuild();
+        engine
+    }
+
+    /// Bytes held for the balls and their events.
+    pub fn bytes(&self) -> usize {
+        let world = size_of::<crate::world::Ball<D>>() + size_of::<crate::world::Record<D>>();
+        self.world.balls.len() * (world + size_of::<Event<D>>()) + self.grid.bytes() + self.queue.bytes()
+    }
+}

@@ -1,0 +1,127 @@
+//! The loop over events.
+
+use super::Engine;
+use crate::method::Pause;
+use crate::world::{Falling, Growing, Mode, Straight};
+use multiversion::multiversion;
+
+/// Events handled for each ball before a new window begins.
+const EVENTS_PER_WINDOW: u64 = 60;
+
+impl<const D: usize> Engine<D> {
+    /// Handles events up to `until` (in the window), `most` at most.
+    pub fn run(&mut self, until: f64, most: u64) -> Pause {
+        if self.world.field.growth != 0.0 {
+            handle::<D, Growing>(self, until, most)
+        } else if self.world.falls() {
+            handle::<D, Falling>(self, until, most)
+        } else {
+            handle::<D, Straight>(self, until, most)
+        }
+    }
+
+    /// True where a new window is due.
+    fn window_is_full(&self) -> bool {
+        self.handled >= EVENTS_PER_WINDOW * self.events.len() as u64 + 1000
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
+fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64) -> Pause {
+    for _ in 0..most {
+        let Some((time, ball)) = engine.queue.peek(&engine.events) else { return Pause::Reached };
+        if time > until {
+            return Pause::Reached;
+        }
+        if engine.window_is_full() {
+            return Pause::WindowFull;
+        }
+        engine.handled += 1;
+        engine.queue.pop();
+        engine.world.now = time;
+        let (touched, count) = engine.happen::<M>(ball as usize);
+        for &ball in &touched[..count] {
+            engine.predict::<M>(ball);
+        }
+        if engine.world.stands_still() {
+            return Pause::Standstill;
+        }
+    }
+    Pause::Worked
+}
+
+impl<const D: usize> Engine<D> {
+    /// Lets the event of a ball happen, if it is not out of date; the balls for which something else comes next, and their number.
+    #[inline(always)]
+    fn happen<M: Mode>(&mut self, ball: usize) -> ([usize; 2], usize) {
+        let event = self.events[ball];
+        if let Some(partner) = event.what.ball() {
+            if self.events[partner].bends == event.partner_bends {
+                self.world.collide::<M>(ball, partner);
+                for ball in [ball, partner] {
+                    self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
+                }
+                return ([ball, partner], 2);
+            }
+            self.disturbed += 1;
+        } else if let Some((axis, up)) = event.what.as_edge() {
+            self.cross(ball, axis, up);
+        } else if let Some(wall) = event.what.as_wall() {
+            if self.world.walls[wall].bends == event.partner_bends {
+                self.hit::<M>(ball, wall);
+            } else {
+                self.disturbed += 1;
+            }
+        }
+        ([ball, ball], 1)
+    }
+
+    /// A ball goes over into the next cell.
+    #[inline(always)]
+    fn cross(&mut self, ball: usize, axis: usize, up: bool) {
+        self.crossings += 1;
+        self.leave_cell(ball);
+        let event = &mut self.events[ball];
+        let count = self.grid.levels[event.level as usize].count[axis];
+        let cell = event.cell[axis];
+        event.cell[axis] = if up { cell + 1 } else { cell - 1 };
+        if event.cell[axis] > count {
+            event.cell[axis] = 1;
+            self.world.wrap(ball, axis, 1);
+        } else if event.cell[axis] == 0 {
+            event.cell[axis] = count;
+            self.world.wrap(ball, axis, -1);
+        }
+        self.enter_cell(ball);
+    }
+
+    /// A ball rebounds from a wall.
+    #[cold]
+    fn hit<M: Mode>(&mut self, ball: usize, wall: usize) {
+        let bends = self.world.walls[wall].bends;
+        self.world.hit::<M>(ball, wall);
+        self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
+        if self.world.walls[wall].bends != bends {
+            self.wall_bent_as::<M>(wall);
+        }
+    }
+
+    /// Takes notice that a wall's motion changed now: balls that it will hit before anything else happens to them must know.
+    pub fn wall_bent(&mut self, wall: usize) {
+        if self.world.falls() {
+            self.wall_bent_as::<Falling>(wall);
+        } else {
+            self.wall_bent_as::<Straight>(wall);
+        }
+    }
+
+    fn wall_bent_as<M: Mode>(&mut self, wall: usize) {
+        for ball in 0..self.events.len() {
+            let radius = self.world.radius(ball);
+            let time = self.world.walls[wall].meeting::<D, M>(&self.world.balls[ball], radius, &self.world.field);
+            if time < self.events[ball].time {
+                self.predict::<M>(ball);
+            }
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Moving a gas on: events, and in between what happens by plan.
+
+use super::{Due, Gas};
+use crate::method::{Mover, Pause};
+use corpuscle_model::ModelError;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Events between two looks at whether to stop.
+const AT_A_TIME: u64 = 20_000;
+
+/// Shortest mean path between two hits, over the radius, to which walls may press a gas together.
+const LEAST_ROOM: f64 = 1e-4;
+
+impl<const D: usize> Gas<D> {
+    /// Moves on to `time`, or to where it was told to stop.
+    pub(super) fn advance(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        loop {
+            let (when, due) = self.next_due();
+            if !self.run_to(when.min(time), stop)? {
+                self.shown = self.shown.max(self.mover.world().time());
+                return Ok(());
+            }
+            if when > time {
+                self.shown = time;
+                return Ok(());
+            }
+            if let Some(due) = due {
+                self.carry_out(when, due);
+            }
+        }
+    }
+
+    /// What happens by plan next, and when; of things at one time the first named here.
+    fn next_due(&self) -> (f64, Option<Due>) {
+        let mut next = (f64::INFINITY, None);
+        let mut offer = |time: f64, due: Due| {
+            if time < next.0 {
+                next = (time, Some(due));
+            }
+        };
+        for (wall, plan) in self.plans.iter().enumerate() {
+            if let Some(knot) = plan.as_ref().and_then(|plan| plan.schedule.knot(plan.next)) {
+                offer(knot.time, Due::Knot(wall));
+            }
+        }
+        if let Some(time) = self.setup.partition.as_ref().and_then(|partition| partition.lifted_at)
+            && !self.lifted
+        {
+            offer(time, Due::Lift);
+        }
+        if let Some(time) = self.setup.reversed_at.filter(|_| !self.reversed) {
+            offer(time, Due::Reverse);
+        }
+        if let Some(every) = self.setup.measure.every {
+            offer(self.next_look as f64 * every, Due::Look);
+        }
+        next
+    }
+
+    /// Handles all events up to a time; false where it was told to stop before.
+    fn run_to(&mut self, time: f64, stop: &AtomicBool) -> Result<bool, ModelError> {
+        loop {
+            let until = self.mover.world().in_window(time);
+            match self.mover.run(until, AT_A_TIME) {
+                Pause::Reached => return Ok(true),
+                Pause::Worked => {}
+                Pause::WindowFull => {
+                    self.mover.begin_window();
+                    self.check()?;
+                }
+                Pause::Standstill => {
+                    return Err(self.broken(
+                        "collisions follow each other without anything moving: balls are squeezed between walls or jammed, \
+                         or have come to rest on each other. Give them more room, stop the wall that closes in, or (with a \
+                         restitution below 1) take a longer contact time",
+                    ));
+                }
+            }
+            if stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Numbers are numbers, and the box can hold its balls.
+    fn check(&mut self) -> Result<(), ModelError> {
+        let world = self.mover.world();
+        if !world.balls.iter().all(|ball| ball.position.iter().chain(&ball.velocity).all(|x| x.is_finite())) {
+            return Err(self.broken("a ball's place or velocity is no longer a number"));
+        }
+        for axis in 0..D {
+            let [low, high] = world.extent(axis, world.now);
+            if high <= low {
+                return Err(self.broken("two walls have met: nothing is left of the box"));
+            }
+        }
+        match self.room() {
+            Some(room) if room < LEAST_ROOM => Err(self.broken(&format!(
+                "walls that close in leave the balls hardly any room: between two hits they fly {room:.1e} of a radius, \
+                 and would hit each other ever faster without end. Stop the wall earlier, or take fewer or smaller balls"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Where walls move: length of path between two hits of a ball since the last check, over the smallest radius.
+    fn room(&mut self) -> Option<f64> {
+        let world = self.mover.world();
+        let hits = world.wall_tallies.iter().map(|tally| tally.hits).sum::<u64>();
+        let now = (world.tally.path, 2 * world.tally.collisions + hits);
+        let (path, ends) = std::mem::replace(&mut self.checked, now);
+        let radius = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
+        let moves = world.walls.iter().any(|wall| wall.moves);
+        (moves && now.1 > ends).then(|| (now.0 - path) / (now.1 - ends) as f64 / radius)
+    }
+
+    fn broken(&self, what: &str) -> ModelError {
+        let world = self.mover.world();
+        ModelError::Breakdown { time: world.time(), step: world.tally.collisions, what: what.into() }
+    }
+
+    fn carry_out(&mut self, time: f64, due: Due) {
+        let moved = !matches!(self.mover, Mover::FixedStep(_));
+        if moved && due != Due::Look {
+            let world = self.mover.world_mut();
+            world.now = world.in_window(time);
+        }
+        match due {
+            Due::Knot(wall) => self.bend_wall(wall, time),
+            Due::Lift => {
+                self.lifted = true;
+                if let Some(number) = self.partition {
+                    let wall = &mut self.mover.world_mut().walls[number];
+                    (wall.present, wall.bends) = (false, wall.bends.wrapping_add(1));
+                    self.mover.wall_bent(number);
+                }
+            }
+            Due::Reverse => {
+                self.reversed = true;
+                self.reverse();
+            }
+            Due::Look => {
+                self.next_look += 1;
+                self.look(time);
+            }
+        }
+    }
+
+    /// A wall that moves by plan changes its motion.
+    fn bend_wall(&mut self, wall: usize, time: f64) {
+        let Some(plan) = &mut self.plans[wall] else { return };
+        let Some(knot) = plan.schedule.knot(plan.next) else { return };
+        plan.next += 1;
+        let place = plan.home + knot.displacement;
+        let world = self.mover.world_mut();
+        let now = world.in_window(time);
+        let moving = &mut world.walls[wall];
+        moving.bend(now, knot.speed);
+        (moving.place, moving.acceleration) = (place, knot.acceleration);
+        self.mover.wall_bent(wall);
+    }
+
+    /// Turns all velocities round; walls' too that do not move by plan.
+    fn reverse(&mut self) {
+        self.mover.begin_window();
+        let planned: Vec<bool> = self.plans.iter().map(Option::is_some).collect();
+        let world = self.mover.world_mut();
+        world.reverse();
+        let now = world.now;
+        for (wall, planned) in world.walls.iter_mut().zip(planned) {
+            if !planned && wall.moves {
+                let speed = -wall.speed_at(now);
+                wall.bend(now, speed);
+            }
+        }
+        self.mover.begin_window();
+    }
+}

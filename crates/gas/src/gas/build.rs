@@ -1,0 +1,159 @@
+//! Making a gas from a set-up.
+
+use super::{Gas, Plan, Set};
+use crate::SetupError;
+use crate::engine::Engine;
+use crate::measure::Measures;
+use crate::method::{FixedStep, List, Mover};
+use crate::setup::{Method, Placed, Setup};
+use crate::world::{Field, Followed, Kind, Rebound, Start, World};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// The widest bar of a speed histogram ends at this many thermal speeds.
+const FASTEST: f64 = 5.0;
+
+impl<const D: usize> Gas<D> {
+    pub(crate) fn new(setup: Setup<D>) -> Result<Self, SetupError> {
+        let (starts, kinds, sets) = setup.starts()?;
+        let mut world = World::new([0.0; D], setup.size, kinds, &starts, setup.field());
+        world.rebound = Rebound { restitution: setup.restitution, contact_time: setup.contact_time() };
+        world.random = ChaCha8Rng::seed_from_u64(setup.seed);
+        world.random.set_stream(1);
+        let mut plans = Vec::new();
+        for (mut wall, schedule) in setup.walls() {
+            let home = wall.place;
+            let mut plan = schedule.map(|schedule| Plan { schedule, next: 0, home });
+            if let Some(plan) = &mut plan {
+                plan.start(&mut wall);
+            }
+            plans.push(plan);
+            world.walls.push(wall);
+        }
+        world.wall_tallies = vec![Default::default(); world.walls.len()];
+        world.followed = setup.followed(&starts);
+        let partition = setup.partition.is_some().then(|| world.walls.len() - 1);
+        let largest = setup.largest_speeds(&sets, &world);
+        let measures = Measures::new(&setup.measure, sets.len(), largest, setup.pair_distance());
+        let mover = match setup.method {
+            Method::EventDriven => Mover::EventDriven(Engine::new(world)),
+            Method::List => Mover::List(List::new(world)),
+            Method::FixedStep(step) => Mover::FixedStep(FixedStep::new(world, step)),
+        };
+        let mut gas = Gas {
+            setup,
+            mover,
+            sets,
+            plans,
+            partition,
+            lifted: false,
+            reversed: false,
+            next_look: 0,
+            measures,
+            initial: [0.0; 2],
+            shown: 0.0,
+            checked: (0.0, 0),
+            si: false,
+        };
+        gas.initial = [gas.energy(), gas.momentum().iter().sum()];
+        Ok(gas)
+    }
+}
+
+/// All balls at their places, with velocities; the table of kinds; the sets.
+type Contents<const D: usize> = (Vec<Start<D>>, Vec<Kind>, Vec<Set>);
+
+impl Plan {
+    /// Takes the knots that are at time 0.
+    fn start(&mut self, wall: &mut crate::world::Wall) {
+        while let Some(knot) = self.schedule.knot(self.next).filter(|knot| knot.time <= 0.0) {
+            wall.place = self.home + knot.displacement;
+            (wall.speed, wall.acceleration) = (knot.speed, knot.acceleration);
+            self.next += 1;
+        }
+    }
+}
+
+impl<const D: usize> Setup<D> {
+    /// What is in the box at the start.
+    fn starts(&self) -> Result<Contents<D>, SetupError> {
+        self.check()?;
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let places = self.places(&mut random)?;
+        self.check_overlaps(&places)?;
+        self.check_plans(&places)?;
+        let mut table = Table::default();
+        let mut starts = Vec::with_capacity(places.len());
+        let mut at = places.iter();
+        let mut put = |name: &str, mass: f64, velocity: [f64; D], table: &mut Table| {
+            let Some(&Placed { position, radius }) = at.next() else { return };
+            let (kind, species) = (table.kind(radius, mass), table.set(name, mass));
+            starts.push(Start { position, velocity, kind, species });
+        };
+        for ball in &self.balls {
+            put(&ball.name, ball.mass, ball.velocity, &mut table);
+        }
+        for (species, velocities) in self.species.iter().zip(self.velocities(&mut random)) {
+            for velocity in velocities {
+                put(&species.name, species.mass, velocity, &mut table);
+            }
+        }
+        if starts.is_empty() {
+            return Err(SetupError::Contradiction("there are no balls".into()));
+        }
+        Ok((starts, table.kinds, table.sets))
+    }
+
+    fn field(&self) -> Field<D> {
+        let period = std::array::from_fn(|axis| if self.repeats_along(axis) { self.size[axis] } else { 0.0 });
+        Field { gravity: self.gravity, scale: 1.0, growth: 0.0, period }
+    }
+
+    fn followed(&self, starts: &[Start<D>]) -> Option<Followed<D>> {
+        let id = self.follow.filter(|&ball| ball < starts.len())?;
+        Some(Followed { id: id as u32, bends: vec![(0.0, starts[id].position)] })
+    }
+
+    /// Speeds up to which histograms go, for each set: some thermal speeds at the temperature of the whole.
+    fn largest_speeds(&self, sets: &[Set], world: &World<D>) -> Vec<f64> {
+        let energy: f64 = (0..world.balls.len())
+            .map(|ball| 0.5 * world.mass(ball) * world.balls[ball].velocity.iter().map(|v| v * v).sum::<f64>())
+            .sum();
+        let per_direction = 2.0 * energy / (D * world.balls.len()) as f64;
+        sets.iter().map(|set| FASTEST * (per_direction / set.mass).sqrt().max(f64::MIN_POSITIVE)).collect()
+    }
+
+    fn pair_distance(&self) -> f64 {
+        let radii = self.balls.iter().map(|ball| ball.radius).chain(self.species.iter().map(|species| species.radius));
+        let shortest = self.size.iter().copied().fold(f64::INFINITY, f64::min);
+        self.measure.pair_distance.unwrap_or(10.0 * radii.fold(0.0, f64::max)).min(0.5 * shortest)
+    }
+}
+
+/// Kinds and sets as they turn up.
+#[derive(Default)]
+struct Table {
+    kinds: Vec<Kind>,
+    sets: Vec<Set>,
+}
+
+impl Table {
+    fn kind(&mut self, radius: f64, mass: f64) -> u32 {
+        let kind = Kind { radius, mass };
+        // Like balls come one after the other.
+        let known = self.kinds.iter().rev().take(64).position(|known| *known == kind);
+        let at = known.map_or(self.kinds.len(), |back| self.kinds.len() - 1 - back);
+        if at == self.kinds.len() {
+            self.kinds.push(kind);
+        }
+        at as u32
+    }
+
+    fn set(&mut self, name: &str, mass: f64) -> u32 {
+        let known = self.sets.iter().position(|set| set.name == name);
+        known.unwrap_or_else(|| {
+            self.sets.push(Set { name: name.into(), mass, colour: None });
+            self.sets.len() - 1
+        }) as u32
+    }
+}

@@ -1,0 +1,247 @@
+//! What a gas shows of itself.
+
+use super::Gas;
+use super::observe::{collision_rate, mean_free_path, pressure_virial};
+use crate::measure::charts::Context;
+use corpuscle_model::{
+    Balance, Chart, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Path,
+};
+use std::sync::atomic::AtomicBool;
+
+/// Momentum that is not there for, over all that there is, is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// More balls than this, and overlaps are not looked for at every row of gauges.
+const AUDITED: usize = 20_000;
+
+fn padded<const D: usize>(vector: [f64; D]) -> [f64; 3] {
+    std::array::from_fn(|axis| vector.get(axis).copied().unwrap_or(0.0))
+}
+
+impl<const D: usize> Gas<D> {
+    /// Named values and their units in SI, in the order of the gauges.
+    fn gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+        let recent = self.recent();
+        let over_time = recent.len() > 1;
+        let rate = |value: &dyn Fn() -> f64| if over_time { value() } else { f64::NAN };
+        let pressure = if D == 2 { "N_per_m" } else { "Pa" };
+        let mut rows: Vec<(&'static str, &'static str, f64)> = vec![
+            ("temperature", "K", self.temperature()),
+            ("kinetic_energy", "J", self.kinetic_energy()),
+            ("energy", "J", self.energy()),
+            ("collisions", "", self.collisions() as f64),
+            ("collision_rate", "per_s", rate(&|| collision_rate(&recent) / self.len() as f64)),
+            ("mean_free_path", "m", rate(&|| mean_free_path(&recent))),
+            ("pressure_virial", pressure, rate(&|| pressure_virial::<D>(&recent))),
+        ];
+        let world = self.mover.world();
+        if !world.walls.is_empty() {
+            rows.push(("pressure_walls", pressure, rate(&|| self.recent_pressure_walls(&recent))));
+        }
+        rows.push(("packing", "", self.packing()));
+        rows.push(("maxwell_p_value", "", self.maxwell_p_value()));
+        if self.sets.len() > 1 {
+            rows.push(("mixing_entropy", "", self.mixing_entropy()));
+        }
+        if world.walls.iter().any(|wall| wall.moves || wall.temperature.is_some()) {
+            rows.push(("work", "J", self.work()));
+        }
+        if self.len() <= AUDITED {
+            rows.push(("deepest_overlap", "", self.deepest_overlap()));
+        }
+        if let Some((overlaps, missed, _)) = self.faults() {
+            rows.extend([("overlaps", "", overlaps as f64), ("missed_hits", "", missed as f64)]);
+        }
+        let mut gauges: Vec<_> =
+            rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
+        gauges.extend(self.moving_walls());
+        gauges.extend(self.set_gauges());
+        gauges
+    }
+
+    fn moving_walls(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+        let mut gauges = Vec::new();
+        for axis in 0..D {
+            for end in 0..2 {
+                let moves = !matches!(
+                    self.setup.sides[axis][end],
+                    crate::Side::Fixed | crate::Side::Periodic | crate::Side::Thermal { .. }
+                );
+                if let Some([place, speed]) = self.wall(axis, end).filter(|_| moves) {
+                    let name = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][end]);
+                    gauges.push((name.clone(), "position", "m", place));
+                    gauges.push((name, "velocity", "m_per_s", speed));
+                }
+            }
+        }
+        gauges
+    }
+
+    fn set_gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+        let snapshot = self.snapshot(self.shown);
+        let displacements = self.measures.displacements(&snapshot);
+        let mut gauges = Vec::new();
+        for (number, set) in self.sets.iter().enumerate() {
+            let (mut squares, mut count) = (0.0, 0.0);
+            for (velocity, &own) in snapshot.velocity.iter().zip(&snapshot.set) {
+                if own as usize == number {
+                    squares += velocity.iter().map(|v| v * v).sum::<f64>();
+                    count += 1.0;
+                }
+            }
+            let temperature = set.mass * squares / (D as f64 * count * self.setup.boltzmann);
+            gauges.push((set.name.clone(), "temperature", "K", temperature));
+            gauges.push((set.name.clone(), "mean_square_displacement", "m2", displacements[number]));
+            let late = self.measures.started.is_finite() && self.mean_square_displacement(number).len() > 3;
+            let diffusion = if late { self.diffusion(number) } else { f64::NAN };
+            gauges.push((set.name.clone(), "diffusion", "m2_per_s", diffusion));
+        }
+        gauges
+    }
+
+    fn energy_balance(&self) -> Balance {
+        let world = self.mover.world();
+        let gained = world.wall_tallies.iter().map(|tally| tally.gained.value()).sum();
+        let lost: f64 = world.wall_tallies.iter().map(|tally| tally.lost.value()).sum();
+        let outflow = lost + world.tally.dissipated.value();
+        let quantity = if self.si { "energy_J" } else { "energy" };
+        Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy() }
+    }
+
+    fn momentum_balance(&self) -> Balance {
+        let world = self.mover.world();
+        let (mut inflow, mut outflow) = (0.0, 0.0);
+        let mut book = |amount: f64| if amount >= 0.0 { inflow += amount } else { outflow -= amount };
+        for tally in &world.wall_tallies {
+            book(-tally.momentum.value() + tally.dragged.value());
+        }
+        let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
+        world.field.gravity.iter().for_each(|gravity| book(mass * gravity * self.shown));
+        let now: f64 = self.momentum().iter().sum();
+        let expected = self.initial[1] + inflow - outflow;
+        // The sum of opposite momenta is nothing but rounding where the total is 0: nothing to set an error against.
+        let all: f64 = (0..world.balls.len())
+            .map(|ball| world.mass(ball) * crate::world::speed(&world.balls[ball].velocity))
+            .sum();
+        let now = if (now - expected).abs() <= ROUNDING * all { expected } else { now };
+        Balance { quantity: "momentum", initial: self.initial[1], inflow, outflow, now }
+    }
+}
+
+impl<const D: usize> Model for Gas<D> {
+    fn name(&self) -> &'static str {
+        "gas"
+    }
+
+    fn time(&self) -> f64 {
+        self.shown
+    }
+
+    fn steps(&self) -> u64 {
+        self.collisions()
+    }
+
+    fn particle_steps(&self) -> u64 {
+        self.collisions()
+    }
+
+    fn particles(&self) -> usize {
+        self.len()
+    }
+
+    fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        self.advance(time, stop)
+    }
+
+    fn frame(&self) -> Frame {
+        let snapshot = self.snapshot(self.shown);
+        let world = self.mover.world();
+        let mut bodies = vec![(0.0, 0.0); world.balls.len()];
+        for (ball, record) in world.records.iter().enumerate() {
+            bodies[record.id as usize] = (world.radius(ball), world.mass(ball));
+        }
+        let mut sets: Vec<ParticleSet> =
+            self.sets.iter().map(|set| ParticleSet { name: set.name.clone(), ..ParticleSet::default() }).collect();
+        for (number, (radius, mass)) in bodies.into_iter().enumerate() {
+            let set = &mut sets[snapshot.set[number] as usize];
+            set.id.push(number as u64);
+            set.position.push(padded(snapshot.position[number]));
+            set.velocity.push(padded(snapshot.velocity[number]));
+            set.radius.push(radius);
+            set.mass.push(mass);
+        }
+        Frame { time: self.shown, sets }
+    }
+
+    fn gauge_columns(&self) -> Vec<GaugeColumn> {
+        let column =
+            |(gauge, quantity, unit, _)| GaugeColumn { gauge, quantity, unit: if self.si { unit } else { "" } };
+        self.gauges().into_iter().map(column).collect()
+    }
+
+    fn gauge_row(&self) -> Vec<f64> {
+        self.gauges().into_iter().map(|(_, _, _, value)| value).collect()
+    }
+
+    fn maps(&self) -> Vec<Map> {
+        Vec::new()
+    }
+
+    fn charts(&self) -> Vec<Chart> {
+        let names: Vec<String> = self.sets.iter().map(|set| set.name.clone()).collect();
+        let masses: Vec<f64> = self.sets.iter().map(|set| set.mass).collect();
+        let colours: Vec<Option<String>> = self.sets.iter().map(|set| set.colour.clone()).collect();
+        let axis = self.setup.measure.profile_axis.min(D - 1);
+        let world = self.mover.world();
+        let context = Context {
+            names: &names,
+            masses: &masses,
+            colours: &colours,
+            boltzmann: self.setup.boltzmann,
+            si: self.si,
+            extent: world.extent(axis, world.in_window(self.shown)),
+            p_value: self.maxwell_p_value(),
+        };
+        self.measures.charts::<D>(&context, &self.setup.measure)
+    }
+
+    fn paths(&self) -> Vec<Path> {
+        let path = self.path();
+        let Some(followed) = self.mover.world().followed.as_ref() else { return Vec::new() };
+        vec![Path {
+            name: format!("ball {}", followed.id),
+            times: path.iter().map(|(time, _)| *time).collect(),
+            points: path.into_iter().map(|(_, place)| padded(place)).collect(),
+        }]
+    }
+
+    fn container(&self) -> Option<Container> {
+        let world = self.mover.world();
+        let now = world.in_window(self.shown);
+        let extent: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, now));
+        Some(Container { from: padded(extent.map(|[low, _]| low)), to: padded(extent.map(|[_, high]| high)) })
+    }
+
+    fn ledger(&self) -> Ledger {
+        Ledger { balances: vec![self.energy_balance(), self.momentum_balance()] }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if let Some((overlaps, missed, deepest)) = self.faults().filter(|(overlaps, missed, _)| overlaps + missed > 0) {
+            warnings.push(format!(
+                "fixed steps: {overlaps} overlaps were found, the deepest {deepest:.3} of a radius, and {missed} hits were \
+                 missed; the exact methods have none"
+            ));
+        }
+        warnings
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.saved()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
+        self.take_back(state)
+    }
+}

@@ -1,0 +1,395 @@
+//! Looking at a gas.
+
+use super::Gas;
+use crate::hash::Hash;
+use crate::measure::estimate::{average, change, duration};
+use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
+use crate::method::{Mover, Nearest};
+use crate::sum::ExactSum;
+use crate::world::speed;
+
+/// Looks over which the pressure and such of the moment are taken.
+const RECENT: usize = 10;
+
+impl<const D: usize> Gas<D> {
+    /// The time shown, counted in the window.
+    fn now(&self) -> f64 {
+        self.mover.world().in_window(self.shown)
+    }
+
+    /// Places and velocities of all balls at the time shown, in order of their numbers; places inside the box.
+    pub fn states(&self) -> Vec<([f64; D], [f64; D])> {
+        let world = self.mover.world();
+        let mut states = vec![([0.0; D], [0.0; D]); world.balls.len()];
+        for ball in 0..world.balls.len() {
+            states[world.records[ball].id as usize] = world.state(ball, self.now());
+        }
+        states
+    }
+
+    /// Places at the time shown as if the box did not repeat.
+    pub fn unwrapped(&self) -> Vec<[f64; D]> {
+        self.snapshot(self.shown).unwrapped
+    }
+
+    /// Number of balls.
+    pub fn len(&self) -> usize {
+        self.mover.world().balls.len()
+    }
+
+    /// Never true: a gas has at least one ball.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Names of the sets of balls: those told one by one, then the species.
+    pub fn sets(&self) -> Vec<&str> {
+        self.sets.iter().map(|set| set.name.as_str()).collect()
+    }
+
+    /// Radius and mass of a ball, by its number.
+    pub fn body(&self, number: usize) -> (f64, f64) {
+        let world = self.mover.world();
+        let ball = world.records.iter().position(|record| record.id as usize == number).unwrap_or(0);
+        (world.radius(ball), world.mass(ball))
+    }
+
+    /// Kinetic energy at the time shown.
+    pub fn kinetic_energy(&self) -> f64 {
+        let world = self.mover.world();
+        let one = |ball| 0.5 * world.mass(ball) * speed(&world.state(ball, self.now()).1).powi(2);
+        (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+    }
+
+    /// Kinetic energy and energy in gravity, at the time shown.
+    pub fn energy(&self) -> f64 {
+        let world = self.mover.world();
+        let heights = |ball: usize| -> f64 {
+            let (position, _) = world.state(ball, self.now());
+            let along = |axis: usize| {
+                let unwrapped = position[axis] + f64::from(world.records[ball].image[axis]) * world.field.period[axis];
+                -world.field.gravity[axis] * unwrapped
+            };
+            world.mass(ball) * (0..D).map(along).sum::<f64>()
+        };
+        let potential =
+            if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
+        self.kinetic_energy() + potential
+    }
+
+    /// Momentum at the time shown.
+    pub fn momentum(&self) -> [f64; D] {
+        let world = self.mover.world();
+        std::array::from_fn(|axis| {
+            (0..world.balls.len())
+                .map(|ball| world.mass(ball) * world.state(ball, self.now()).1[axis])
+                .collect::<ExactSum>()
+                .value()
+        })
+    }
+
+    /// Temperature at the time shown, from the motion relative to the mean velocity of all.
+    pub fn temperature(&self) -> f64 {
+        let world = self.mover.world();
+        let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
+        let drift: f64 = self.momentum().iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
+        let freedom = self.setup.degrees_of_freedom(world.balls.len());
+        let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
+        2.0 * (self.kinetic_energy() - bound) / (freedom * self.setup.boltzmann)
+    }
+
+    /// Area (in three dimensions volume) of the box at the time shown.
+    pub fn volume(&self) -> f64 {
+        self.mover.world().volume(self.now())
+    }
+
+    /// Part of the box that is filled with balls.
+    pub fn packing(&self) -> f64 {
+        let world = self.mover.world();
+        (0..world.balls.len()).map(|ball| crate::ball_volume::<D>(world.radius(ball))).sum::<f64>() / self.volume()
+    }
+
+    /// Collisions of balls so far.
+    pub fn collisions(&self) -> u64 {
+        self.mover.world().tally.collisions
+    }
+
+    /// Work done on and heat given to the gas by walls so far.
+    pub fn work(&self) -> f64 {
+        self.mover.world().wall_tallies.iter().map(|tally| tally.energy()).sum()
+    }
+
+    /// Place and velocity, at the time shown, of the lower (0) or upper (1) wall along an axis; none where the box repeats.
+    pub fn wall(&self, axis: usize, end: usize) -> Option<[f64; 2]> {
+        use crate::world::Facing::{Down, Up};
+        let facing = if end == 0 { Up } else { Down };
+        let world = self.mover.world();
+        let wall = world.walls.iter().find(|wall| wall.axis == axis && wall.facing == facing)?;
+        Some([wall.place_at(self.now()), wall.speed_at(self.now())])
+    }
+
+    /// Deepest overlap of two balls over the smallest radius of all, or of a ball and a wall over its own, at the time shown; 0 for
+    /// none.
+    pub fn deepest_overlap(&self) -> f64 {
+        let world = self.mover.world();
+        let (mut deepest, now) = (0.0_f64, self.now());
+        let extents: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, now));
+        let largest = (0..world.balls.len()).map(|ball| world.radius(ball)).fold(0.0, f64::max);
+        let length = extents.map(|[low, high]| high - low);
+        let mut hash =
+            Hash::new(extents.map(|[low, _]| low), length, world.field.period, 2.0 * largest, world.balls.len());
+        let smallest = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
+        for ball in 0..world.balls.len() {
+            let (position, radius) = (world.state(ball, now).0, world.radius(ball));
+            if let Some((_, depth)) = hash.overlap(&position, radius) {
+                deepest = deepest.max(depth / smallest);
+            }
+            for axis in (0..D).filter(|&axis| world.field.period[axis] == 0.0) {
+                let [low, high] = extents[axis];
+                deepest = deepest.max((radius - (position[axis] - low).min(high - position[axis])) / radius);
+            }
+            hash.add(position, radius);
+        }
+        deepest
+    }
+
+    /// Overlaps and missed hits of the fixed-step method so far, and its deepest overlap over the smaller radius; none for the
+    /// others, which make no such faults.
+    pub fn faults(&self) -> Option<(u64, u64, f64)> {
+        match &self.mover {
+            Mover::FixedStep(steps) => Some((steps.faults.overlaps, steps.faults.missed, steps.faults.deepest)),
+            _ => None,
+        }
+    }
+
+    /// The list of the published method: the nearest event of each ball; none for the others.
+    pub fn nearest(&self) -> Option<Vec<Nearest>> {
+        let Mover::List(list) = &self.mover else { return None };
+        let origin = list.world.origin.value();
+        Some(list.nearest.iter().map(|event| Nearest { time: origin + event.time, ..*event }).collect())
+    }
+
+    /// Cell edges crossed and partners lost so far: what the event-driven method does besides collisions.
+    pub fn side_events(&self) -> [u64; 2] {
+        match &self.mover {
+            Mover::EventDriven(engine) => [engine.crossings, engine.disturbed],
+            _ => [0; 2],
+        }
+    }
+
+    /// Bytes held for the balls and what is to come of them.
+    pub fn bytes(&self) -> usize {
+        self.mover.bytes()
+    }
+
+    /// The chance that speeds after Maxwell would deviate from his distribution by more than they do now (chi-square).
+    pub fn maxwell_p_value(&self) -> f64 {
+        let world = self.mover.world();
+        let count = world.balls.len();
+        let total: f64 = (0..count).map(|ball| world.mass(ball)).sum();
+        let freedom = self.setup.degrees_of_freedom(count);
+        let bound = freedom < (D * count) as f64;
+        let momentum = self.momentum();
+        let drift: [f64; D] = if bound { momentum.map(|p| p / total) } else { [0.0; D] };
+        let energy = self.kinetic_energy() - 0.5 * total * drift.iter().map(|v| v * v).sum::<f64>();
+        let Some(first) = Maxwell::new(D, freedom, energy, world.mass(0), total, bound) else { return f64::NAN };
+        p_value((0..count).map(|ball| {
+            let mass = world.mass(ball);
+            let own = Maxwell::new(D, freedom, energy, mass, total, bound).unwrap_or(first);
+            let velocity = world.state(ball, self.now()).1;
+            let speed2 = (0..D).map(|axis| (velocity[axis] - drift[axis]).powi(2)).sum::<f64>();
+            (speed2, own)
+        }))
+    }
+
+    /// Entropy of mixing at the time shown, in units of Boltzmann's constant: N ln 2 for two equal parts fully mixed.
+    pub fn mixing_entropy(&self) -> f64 {
+        mixing_entropy(&self.snapshot(self.shown), self.sets.len())
+    }
+
+    /// Pressure from the virial of the collisions, since averages began: (2 kinetic energy + virial) / (dimensions x volume).
+    pub fn pressure_virial(&self) -> Estimate {
+        self.measures.estimate(self.setup.measure.from, pressure_virial::<D>)
+    }
+
+    /// Pressure on a wall, the lower (0) or upper (1) along an axis, since averages began.
+    pub fn pressure_on(&self, axis: usize, end: usize) -> Estimate {
+        use crate::world::Facing::{Down, Up};
+        let (facing, sign) = if end == 0 { (Up, -1.0) } else { (Down, 1.0) };
+        let wall = self.mover.world().walls.iter().position(|wall| wall.axis == axis && wall.facing == facing);
+        match wall {
+            Some(wall) => self.measures.estimate(self.setup.measure.from, |samples| sign * pressure_on(samples, wall)),
+            None => Estimate { mean: f64::NAN, error: f64::NAN },
+        }
+    }
+
+    /// Pressure on all walls of the box together, since averages began; not a number without walls.
+    pub fn pressure_walls(&self) -> Estimate {
+        self.measures.estimate(self.setup.measure.from, |samples| self.pressure_walls_of(samples))
+    }
+
+    fn pressure_walls_of(&self, samples: &[Sample]) -> f64 {
+        use crate::world::Facing;
+        let outer = self.mover.world().walls.iter().enumerate().filter(|(_, wall)| wall.facing != Facing::Both);
+        let (mut force, mut area) = (0.0, 0.0);
+        for (number, wall) in outer {
+            let sign = if wall.facing == Facing::Up { -1.0 } else { 1.0 };
+            force += sign * change(samples, |sample| sample.walls[number]) / duration(samples);
+            area += average(samples, |sample| sample.areas[number]);
+        }
+        force / area
+    }
+
+    /// P V / N k T since averages began.
+    pub fn compressibility(&self) -> Estimate {
+        let count = self.len() as f64;
+        self.measures.estimate(self.setup.measure.from, |samples| {
+            let thermal = count * self.setup.boltzmann * average(samples, |sample| sample.temperature);
+            pressure_virial::<D>(samples) * average(samples, |sample| sample.volume) / thermal
+        })
+    }
+
+    /// Collisions of a ball in a unit of time, since averages began.
+    pub fn collision_rate(&self) -> Estimate {
+        let count = self.len() as f64;
+        self.measures.estimate(self.setup.measure.from, |samples| collision_rate(samples) / count)
+    }
+
+    /// Length of path between two collisions of a ball, since averages began.
+    pub fn mean_free_path(&self) -> Estimate {
+        self.measures.estimate(self.setup.measure.from, mean_free_path)
+    }
+
+    /// Mean-square displacement of a set since averages began: rows of time since then and value.
+    pub fn mean_square_displacement(&self, set: usize) -> Vec<[f64; 2]> {
+        let told = self.measures.samples.iter().filter(|sample| !sample.displacement.is_empty());
+        told.map(|sample| [sample.time - self.measures.started, sample.displacement[set]]).collect()
+    }
+
+    /// Diffusion coefficient of a set: slope of the second half of its mean-square displacement over 2 x dimensions (Einstein 1905).
+    pub fn diffusion(&self, set: usize) -> f64 {
+        let rows = self.mean_square_displacement(set);
+        let late = &rows[rows.len() / 2..];
+        let count = late.len() as f64;
+        let mean = |part: usize| late.iter().map(|row| row[part]).sum::<f64>() / count;
+        let (time, value) = (mean(0), mean(1));
+        let above: f64 = late.iter().map(|row| (row[0] - time) * (row[1] - value)).sum();
+        let below: f64 = late.iter().map(|row| (row[0] - time).powi(2)).sum();
+        above / below / (2 * D) as f64
+    }
+
+    /// Distances and g there, since averages began.
+    pub fn pair_distribution(&self) -> Vec<[f64; 2]> {
+        self.measures.pairs.g::<D>()
+    }
+
+    /// Time and place of every bend of the followed ball's path so far, and where it is now.
+    pub fn path(&self) -> Vec<(f64, [f64; D])> {
+        let world = self.mover.world();
+        let Some(followed) = &world.followed else { return Vec::new() };
+        let mut path = followed.bends.clone();
+        if let Some(ball) = world.records.iter().position(|record| record.id == followed.id) {
+            path.push((self.shown, world.state(ball, self.now()).0));
+        }
+        path
+    }
+
+    /// The last looks and the time shown.
+    pub(super) fn recent(&self) -> Vec<Sample> {
+        let looks = &self.measures.samples;
+        let mut recent = looks[looks.len().saturating_sub(RECENT)..].to_vec();
+        recent.retain(|sample| sample.time < self.shown);
+        recent.push(self.sample(self.shown));
+        recent
+    }
+
+    /// Looks at the gas at a time.
+    pub(super) fn look(&mut self, time: f64) {
+        let snapshot = self.snapshot(time);
+        self.measures.look(&snapshot, &self.setup.measure);
+    }
+
+    fn sample(&self, time: f64) -> Sample {
+        let world = self.mover.world();
+        let now = world.in_window(time);
+        let mut kinetic = ExactSum::default();
+        let (mut mass, mut momentum) = (0.0, [0.0; D]);
+        for ball in 0..world.balls.len() {
+            let (own, velocity) = (world.mass(ball), world.state(ball, now).1);
+            kinetic.add(0.5 * own * velocity.iter().map(|v| v * v).sum::<f64>());
+            mass += own;
+            for axis in 0..D {
+                momentum[axis] += own * velocity[axis];
+            }
+        }
+        let (kinetic, freedom) = (kinetic.value(), self.setup.degrees_of_freedom(world.balls.len()));
+        let bound = freedom < (D * world.balls.len()) as f64;
+        let drift = if bound { momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass) } else { 0.0 };
+        let lengths: [f64; D] =
+            std::array::from_fn(|axis| world.extent(axis, now)).map(|[low, high]: [f64; 2]| high - low);
+        let area = |axis: usize| (0..D).filter(|&other| other != axis).map(|other| lengths[other]).product();
+        Sample {
+            time,
+            temperature: 2.0 * (kinetic - drift) / (freedom * self.setup.boltzmann),
+            kinetic,
+            volume: lengths.iter().product(),
+            collisions: world.tally.collisions,
+            virial: world.tally.virial,
+            path: world.tally.path,
+            walls: world.wall_tallies.iter().map(|tally| tally.momentum.value()).collect(),
+            areas: world.walls.iter().map(|wall| area(wall.axis)).collect(),
+            displacement: Vec::new(),
+        }
+    }
+
+    pub(super) fn snapshot(&self, time: f64) -> Snapshot<D> {
+        let world = self.mover.world();
+        let now = world.in_window(time);
+        let count = world.balls.len();
+        let mut snapshot = Snapshot {
+            sample: self.sample(time),
+            position: vec![[0.0; D]; count],
+            unwrapped: vec![[0.0; D]; count],
+            velocity: vec![[0.0; D]; count],
+            set: vec![0; count],
+            extent: std::array::from_fn(|axis| world.extent(axis, now)),
+            period: world.field.period,
+        };
+        for (ball, record) in world.records.iter().enumerate() {
+            let (position, velocity) = world.state(ball, now);
+            let number = record.id as usize;
+            let images = |axis: usize| position[axis] + f64::from(record.image[axis]) * world.field.period[axis];
+            snapshot.unwrapped[number] = std::array::from_fn(images);
+            (snapshot.position[number], snapshot.velocity[number]) = (position, velocity);
+            snapshot.set[number] = record.species;
+        }
+        snapshot
+    }
+}
+
+/// Pressure from the virial between the first and the last of some samples.
+pub(super) fn pressure_virial<const D: usize>(samples: &[Sample]) -> f64 {
+    let kinetic = 2.0 * average(samples, |sample| sample.kinetic);
+    let virial = change(samples, |sample| sample.virial) / duration(samples);
+    (kinetic + virial) / (D as f64 * average(samples, |sample| sample.volume))
+}
+
+fn pressure_on(samples: &[Sample], wall: usize) -> f64 {
+    change(samples, |sample| sample.walls[wall]) / duration(samples) / average(samples, |sample| sample.areas[wall])
+}
+
+/// Collisions' ends in a unit of time: two of each collision.
+pub(super) fn collision_rate(samples: &[Sample]) -> f64 {
+    2.0 * change(samples, |sample| sample.collisions as f64) / duration(samples)
+}
+
+pub(super) fn mean_free_path(samples: &[Sample]) -> f64 {
+    change(samples, |sample| sample.path) / (2.0 * change(samples, |sample| sample.collisions as f64))
+}
+
+impl<const D: usize> Gas<D> {
+    /// Pressure on the walls over the last looks.
+    pub(super) fn recent_pressure_walls(&self, recent: &[Sample]) -> f64 {
+        self.pressure_walls_of(recent)
+    }
+}

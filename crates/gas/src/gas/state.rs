@@ -1,0 +1,181 @@
+//! Keeping the whole state, to the bit, and taking it back.
+
+use super::Gas;
+use crate::engine;
+use crate::measure::Measures;
+use crate::method::{Faults, Mover};
+use crate::sum::ExactSum;
+use crate::world::{Ball, NONE, Record, Tally, Wall, WallTally, World};
+use corpuscle_model::ModelError;
+use serde::{Deserialize, Serialize};
+
+/// Everything that changes.
+#[derive(Serialize, Deserialize)]
+struct State {
+    dimensions: usize,
+    world: SavedWorld,
+    method: SavedMethod,
+    /// Knots that each wall's plan has come to.
+    knots: Vec<usize>,
+    lifted: bool,
+    reversed: bool,
+    next_look: u64,
+    measures: Measures,
+    initial: [f64; 2],
+    shown: f64,
+    checked: (f64, u64),
+}
+
+#[derive(Serialize, Deserialize)]
+struct SavedWorld {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    time: Vec<f64>,
+    kind: Vec<u32>,
+    id: Vec<u32>,
+    species: Vec<u32>,
+    image: Vec<i32>,
+    collided: Vec<f64>,
+    walls: Vec<Wall>,
+    low: Vec<f64>,
+    length: Vec<f64>,
+    now: f64,
+    origin: ExactSum,
+    tally: Tally,
+    wall_tallies: Vec<WallTally>,
+    standstill: u32,
+    random: u128,
+    bends: Vec<(f64, Vec<f64>)>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum SavedMethod {
+    EventDriven(engine::Saved),
+    List(u64),
+    FixedStep(Faults),
+}
+
+impl<const D: usize> Gas<D> {
+    pub(super) fn saved(&self) -> Vec<u8> {
+        let method = match &self.mover {
+            Mover::EventDriven(engine) => SavedMethod::EventDriven(engine.save()),
+            Mover::List(list) => SavedMethod::List(list.handled()),
+            Mover::FixedStep(steps) => SavedMethod::FixedStep(steps.faults),
+        };
+        let state = State {
+            dimensions: D,
+            world: SavedWorld::of(self.mover.world()),
+            method,
+            knots: self.plans.iter().map(|plan| plan.as_ref().map_or(0, |plan| plan.next)).collect(),
+            lifted: self.lifted,
+            reversed: self.reversed,
+            next_look: self.next_look,
+            measures: self.measures.clone(),
+            initial: self.initial,
+            shown: self.shown,
+            checked: self.checked,
+        };
+        postcard::to_stdvec(&state).unwrap_or_default()
+    }
+
+    pub(super) fn take_back(&mut self, bytes: &[u8]) -> Result<(), ModelError> {
+        let refused = |what: String| ModelError::Checkpoint(what);
+        let state: State =
+            postcard::from_bytes(bytes).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
+        let other = || refused("it belongs to another scene".into());
+        if state.dimensions != D || state.knots.len() != self.plans.len() {
+            return Err(other());
+        }
+        state.world.put_into(self.mover.world_mut()).ok_or_else(other)?;
+        match (&mut self.mover, &state.method) {
+            (Mover::EventDriven(engine), SavedMethod::EventDriven(saved)) => engine.restore(saved).ok_or_else(other)?,
+            (Mover::List(list), SavedMethod::List(handled)) => {
+                list.set_handled(*handled);
+                list.look_all();
+            }
+            (Mover::FixedStep(steps), SavedMethod::FixedStep(faults)) => steps.faults = *faults,
+            _ => return Err(other()),
+        }
+        for (plan, next) in self.plans.iter_mut().zip(state.knots) {
+            if let Some(plan) = plan {
+                plan.next = next;
+            }
+        }
+        (self.lifted, self.reversed, self.next_look) = (state.lifted, state.reversed, state.next_look);
+        (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
+        self.checked = state.checked;
+        Ok(())
+    }
+}
+
+impl SavedWorld {
+    fn of<const D: usize>(world: &World<D>) -> Self {
+        let bends = world.followed.iter().flat_map(|followed| &followed.bends);
+        SavedWorld {
+            position: world.balls.iter().flat_map(|ball| ball.position).collect(),
+            velocity: world.balls.iter().flat_map(|ball| ball.velocity).collect(),
+            time: world.balls.iter().map(|ball| ball.time).collect(),
+            kind: world.balls.iter().map(|ball| ball.kind).collect(),
+            id: world.records.iter().map(|record| record.id).collect(),
+            species: world.records.iter().map(|record| record.species).collect(),
+            image: world.records.iter().flat_map(|record| record.image).collect(),
+            collided: world.records.iter().map(|record| record.collided).collect(),
+            walls: world.walls.clone(),
+            low: world.low.to_vec(),
+            length: world.length.to_vec(),
+            now: world.now,
+            origin: world.origin,
+            tally: world.tally.clone(),
+            wall_tallies: world.wall_tallies.clone(),
+            standstill: world.standstill,
+            random: world.random.get_word_pos(),
+            bends: bends.map(|(time, place)| (*time, place.to_vec())).collect(),
+        }
+    }
+
+    /// `None` where it does not fit.
+    fn put_into<const D: usize>(&self, world: &mut World<D>) -> Option<()> {
+        let count = world.balls.len();
+        let singles = [self.time.len(), self.kind.len(), self.id.len(), self.species.len(), self.collided.len()];
+        let vectors = [self.position.len(), self.velocity.len(), self.image.len()];
+        let fits = singles.iter().all(|&len| len == count)
+            && vectors.iter().all(|&len| len == count * D)
+            && self.walls.len() == world.walls.len()
+            && self.wall_tallies.len() == world.walls.len()
+            && self.walls.iter().zip(&world.walls).all(|(a, b)| a.axis == b.axis)
+            && self.kind.iter().all(|&kind| (kind as usize) < world.kinds.len())
+            && self.id.iter().all(|&id| (id as usize) < count);
+        if !fits {
+            return None;
+        }
+        fn vector<T: Copy, const D: usize>(from: &[T], ball: usize) -> Option<[T; D]> {
+            from.get(ball * D..(ball + 1) * D)?.try_into().ok()
+        }
+        for ball in 0..count {
+            world.balls[ball] = Ball {
+                position: vector(&self.position, ball)?,
+                velocity: vector(&self.velocity, ball)?,
+                time: self.time[ball],
+                kind: self.kind[ball],
+                next: NONE,
+            };
+            world.records[ball] = Record {
+                id: self.id[ball],
+                species: self.species[ball],
+                image: vector(&self.image, ball)?,
+                collided: self.collided[ball],
+            };
+        }
+        world.walls.clone_from(&self.walls);
+        world.low = vector(&self.low, 0)?;
+        world.length = vector(&self.length, 0)?;
+        (world.now, world.origin, world.standstill) = (self.now, self.origin, self.standstill);
+        world.tally = self.tally.clone();
+        world.wall_tallies.clone_from(&self.wall_tallies);
+        world.random.set_word_pos(self.random);
+        if let Some(followed) = &mut world.followed {
+            followed.bends = self.bends.iter().filter_map(|(time, place)| Some((*time, vector(place, 0)?))).collect();
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,102 @@
+//! Finding balls that overlap, in boxes by place.
+
+/// Balls filed by the cell of their centre.
+pub(crate) struct Hash<const D: usize> {
+    low: [f64; D],
+    /// Cell sides, and how many there are.
+    size: [f64; D],
+    count: [usize; D],
+    /// Length after which the box repeats; 0 for never.
+    period: [f64; D],
+    heads: Vec<u32>,
+    next: Vec<u32>,
+    balls: Vec<([f64; D], f64)>,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<const D: usize> Hash<D> {
+    /// For about `balls` balls of diameters up to `largest`, in a box.
+    pub fn new(low: [f64; D], length: [f64; D], period: [f64; D], largest: f64, balls: usize) -> Self {
+        let volume: f64 = length.iter().product();
+        let side = largest.max((volume / (balls + 1) as f64).powf(1.0 / D as f64));
+        let count = length.map(|length| ((length / side) as usize).clamp(1, 1 << 20));
+        let size = std::array::from_fn(|axis| length[axis] / count[axis] as f64);
+        let heads = vec![NONE; count.iter().product()];
+        Hash { low, size, count, period, heads, next: Vec::new(), balls: Vec::new() }
+    }
+
+    fn cell(&self, position: &[f64; D]) -> [usize; D] {
+        std::array::from_fn(|axis| {
+            let cell = ((position[axis] - self.low[axis]) / self.size[axis]).floor().max(0.0) as usize;
+            cell.min(self.count[axis] - 1)
+        })
+    }
+
+    fn number(&self, cell: [usize; D]) -> usize {
+        (0..D).rev().fold(0, |number, axis| number * self.count[axis] + cell[axis])
+    }
+
+    /// Files a ball.
+    pub fn add(&mut self, position: [f64; D], radius: f64) {
+        let number = self.number(self.cell(&position));
+        self.next.push(self.heads[number]);
+        self.heads[number] = self.balls.len() as u32;
+        self.balls.push((position, radius));
+    }
+
+    /// A filed ball that one at this place would overlap, and how far; of several the deepest.
+    pub fn overlap(&self, position: &[f64; D], radius: f64) -> Option<(usize, f64)> {
+        let mut deepest: Option<(usize, f64)> = None;
+        self.near(position, |ball, distance| {
+            let depth = radius + self.balls[ball].1 - distance;
+            if depth > deepest.map_or(0.0, |(_, depth)| depth) {
+                deepest = Some((ball, depth));
+            }
+        });
+        deepest
+    }
+
+    /// Tells of each filed ball in the cells around a place, with its distance.
+    pub fn near(&self, position: &[f64; D], mut tell: impl FnMut(usize, f64)) {
+        let centre = self.cell(position);
+        for around in 0..3_usize.pow(D as u32) {
+            let step: [usize; D] = std::array::from_fn(|axis| around / 3_usize.pow(axis as u32) % 3);
+            let Some(cell) = self.neighbour(&centre, &step) else { continue };
+            let mut at = self.heads[self.number(cell)];
+            while at != NONE {
+                tell(at as usize, self.distance(position, &self.balls[at as usize].0));
+                at = self.next[at as usize];
+            }
+        }
+    }
+
+    /// The cell one down (0), at (1) or one up (2) along each axis; none beyond a wall, or where it is met another way.
+    fn neighbour(&self, centre: &[usize; D], step: &[usize; D]) -> Option<[usize; D]> {
+        let mut cell = *centre;
+        for axis in 0..D {
+            let count = self.count[axis];
+            let to = centre[axis] + step[axis];
+            let repeats = self.period[axis] > 0.0;
+            cell[axis] = match to.checked_sub(1) {
+                Some(to) if to < count => to,
+                // With two cells or one, the neighbours across the seam are met already.
+                _ if !repeats || count < 3 => return None,
+                Some(_) => 0,
+                None => count - 1,
+            };
+        }
+        Some(cell)
+    }
+
+    fn distance(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
+        let square = |axis: usize| {
+            let mut apart = a[axis] - b[axis];
+            if self.period[axis] > 0.0 {
+                apart -= self.period[axis] * (apart / self.period[axis]).round();
+            }
+            apart * apart
+        };
+        (0..D).map(square).sum::<f64>().sqrt()
+    }
+}

@@ -1,0 +1,28 @@
+//! Hard balls from collision to collision.
+//!
+//! A [`Setup`] says what is in the box; [`Setup::build`] makes a [`Gas`] of it, in two or three dimensions. [`open`] does
+//! both for a scene. The gas is moved on exactly, by the collisions that it has: see `engine`.
+
+#![warn(missing_docs)]
+// Loops over axes read several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+mod engine;
+mod error;
+mod gas;
+mod hash;
+mod measure;
+mod memory;
+mod method;
+mod random;
+mod scene;
+mod setup;
+mod sum;
+mod world;
+
+pub use error::SetupError;
+pub use gas::Gas;
+pub use measure::Estimate;
+pub use method::{Nearest, With};
+pub use scene::open;
+pub use setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, ball_volume};

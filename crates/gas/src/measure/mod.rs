@@ -1,0 +1,118 @@
+//! What is measured of a gas, at times that depend on nothing but the set-up.
+
+pub(crate) mod charts;
+pub(crate) mod estimate;
+mod maxwell;
+mod mixing;
+mod pairs;
+mod sample;
+
+pub use estimate::Estimate;
+pub(crate) use maxwell::{Maxwell, p_value};
+pub(crate) use mixing::mixing_entropy;
+pub(crate) use sample::{Sample, Snapshot};
+
+use crate::setup::Measure;
+use pairs::Pairs;
+use serde::{Deserialize, Serialize};
+
+/// Looks between two counts of pairs, which take longer than the rest.
+const LOOKS_PER_PAIRS: usize = 8;
+
+/// Everything measured so far.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Measures {
+    pub samples: Vec<Sample>,
+    /// Looks since averages began.
+    pub looks: usize,
+    /// Counts of speeds for each set, bars of one width.
+    pub speeds: Vec<Vec<u64>>,
+    /// Counts of velocities along x for each set, from minus to plus the largest speed.
+    pub velocities: Vec<Vec<u64>>,
+    /// Largest speed of each set's histograms.
+    pub largest: Vec<f64>,
+    /// Sums of temperature over the looks.
+    pub temperatures: f64,
+    /// Counts along the profile's axis for each set.
+    pub profile: Vec<Vec<u64>>,
+    pub pairs: Pairs,
+    /// Places of all balls, by number, when averages began.
+    pub starts: Vec<f64>,
+    /// When that was.
+    pub started: f64,
+}
+
+impl Measures {
+    pub fn new(measure: &Measure, sets: usize, largest: Vec<f64>, pair_distance: f64) -> Self {
+        Measures {
+            samples: Vec::new(),
+            looks: 0,
+            speeds: vec![vec![0; measure.speed_bins]; sets],
+            velocities: vec![vec![0; measure.speed_bins]; sets],
+            largest,
+            temperatures: 0.0,
+            profile: vec![vec![0; measure.profile_bins]; sets],
+            pairs: Pairs::new(pair_distance, measure.pair_bins),
+            starts: Vec::new(),
+            started: f64::NAN,
+        }
+    }
+
+    /// Takes in what the gas is like now.
+    pub fn look<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
+        let mut sample = snapshot.sample.clone();
+        if sample.time >= measure.from {
+            if self.started.is_nan() {
+                self.started = sample.time;
+                self.starts = snapshot.unwrapped.iter().flatten().copied().collect();
+            }
+            sample.displacement = self.displacements(snapshot);
+            self.count(snapshot, measure);
+        }
+        self.samples.push(sample);
+    }
+
+    /// Mean-square displacement of each set since averages began.
+    pub fn displacements<const D: usize>(&self, snapshot: &Snapshot<D>) -> Vec<f64> {
+        let sets = self.speeds.len();
+        let (mut sums, mut counts) = (vec![0.0; sets], vec![0.0; sets]);
+        for (number, start) in self.starts.chunks_exact(D).enumerate() {
+            let place = &snapshot.unwrapped[number];
+            let set = snapshot.set[number] as usize;
+            sums[set] += (0..D).map(|axis| (place[axis] - start[axis]).powi(2)).sum::<f64>();
+            counts[set] += 1.0;
+        }
+        sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()
+    }
+
+    fn count<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
+        let axis = measure.profile_axis.min(D - 1);
+        let [low, high] = snapshot.extent[axis];
+        for (number, velocity) in snapshot.velocity.iter().enumerate() {
+            let set = snapshot.set[number] as usize;
+            let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let largest = self.largest[set];
+            tally(&mut self.speeds[set], speed / largest);
+            tally(&mut self.velocities[set], 0.5 + 0.5 * velocity[0] / largest);
+            tally(&mut self.profile[set], (snapshot.position[number][axis] - low) / (high - low));
+        }
+        self.temperatures += snapshot.sample.temperature;
+        if self.looks.is_multiple_of(LOOKS_PER_PAIRS) {
+            self.pairs.count(snapshot);
+        }
+        self.looks += 1;
+    }
+
+    /// Mean temperature over the looks.
+    pub fn temperature(&self) -> f64 {
+        self.temperatures / self.looks as f64
+    }
+}
+
+/// Counts a number from 0 to 1 in its bar; what is outside is left out.
+fn tally(bars: &mut [u64], part: f64) {
+    if (0.0..1.0).contains(&part) {
+        let bar = (part * bars.len() as f64) as usize;
+        bars[bar.min(bars.len() - 1)] += 1;
+    }
+}

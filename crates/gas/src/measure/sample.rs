@@ -1,0 +1,36 @@
+//! The gas at one time.
+
+use serde::{Deserialize, Serialize};
+
+/// Sums and means at one time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Sample {
+    pub time: f64,
+    pub temperature: f64,
+    pub kinetic: f64,
+    pub volume: f64,
+    /// Counts and sums since the start.
+    pub collisions: u64,
+    pub virial: f64,
+    pub path: f64,
+    /// Momentum given to each wall since the start.
+    pub walls: Vec<f64>,
+    /// Area of each wall.
+    pub areas: Vec<f64>,
+    /// Mean-square displacement of each set since averages began.
+    pub displacement: Vec<f64>,
+}
+
+/// The gas at one time, ball by ball in order of their numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct Snapshot<const D: usize> {
+    pub sample: Sample,
+    pub position: Vec<[f64; D]>,
+    /// As if the box did not repeat.
+    pub unwrapped: Vec<[f64; D]>,
+    pub velocity: Vec<[f64; D]>,
+    pub set: Vec<u32>,
+    /// Where the box begins and ends along each axis.
+    pub extent: [[f64; 2]; D],
+    pub period: [f64; D],
+}

@@ -1,0 +1,40 @@
+//! Memory for large tables.
+//!
+//! Events come from all over the gas, one after the other: in pages of 4 KiB nearly every one of them misses in the processor's table of
+//! pages. Large pages are asked for where the system gives them.
+
+/// Size of a large page.
+const LARGE_PAGE: usize = 1 << 21;
+
+/// An empty table with room for `len` entries, in large pages where there can be any.
+pub(crate) fn reserved<T>(len: usize) -> Vec<T> {
+    let bytes = len * size_of::<T>();
+    if bytes < LARGE_PAGE / 4 {
+        return Vec::with_capacity(len);
+    }
+    // Up to a whole number of large pages.
+    let room = bytes.next_multiple_of(LARGE_PAGE) + LARGE_PAGE;
+    let table = Vec::with_capacity(room / size_of::<T>());
+    ask_for_large_pages(table.as_ptr() as usize, room);
+    table
+}
+
+#[cfg(target_os = "linux")]
+fn ask_for_large_pages(start: usize, bytes: usize) {
+    let first = start.next_multiple_of(LARGE_PAGE);
+    let last = (start + bytes) / LARGE_PAGE * LARGE_PAGE;
+    if first < last {
+        // SAFETY: the range lies within an allocation, and the advice does not change what it holds. A refusal does no harm.
+        unsafe { libc::madvise(first as *mut libc::c_void, last - first, libc::MADV_HUGEPAGE) };
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn ask_for_large_pages(_start: usize, _bytes: usize) {}
+
+/// A table of `len` equal entries.
+pub(crate) fn filled<T: Clone>(len: usize, value: T) -> Vec<T> {
+    let mut table = reserved(len);
+    table.resize(len, value);
+    table
+}

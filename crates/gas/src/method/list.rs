@@ -1,0 +1,225 @@
+//! The published method: a list with the nearest event of each ball (Deng, Hu, Li and Zhang, Physics and Engineering 22(5),
+//! 2012; after Kim, Guibas and Shin, IEEE TVCG 4(3), 1998).
+//!
+//! The earliest event of the list is taken; it changes the balls involved, whose events go; they, and the balls that lost their
+//! partners ("disturbed"), find new ones among all others. The cost of an event grows with the number of balls. The moments
+//! are those of the fast engine, without periodic sides to the bit.
+
+use super::Pause;
+use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
+
+/// Events between windows.
+const EVENTS_PER_WINDOW: u64 = 1_000_000;
+
+/// With what a ball meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum With {
+    /// Nothing at all.
+    Nothing,
+    /// Another ball, by its number.
+    Ball(usize),
+    /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
+    Wall(usize),
+    /// A periodic side, upwards or downwards along an axis.
+    Side(usize, i32),
+}
+
+/// The nearest event of a ball.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// When; infinite for never.
+    pub time: f64,
+    /// With whom.
+    pub with: With,
+}
+
+const NOTHING: Nearest = Nearest { time: f64::INFINITY, with: With::Nothing };
+
+/// Balls and the nearest event of each.
+#[derive(Debug)]
+pub(crate) struct List<const D: usize> {
+    pub world: World<D>,
+    pub nearest: Vec<Nearest>,
+    handled: u64,
+}
+
+impl<const D: usize> List<D> {
+    pub fn new(world: World<D>) -> Self {
+        let nearest = vec![NOTHING; world.balls.len()];
+        let mut list = List { world, nearest, handled: 0 };
+        list.look_all();
+        list
+    }
+
+    /// Begins a new window now.
+    pub fn begin_window(&mut self) {
+        if self.world.falls() {
+            self.world.begin_window::<Falling>();
+        } else {
+            self.world.begin_window::<Straight>();
+        }
+        self.handled = 0;
+        self.look_all();
+    }
+
+    /// Finds the nearest events of all balls.
+    pub fn look_all(&mut self) {
+        self.nearest.fill(NOTHING);
+        for ball in 0..self.nearest.len() {
+            self.look(ball);
+        }
+    }
+
+    /// Handles events up to `until` (in the window), `most` at most.
+    pub fn run(&mut self, until: f64, most: u64) -> Pause {
+        for _ in 0..most {
+            let Some(ball) = self.earliest().filter(|&ball| self.nearest[ball].time <= until) else {
+                return Pause::Reached;
+            };
+            if self.handled >= EVENTS_PER_WINDOW {
+                return Pause::WindowFull;
+            }
+            self.handled += 1;
+            self.happen(ball);
+            if self.world.stands_still() {
+                return Pause::Standstill;
+            }
+        }
+        Pause::Worked
+    }
+
+    /// The ball with the earliest event; of equal ones the first.
+    pub fn earliest(&self) -> Option<usize> {
+        let times = self.nearest.iter().map(|event| event.time).enumerate();
+        times.filter(|(_, time)| time.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1)).map(|(ball, _)| ball)
+    }
+
+    /// Lets the event of a ball happen and finds new events for all that it touches.
+    pub fn happen(&mut self, ball: usize) {
+        let Nearest { time, with } = self.nearest[ball];
+        self.world.now = time;
+        let mut touched = vec![ball];
+        match with {
+            With::Nothing => {}
+            With::Ball(other) => {
+                if self.world.falls() {
+                    self.world.collide::<Falling>(ball, other);
+                } else {
+                    self.world.collide::<Straight>(ball, other);
+                }
+                touched.push(other);
+            }
+            With::Wall(wall) => {
+                let bends = self.world.walls[wall].bends;
+                if self.world.falls() {
+                    self.world.hit::<Falling>(ball, wall);
+                } else {
+                    self.world.hit::<Straight>(ball, wall);
+                }
+                if self.world.walls[wall].bends != bends {
+                    self.look_all();
+                    return;
+                }
+            }
+            With::Side(axis, way) => {
+                self.world.wrap(ball, axis, way);
+                self.nearest[ball] = NOTHING;
+                self.look(ball);
+                return;
+            }
+        }
+        let lost = |event: &Nearest| matches!(event.with, With::Ball(partner) if touched.contains(&partner));
+        let disturbed: Vec<usize> =
+            (0..self.nearest.len()).filter(|&other| !touched.contains(&other) && lost(&self.nearest[other])).collect();
+        touched.extend(disturbed);
+        for &ball in &touched {
+            self.nearest[ball] = NOTHING;
+        }
+        for ball in touched {
+            self.look(ball);
+        }
+    }
+
+    /// Finds the nearest event of a ball; where its partner had none as near, it is the partner's too.
+    fn look(&mut self, ball: usize) {
+        let found = if self.world.falls() { self.find::<Falling>(ball) } else { self.find::<Straight>(ball) };
+        self.nearest[ball] = found;
+        if let With::Ball(other) = found.with
+            && found.time < self.nearest[other].time
+        {
+            self.nearest[other] = Nearest { time: found.time, with: With::Ball(ball) };
+        }
+    }
+
+    fn find<M: Mode>(&self, ball: usize) -> Nearest {
+        let world = &self.world;
+        let mut nearest = NOTHING;
+        let mut offer = |time: f64, with: With| {
+            if time < nearest.time {
+                nearest = Nearest { time, with };
+            }
+        };
+        for other in (0..world.balls.len()).filter(|&other| other != ball) {
+            offer(self.meeting::<M>(ball, other), With::Ball(other));
+        }
+        for (number, wall) in world.walls.iter().enumerate() {
+            offer(wall.meeting::<D, M>(&world.balls[ball], world.radius(ball), &world.field), With::Wall(number));
+        }
+        for axis in (0..D).filter(|&axis| world.field.period[axis] > 0.0) {
+            let (time, way) = self.side::<M>(ball, axis);
+            offer(time, With::Side(axis, way));
+        }
+        nearest.time = nearest.time.max(world.now);
+        nearest
+    }
+
+    /// When two balls meet, in any image of the box next to their own.
+    fn meeting<M: Mode>(&self, a: usize, b: usize) -> f64 {
+        let world = &self.world;
+        let reach = world.radius(a) + world.radius(b);
+        let path = |ball: usize| {
+            let ball = &world.balls[ball];
+            Path { position: ball.position, velocity: ball.velocity, time: ball.time }
+        };
+        let mut first = f64::INFINITY;
+        for image in 0..3_usize.pow(D as u32) {
+            let shift: [i32; D] = std::array::from_fn(|axis| (image / 3_usize.pow(axis as u32) % 3) as i32 - 1);
+            if (0..D).any(|axis| shift[axis] != 0 && world.field.period[axis] == 0.0) {
+                continue;
+            }
+            let offset = std::array::from_fn(|axis| f64::from(shift[axis]) * world.field.period[axis]);
+            let quadratic = Quadratic::new::<D, M>(&path(a), &path(b), &offset, reach, &world.field);
+            if quadratic.maybe_before::<M>(f64::INFINITY) {
+                first = first.min(quadratic.root::<M>());
+            }
+        }
+        first
+    }
+
+    /// When and which way a ball leaves through a periodic side.
+    fn side<M: Mode>(&self, ball: usize, axis: usize) -> (f64, i32) {
+        let world = &self.world;
+        let (position, velocity) = world.field.state::<M>(&world.balls[ball], world.now);
+        let gravity = if M::FALLS { world.field.gravity[axis] } else { 0.0 };
+        let above = position[axis] - world.low[axis];
+        let up = world.now + first_contact(world.length[axis] - above, -velocity[axis], -gravity);
+        let down = world.now + first_contact(above, velocity[axis], gravity);
+        if up < down { (up, 1) } else { (down, -1) }
+    }
+
+    /// Bytes held for the balls and their events.
+    pub fn bytes(&self) -> usize {
+        let each = size_of::<crate::world::Ball<D>>() + size_of::<crate::world::Record<D>>() + size_of::<Nearest>();
+        self.world.balls.len() * each
+    }
+
+    /// Events handled in this window.
+    pub fn handled(&self) -> u64 {
+        self.handled
+    }
+
+    /// Takes back what [`List::handled`] told.
+    pub fn set_handled(&mut self, handled: u64) {
+        self.handled = handled;
+    }
+}

@@ -1,0 +1,238 @@
+//! Balls at random: dropped one after the other where there is room, or grown from dilute.
+//!
+//! Growing is Lubachevsky and Stillinger's (J. Stat. Phys. 60, 1990, 561): balls that start small and move about grow at a constant
+//! rate until they have their radius; the engine handles their collisions.
+
+use super::place::{JAMMED, closest};
+use super::{Setup, ball_volume};
+use crate::SetupError;
+use crate::engine::Engine;
+use crate::hash::Hash;
+use crate::method::Pause;
+use crate::random::normal;
+use crate::world::{Facing, Field, Kind, Start, Wall, World};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// A ball at its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Placed<const D: usize> {
+    pub position: [f64; D],
+    pub radius: f64,
+}
+
+/// Up to these packings balls are dropped one by one (random sequential addition ends at 0.547 and 0.38).
+const DROPPED: [f64; 2] = [0.40, 0.25];
+
+/// Packing from which balls are grown.
+const SEED_PACKING: f64 = 0.1;
+
+/// Speed at which radii grow over the thermal speed: for fluids, and beyond the packings below, slower, to end near jamming.
+const GROWTH: [f64; 2] = [0.3, 0.01];
+const FLUID: [f64; 2] = [0.68, 0.53];
+
+/// Events for each ball at which growing is given up.
+const PATIENCE: u64 = 6000;
+
+/// Tries for each ball at which dropping is given up.
+const TRIES: usize = 100_000;
+
+/// A little larger than needed, so that what is left of it is an open gap.
+const SPARE: f64 = 1.0 + 1e-12;
+
+/// What stands still while others grow, for practical purposes.
+const IMMOVABLE: f64 = 1e30;
+
+/// Places the species of one region at random, clear of what is placed already: a list for each.
+pub(super) fn place<const D: usize>(
+    setup: &Setup<D>,
+    group: &[usize],
+    placed: &[Placed<D>],
+    random: &mut ChaCha8Rng,
+) -> Result<Vec<Vec<Placed<D>>>, SetupError> {
+    let region = setup.region_of(&setup.species[group[0]]);
+    let counts: Vec<usize> = group.iter().map(|&number| setup.count_of(&setup.species[number])).collect();
+    let radii: Vec<f64> = group
+        .iter()
+        .zip(&counts)
+        .flat_map(|(&number, &count)| std::iter::repeat_n(setup.species[number].radius, count))
+        .collect();
+    let site = Site { setup, region, repeats: setup.repeats(&region), placed };
+    let packing = site.packing(&radii);
+    let positions = if packing <= DROPPED[D - 2] { site.drop(&radii, random) } else { None };
+    let positions = match positions {
+        Some(positions) => positions,
+        None => site.grow(&radii, packing, random).map_err(|reached| SetupError::Jammed {
+            what: site.names(group),
+            packing,
+            reached,
+            limit: JAMMED[D - 2],
+            lattice: closest::<D>(),
+        })?,
+    };
+    let mut all = positions.into_iter().zip(radii).map(|(position, radius)| setup.inside(Placed { position, radius }));
+    Ok(counts.into_iter().map(|count| all.by_ref().take(count).collect()).collect())
+}
+
+/// Where balls are to be placed.
+struct Site<'a, const D: usize> {
+    setup: &'a Setup<D>,
+    region: [[f64; D]; 2],
+    repeats: [bool; D],
+    placed: &'a [Placed<D>],
+}
+
+impl<const D: usize> Site<'_, D> {
+    fn names(&self, group: &[usize]) -> String {
+        let names: Vec<String> = group.iter().map(|&number| format!("{:?}", self.setup.species[number].name)).collect();
+        format!("species {}", names.join(", "))
+    }
+
+    fn length(&self) -> [f64; D] {
+        std::array::from_fn(|axis| self.region[1][axis] - self.region[0][axis])
+    }
+
+    /// What is placed already and reaches into the region.
+    fn obstacles(&self) -> impl Iterator<Item = &Placed<D>> {
+        let reaches = |placed: &&Placed<D>| {
+            (0..D).all(|axis| {
+                let x = placed.position[axis];
+                x + placed.radius > self.region[0][axis] && x - placed.radius < self.region[1][axis]
+            })
+        };
+        self.placed.iter().filter(reaches)
+    }
+
+    /// Part of the region that is filled in the end.
+    fn packing(&self, radii: &[f64]) -> f64 {
+        let filled = radii.iter().copied().chain(self.obstacles().map(|placed| placed.radius));
+        filled.map(ball_volume::<D>).sum::<f64>() / self.length().iter().product::<f64>()
+    }
+
+    /// Places at random, one after the other, the largest first; `None` where no more room is found.
+    fn drop(&self, radii: &[f64], random: &mut ChaCha8Rng) -> Option<Vec<[f64; D]>> {
+        self.drop_scaled(radii, 1.0, random)
+    }
+
+    fn drop_scaled(&self, radii: &[f64], scale: f64, random: &mut ChaCha8Rng) -> Option<Vec<[f64; D]>> {
+        let largest = radii.iter().copied().chain(self.placed.iter().map(|placed| placed.radius)).fold(0.0, f64::max);
+        let count = radii.len() + self.placed.len();
+        let periods = std::array::from_fn(|axis| if self.repeats[axis] { self.length()[axis] } else { 0.0 });
+        let mut hash = Hash::new(self.region[0], self.length(), periods, 2.0 * largest, count);
+        for placed in self.obstacles() {
+            hash.add(placed.position, placed.radius * scale);
+        }
+        let mut order: Vec<usize> = (0..radii.len()).collect();
+        order.sort_by(|&a, &b| radii[b].total_cmp(&radii[a]));
+        let mut positions = vec![[0.0; D]; radii.len()];
+        for ball in order {
+            let radius = radii[ball] * scale;
+            let free = (0..TRIES).find_map(|_| {
+                let position = self.anywhere(radii[ball], random);
+                (self.clear_of_partition(&position, radii[ball]) && hash.overlap(&position, radius).is_none())
+                    .then_some(position)
+            })?;
+            hash.add(free, radius);
+            positions[ball] = free;
+        }
+        Some(positions)
+    }
+
+    /// A place of the region where a ball is inside it.
+    fn anywhere(&self, radius: f64, random: &mut ChaCha8Rng) -> [f64; D] {
+        std::array::from_fn(|axis| {
+            let margin = if self.repeats[axis] { 0.0 } else { radius };
+            let (from, to) = (self.region[0][axis] + margin, self.region[1][axis] - margin);
+            from + (to - from) * random.random::<f64>()
+        })
+    }
+
+    fn clear_of_partition(&self, position: &[f64; D], radius: f64) -> bool {
+        let partition = &self.setup.partition;
+        partition.as_ref().is_none_or(|partition| (position[partition.axis] - partition.at).abs() >= radius)
+    }
+
+    /// Places reached by growing; the packing at which that ended where it jams.
+    fn grow(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, f64> {
+        let scale = (SEED_PACKING / packing).powf(1.0 / D as f64).min(0.5);
+        let positions = self.drop_scaled(radii, scale, random).ok_or(SEED_PACKING)?;
+        let speed = GROWTH[usize::from(packing > FLUID[D - 2])];
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        let field = Field {
+            gravity: [0.0; D],
+            scale,
+            growth: speed / mean,
+            period: std::array::from_fn(|axis| if self.repeats[axis] { self.length()[axis] } else { 0.0 }),
+        };
+        let mut world = self.dilute(radii, positions, field, random);
+        world.walls = self.walls();
+        world.wall_tallies = vec![Default::default(); world.walls.len()];
+        let mut engine = Engine::new(world);
+        let end = (SPARE - scale) / field.growth;
+        let mut patience = PATIENCE;
+        loop {
+            match engine.run(engine.world.in_window(end), u64::MAX) {
+                Pause::Reached => break,
+                Pause::WindowFull if patience > 0 => patience = patience.saturating_sub(60),
+                _ => return Err(packing * engine.world.field.scale.powi(D as i32)),
+            }
+            cool(&mut engine);
+        }
+        let end = engine.world.in_window(end);
+        let mut grown = vec![[0.0; D]; radii.len()];
+        for ball in 0..engine.world.balls.len() {
+            let id = engine.world.records[ball].id as usize;
+            if let Some(place) = grown.get_mut(id) {
+                *place = engine.world.state(ball, end).0;
+            }
+        }
+        Ok(grown)
+    }
+
+    /// The balls, small yet, at thermal speeds, and what is in their way.
+    fn dilute(&self, radii: &[f64], positions: Vec<[f64; D]>, field: Field<D>, random: &mut ChaCha8Rng) -> World<D> {
+        let mut kinds: Vec<Kind> = Vec::new();
+        let mut kind = |radius: f64, mass: f64| {
+            let known = kinds.iter().rposition(|kind| *kind == Kind { radius, mass });
+            known.unwrap_or_else(|| {
+                kinds.push(Kind { radius, mass });
+                kinds.len() - 1
+            }) as u32
+        };
+        let mut starts: Vec<Start<D>> = Vec::with_capacity(radii.len());
+        for (&radius, position) in radii.iter().zip(positions) {
+            let velocity = std::array::from_fn(|_| normal(random));
+            starts.push(Start { position, velocity, kind: kind(radius, 1.0), species: 0 });
+        }
+        for placed in self.obstacles() {
+            let kind = kind(placed.radius, IMMOVABLE);
+            starts.push(Start { position: placed.position, velocity: [0.0; D], kind, species: 0 });
+        }
+        World::new(self.region[0], self.length(), kinds, &starts, field)
+    }
+
+    fn walls(&self) -> Vec<Wall> {
+        let mut walls = Vec::new();
+        for axis in (0..D).filter(|&axis| !self.repeats[axis]) {
+            walls.push(Wall::fixed(axis, Facing::Up, self.region[0][axis]));
+            walls.push(Wall::fixed(axis, Facing::Down, self.region[1][axis]));
+        }
+        if let Some(partition) = &self.setup.partition {
+            walls.push(Wall::fixed(partition.axis, Facing::Both, partition.at));
+        }
+        walls
+    }
+}
+
+/// Begins a new window with the balls at temperature 1: growing heats them.
+fn cool<const D: usize>(engine: &mut Engine<D>) {
+    engine.world.begin_window::<crate::world::Growing>();
+    let world = &mut engine.world;
+    let movable: Vec<usize> = (0..world.balls.len()).filter(|&ball| world.mass(ball) < IMMOVABLE).collect();
+    let energy: f64 = movable.iter().map(|&ball| world.balls[ball].velocity.iter().map(|v| v * v).sum::<f64>()).sum();
+    let factor = (D as f64 * movable.len() as f64 / energy).sqrt();
+    for ball in movable {
+        world.balls[ball].velocity = world.balls[ball].velocity.map(|v| v * factor);
+    }
+    engine.rebuild();
+}

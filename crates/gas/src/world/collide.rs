@@ -1,0 +1,96 @@
+//! What a collision of two balls does.
+
+use super::World;
+use super::contact::Mode;
+use serde::{Deserialize, Serialize};
+
+/// How balls rebound from each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Rebound {
+    /// Relative normal speed after over before.
+    pub restitution: f64,
+    /// A ball that collides again within this time does so without loss (TC model: Luding and McNamara, Granular Matter 1,
+    /// 1998, 113), which keeps infinitely many collisions from happening in finite time.
+    pub contact_time: f64,
+}
+
+/// The shortest path between two collisions, over the distance of centres, that counts as one.
+const SHORTEST: f64 = 1e-10;
+
+impl<const D: usize> World<D> {
+    /// Two balls that touch now rebound.
+    #[inline(always)]
+    pub fn collide<M: Mode>(&mut self, a: usize, b: usize) {
+        let flown = self.now - self.balls[a].time.max(self.balls[b].time);
+        for ball in [a, b] {
+            self.tally.path += speed(&self.balls[ball].velocity) * (self.now - self.balls[ball].time);
+            self.bring::<M>(ball);
+        }
+        let (me, other) = (&self.balls[a], &self.balls[b]);
+        let (kind_a, kind_b) = (self.kinds[me.kind as usize], self.kinds[other.kind as usize]);
+        let mut apart: [f64; D] = std::array::from_fn(|axis| other.position[axis] - me.position[axis]);
+        self.field.nearest(&mut apart);
+        let (mut approach, mut apart2) = (0.0, 0.0);
+        for axis in 0..D {
+            approach += apart[axis] * (other.velocity[axis] - me.velocity[axis]);
+            apart2 += apart[axis] * apart[axis];
+        }
+        let reduced = kind_a.mass * kind_b.mass / (kind_a.mass + kind_b.mass);
+        let mut elasticity = 2.0;
+        if self.rebound.restitution < 1.0 {
+            elasticity = self.lossy(a, b, 0.5 * reduced * approach * approach / apart2);
+        }
+        if M::GROWS {
+            // The surfaces must part, not the centres.
+            approach -= (kind_a.radius + kind_b.radius) * self.field.growth * apart2.sqrt();
+        }
+        let impulse = elasticity * reduced * approach / apart2;
+        for axis in 0..D {
+            self.balls[a].velocity[axis] += impulse / kind_a.mass * apart[axis];
+            self.balls[b].velocity[axis] -= impulse / kind_b.mass * apart[axis];
+        }
+        self.tally.collisions += 1;
+        self.tally.virial -= elasticity * reduced * approach;
+        self.watch(flown * approach.abs(), apart2);
+        self.note_bend(a);
+        self.note_bend(b);
+    }
+
+    /// 1 + the restitution of this collision; books the energy that it costs of what is in the normal motion.
+    #[cold]
+    fn lossy(&mut self, a: usize, b: usize, energy: f64) -> f64 {
+        let last = self.records[a].collided.max(self.records[b].collided);
+        (self.records[a].collided, self.records[b].collided) = (self.now, self.now);
+        if self.now - last < self.rebound.contact_time {
+            return 2.0;
+        }
+        let e = self.rebound.restitution;
+        self.tally.dissipated.add((1.0 - e * e) * energy);
+        1.0 + e
+    }
+
+    /// Counts collisions in a row between which nothing moved: path times distance against distance squared.
+    #[inline(always)]
+    pub fn watch(&mut self, path: f64, apart2: f64) {
+        self.standstill = if path > SHORTEST * apart2 { 0 } else { self.standstill + 1 };
+    }
+}
+
+/// Collisions in a row between which nothing moves, at which a gas is given up: with loss and without a guard they are a collapse
+/// that rounding errors may end; else balls are jammed.
+const STANDSTILL: [u32; 2] = [20, 10_000];
+
+impl<const D: usize> World<D> {
+    /// True where collisions follow each other without anything moving.
+    #[inline(always)]
+    pub fn stands_still(&self) -> bool {
+        let unguarded = self.rebound.restitution < 1.0 && self.rebound.contact_time == 0.0;
+        self.standstill > STANDSTILL[usize::from(!unguarded)]
+    }
+}
+
+/// Magnitude of a velocity.
+#[inline(always)]
+pub(crate) fn speed<const D: usize>(velocity: &[f64; D]) -> f64 {
+    velocity.iter().map(|v| v * v).sum::<f64>().sqrt()
+}

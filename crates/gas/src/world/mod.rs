@@ -1,0 +1,243 @@
+//! Balls, walls and what they do to each other. How the next event is found is not here.
+
+mod ball;
+mod collide;
+mod contact;
+mod hit;
+mod wall;
+
+pub(crate) use ball::{Ball, Kind, NONE, Record};
+pub(crate) use collide::{Rebound, speed};
+pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straight};
+pub(crate) use hit::WallTally;
+pub(crate) use wall::{Facing, Wall, first_contact};
+
+use crate::sum::ExactSum;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+/// A ball as it is put in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Start<const D: usize> {
+    pub position: [f64; D],
+    pub velocity: [f64; D],
+    pub kind: u32,
+    pub species: u32,
+}
+
+/// Balls in a box.
+///
+/// Times are counted from the beginning of a window, which is moved on at fixed numbers of events, so that they stay short
+/// and keep their digits.
+#[derive(Debug)]
+pub(crate) struct World<const D: usize> {
+    pub balls: Vec<Ball<D>>,
+    pub records: Vec<Record<D>>,
+    pub kinds: Vec<Kind>,
+    pub field: Field<D>,
+    pub walls: Vec<Wall>,
+    pub rebound: Rebound,
+    /// The box at the beginning of the window.
+    pub low: [f64; D],
+    pub length: [f64; D],
+    /// Time of the last event, in the window.
+    pub now: f64,
+    /// Beginning of the window.
+    pub origin: ExactSum,
+    pub tally: Tally,
+    /// Sums over hits of each wall.
+    pub wall_tallies: Vec<WallTally>,
+    /// Collisions in a row between which nothing moved.
+    pub standstill: u32,
+    /// For thermal walls.
+    pub random: ChaCha8Rng,
+    /// The ball whose path is kept, and the path.
+    pub followed: Option<Followed<D>>,
+}
+
+/// Sums over what happened.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Tally {
+    /// Collisions of two balls.
+    pub collisions: u64,
+    /// Sum over collisions of (place of one as seen from the other) . (momentum given to it), and over hits of walls of (place of
+    /// the centre as seen from the wall) . (momentum given to the ball).
+    pub virial: f64,
+    /// Length of all paths up to the last time that each was bent.
+    pub path: f64,
+    /// Energy lost in collisions.
+    pub dissipated: ExactSum,
+}
+
+/// A ball whose path is kept.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Followed<const D: usize> {
+    pub id: u32,
+    /// Time and place wherever the path was bent; places not a number part two pieces.
+    pub bends: Vec<(f64, [f64; D])>,
+}
+
+impl<const D: usize> World<D> {
+    /// Puts balls into a box.
+    pub fn new(low: [f64; D], length: [f64; D], kinds: Vec<Kind>, starts: &[Start<D>], field: Field<D>) -> Self {
+        let mut balls = crate::memory::reserved(starts.len());
+        let mut records = crate::memory::reserved(starts.len());
+        for (id, start) in starts.iter().enumerate() {
+            let Start { position, velocity, kind, species } = *start;
+            balls.push(Ball { position, velocity, time: 0.0, kind, next: NONE });
+            records.push(Record { id: id as u32, species, image: [0; D], collided: f64::NEG_INFINITY });
+        }
+        World {
+            balls,
+            records,
+            kinds,
+            field,
+            walls: Vec::new(),
+            rebound: Rebound { restitution: 1.0, contact_time: 0.0 },
+            low,
+            length,
+            now: 0.0,
+            origin: ExactSum::default(),
+            tally: Tally::default(),
+            wall_tallies: Vec::new(),
+            standstill: 0,
+            random: rand::SeedableRng::seed_from_u64(0),
+            followed: None,
+        }
+    }
+
+    /// Time of the last event.
+    pub fn time(&self) -> f64 {
+        self.origin.value() + self.now
+    }
+
+    /// A time as counted in the window.
+    pub fn in_window(&self, time: f64) -> f64 {
+        time - self.origin.value()
+    }
+
+    /// True where paths are bent by gravity.
+    pub fn falls(&self) -> bool {
+        self.field.gravity != [0.0; D]
+    }
+
+    /// Place and velocity of a ball at a time of the window, in the image of the box where it is.
+    pub fn state(&self, ball: usize, time: f64) -> ([f64; D], [f64; D]) {
+        if self.falls() {
+            self.field.state::<Falling>(&self.balls[ball], time)
+        } else {
+            self.field.state::<Straight>(&self.balls[ball], time)
+        }
+    }
+
+    /// Moves a ball along its path to now.
+    #[inline(always)]
+    pub fn bring<M: Mode>(&mut self, ball: usize) {
+        let (position, velocity) = self.field.state::<M>(&self.balls[ball], self.now);
+        let ball = &mut self.balls[ball];
+        (ball.position, ball.velocity, ball.time) = (position, velocity, self.now);
+    }
+
+    /// Moves all balls along their paths to now, and makes now the beginning of the window.
+    pub fn begin_window<M: Mode>(&mut self) {
+        for ball in 0..self.balls.len() {
+            self.tally.path += speed(&self.balls[ball].velocity) * (self.now - self.balls[ball].time);
+            self.bring::<M>(ball);
+            self.balls[ball].time = 0.0;
+            self.records[ball].collided -= self.now;
+        }
+        for wall in &mut self.walls {
+            wall.since -= self.now;
+        }
+        self.field.scale = self.field.scale_at::<M>(self.now);
+        self.origin.add(self.now);
+        self.now = 0.0;
+        for axis in 0..D {
+            let [low, high] = self.extent(axis, 0.0);
+            (self.low[axis], self.length[axis]) = (low, high - low);
+        }
+    }
+
+    /// Where the box begins and ends along an axis at a time of the window.
+    pub fn extent(&self, axis: usize, time: f64) -> [f64; 2] {
+        let mut extent = [self.low[axis], self.low[axis] + self.length[axis]];
+        for wall in self.walls.iter().filter(|wall| wall.axis == axis) {
+            match wall.facing {
+                Facing::Up => extent[0] = wall.place_at(time),
+                Facing::Down => extent[1] = wall.place_at(time),
+                Facing::Both => {}
+            }
+        }
+        extent
+    }
+
+    /// Area (in three dimensions volume) of the box at a time of the window.
+    pub fn volume(&self, time: f64) -> f64 {
+        (0..D).map(|axis| self.extent(axis, time)).map(|[low, high]| high - low).product()
+    }
+
+    /// Turns the velocities of all balls round. They must have been brought to the beginning of the window.
+    pub fn reverse(&mut self) {
+        for ball in 0..self.balls.len() {
+            self.balls[ball].velocity = self.balls[ball].velocity.map(|v| -v);
+            self.note_bend(ball);
+        }
+    }
+
+    /// Puts a ball into the next image of a periodic box, above (1) or below (-1).
+    #[inline(always)]
+    pub fn wrap(&mut self, ball: usize, axis: usize, way: i32) {
+        self.balls[ball].position[axis] -= f64::from(way) * self.field.period[axis];
+        self.records[ball].image[axis] += way;
+        if self.followed.is_some() {
+            self.note_wrap(ball, axis, way);
+        }
+    }
+
+    /// A followed path ends at one side of a periodic box and goes on at the other.
+    #[cold]
+    fn note_wrap(&mut self, ball: usize, axis: usize, way: i32) {
+        let (id, time, mut position) = (self.records[ball].id, self.time(), self.state(ball, self.now).0);
+        let Some(followed) = self.followed.as_mut().filter(|followed| followed.id == id) else { return };
+        let after = position;
+        position[axis] += f64::from(way) * self.field.period[axis];
+        followed.bends.extend([(time, position), (time, [f64::NAN; D]), (time, after)]);
+    }
+
+    /// Puts the balls in another order.
+    pub fn reorder(&mut self, order: &[u32]) {
+        let mut balls = crate::memory::reserved(order.len());
+        balls.extend(order.iter().map(|&from| self.balls[from as usize]));
+        let mut records = crate::memory::reserved(order.len());
+        records.extend(order.iter().map(|&from| self.records[from as usize]));
+        (self.balls, self.records) = (balls, records);
+    }
+
+    /// Notes where the followed ball's path was bent, if it is this one.
+    #[inline(always)]
+    pub fn note_bend(&mut self, ball: usize) {
+        if self.followed.is_some() {
+            self.note_followed(ball);
+        }
+    }
+
+    #[cold]
+    fn note_followed(&mut self, ball: usize) {
+        let (id, time, position) = (self.records[ball].id, self.time(), self.balls[ball].position);
+        if let Some(followed) = &mut self.followed
+            && followed.id == id
+        {
+            followed.bends.push((time, position));
+        }
+    }
+
+    /// Radius of a ball.
+    pub fn radius(&self, ball: usize) -> f64 {
+        self.kinds[self.balls[ball].kind as usize].radius
+    }
+
+    /// Mass of a ball.
+    pub fn mass(&self, ball: usize) -> f64 {
+        self.kinds[self.balls[ball].kind as usize].mass
+    }
+}

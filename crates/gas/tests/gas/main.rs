@@ -1,0 +1,12 @@
+//! The crate's public behaviour. One program, because each would compile the engine anew.
+
+// Loops over axes read several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
+mod agreement;
+mod common;
+mod exactness;
+mod measured;
+mod refused;
+mod sides;
+mod start;

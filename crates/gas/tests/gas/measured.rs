@@ -1,0 +1,103 @@
+//! What is measured against what is known. The tight comparisons are in the validation cases; these take seconds.
+
+use crate::common::{advance, scatter};
+use corpuscle_gas::{Amount, Setup, Side, Species, Speeds};
+use corpuscle_model::Model;
+
+#[test]
+fn pressure_and_collision_rate_of_a_fluid_are_those_known() {
+    // Kolafa's equation and Enskog's rate at packing 0.3: Z = 3.98426, 10.102 collisions.
+    let mut gas = Setup::<3>::fluid(2000, 0.3).measured(2.0, 0.1).build().unwrap();
+    advance(&mut gas, 12.0);
+    let (z, rate) = (gas.compressibility(), gas.collision_rate());
+    assert!((z.mean - 3.98426).abs() < 4.0 * z.error + 0.01, "{z:?}");
+    assert!(z.error < 0.02);
+    assert!((rate.mean / 10.102 - 1.0).abs() < 0.01, "{rate:?}");
+    // Mean free path: mean speed over rate.
+    let mean_speed = (8.0 / std::f64::consts::PI).sqrt();
+    assert!((gas.mean_free_path().mean * rate.mean / mean_speed - 1.0).abs() < 0.01);
+    // g at contact is (Z - 1) / (4 packing).
+    let contact = gas.pair_distribution().into_iter().find(|row| row[0] > 1.0).unwrap();
+    assert!((contact[1] / (2.98426 / 1.2) - 1.0).abs() < 0.1, "{contact:?}");
+    let inside = gas.pair_distribution().into_iter().filter(|row| row[0] < 0.97).all(|row| row[1] == 0.0);
+    assert!(inside);
+}
+
+#[test]
+fn virial_and_walls_tell_the_same_pressure() {
+    let mut setup = Setup::<2>::new([60.0, 60.0]).measured(20.0, 1.0);
+    setup = setup.species(Species::new("gas", Amount::Count(400)));
+    let mut gas = setup.build().unwrap();
+    advance(&mut gas, 300.0);
+    let (virial, walls) = (gas.pressure_virial(), gas.pressure_walls());
+    let left = gas.pressure_on(0, 0);
+    let error = (virial.error.powi(2) + walls.error.powi(2)).sqrt();
+    assert!(error / walls.mean < 0.02, "{virial:?} {walls:?}");
+    assert!((virial.mean - walls.mean).abs() < 3.0 * error, "{virial:?} {walls:?}");
+    assert!((left.mean - walls.mean).abs() < 4.0 * left.error);
+}
+
+#[test]
+fn equal_speeds_become_maxwells() {
+    let mut setup = Setup::<2>::fluid(2000, 0.2).seed(1);
+    setup.species[0].speeds = Speeds::Equal;
+    let mut gas = setup.build().unwrap();
+    assert!(gas.maxwell_p_value() < 1e-6);
+    // 25 collisions a ball.
+    advance(&mut gas, 20.0);
+    assert!(gas.maxwell_p_value() > 0.01, "{}", gas.maxwell_p_value());
+}
+
+#[test]
+fn mixing_ends_at_full_entropy() {
+    let half = |name: &str, from: f64| Species {
+        region: Some([[from, 0.0], [from + 30.0, 30.0]]),
+        radius: 0.2,
+        ..Species::new(name, Amount::Count(400))
+    };
+    let mut gas = Setup::<2>::new([60.0, 30.0]).species(half("red", 0.0)).species(half("blue", 30.0)).build().unwrap();
+    let full = 800.0 * std::f64::consts::LN_2;
+    assert!(gas.mixing_entropy() < 0.01 * full);
+    advance(&mut gas, 1500.0);
+    assert!((gas.mixing_entropy() / full - 1.0).abs() < 0.03, "{} of {full}", gas.mixing_entropy());
+}
+
+#[test]
+fn diffusion_is_told_for_each_species() {
+    // Self-diffusion at packing 0.3 for many balls is 0.1945; a few hundred have a few percent less.
+    let mut gas = Setup::<3>::fluid(500, 0.3).measured(1.0, 0.2).build().unwrap();
+    advance(&mut gas, 21.0);
+    let diffusion = gas.diffusion(0);
+    assert!((0.14..0.23).contains(&diffusion), "{diffusion}");
+}
+
+#[test]
+fn charts_gauges_and_path_are_given() {
+    let mut setup = Setup::<2>::new([20.0, 20.0]).side(1, 1, Side::Piston { mass: 50.0, pressure: 0.5, velocity: 0.0 });
+    scatter(&mut setup, 60, 0.3, 1.0, 1);
+    setup.follow = Some(0);
+    let mut gas = setup.measured(1.0, 0.5).build().unwrap();
+    advance(&mut gas, 20.0);
+    let names: Vec<String> = gas.charts().into_iter().map(|chart| chart.name).collect();
+    for name in
+        ["speed_histogram", "velocity_histogram", "density_profile", "pair_distribution", "mean_square_displacement"]
+    {
+        assert!(names.iter().any(|chart| chart == name), "{names:?} lack {name}");
+    }
+    let columns = gas.gauge_columns();
+    let row = gas.gauge_row();
+    assert_eq!(columns.len(), row.len());
+    for quantity in ["temperature", "pressure_virial", "pressure_walls", "mean_free_path", "work", "diffusion"] {
+        let at = columns.iter().position(|column| column.quantity == quantity).unwrap();
+        assert!(row[at].is_finite(), "{quantity} is {}", row[at]);
+    }
+    let path = &gas.paths()[0];
+    assert!(path.times.len() > 3 && path.times.windows(2).all(|pair| pair[0] <= pair[1]));
+    assert_eq!(*path.times.last().unwrap(), 20.0);
+    // Straight from bend to bend, at the ball's speed: every density integrates to one.
+    let speeds = &gas.charts()[0].series[0].points;
+    let width = speeds[1][0] - speeds[0][0];
+    assert!((speeds.iter().map(|point| point[1] * width).sum::<f64>() - 1.0).abs() < 1e-9);
+    let errors: Vec<f64> = gas.ledger().balances.iter().map(|balance| balance.relative_error().abs()).collect();
+    assert!(errors.iter().all(|error| *error < 1e-10), "{errors:?}");
+}

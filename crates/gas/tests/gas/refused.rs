@@ -1,0 +1,138 @@
+//! Scenes that cannot be are refused by name; what cannot go on is stopped with its reason; nothing hangs.
+
+use corpuscle_gas::{Amount, Partition, Setup, SetupError, Side, Species, Start};
+use corpuscle_model::{Model, ModelError};
+use std::sync::atomic::AtomicBool;
+
+fn why<const D: usize>(setup: Setup<D>) -> String {
+    setup.build().expect_err("must be refused").to_string()
+}
+
+fn one(position: [f64; 2], velocity: [f64; 2], radius: f64, mass: f64) -> Setup<2> {
+    Setup::new([10.0, 8.0]).ball(position, velocity, radius, mass)
+}
+
+#[test]
+fn numbers_that_cannot_be_are_named() {
+    let at = [5.0, 4.0];
+    for (setup, named) in [
+        (one(at, [0.0; 2], 0.0, 1.0), "radius"),
+        (one(at, [0.0; 2], f64::NAN, 1.0), "radius"),
+        (one(at, [0.0; 2], 1.0, 0.0), "mass"),
+        (one(at, [0.0; 2], 1.0, -2.0), "mass"),
+        (one(at, [f64::INFINITY, 0.0], 1.0, 1.0), "velocity"),
+        (one([f64::NAN, 4.0], [0.0; 2], 1.0, 1.0), "place"),
+        (one(at, [0.0; 2], 1.0, 1.0).restitution(0.0), "restitution"),
+        (one(at, [0.0; 2], 1.0, 1.0).gravity([f64::NAN, 0.0]), "gravity"),
+        (one(at, [0.0; 2], 1.0, 1.0).side(0, 0, Side::Thermal { temperature: 0.0 }), "temperature"),
+        (one(at, [0.0; 2], 1.0, 1.0).side(0, 0, Side::Piston { mass: 0.0, pressure: 1.0, velocity: 0.0 }), "piston"),
+        (one(at, [0.0; 2], 1.0, 1.0).side(0, 0, Side::Periodic), "periodic"),
+        (one(at, [0.0; 2], 4.5, 1.0), "does not fit"),
+        (one(at, [0.0; 2], 1.5, 1.0).periodic(), "three balls"),
+        (Setup::new([10.0, 8.0]), "no balls"),
+        (Setup::new([f64::NAN, 8.0]), "length along x"),
+    ] {
+        let text = why(setup);
+        assert!(text.contains(named), "{text} does not name {named}");
+    }
+    let mut beyond = Species::new("gas", Amount::Count(10));
+    beyond.region = Some([[0.0, 0.0], [11.0, 8.0]]);
+    assert!(why(Setup::new([10.0, 8.0]).species(beyond)).contains("region"));
+    let many = Species { radius: 1e-9, ..Species::new("gas", Amount::Count(2_000_000_000)) };
+    assert!(why(Setup::new([10.0, 8.0]).species(many)).contains("number of balls"));
+}
+
+#[test]
+fn overlaps_at_the_start_are_refused() {
+    let error = one([5.0, 4.0], [0.0; 2], 1.0, 1.0).ball([6.5, 4.0], [0.0; 2], 1.0, 1.0).build().unwrap_err();
+    assert!(matches!(error, SetupError::Overlap { depth, .. } if (depth - 0.5).abs() < 1e-12), "{error}");
+    assert!(why(one([0.9, 4.0], [0.0; 2], 1.0, 1.0)).contains("wall"));
+    let mut divided = one([5.0, 4.0], [0.0; 2], 1.0, 1.0);
+    divided.partition = Some(Partition { axis: 0, at: 5.5, lifted_at: None, hole: None });
+    assert!(why(divided).contains("partition"));
+    // Balls that just touch do not overlap.
+    assert!(one([5.0, 4.0], [0.0; 2], 1.0, 1.0).ball([7.0, 4.0], [0.0; 2], 1.0, 1.0).build().is_ok());
+}
+
+fn dense<const D: usize>(packing: f64, start: Start) -> Species<D> {
+    Species { start, ..Species::new("gas", Amount::Packing(packing)) }
+}
+
+#[test]
+fn packings_that_do_not_exist_are_refused() {
+    for start in [Start::Lattice, Start::Random] {
+        let text = why(Setup::<2>::new([20.0, 20.0]).periodic().species(dense(0.92, start)));
+        assert!(text.contains("0.9069"), "{text}");
+        let text = why(Setup::<3>::new([8.0; 3]).periodic().species(dense(0.75, start)));
+        assert!(text.contains("0.7405"), "{text}");
+    }
+    // It exists, but not at random.
+    let text = why(Setup::<3>::new([6.0; 3]).periodic().species(Species::new("gas", Amount::Packing(0.70))));
+    assert!(text.contains("jammed") || text.contains("lattice"), "{text}");
+}
+
+fn stopped(mut gas: corpuscle_gas::Gas<2>) -> String {
+    match gas.advance_to(1e6, &AtomicBool::new(false)) {
+        Err(ModelError::Breakdown { what, .. }) => what,
+        other => panic!("must be stopped, not {other:?}"),
+    }
+}
+
+#[test]
+fn a_ball_squeezed_between_walls_is_named() {
+    let squeezed = one([5.0, 4.0], [1.0, 0.3], 1.0, 1.0).side(0, 1, Side::Moving { velocity: -0.5, until: None });
+    assert!(stopped(squeezed.build().unwrap()).contains("room"));
+    // At rest between two walls that touch it.
+    let tight = Setup::<2>::new([2.0, 8.0]).ball([1.0, 4.0], [0.5, 0.1], 1.0, 1.0);
+    assert!(stopped(tight.build().unwrap()).contains("without anything moving"));
+}
+
+#[test]
+fn a_wall_that_crushes_the_gas_is_named() {
+    let gas = |side: Side| {
+        let species = Species::new("gas", Amount::Count(40));
+        Setup::<2>::new([12.0, 10.0]).side(0, 1, side).species(species)
+    };
+    assert!(stopped(gas(Side::Moving { velocity: -0.5, until: None }).build().unwrap()).contains("room"));
+    // Planned: refused at the start.
+    let until = Side::Moving { velocity: -1.0, until: Some(10.0) };
+    assert!(why(gas(until)).contains("walls across x would leave"));
+    assert!(why(gas(Side::Displaced(vec![[0.0, 0.0], [5.0, -9.0]]))).contains("walls across x would leave"));
+    assert!(why(gas(Side::Swinging { amplitude: 10.0, period: 9.0 })).contains("walls across x would leave"));
+}
+
+#[test]
+fn inelastic_collapse_is_named_or_guarded() {
+    // Three balls in a row: below a restitution of 7 - 4 sqrt(3) they collapse (McNamara and Young 1992).
+    let row = |guard: f64| {
+        let mut setup = Setup::<2>::new([40.0, 3.0]).restitution(0.05);
+        setup.contact_time = Some(guard);
+        setup.ball([10.0, 1.5], [1.0, 0.0], 0.5, 1.0).ball([12.0, 1.5], [0.0, 0.0], 0.5, 1.0).ball(
+            [14.0, 1.5],
+            [-1.0, 0.0],
+            0.5,
+            1.0,
+        )
+    };
+    let mut bare = row(0.0).build().unwrap();
+    let mut guarded = row(1e-6).build().unwrap();
+    let stop = AtomicBool::new(false);
+    match bare.advance_to(100.0, &stop) {
+        Err(ModelError::Breakdown { what, .. }) => assert!(what.contains("contact time"), "{what}"),
+        other => panic!("must collapse, not {other:?}"),
+    }
+    guarded.advance_to(100.0, &stop).unwrap();
+    assert!(guarded.collisions() < 1000);
+}
+
+#[test]
+fn corners_are_left_again() {
+    // Into the corner exactly, and nearly.
+    for aside in [0.0, 1e-13, 1e-9] {
+        let mut gas = one([5.0, 4.0 + aside], [-4.0, -3.0], 1.0, 1.0).build().unwrap();
+        gas.advance_to(2.0, &AtomicBool::new(false)).unwrap();
+        let ([x, y], velocity) = gas.states()[0];
+        assert_eq!(velocity, [4.0, 3.0]);
+        assert!((x - 5.0).abs() < 1e-6 && (y - 4.0).abs() < 1e-6);
+    }
+}
