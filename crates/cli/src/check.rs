@@ -5,11 +5,9 @@ use crate::output::{duration, number, print, print_json};
 use crate::refusal::in_words;
 use crate::scene_argument;
 use corpuscle::Simulation;
-use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,7 +24,7 @@ const PROBE_STEPS: u64 = 50;
 const SHORTEST_PROBE: f64 = 1e-3;
 
 /// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
-const BYTES_PER_PARTICLE: f64 = 650.0;
+const BYTES_PER_PARTICLE: f64 = 1000.0;
 
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
@@ -105,7 +103,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
     let mut simulation = Simulation::open(named.scene, &named.folder)?;
     let particles_at_start = simulation.model().particles();
-    let particles_to_come = particles_to_come(simulation.scene(), &named.folder)?;
+    let particles_to_come = corpuscle::particles_to_come(simulation.scene(), &named.folder)? as usize;
     let probe = Probe::run(&mut simulation)?;
     let (terrain, scene) = (simulation.terrain(), simulation.scene());
     let run = &scene.run;
@@ -132,17 +130,6 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         gauges: simulation.model().gauge_columns().iter().map(|column| column.header()).collect(),
         warnings: simulation.warnings(),
     })
-}
-
-/// Particles that the inflows bring in over the run.
-fn particles_to_come(scene: &Scene, folder: &Path) -> Result<usize, corpuscle::Error> {
-    let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0) };
-    let Some(depth) = flood.spacing_depth_m else { return Ok(0) };
-    let mut volume = 0.0;
-    for inflow in &flood.inflow {
-        volume += inflow.load_discharge(folder)?.integral(0.0, scene.run.until_s);
-    }
-    Ok((volume / (flood.spacing_m * flood.spacing_m * depth)) as usize)
 }
 
 /// What a short run shows.

@@ -20,7 +20,10 @@ pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
 /// A number with five digits at most: `1234.5`, `3.2e-13`.
 pub fn number(value: f64) -> String {
     let size = value.abs();
-    if size == 0.0 || !value.is_finite() {
+    if size == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
         return value.to_string();
     }
     let digits = 4 - size.log10().floor() as i32;
@@ -56,6 +59,7 @@ mod tests {
     fn numbers_are_short() {
         for (value, text) in [
             (0.0, "0"),
+            (-0.0, "0"),
             (1.0, "1"),
             (0.0032, "0.0032"),
             (1234.56, "1234.6"),

@@ -5,7 +5,7 @@ use crate::output::{duration, number, print_json, rate};
 use crate::progress::Bar;
 use crate::refusal::check_backend;
 use crate::scene_argument;
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
 use corpuscle::{Recorder, Simulation};
 use std::path::Path;
@@ -28,11 +28,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let bar = Bar::new()?;
     let ended = simulation.run(&mut [&mut recorder], &stop, &mut |progress| bar.show(progress));
     bar.clear();
-    let folder = recorder.path().display();
-    let summary = ended.map_err(anyhow::Error::from).with_context(|| {
-        let time = number(simulation.model().time());
-        format!("the run ended at t = {time}; what was written up to there stays readable in {folder}")
-    })?;
+    let summary = ended.map_err(|error| came_to_grief(&error, &simulation, &recorder))?;
     tell(&summary, recorder.path());
     if as_json {
         print_json(&summary)?;
@@ -50,6 +46,18 @@ fn start(options: &RunOptions) -> anyhow::Result<(Simulation, Recorder)> {
     let frames = options.frames.map(FrameFormat::from).unwrap_or_default();
     let recorder = Recorder::create(&folder, &simulation, frames)?;
     Ok((simulation, recorder))
+}
+
+/// What to tell of a run that could not go on. Whatever the reason, the input had been accepted: exit status 1.
+fn came_to_grief(error: &corpuscle::Error, simulation: &Simulation, recorder: &Recorder) -> anyhow::Error {
+    let (time, folder) = (number(simulation.model().time()), recorder.path().display());
+    let ended = format!("the run ended at t = {time}");
+    match error {
+        corpuscle::Error::Record(error) if recorder.can_resume() => {
+            anyhow!("{ended}: {error}; then go on with `corpuscle run --resume {folder}`")
+        }
+        error => anyhow!("{ended}; what was written up to there stays readable in {folder}: {error}"),
+    }
 }
 
 /// Becomes true on Ctrl-C, and the run ends in order. A second one ends it at once.

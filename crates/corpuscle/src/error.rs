@@ -28,7 +28,12 @@ impl Error {
         match self {
             Self::Scene(_) | Self::Terrain(_) => true,
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
-            Self::Record(error) => !matches!(error, RecordError::Write { .. } | RecordError::GaugeCount { .. }),
+            Self::Record(error) => !matches!(
+                error,
+                RecordError::Write { .. }
+                    | RecordError::GaugeCount { .. }
+                    | RecordError::Map(TerrainError::Write { .. })
+            ),
         }
     }
 }

@@ -29,6 +29,7 @@ pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
 pub use error::Error;
+pub use open::particles_to_come;
 pub use progress::Progress;
 pub use recorder::Recorder;
 pub use simulation::Simulation;

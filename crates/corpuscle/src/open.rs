@@ -23,6 +23,7 @@ impl Simulation {
                 check_observed_extent(&written.flood, &terrain)?;
                 let flood = Flood::new(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();
+                check_inflow(&scene, folder)?;
                 Ok(Self::new(scene, Some(terrain), Box::new(flood)))
             }
             ModelScene::Gas(gas) => {
@@ -31,6 +32,37 @@ impl Simulation {
             }
         }
     }
+}
+
+/// More particles than this over a run are days of computation.
+const MOST_TO_COME: f64 = 2e8;
+
+/// Particles that the inflows of a scene with its defaults filled in bring in over the run; relative paths are taken
+/// from `folder`.
+///
+/// # Errors
+/// Where a hydrograph cannot be read.
+pub fn particles_to_come(scene: &Scene, folder: &Path) -> Result<f64, Error> {
+    let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0.0) };
+    let Some(depth) = flood.spacing_depth_m else { return Ok(0.0) };
+    let mut volume = 0.0;
+    for inflow in &flood.inflow {
+        volume += inflow.load_discharge(folder)?.integral(0.0, scene.run.until_s);
+    }
+    Ok((volume / (flood.spacing_m * flood.spacing_m * depth)).floor())
+}
+
+/// Refuses discharges that no machine could follow, most likely a slip of the unit.
+fn check_inflow(scene: &Scene, folder: &Path) -> Result<(), Error> {
+    let count = particles_to_come(scene, folder)?;
+    if count <= MOST_TO_COME {
+        return Ok(());
+    }
+    let what = format!(
+        "the inflows ([[flood.inflow]]) would bring in {count:.1e} particles over the run, and at most {MOST_TO_COME:.0e} \
+         are possible; check their discharges, which are in m3/s, or take a larger flood.spacing_m"
+    );
+    Err(ModelError::Setup(what).into())
 }
 
 /// Finds out before the run, not at its end, that the observed extent cannot be used.

@@ -57,6 +57,11 @@ impl Recorder {
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
+
+    /// True where there is a checkpoint to go on from.
+    pub fn can_resume(&self) -> bool {
+        self.folder.has_checkpoint()
+    }
 }
 
 impl Sink for Recorder {

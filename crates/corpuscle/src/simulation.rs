@@ -117,6 +117,10 @@ impl Simulation {
             }
         }
         let mut kept = start;
+        if !self.resumed {
+            // From here on the run can be resumed, whatever ends it.
+            self.keep(sinks, start)?;
+        }
         loop {
             let now = self.model.time();
             let [gauge, frame, pause] = [gauges, frames, pauses].map(|schedule| schedule.after(now));
@@ -136,16 +140,19 @@ impl Simulation {
             on_progress(&meter.progress(&*self.model, until));
             let stopped = stopped || next < until && stop.load(Ordering::Relaxed);
             if stopped || kept.elapsed().as_secs_f64() >= checkpoint_period {
-                let clock = Clock { time_s: self.model.time(), wall_time_s: self.wall_time(start) };
-                for sink in &mut *sinks {
-                    sink.checkpoint(&*self.model, clock)?;
-                }
+                self.keep(sinks, start)?;
                 kept = Instant::now();
             }
             if stopped {
                 return Ok(Status::Stopped);
             }
         }
+    }
+
+    /// Has the state kept, to go on from.
+    fn keep(&self, sinks: &mut [&mut dyn Sink], start: Instant) -> Result<(), Error> {
+        let clock = Clock { time_s: self.model.time(), wall_time_s: self.wall_time(start) };
+        sinks.iter_mut().try_for_each(|sink| sink.checkpoint(&*self.model, clock))
     }
 
     fn wall_time(&self, start: Instant) -> f64 {

@@ -7,6 +7,7 @@ use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::inflow::{Nursery, Source};
 use crate::ledger::{Account, ExactSum};
+use crate::limits;
 use crate::maps::Maps;
 use crate::paper::Paper;
 use crate::particle::Particle;
@@ -45,6 +46,7 @@ pub struct Flood {
     volume: f64,
     h: f64,
     map_period: f64,
+    warnings: Vec<String>,
     state: State,
     /// Working memory.
     of_blocks: Vec<f64>,
@@ -125,6 +127,8 @@ impl Flood {
                 (Box::new(Paper::new(flood.paper.clone(), flood.gravity_m_per_s2)), h)
             }
         };
+        limits::check_blocks(flood, &terrain)?;
+        limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = setup::edge_rules(flood, &terrain, folder)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
         let state = State {
@@ -146,8 +150,9 @@ impl Flood {
         let mut model = Self {
             roughness: Roughness::open(&flood.manning, &terrain, folder)?,
             points: setup::point_gauges(flood, &terrain)?,
-            lines: setup::line_gauges(flood, &terrain, spacing),
+            lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
+            warnings: terrain.warnings().to_vec(),
             surroundings: Surroundings { terrain, edges, time: 0.0 },
             settings,
             seed,
@@ -181,6 +186,12 @@ impl Flood {
                 shallowest: flood.wet_depth_m,
             }
             .fill(&self.surroundings.edges, seed);
+            if particles.is_empty() {
+                self.warnings.push(format!(
+                    "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
+                     the ground, or its depth below wet_depth_m."
+                ));
+            }
             for particle in &mut particles {
                 [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
                 if flood.scheme == SchemeName::Paper {
@@ -201,6 +212,10 @@ impl Flood {
         let State { particles, falling, .. } = &mut self.state;
         let all = particles.iter_mut().chain(falling.iter_mut().map(|drop| &mut drop.particle));
         self.state.next_id = all.enumerate().map(|(number, particle)| particle.id = number as u64).count() as u64;
+        if self.state.next_id == 0 && self.sources.is_empty() && !self.surroundings.edges.holds_level() {
+            let what = "There is no water: give [[flood.water]], [[flood.inflow]], or an edge with a stage.";
+            self.warnings.push(what.into());
+        }
     }
 
     fn begin(&mut self) {
@@ -585,7 +600,7 @@ impl Model for Flood {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.surroundings.terrain.warnings().to_vec()
+        self.warnings.clone()
     }
 
     fn save(&self) -> Vec<u8> {

@@ -15,6 +15,7 @@ mod friction;
 mod gauges;
 mod inflow;
 mod ledger;
+mod limits;
 mod maps;
 mod paper;
 mod particle;

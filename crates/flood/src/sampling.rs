@@ -51,6 +51,20 @@ impl Sampler<'_> {
         places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
     }
 
+    /// The share of the surroundings of (x, y) that images beyond walls and periodic sides cover.
+    fn covered_by_images(&self, x: f64, y: f64) -> f64 {
+        let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
+        let places = cells.ranges(x, y, 1.1 * cells.reach_at(x, y)).into_iter().flatten();
+        let weight = |place: usize| {
+            let image = images.binary_search_by_key(&(place as u32), |(image, _)| *image).ok()?;
+            let shown = &self.particles[particle[images[image].1 as usize] as usize];
+            let h = self.smoothing * shown.h;
+            let distance = (x - at_x[place]).hypot(y - at_y[place]);
+            (distance < 2.0 * h).then(|| shown.area() * cubic_spline::value_of_one(distance, h))
+        };
+        places.filter(|place| particle[*place] == IMAGE).filter_map(weight).sum()
+    }
+
     /// The water at (x, y): a Shepard mean over the particles (weights V W), of the surface's height where the surface
     /// is the smoother field, as in a lake, and of the depth where that is, as in a sheet running down a slope.
     pub fn at(&self, x: f64, y: f64) -> Sample {
@@ -79,7 +93,8 @@ impl Sampler<'_> {
             u += weight * particle.u;
             v += weight * particle.v;
         });
-        if total < COVERED {
+        let covers = |total: f64| total >= COVERED || total > 0.0 && total + self.covered_by_images(x, y) >= COVERED;
+        if !covers(total) {
             return Sample::default();
         }
         [surface, depth, u, v] = [surface, depth, u, v].map(|sum| sum / total);

@@ -4,9 +4,10 @@ use crate::edges::{EdgeRule, EdgeRules};
 use crate::falling::Falling;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::inflow::{Source, Zone};
+use crate::limits::{check_inside, span};
 use crate::particle::Particle;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Block, Edge, Flood as FloodScene, Gauge, Series, Table, Water};
+use corpuscle_scene::{Block, Edge, Flood as FloodScene, Gauge, Section, Series, Table, Water};
 use corpuscle_terrain::{Bounds, RasterField, Terrain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +26,7 @@ pub struct InitialWater<'a> {
     pub velocity: Box<dyn Fn(f64, f64) -> [f64; 2] + Sync + 'a>,
 }
 
-fn setup(text: impl std::fmt::Display) -> ModelError {
+pub(crate) fn setup(text: impl std::fmt::Display) -> ModelError {
     ModelError::Setup(text.to_string())
 }
 
@@ -90,13 +91,6 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
     Ok(InitialWater { depth, inside: Box::new(move |x, y| is_inside(&polygon, x, y)), within, velocity })
 }
 
-/// The terrain's extent in its own coordinates, for messages.
-fn span(terrain: &Terrain) -> String {
-    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
-    let ([west, south], [east, north]) = (terrain.to_own([x_min, y_min]), terrain.to_own([x_max, y_max]));
-    format!("x from {west} to {east} and y from {south} to {north}")
-}
-
 fn rectangle_round(polygon: &[[f64; 2]]) -> Bounds {
     let start = Bounds { x_min: f64::INFINITY, x_max: -f64::INFINITY, y_min: f64::INFINITY, y_max: -f64::INFINITY };
     polygon.iter().fold(start, |b, &[x, y]| Bounds {
@@ -139,6 +133,12 @@ pub(crate) fn mean_depth(bodies: &[InitialWater], terrain: &Terrain) -> Option<f
     (places > 0).then(|| sum / f64::from(places))
 }
 
+/// Columns and rows of particles in each layer of a block.
+pub(crate) fn lattice(block: &Block, terrain: &Terrain, spacing: f64) -> [f64; 2] {
+    let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
+    [0, 1].map(|axis| ((to[axis] - from[axis]) / spacing).round().max(1.0))
+}
+
 /// The particles of a block in the air: layers of a lattice, each shifted a little at random so that no two stand one
 /// above the other.
 pub(crate) fn block(
@@ -153,7 +153,7 @@ pub(crate) fn block(
     let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
     let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
     let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
-    let count = [0, 1].map(|axis| ((to[axis] - from[axis]) / spacing).round().max(1.0) as usize);
+    let count = lattice(block, terrain, spacing).map(|count| count as usize);
     let mut falling = Vec::with_capacity(count[0] * count[1] * block.layers);
     for layer in 0..block.layers {
         for row in 0..count[1] {
@@ -175,23 +175,16 @@ pub(crate) fn sources(
     folder: &Path,
     spacing: f64,
 ) -> Result<Vec<Source>, ModelError> {
-    let bounds = terrain.bounds();
     let source = |inflow: &corpuscle_scene::Inflow| {
         let discharge = inflow.load_discharge(folder).map_err(setup)?;
         let largest = discharge.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
-        let points: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
-            (Some(at), _) => vec![terrain.to_model(*at)],
-            (_, Some(line)) => line.iter().map(|&point| terrain.to_model(point)).collect(),
+        let places: Vec<[f64; 2]> = match (&inflow.at, &inflow.line) {
+            (Some(at), _) => vec![*at],
+            (_, Some(line)) => line.clone(),
             (None, None) => Vec::new(),
         };
-        if let Some([x, y]) = points.iter().find(|[x, y]| !bounds.contains(*x, *y)) {
-            let [own_x, own_y] = terrain.to_own([*x, *y]);
-            return Err(setup(format!(
-                "the inflow '{}' has the point [{own_x}, {own_y}], which lies outside the terrain: that spans {}",
-                inflow.name,
-                span(terrain)
-            )));
-        }
+        check_inside(&format!("the inflow '{}'", inflow.name), &places, terrain)?;
+        let points: Vec<_> = places.into_iter().map(|place| terrain.to_model(place)).collect();
         let zone = match points.as_slice() {
             [] => return Err(setup(format!("the inflow '{}' has neither a point nor a line", inflow.name))),
             [at] => Zone::at(*at, largest, spacing),
@@ -221,9 +214,13 @@ pub(crate) fn point_gauges(scene: &FloodScene, terrain: &Terrain) -> Result<Vec<
     scene.gauge.iter().map(gauge).collect()
 }
 
-pub(crate) fn line_gauges(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> Vec<LineGauge> {
-    let line = |line: &[[f64; 2]]| line.iter().map(|&point| terrain.to_model(point)).collect::<Vec<_>>();
-    scene.section.iter().map(|s| LineGauge::new(s.name.clone(), &line(&s.line), 0.5 * spacing)).collect()
+pub(crate) fn line_gauges(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> Result<Vec<LineGauge>, ModelError> {
+    let gauge = |section: &Section| {
+        check_inside(&format!("the section '{}'", section.name), &section.line, terrain)?;
+        let line: Vec<_> = section.line.iter().map(|&point| terrain.to_model(point)).collect();
+        Ok(LineGauge::new(section.name.clone(), &line, 0.5 * spacing))
+    };
+    scene.section.iter().map(gauge).collect()
 }
 
 /// The random numbers of one purpose.

@@ -60,6 +60,26 @@ fn go(flood: &mut Flood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
 }
 
+/// Beyond a wall there are images of the water, and so the place before it is not half dry.
+#[test]
+fn water_reaches_up_to_walls_and_periodic_sides() {
+    let basin = r#"
+        run.until_s = 1
+        terrain.plane.extent = { length_m = 40, width_m = 30, cell_m = 0.5 }
+        [flood]
+        spacing_m = 3
+        water = [{ depth_m = 1 }]
+        edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
+    "#;
+    for scheme in ["balanced", "paper"] {
+        let flood = open(&parse(basin, &[("flood.scheme".into(), scheme.into())]));
+        let maps = flood.maps();
+        let depth = &maps.iter().find(|map| map.name == "depth").unwrap().values;
+        let dry = depth.iter().filter(|depth| depth.is_nan()).count();
+        assert_eq!(dry, 0, "{scheme}: of {} places", depth.len());
+    }
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let with = |threads| {

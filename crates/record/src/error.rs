@@ -16,7 +16,7 @@ pub enum RecordError {
         source: io::Error,
     },
     /// A file cannot be read.
-    #[error("cannot read {}: {source}; check that the path names a run's folder and that it may be read", path.display())]
+    #[error("cannot read {}: {source}; check the path and that it may be read", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -93,9 +93,7 @@ impl RecordError {
 /// What to do about a failed write.
 fn advice(source: &io::Error) -> &'static str {
     match source.kind() {
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-            "free some space there, then continue the run with `--resume`"
-        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space there",
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "choose a folder that may be written to with `-o`"
         }

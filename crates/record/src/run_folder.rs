@@ -61,15 +61,19 @@ impl RunFolder {
         if fs::read_dir(path).map_err(RecordError::read(path))?.next().is_some() {
             return Err(RecordError::Exists { path: path.to_owned() });
         }
-        write_bytes(&path.join("scene.toml"), scene_text.as_bytes())?;
+        let begin = || -> Result<_, RecordError> {
+            write_bytes(&path.join("scene.toml"), scene_text.as_bytes())?;
+            Ok((GaugeWriter::create(&path.join("gauges.csv"), gauges)?, open_log(path)?))
+        };
+        let (gauges, log) = begin().inspect_err(|_| clear_beginning(path))?;
         Ok(Self {
             path: path.to_owned(),
             scene_text: scene_text.to_owned(),
             frame_format,
             frame_times: Vec::new(),
             map_times: Vec::new(),
-            gauges: GaugeWriter::create(&path.join("gauges.csv"), gauges)?,
-            log: open_log(path)?,
+            gauges,
+            log,
         })
     }
 
@@ -103,6 +107,11 @@ impl RunFolder {
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// True where there is a checkpoint to go on from.
+    pub fn has_checkpoint(&self) -> bool {
+        checkpoint_path(&self.path).exists()
     }
 
     /// How particles are written.
@@ -251,6 +260,15 @@ impl RunFolder {
 
 fn checkpoint_path(folder: &Path) -> PathBuf {
     folder.join("checkpoint").join("state")
+}
+
+/// Takes away what a run wrote that could not begin, so that it can be tried again into the same folder.
+fn clear_beginning(folder: &Path) {
+    for name in ["scene.toml", "gauges.csv", "log.txt"] {
+        let _ = fs::remove_file(folder.join(name));
+    }
+    // Stays where anything else is in it.
+    let _ = fs::remove_dir(folder);
 }
 
 fn open_log(folder: &Path) -> Result<File, RecordError> {

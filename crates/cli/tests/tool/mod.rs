@@ -1,4 +1,5 @@
 //! Running the binary in a folder of its own.
+#![allow(dead_code, reason = "not every test uses all of it")]
 
 use serde_json::Value;
 use std::fs;
@@ -26,7 +27,6 @@ north = \"wall\"
 ";
 
 /// An ESRI ASCII grid with a valley down its middle.
-#[allow(dead_code, reason = "not every test uses it")]
 pub const SMALL_TERRAIN: &str = "ncols 5\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n\
     9 5 1 5 9\n9 5 2 5 9\n9 5 3 5 9\n9 5 4 5 9\n";
 
@@ -83,7 +83,6 @@ impl Ended {
         self
     }
 
-    #[allow(dead_code, reason = "not every test uses it")]
     pub fn json(&self) -> Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
     }

@@ -1,5 +1,6 @@
 //! The ground as pictures need it: heights at pixels, and how the terrain's own coordinates lie in them.
 
+use super::window::Window;
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -11,7 +12,7 @@ const LEAST_PIXELS: f64 = 150.0;
 /// Heights of the ground at the pixels of a map, and where that map lies.
 #[derive(Debug, Clone)]
 pub(crate) struct Ground {
-    /// Columns and rows of the terrain's map grid.
+    /// Columns and rows of cells of the terrain's map grid that it covers.
     pub grid: [usize; 2],
     /// Columns and rows of pixels.
     pub pixels: [usize; 2],
@@ -30,32 +31,36 @@ pub(crate) struct Ground {
 }
 
 impl Ground {
-    /// Samples a terrain.
-    pub(crate) fn of(terrain: &Terrain) -> Self {
+    /// Samples a part of a terrain.
+    pub(crate) fn of(terrain: &Terrain, window: &Window) -> Self {
         let grid = terrain.map_grid();
         let place = &grid.georeference;
         let cell = grid.cell_size();
-        let shape = [grid.columns, grid.rows];
-        let [columns, rows] = shape.map(|count| count as f64);
+        let [columns, rows] = window.count.map(|count| count as f64);
+        let corner = [
+            place.corner[0] + window.first[0] as f64 * place.cell[0],
+            place.corner[1] - window.first[1] as f64 * place.cell[1],
+        ];
         let extent = [columns * cell[0], rows * cell[1]];
         let pixels = pixels(extent);
         let own_extent = [columns * place.cell[0], rows * place.cell[1]];
         let height = |index: usize| {
             let pixel = [index % pixels[0], index / pixels[0]];
             let part = [0, 1].map(|axis| (pixel[axis] as f64 + 0.5) / pixels[axis] as f64);
-            let [column, row] = [(part[0] * columns) as usize, (part[1] * rows) as usize];
-            let own = [place.corner[0] + part[0] * own_extent[0], place.corner[1] - part[1] * own_extent[1]];
+            let [column, row] =
+                [0, 1].map(|axis| window.first[axis] + (part[axis] * window.count[axis] as f64) as usize);
+            let own = [corner[0] + part[0] * own_extent[0], corner[1] - part[1] * own_extent[1]];
             let [x, y] = terrain.to_model(own);
             if terrain.is_valid_cell(column, row) { terrain.height(x, y) as f32 } else { f32::NAN }
         };
         let heights = (0..pixels[0] * pixels[1]).into_par_iter().map(height).collect();
         let system = place.system.as_ref();
         Self {
-            grid: shape,
+            grid: window.count,
             pixels,
             heights,
             extent,
-            corner: place.corner,
+            corner,
             own_extent,
             geographic: system.is_some_and(|system| system.geographic),
             system: system.map(|system| system.name.clone()),
@@ -97,10 +102,15 @@ mod tests {
     #[test]
     fn heights_and_places_agree_with_the_terrain() {
         let bounds = Bounds { x_min: 100.0, x_max: 300.0, y_min: 0.0, y_max: 100.0 };
-        let ground = Ground::of(&Terrain::gridded(bounds, 10.0, |x, _| x));
+        let terrain = Terrain::gridded(bounds, 10.0, |x, _| x);
+        let ground = Ground::of(&terrain, &Window::whole([20, 10]));
         assert_eq!(ground.grid, [20, 10]);
         assert_eq!(ground.part([150.0, 75.0]), [0.25, 0.25]);
         let middle = ground.heights[ground.pixels[0] * 300 + 750];
+        assert!((middle - 200.0).abs() < 0.2, "{middle}");
+        let part = Ground::of(&terrain, &Window { first: [5, 5], count: [10, 5] });
+        assert_eq!((part.corner, part.extent), ([150.0, 50.0], [100.0, 50.0]));
+        let middle = part.heights[part.pixels[0] * 300 + 750];
         assert!((middle - 200.0).abs() < 0.2, "{middle}");
     }
 }

@@ -439,13 +439,16 @@ fn draw_named_classes(svg: &mut Svg, classes: &Classes, [x, y]: [f64; 2], space:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Window;
     use crate::picture::classes::Ramp;
     use crate::picture::png::{data_url, svg_to_png};
     use corpuscle_terrain::{Bounds, Terrain};
 
     fn ground(size: [f64; 2]) -> Ground {
         let bounds = Bounds { x_min: 0.0, x_max: size[0], y_min: 0.0, y_max: size[1] };
-        Ground::of(&Terrain::gridded(bounds, 10.0, |x, y| 0.01 * x + 2.0 * (y / 30.0).sin()))
+        let terrain = Terrain::gridded(bounds, 10.0, |x, y| 0.01 * x + 2.0 * (y / 30.0).sin());
+        let grid = terrain.map_grid();
+        Ground::of(&terrain, &Window::whole([grid.columns, grid.rows]))
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod style;
 mod svg;
 mod text;
 mod ticks;
+mod window;
 
 pub(crate) use balls::{Across, Balls, Disc, Key, Side, from_hex, of_speed};
 pub(crate) use chart::{Chart, Series};
@@ -24,3 +25,4 @@ pub(crate) use png::{data_url, svg_to_png, svg_url};
 pub(crate) use style::{FIGURE_CSS, Theme};
 pub(crate) use svg::{Figure, beside, escape, stack};
 pub(crate) use text::{area, number, short_number, time, volume};
+pub(crate) use window::Window;

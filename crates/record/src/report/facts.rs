@@ -82,19 +82,21 @@ pub(super) fn gauge_peaks(report: &Report) -> Table {
 /// Name and value of what was run.
 pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let (summary, scene) = (&report.summary, &report.flood);
-    let ground = &report.ground;
-    let [columns, rows] = ground.grid.map(|count| number(count as f64).replace(".0", ""));
-    let cell = [0, 1].map(|axis| short_number(ground.extent[axis] / ground.grid[axis] as f64));
+    let (ground, whole) = (&report.ground, &report.whole);
+    let [columns, rows] = whole.grid.map(|count| number(count as f64).replace(".0", ""));
+    let cell = whole.cell.map(short_number);
     let cell = if cell[0] == cell[1] { format!("{} m", cell[0]) } else { format!("{} m × {} m", cell[0], cell[1]) };
-    let [low, high] = ground.height_range().map(short_number);
+    let [low, high] = whole.heights.map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Balanced => "balanced",
-        Scheme::Paper => "paper",
+        Scheme::Paper if scene.flood.paper.control_force => "paper, control force on",
+        Scheme::Paper => "paper, control force off",
     };
     vec![
         ("Model", format!("{}, scheme {scheme}", summary.model)),
         ("Terrain", terrain_words(&scene.terrain)),
         ("Grid", format!("{columns} × {rows} cells of {cell}; heights {low} to {high} m")),
+        ("Maps show", shown_words(report)),
         ("Reference system", ground.system.clone().unwrap_or_else(|| "none (metres)".into())),
         ("Simulated time", format!("{} ({})", time(summary.simulated_time_s), how_it_ended(summary))),
         ("Particles", number(summary.particles as f64).replace(".0", "")),
@@ -103,6 +105,15 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
         ("Rate", format!("{} particle steps per second", number(summary.particle_steps_per_s.unwrap_or(f64::NAN)))),
         ("Corpuscle", format!("version {}", summary.version)),
     ]
+}
+
+/// How much of the terrain the maps show.
+fn shown_words(report: &Report) -> String {
+    if report.window.count == report.whole.grid {
+        return "the whole terrain".into();
+    }
+    let [east, north] = report.ground.extent.map(|length| short_number((length / 10.0).round() * 10.0));
+    format!("the part round the water and the marked places, {east} m × {north} m")
 }
 
 fn terrain_words(terrain: &Terrain) -> String {

@@ -152,7 +152,7 @@ impl Figures {
 fn draw_field(report: &Report, number: usize, relief_url: &str) -> Result<FieldFigure, String> {
     let field = &report.fields[number];
     let classes = Classes::of(field.kind.ramp, field.kind.legend, &field.values);
-    let url = data_url(&Layer::image(&report.ground, &field.values, &classes, 1)?);
+    let url = data_url(&Layer::image(&report.ground, &report.shown(&field.values), &classes, 1)?);
     let layer = Layer { url, classes };
     let title = report.title();
     let reference = format!("#{RELIEF}");
@@ -184,7 +184,7 @@ fn draw_snapshots(
     };
     let reference = format!("#{RELIEF}");
     let draw = |snapshot: &Snapshot| -> Result<(Figure, Figure), String> {
-        let url = data_url(&Layer::image(&report.ground, &snapshot.depth, &classes, 2)?);
+        let url = data_url(&Layer::image(&report.ground, &report.shown(&snapshot.depth), &classes, 2)?);
         let layer = Layer { url, classes: classes.clone() };
         let caption = time(snapshot.time);
         let map = MapFigure {

@@ -9,7 +9,7 @@ mod parts;
 mod snapshots;
 
 use crate::maps::read_map;
-use crate::picture::{Ground, Place, PlaceKind};
+use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
 use corpuscle_scene::{Flood, FloodScene, Scene};
@@ -30,12 +30,51 @@ pub struct Report {
     scene_text: String,
     summary: Summary,
     gauges: GaugeTable,
+    /// The ground in the window.
     ground: Ground,
+    /// The part of the terrain that maps show.
+    window: Window,
+    whole: Whole,
     /// Area of each cell, m2, for areas by class.
     cell_areas: Vec<f64>,
     places: Vec<Place>,
     fields: Vec<Field>,
     snapshots: Vec<Snapshot>,
+}
+
+/// The terrain as a whole.
+#[derive(Debug)]
+struct Whole {
+    /// Columns and rows of its map grid.
+    grid: [usize; 2],
+    /// Size of a cell `[east, north]`, m.
+    cell: [f64; 2],
+    /// Lowest and highest ground, m.
+    heights: [f64; 2],
+}
+
+impl Whole {
+    fn of(terrain: &Terrain) -> Self {
+        let grid = terrain.map_grid();
+        let cells = (0..grid.columns * grid.rows).map(|cell| [cell % grid.columns, cell / grid.columns]);
+        let heights = cells.filter(|[column, row]| terrain.is_valid_cell(*column, *row)).map(|[column, row]| {
+            let [x, y] = grid.centre(column, row);
+            terrain.height(x, y)
+        });
+        let range = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)]);
+        Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: range }
+    }
+
+    /// Round the cells with a value and the places.
+    fn window(&self, field: Option<&Field>, places: &[Place], terrain: &Terrain) -> Window {
+        let [columns, _] = self.grid;
+        let values = field.map_or(&[][..], |field| &field.values).iter().enumerate();
+        let wet = values.filter(|(_, value)| !value.is_nan());
+        let cells = wet.map(|(cell, _)| [(cell % columns) as f64, (cell / columns) as f64]);
+        let marked = places.iter().flat_map(|place| &place.points);
+        let marked = marked.map(|point| terrain.map_grid().georeference.position(*point));
+        Window::round(self.grid, self.cell, cells.chain(marked))
+    }
 }
 
 /// A field that stands for the whole run.
@@ -68,6 +107,8 @@ impl Report {
                 fields.push(Field { kind, values: read_field(&path, cells)? });
             }
         }
+        let (whole, places) = (Whole::of(terrain), places(&flood.flood, terrain));
+        let window = whole.window(fields.iter().find(|field| field.kind.name == "max_depth"), &places, terrain);
         Ok(Self {
             folder: folder.to_owned(),
             scene: scene.clone(),
@@ -75,9 +116,11 @@ impl Report {
             scene_text,
             summary: Summary::read(folder)?,
             gauges: GaugeTable::read(&folder.join("gauges.csv"))?,
-            ground: Ground::of(terrain),
+            ground: Ground::of(terrain, &window),
+            window,
+            whole,
             cell_areas: (0..cells).map(|cell| grid.cell_area(cell % grid.columns, cell / grid.columns)).collect(),
-            places: places(&flood.flood, terrain),
+            places,
             fields,
             snapshots: snapshots::read(&maps, cells)?,
         })
@@ -96,6 +139,11 @@ impl Report {
             write_bytes(&pictures.join(format!("{name}.png")), &png)?;
         }
         write_bytes(&self.folder.join("report.html"), page::html(self, &figures).as_bytes())
+    }
+
+    /// The values of a field that maps show.
+    fn shown(&self, values: &[f32]) -> Vec<f32> {
+        self.window.crop(values, self.whole.grid[0])
     }
 
     fn field(&self, name: &str) -> Option<&Field> {

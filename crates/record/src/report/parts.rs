@@ -86,7 +86,7 @@ pub(super) fn balance(summary: &Summary) -> String {
     }
     let row = |(name, entry): (&String, &LedgerEntry)| {
         let values = [entry.initial, entry.inflow, entry.outflow, entry.end, entry.relative_error].map(number);
-        std::iter::once(quantity(name)).chain(values).collect()
+        std::iter::once(quantity(name, &summary.model)).chain(values).collect()
     };
     let ledger = Table {
         head: vec!["quantity", "at the start", "came in", "went out", "at the end", "relative error"],
@@ -100,10 +100,12 @@ pub(super) fn balance(summary: &Summary) -> String {
 }
 
 /// `water_m3` as `water, m³`.
-fn quantity(name: &str) -> String {
+fn quantity(name: &str, model: &str) -> String {
     match name.rsplit_once('_') {
         Some((quantity, "m3")) => format!("{quantity}, m³"),
         Some((quantity, unit @ ("J" | "kg"))) => format!("{quantity}, {unit}"),
+        // A gas may have reduced units.
+        None if name == "momentum" && model == "flood" => "momentum, kg m/s".into(),
         _ => name.replace('_', " "),
     }
 }

@@ -1,0 +1,82 @@
+//! What a scene may ask for: places on the terrain, and no more particles than a machine holds.
+
+use crate::setup::{InitialWater, lattice, setup};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Flood as FloodScene;
+use corpuscle_terrain::{Bounds, Terrain};
+
+/// More particles than this do not fit in the memory of usual machines.
+const MOST_PARTICLES: f64 = 2e8;
+
+/// A body of water is looked at in so many places along each side to see how much it holds.
+const LOOKS: usize = 200;
+
+/// Refuses bodies of water and blocks that would take too many particles of `volume` m3, `spacing` m apart in blocks.
+pub(crate) fn check_count(
+    scene: &FloodScene,
+    bodies: &[InitialWater],
+    terrain: &Terrain,
+    spacing: f64,
+    volume: f64,
+) -> Result<(), ModelError> {
+    let standing: f64 = bodies.iter().map(|body| body.volume(terrain.bounds()) / volume).sum();
+    let blocks = scene.water.iter().filter_map(|water| water.block.as_ref());
+    let falling: f64 = blocks
+        .map(|block| {
+            let [columns, rows] = lattice(block, terrain, spacing);
+            columns * rows * block.layers as f64
+        })
+        .sum();
+    if standing + falling <= MOST_PARTICLES {
+        return Ok(());
+    }
+    Err(setup(format!(
+        "the water at the start would take about {:.1e} particles, more than the {MOST_PARTICLES:.0e} that fit in memory; \
+         take a larger flood.spacing_m, or less water ([[flood.water]])",
+        standing + falling
+    )))
+}
+
+impl InitialWater<'_> {
+    /// About how much water it holds, m3.
+    fn volume(&self, bounds: Bounds) -> f64 {
+        let low = [self.within.x_min.max(bounds.x_min), self.within.y_min.max(bounds.y_min)];
+        let high = [self.within.x_max.min(bounds.x_max), self.within.y_max.min(bounds.y_max)];
+        let part = [0, 1].map(|axis| (high[axis] - low[axis]) / LOOKS as f64);
+        let at = |axis: usize, look: usize| low[axis] + (look as f64 + 0.5) * part[axis];
+        let places = (0..LOOKS * LOOKS).map(|look| [at(0, look % LOOKS), at(1, look / LOOKS)]);
+        let depths = places.filter(|[x, y]| (self.inside)(*x, *y)).map(|[x, y]| (self.depth)(x, y).max(0.0));
+        depths.sum::<f64>() * part[0] * part[1]
+    }
+}
+
+/// Refuses blocks that reach beyond the terrain: there is no ground for them to fall onto.
+pub(crate) fn check_blocks(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
+    for (number, water) in scene.water.iter().enumerate() {
+        let Some(block) = &water.block else { continue };
+        check_inside(&format!("flood.water.{number}.block"), &[block.from, block.to], terrain)?;
+    }
+    Ok(())
+}
+
+/// Refuses places in the terrain's own coordinates that lie outside it.
+pub(crate) fn check_inside(what: &str, places: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+    let is_outside = |place: &&[f64; 2]| {
+        let [x, y] = terrain.to_model(**place);
+        !terrain.bounds().contains(x, y)
+    };
+    match places.iter().find(is_outside) {
+        None => Ok(()),
+        Some(place) => Err(setup(format!(
+            "{what} has the point {place:?}, which lies outside the terrain: that spans {}",
+            span(terrain)
+        ))),
+    }
+}
+
+/// The terrain's extent in its own coordinates, for messages.
+pub(crate) fn span(terrain: &Terrain) -> String {
+    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+    let ([west, south], [east, north]) = (terrain.to_own([x_min, y_min]), terrain.to_own([x_max, y_max]));
+    format!("x from {west} to {east} and y from {south} to {north}")
+}
