@@ -5,6 +5,7 @@ use crate::output::{duration, number, print, print_json};
 use crate::refusal::in_words;
 use crate::scene_argument;
 use corpuscle::Simulation;
+use corpuscle::model::Model;
 use corpuscle::terrain::Terrain;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -17,7 +18,7 @@ use std::time::{Duration, Instant};
 /// How long the model is run to see its time step and rate.
 const PROBE: Duration = Duration::from_secs(2);
 
-/// Steps that are enough to see their length.
+/// Steps of each particle (in a gas, collisions for each ball) that are enough to see how long they take.
 const PROBE_STEPS: u64 = 50;
 
 /// The part of the run that is looked at first; it is doubled until there are enough steps.
@@ -25,6 +26,10 @@ const SHORTEST_PROBE: f64 = 1e-3;
 
 /// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
+
+/// Memory for each ball of a gas, bytes, measured: the ball, its next event, its place in cells and queue, and what is
+/// measured of it.
+const BYTES_PER_BALL: f64 = 500.0;
 
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
@@ -106,10 +111,11 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let particles_to_come = corpuscle::particles_to_come(simulation.scene(), &named.folder)? as usize;
     let probe = Probe::run(&mut simulation)?;
     let (terrain, scene) = (simulation.terrain(), simulation.scene());
-    let run = &scene.run;
+    let (run, is_gas) = (&scene.run, scene.gas().is_some());
     let terrain = terrain.map(|terrain| Ground::of(terrain));
     let cells = terrain.as_ref().map_or(0, |ground| ground.columns * ground.rows);
     let particles = (particles_at_start + particles_to_come) as f64;
+    let growth = particles_to_come as f64 / particles_at_start.max(1) as f64;
     let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
     Ok(Report {
         ok: true,
@@ -118,11 +124,12 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         terrain,
         particles_at_start,
         particles_to_come,
-        memory_bytes: particles * BYTES_PER_PARTICLE + cells as f64 * BYTES_PER_CELL,
-        time_step_s: probe.time_step,
+        memory_bytes: particles * if is_gas { BYTES_PER_BALL } else { BYTES_PER_PARTICLE }
+            + cells as f64 * BYTES_PER_CELL,
+        time_step_s: probe.time_step.filter(|_| !is_gas),
         // Where most of the water comes later its start says little about the rest.
         estimated_wall_time_s: (particles_to_come < particles_at_start)
-            .then(|| probe.wall_time(particles - 0.5 * particles_to_come as f64, run.until_s))
+            .then(|| Some(probe.wall_time_per_time? * run.until_s * (1.0 + 0.5 * growth)))
             .flatten(),
         until_s: run.until_s,
         frames: rows(run.frame_period_s()),
@@ -136,8 +143,8 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
 struct Probe {
     /// Mean time step, s; none where nothing moved.
     time_step: Option<f64>,
-    /// Particles moved in a second of wall-clock time.
-    particle_steps_per_s: f64,
+    /// Wall-clock time for a unit of simulated time; none where nothing moved.
+    wall_time_per_time: Option<f64>,
 }
 
 impl Probe {
@@ -152,21 +159,17 @@ impl Probe {
         });
         let start = Instant::now();
         let model = simulation.model_mut();
+        let enough = |model: &dyn Model| model.particle_steps() >= PROBE_STEPS * model.particles().max(1) as u64;
         let mut until = SHORTEST_PROBE * end;
-        while model.steps() < PROBE_STEPS && model.time() < end && !stop.load(Ordering::Relaxed) {
+        while !enough(model) && model.time() < end && !stop.load(Ordering::Relaxed) {
             model.advance_to(until.min(end), &stop)?;
             until *= 2.0;
         }
+        let moved = model.steps() > 0 && model.time() > 0.0;
         Ok(Self {
-            time_step: (model.steps() > 0).then(|| model.time() / model.steps() as f64),
-            particle_steps_per_s: model.particle_steps() as f64 / start.elapsed().as_secs_f64(),
+            time_step: moved.then(|| model.time() / model.steps() as f64),
+            wall_time_per_time: moved.then(|| start.elapsed().as_secs_f64() / model.time()),
         })
-    }
-
-    /// Wall-clock time of the whole run, s, with so many particles on average.
-    fn wall_time(&self, particles: f64, until: f64) -> Option<f64> {
-        let steps = until / self.time_step?;
-        (self.particle_steps_per_s > 0.0).then(|| steps * particles / self.particle_steps_per_s)
     }
 }
 
@@ -176,7 +179,7 @@ fn text(report: &Report) -> String {
     let mut lines = vec![format!("{title} ({model})")];
     lines.extend(terrain.as_ref().map(ground_line));
     lines.extend([
-        format!("particles  {} at the start, about {} to come", report.particles_at_start, report.particles_to_come),
+        particles_line(report),
         format!("memory     about {} MB", number((report.memory_bytes / 1e6).ceil())),
         format!(
             "run        {} s, {} frames, {} gauge rows of {} values",
@@ -194,6 +197,14 @@ fn text(report: &Report) -> String {
     }
     lines.extend(report.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"
+}
+
+fn particles_line(report: &Report) -> String {
+    let Report { particles_at_start, particles_to_come, .. } = report;
+    match report.terrain {
+        Some(_) => format!("particles  {particles_at_start} at the start, about {particles_to_come} to come"),
+        None => format!("balls      {particles_at_start}"),
+    }
 }
 
 fn ground_line(ground: &Ground) -> String {

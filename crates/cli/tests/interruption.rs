@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
-use tool::{Ended, LAKE, Place};
+use tool::{BALLS, Ended, LAKE, Place};
 
 /// What makes the small lake slosh, and long enough to be interrupted.
 const LONG: [&str; 6] = [
@@ -18,6 +18,15 @@ const LONG: [&str; 6] = [
     "--set=run.frame_every_s=2",
     "--set=run.gauge_every_s=0.1",
     "--frames=csv",
+];
+
+/// What makes the balls run long enough to be interrupted.
+const LONG_GAS: [&str; 5] = [
+    "--set=run.until_s=600",
+    "--set=run.frame_every_s=100",
+    "--set=run.gauge_every_s=1",
+    "--frames=csv",
+    "--threads=2",
 ];
 
 fn wait_for_rows(child: &mut Child, gauges: &Path, rows: usize) {
@@ -36,8 +45,9 @@ fn signal(name: &str, child: &Child) {
 /// All files of a run that do not depend on the clock on the wall, by name.
 fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
-    for sub in ["", "frames", "maps"] {
-        for entry in fs::read_dir(folder.join(sub)).unwrap() {
+    for sub in ["", "frames", "maps", "charts"] {
+        let entries = fs::read_dir(folder.join(sub));
+        for entry in entries.into_iter().flatten() {
             let path = entry.unwrap().path();
             let name = path.strip_prefix(folder).unwrap().display().to_string();
             if path.is_file() && !["summary.json", "report.html", "log.txt"].contains(&name.as_str()) {
@@ -50,13 +60,22 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn interrupted_or_killed_and_resumed_a_run_gives_the_same_bytes() {
+fn interrupted_or_killed_and_resumed_a_flood_gives_the_same_bytes() {
+    interrupted_and_resumed(LAKE, &LONG);
+}
+
+#[test]
+fn interrupted_or_killed_and_resumed_a_gas_gives_the_same_bytes() {
+    interrupted_and_resumed(BALLS, &LONG_GAS);
+}
+
+fn interrupted_and_resumed(scene: &str, long: &[&str]) {
     let place = Place::new();
-    place.write("lake.toml", LAKE);
-    place.run(&[&["run", "lake.toml", "-o", "whole"], &LONG[..]].concat()).expect_status(0);
+    place.write("scene.toml", scene);
+    place.run(&[&["run", "scene.toml", "-o", "whole"], long].concat()).expect_status(0);
     let expected = results(&place.path("whole"));
 
-    let arguments = [&["run", "lake.toml", "-o", "stopped"], &LONG[..]].concat();
+    let arguments = [&["run", "scene.toml", "-o", "stopped"], long].concat();
     let mut child = place.command(&arguments).stderr(Stdio::piped()).spawn().unwrap();
     wait_for_rows(&mut child, &place.path("stopped/gauges.csv"), 20);
     signal("-INT", &child);

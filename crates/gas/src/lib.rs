@@ -18,6 +18,7 @@ mod random;
 mod scene;
 mod setup;
 mod sum;
+pub mod theory;
 mod world;
 
 pub use error::SetupError;

@@ -41,7 +41,7 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
     };
     for axis in Axis::ALL.into_iter().take(D) {
         let [low, high] = written.walls.along(axis);
-        setup.sides[axis.index()] = [side(low, folder)?, side(high, folder)?];
+        setup.sides[axis.index()] = [side(low, until, folder)?, side(high, until, folder)?];
     }
     setup.partition = written.partition.as_ref().map(|partition| Partition {
         axis: partition.axis.index(),
@@ -76,12 +76,15 @@ fn vector<const D: usize>(numbers: &[f64]) -> [f64; D] {
     std::array::from_fn(|axis| numbers.get(axis).copied().unwrap_or(0.0))
 }
 
-fn side(wall: &scene::Wall, folder: &Path) -> Result<Side, ModelError> {
+fn side(wall: &scene::Wall, end: f64, folder: &Path) -> Result<Side, ModelError> {
     Ok(match wall {
         scene::Wall::Fixed => Side::Fixed,
         scene::Wall::Periodic => Side::Periodic,
         scene::Wall::Thermal { temperature } => Side::Thermal { temperature: *temperature },
-        scene::Wall::Moving { velocity, until_s } => Side::Moving { velocity: *velocity, until: *until_s },
+        // A wall that is to move for ever moves to just beyond the end of the run: so whether there is room is known before.
+        scene::Wall::Moving { velocity, until_s } => {
+            Side::Moving { velocity: *velocity, until: Some(until_s.unwrap_or(end.next_up())) }
+        }
         scene::Wall::Motion(scene::Motion::Sinusoid { amplitude, period_s }) => {
             Side::Swinging { amplitude: *amplitude, period: *period_s }
         }

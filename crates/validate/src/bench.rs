@@ -1,6 +1,7 @@
 //! What a bench is and what it gives.
 
 use serde::Serialize;
+use std::sync::LazyLock;
 
 /// A rate measured on this machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +26,7 @@ pub struct Rate {
 }
 
 /// A scene whose cost matters.
+#[derive(Debug, Clone, Copy)]
 pub struct Bench {
     /// Name: the model and words, `flood/balanced-60k`.
     pub name: &'static str,
@@ -43,5 +45,7 @@ pub struct BenchOptions {
 
 /// All benches.
 pub fn benches() -> &'static [Bench] {
-    crate::flood::bench::BENCHES
+    static ALL: LazyLock<Vec<Bench>> =
+        LazyLock::new(|| [crate::flood::bench::BENCHES, crate::gas::bench::BENCHES].concat());
+    &ALL
 }

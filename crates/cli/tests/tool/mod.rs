@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A small lake over a bump: runs in a blink.
+#[allow(dead_code, reason = "not every test uses it")]
 pub const LAKE: &str = "[run]
 until_s = 2.0
 frame_every_s = 1.0
@@ -24,6 +25,27 @@ west = \"wall\"
 east = \"wall\"
 south = \"wall\"
 north = \"wall\"
+";
+
+/// Balls in a box, one of them heavy and followed: runs in a blink.
+#[allow(dead_code, reason = "not every test uses it")]
+pub const BALLS: &str = "[run]
+until_s = 2.0
+frame_every_s = 1.0
+[gas]
+size = [60.0, 40.0]
+follow = 0
+[[gas.ball]]
+name = \"heavy\"
+position = [30.0, 20.0]
+radius = 4.0
+mass = 50.0
+[[gas.species]]
+name = \"light\"
+count = 100
+radius = 1.0
+mass = 1.0
+temperature = 100.0
 ";
 
 /// An ESRI ASCII grid with a valley down its middle.

@@ -34,7 +34,7 @@ impl<const D: usize> Gas<D> {
         world.followed = setup.followed(&starts);
         let partition = setup.partition.is_some().then(|| world.walls.len() - 1);
         let largest = setup.largest_speeds(&sets, &world);
-        let measures = Measures::new(&setup.measure, sets.len(), largest, setup.pair_distance());
+        let measures = Measures::new(&setup, sets.len(), largest);
         let mover = match setup.method {
             Method::EventDriven => Mover::EventDriven(Engine::new(world)),
             Method::List => Mover::List(List::new(world)),
@@ -123,7 +123,8 @@ impl<const D: usize> Setup<D> {
         sets.iter().map(|set| FASTEST * (per_direction / set.mass).sqrt().max(f64::MIN_POSITIVE)).collect()
     }
 
-    fn pair_distance(&self) -> f64 {
+    /// Distance up to which g(r) is counted.
+    pub(crate) fn pair_distance(&self) -> f64 {
         let radii = self.balls.iter().map(|ball| ball.radius).chain(self.species.iter().map(|species| species.radius));
         let shortest = self.size.iter().copied().fold(f64::INFINITY, f64::min);
         self.measure.pair_distance.unwrap_or(10.0 * radii.fold(0.0, f64::max)).min(0.5 * shortest)

@@ -54,21 +54,26 @@ impl<const D: usize> Gas<D> {
         }
         let mut gauges: Vec<_> =
             rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
-        gauges.extend(self.moving_walls());
+        gauges.extend(self.wall_gauges());
         gauges.extend(self.set_gauges());
         gauges
     }
 
-    fn moving_walls(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+    fn wall_gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+        let recent = self.recent();
         let mut gauges = Vec::new();
         for axis in 0..D {
             for end in 0..2 {
+                let name = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][end]);
+                if let Some(pressure) = self.recent_pressure_on(&recent, axis, end) {
+                    let unit = if D == 2 { "N_per_m" } else { "Pa" };
+                    gauges.push((name.clone(), "pressure", unit, pressure));
+                }
                 let moves = !matches!(
                     self.setup.sides[axis][end],
                     crate::Side::Fixed | crate::Side::Periodic | crate::Side::Thermal { .. }
                 );
                 if let Some([place, speed]) = self.wall(axis, end).filter(|_| moves) {
-                    let name = format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][end]);
                     gauges.push((name.clone(), "position", "m", place));
                     gauges.push((name, "velocity", "m_per_s", speed));
                 }
@@ -80,6 +85,7 @@ impl<const D: usize> Gas<D> {
     fn set_gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
         let snapshot = self.snapshot(self.shown);
         let displacements = self.measures.displacements(&snapshot);
+        let beyond = self.beyond(&snapshot);
         let mut gauges = Vec::new();
         for (number, set) in self.sets.iter().enumerate() {
             let (mut squares, mut count) = (0.0, 0.0);
@@ -95,6 +101,9 @@ impl<const D: usize> Gas<D> {
             let late = self.measures.started.is_finite() && self.mean_square_displacement(number).len() > 3;
             let diffusion = if late { self.diffusion(number) } else { f64::NAN };
             gauges.push((set.name.clone(), "diffusion", "m2_per_s", diffusion));
+            if let Some(&beyond) = beyond.get(number) {
+                gauges.push((set.name.clone(), "beyond_partition", "", beyond));
+            }
         }
         gauges
     }
@@ -188,21 +197,18 @@ impl<const D: usize> Model for Gas<D> {
     }
 
     fn charts(&self) -> Vec<Chart> {
-        let names: Vec<String> = self.sets.iter().map(|set| set.name.clone()).collect();
-        let masses: Vec<f64> = self.sets.iter().map(|set| set.mass).collect();
-        let colours: Vec<Option<String>> = self.sets.iter().map(|set| set.colour.clone()).collect();
         let axis = self.setup.measure.profile_axis.min(D - 1);
         let world = self.mover.world();
         let context = Context {
-            names: &names,
-            masses: &masses,
-            colours: &colours,
-            boltzmann: self.setup.boltzmann,
+            sets: &self.sets,
+            counts: self.counts(),
+            setup: &self.setup,
+            radius: self.only_radius(),
             si: self.si,
             extent: world.extent(axis, world.in_window(self.shown)),
             p_value: self.maxwell_p_value(),
         };
-        self.measures.charts::<D>(&context, &self.setup.measure)
+        self.measures.charts(&context)
     }
 
     fn paths(&self) -> Vec<Path> {

@@ -212,15 +212,41 @@ impl<const D: usize> Gas<D> {
         self.measures.estimate(self.setup.measure.from, pressure_virial::<D>)
     }
 
+    /// Number of balls of each set.
+    pub(super) fn counts(&self) -> Vec<usize> {
+        let mut counts = vec![0; self.sets.len()];
+        self.mover.world().records.iter().for_each(|record| counts[record.species as usize] += 1);
+        counts
+    }
+
+    /// Radius of the balls, where all have the same.
+    pub(super) fn only_radius(&self) -> Option<f64> {
+        let kinds = &self.mover.world().kinds;
+        kinds.windows(2).all(|pair| pair[0].radius == pair[1].radius).then(|| kinds[0].radius)
+    }
+
     /// Pressure on a wall, the lower (0) or upper (1) along an axis, since averages began.
     pub fn pressure_on(&self, axis: usize, end: usize) -> Estimate {
-        use crate::world::Facing::{Down, Up};
-        let (facing, sign) = if end == 0 { (Up, -1.0) } else { (Down, 1.0) };
-        let wall = self.mover.world().walls.iter().position(|wall| wall.axis == axis && wall.facing == facing);
-        match wall {
-            Some(wall) => self.measures.estimate(self.setup.measure.from, |samples| sign * pressure_on(samples, wall)),
+        match self.facing(axis, end) {
+            Some((wall, sign)) => {
+                self.measures.estimate(self.setup.measure.from, |samples| sign * pressure_on(samples, wall))
+            }
             None => Estimate { mean: f64::NAN, error: f64::NAN },
         }
+    }
+
+    /// Number of a wall, and the sign of the momentum that hits give it.
+    fn facing(&self, axis: usize, end: usize) -> Option<(usize, f64)> {
+        use crate::world::Facing::{Down, Up};
+        let (facing, sign) = if end == 0 { (Up, -1.0) } else { (Down, 1.0) };
+        let wall = self.mover.world().walls.iter().position(|wall| wall.axis == axis && wall.facing == facing)?;
+        Some((wall, sign))
+    }
+
+    /// Pressure on a wall over some samples; none where there is no wall.
+    pub(super) fn recent_pressure_on(&self, recent: &[Sample], axis: usize, end: usize) -> Option<f64> {
+        let (wall, sign) = self.facing(axis, end)?;
+        Some(if recent.len() > 1 { sign * pressure_on(recent, wall) } else { f64::NAN })
     }
 
     /// Pressure on all walls of the box together, since averages began; not a number without walls.
@@ -305,19 +331,36 @@ impl<const D: usize> Gas<D> {
 
     /// Looks at the gas at a time.
     pub(super) fn look(&mut self, time: f64) {
-        let snapshot = self.snapshot(time);
+        let mut snapshot = self.snapshot(time);
+        if self.sets.len() > 1 {
+            snapshot.sample.mixing = mixing_entropy(&snapshot, self.sets.len());
+        }
+        snapshot.sample.beyond = self.beyond(&snapshot);
         self.measures.look(&snapshot, &self.setup.measure);
+    }
+
+    /// Balls of each set beyond the partition, or beyond where it was; empty without one.
+    pub(super) fn beyond(&self, snapshot: &Snapshot<D>) -> Vec<f64> {
+        let Some(partition) = &self.setup.partition else { return Vec::new() };
+        let mut beyond = vec![0.0; self.sets.len()];
+        for (position, &set) in snapshot.position.iter().zip(&snapshot.set) {
+            if position[partition.axis] > partition.at {
+                beyond[set as usize] += 1.0;
+            }
+        }
+        beyond
     }
 
     fn sample(&self, time: f64) -> Sample {
         let world = self.mover.world();
         let now = world.in_window(time);
         let mut kinetic = ExactSum::default();
-        let (mut mass, mut momentum) = (0.0, [0.0; D]);
+        let (mut mass, mut momentum, mut under_way) = (0.0, [0.0; D], 0.0);
         for ball in 0..world.balls.len() {
             let (own, velocity) = (world.mass(ball), world.state(ball, now).1);
             kinetic.add(0.5 * own * velocity.iter().map(|v| v * v).sum::<f64>());
             mass += own;
+            under_way += speed(&velocity) * (now - world.balls[ball].time);
             for axis in 0..D {
                 momentum[axis] += own * velocity[axis];
             }
@@ -327,19 +370,31 @@ impl<const D: usize> Gas<D> {
         let drift = if bound { momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass) } else { 0.0 };
         let lengths: [f64; D] =
             std::array::from_fn(|axis| world.extent(axis, now)).map(|[low, high]: [f64; 2]| high - low);
+        // Centres stay a radius away from walls.
+        let radius = self.mean_radius();
+        let open: [f64; D] =
+            std::array::from_fn(|axis| lengths[axis] - if self.setup.repeats_along(axis) { 0.0 } else { 2.0 * radius });
         let area = |axis: usize| (0..D).filter(|&other| other != axis).map(|other| lengths[other]).product();
         Sample {
             time,
             temperature: 2.0 * (kinetic - drift) / (freedom * self.setup.boltzmann),
             kinetic,
             volume: lengths.iter().product(),
+            open: open.iter().product(),
             collisions: world.tally.collisions,
             virial: world.tally.virial,
-            path: world.tally.path,
+            path: world.tally.path + under_way,
             walls: world.wall_tallies.iter().map(|tally| tally.momentum.value()).collect(),
             areas: world.walls.iter().map(|wall| area(wall.axis)).collect(),
             displacement: Vec::new(),
+            mixing: f64::NAN,
+            beyond: Vec::new(),
         }
+    }
+
+    fn mean_radius(&self) -> f64 {
+        let world = self.mover.world();
+        (0..world.balls.len()).map(|ball| world.radius(ball)).sum::<f64>() / world.balls.len() as f64
     }
 
     pub(super) fn snapshot(&self, time: f64) -> Snapshot<D> {

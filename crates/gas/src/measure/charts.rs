@@ -1,71 +1,94 @@
 //! What was measured, as charts.
 
 use super::Measures;
-use crate::setup::Measure;
+use crate::gas::Set;
+use crate::setup::Setup;
+use crate::theory;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use std::f64::consts::PI;
 
+/// Fewer balls than this have no profile.
+const FEW: usize = 20;
+
 /// What charts need to know of the gas besides what was measured.
-pub(crate) struct Context<'a> {
-    pub names: &'a [String],
-    pub masses: &'a [f64],
-    pub colours: &'a [Option<String>],
-    pub boltzmann: f64,
+pub(crate) struct Context<'a, const D: usize> {
+    pub sets: &'a [Set],
+    /// Balls of each set.
+    pub counts: Vec<usize>,
+    pub setup: &'a Setup<D>,
+    /// Radius of the balls, where all have the same.
+    pub radius: Option<f64>,
     pub si: bool,
     /// Box along the profile's axis.
     pub extent: [f64; 2],
     pub p_value: f64,
 }
 
-fn axis(label: &str, unit: &str) -> ChartAxis {
+pub(super) fn axis(label: &str, unit: &str) -> ChartAxis {
     ChartAxis { label: label.into(), unit: unit.into(), logarithmic: false }
 }
 
-impl Context<'_> {
-    fn unit(&self, si: &'static str) -> &'static str {
+pub(super) fn logarithmic(axis: ChartAxis) -> ChartAxis {
+    ChartAxis { logarithmic: true, ..axis }
+}
+
+pub(super) fn theory_series(name: &str, points: Vec<[f64; 2]>) -> ChartSeries {
+    ChartSeries { name: name.into(), style: ChartStyle::Dashes, points, ..ChartSeries::default() }
+}
+
+impl<const D: usize> Context<'_, D> {
+    pub(super) fn unit(&self, si: &'static str) -> &'static str {
         if self.si { si } else { "" }
     }
 
-    fn series(&self, set: usize, style: ChartStyle, points: Vec<[f64; 2]>) -> ChartSeries {
-        ChartSeries {
-            name: self.names[set].clone(),
-            style,
-            points,
-            errors: Vec::new(),
-            colour: self.colours[set].clone(),
-        }
+    pub(super) fn series(&self, set: usize, style: ChartStyle, points: Vec<[f64; 2]>) -> ChartSeries {
+        let Set { name, colour, .. } = &self.sets[set];
+        ChartSeries { name: name.clone(), style, points, errors: Vec::new(), colour: colour.clone() }
+    }
+
+    /// Packing of the whole in a volume, where all balls are of one kind.
+    pub(super) fn packing(&self, volume: f64) -> Option<f64> {
+        let count = self.counts.iter().sum::<usize>() as f64;
+        Some(count * crate::ball_volume::<D>(self.radius?) / volume)
     }
 }
 
 impl Measures {
     /// All charts that there is something to show in.
-    pub fn charts<const D: usize>(&self, context: &Context, measure: &Measure) -> Vec<Chart> {
-        let mut charts = Vec::new();
+    pub fn charts<const D: usize>(&self, context: &Context<D>) -> Vec<Chart> {
+        let mut charts = self.laws(context);
         if self.looks > 0 {
-            for set in 0..context.names.len() {
+            for set in 0..context.sets.len() {
                 charts.push(self.speeds::<D>(context, set));
                 charts.push(self.velocities(context, set));
             }
-            charts.push(self.profile(context, measure));
+            charts.push(self.profile(context));
             if self.pairs.expected > 0.0 {
-                charts.push(self.pair_chart::<D>(context));
+                charts.push(self.pair_chart(context));
             }
-            charts.push(self.displacement_chart::<D>(context));
-        }
-        if self.samples.len() > 1 {
-            charts.push(self.temperature_chart(context));
+            charts.push(self.displacement_chart(context));
         }
         charts
     }
 
     /// Name of a set's chart: the plain one where there is only one set.
-    fn chart_name(context: &Context, name: &str, set: usize) -> String {
-        if context.names.len() == 1 { name.into() } else { format!("{name}_{}", context.names[set].replace('-', "_")) }
+    fn chart_name<const D: usize>(context: &Context<D>, name: &str, set: usize) -> String {
+        let own = &context.sets[set].name;
+        if context.sets.len() == 1 { name.into() } else { format!("{name}_{}", own.replace(['-', ' '], "_")) }
     }
 
-    fn speeds<const D: usize>(&self, context: &Context, set: usize) -> Chart {
-        let largest = self.largest[set];
-        let thermal2 = context.boltzmann * self.temperature() / context.masses[set];
+    /// What stands beside the speeds of a gas that cools.
+    fn speed_axis<const D: usize>(&self, context: &Context<D>, label: &str) -> ChartAxis {
+        let cooled = if self.cools { ", as if it had not cooled" } else { "" };
+        axis(&format!("{label}{cooled}"), context.unit("m/s"))
+    }
+
+    fn thermal_squared<const D: usize>(&self, context: &Context<D>, set: usize) -> f64 {
+        context.setup.boltzmann * self.temperature() / context.sets[set].mass
+    }
+
+    fn speeds<const D: usize>(&self, context: &Context<D>, set: usize) -> Chart {
+        let (largest, thermal2) = (self.largest[set], self.thermal_squared(context, set));
         // Maxwell 1860; in two dimensions the same as Rayleigh's.
         let maxwell = |v: f64| {
             let gauss = (-v * v / (2.0 * thermal2)).exp();
@@ -74,61 +97,92 @@ impl Measures {
         let curve = (0..=200).map(|step| f64::from(step) / 200.0 * largest).map(|v| [v, maxwell(v)]).collect();
         Chart {
             name: Self::chart_name(context, "speed_histogram", set),
-            title: format!("Speeds: {}", context.names[set]),
-            x: axis("Speed", context.unit("m/s")),
+            title: format!("Speeds: {}", context.sets[set].name),
+            x: self.speed_axis(context, "Speed"),
             y: axis("Probability density", context.unit("s/m")),
             series: vec![
                 context.series(set, ChartStyle::Bars, density(&self.speeds[set], 0.0, largest)),
-                theory("Maxwell", curve),
+                theory_series("Maxwell", curve),
             ],
-            note: if context.p_value.is_nan() {
-                String::new()
-            } else {
-                format!("chi-square test of all speeds now: p = {:.3}", context.p_value)
+            note: match context.p_value {
+                p if p.is_nan() => String::new(),
+                p if p < 0.001 => "chi-square test of all speeds now: p < 0.001".into(),
+                p => format!("chi-square test of all speeds now: p = {p:.3}"),
             },
         }
     }
 
-    fn velocities(&self, context: &Context, set: usize) -> Chart {
-        let largest = self.largest[set];
-        let thermal2 = context.boltzmann * self.temperature() / context.masses[set];
+    fn velocities<const D: usize>(&self, context: &Context<D>, set: usize) -> Chart {
+        let (largest, thermal2) = (self.largest[set], self.thermal_squared(context, set));
         let gauss = |v: f64| (-v * v / (2.0 * thermal2)).exp() / (2.0 * PI * thermal2).sqrt();
         let curve = (-100..=100).map(|step| f64::from(step) / 100.0 * largest).map(|v| [v, gauss(v)]).collect();
         Chart {
             name: Self::chart_name(context, "velocity_histogram", set),
-            title: format!("Velocities along x: {}", context.names[set]),
-            x: axis("Velocity along x", context.unit("m/s")),
+            title: format!("Velocities along x: {}", context.sets[set].name),
+            x: self.speed_axis(context, "Velocity along x"),
             y: axis("Probability density", context.unit("s/m")),
             series: vec![
                 context.series(set, ChartStyle::Bars, density(&self.velocities[set], -largest, largest)),
-                theory("Maxwell", curve),
+                theory_series("Maxwell", curve),
             ],
             note: String::new(),
         }
     }
 
-    fn profile(&self, context: &Context, measure: &Measure) -> Chart {
-        let [low, high] = context.extent;
-        let all: u64 = self.profile.iter().flatten().sum();
-        let bins = measure.profile_bins as f64;
+    fn profile<const D: usize>(&self, context: &Context<D>) -> Chart {
+        let measure = &context.setup.measure;
+        let ([low, high], bins) = (context.extent, measure.profile_bins as f64);
         let relative = |counts: &[u64]| {
+            let all = counts.iter().sum::<u64>() as f64;
             let point = |(bin, &count): (usize, &u64)| {
-                [low + (bin as f64 + 0.5) / bins * (high - low), count as f64 * bins / all as f64]
+                [low + (bin as f64 + 0.5) / bins * (high - low), count as f64 * bins / all]
             };
             counts.iter().enumerate().map(point).collect::<Vec<[f64; 2]>>()
         };
-        let sets = self.profile.iter().enumerate();
+        let many = context.counts.iter().any(|&count| count >= FEW);
+        let sets = (0..context.sets.len()).filter(|&set| !many || context.counts[set] >= FEW);
+        let mut series: Vec<ChartSeries> =
+            sets.map(|set| context.series(set, ChartStyle::Line, relative(&self.profile[set]))).collect();
+        let laws = self.atmosphere(context);
+        let falls = !laws.is_empty();
+        series.extend(laws);
+        let name = ["x", "y", "z"][measure.profile_axis.min(D - 1)];
+        let y = axis("Number density over its mean", "");
         Chart {
             name: "density_profile".into(),
-            title: format!("Density along {}", ["x", "y", "z"][measure.profile_axis.min(2)]),
-            x: axis(["x", "y", "z"][measure.profile_axis.min(2)], context.unit("m")),
-            y: axis("Number density over the mean of all", ""),
-            series: sets.map(|(set, counts)| context.series(set, ChartStyle::Line, relative(counts))).collect(),
+            title: format!("Density along {name}"),
+            x: axis(name, context.unit("m")),
+            y: if falls { logarithmic(y) } else { y },
+            series,
             note: String::new(),
         }
     }
 
-    fn pair_chart<const D: usize>(&self, context: &Context) -> Chart {
+    /// Density over height under gravity along the profile's axis, over its mean: of points (Laplace's barometric law), and of
+    /// balls of the size that they have.
+    fn atmosphere<const D: usize>(&self, context: &Context<D>) -> Vec<ChartSeries> {
+        let (setup, [low, high]) = (context.setup, context.extent);
+        let axis = setup.measure.profile_axis.min(D - 1);
+        let (height, gravity) = (high - low, -setup.gravity[axis]);
+        let volume: f64 = self.samples.last().map_or(f64::NAN, |sample| sample.volume);
+        let Some(mean) = context.packing(volume).filter(|_| gravity > 0.0 && context.sets.len() == 1) else {
+            return Vec::new();
+        };
+        let weight = context.sets[0].mass * gravity * height / (setup.boltzmann * self.temperature());
+        let balls = theory::atmosphere::<D>(mean, weight);
+        let steps = balls.len() - 1;
+        let part = |step: usize| step as f64 / steps as f64;
+        let points = |part: f64| [low + part * height, weight * (-weight * part).exp() / (1.0 - (-weight).exp())];
+        vec![
+            theory_series("points: exp(-m g h / T)", (0..=steps).map(|step| points(part(step))).collect()),
+            theory_series(
+                "balls of this size",
+                balls.iter().enumerate().map(|(step, packing)| [low + part(step) * height, packing / mean]).collect(),
+            ),
+        ]
+    }
+
+    fn pair_chart<const D: usize>(&self, context: &Context<D>) -> Chart {
         Chart {
             name: "pair_distribution".into(),
             title: "Pair distribution g(r)".into(),
@@ -139,36 +193,22 @@ impl Measures {
         }
     }
 
-    fn displacement_chart<const D: usize>(&self, context: &Context) -> Chart {
+    fn displacement_chart<const D: usize>(&self, context: &Context<D>) -> Chart {
         let points = |set: usize| {
             let told = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
             told.map(|sample| [sample.time - self.started, sample.displacement[set]]).collect()
         };
+        // Of several sets one may be much slower than the others.
+        let scaled = |axis: ChartAxis| if context.sets.len() > 1 { logarithmic(axis) } else { axis };
         Chart {
             name: "mean_square_displacement".into(),
             title: "Mean-square displacement".into(),
-            x: axis("Time", context.unit("s")),
-            y: axis("Mean-square displacement", context.unit("m2")),
-            series: (0..context.names.len()).map(|set| context.series(set, ChartStyle::Line, points(set))).collect(),
+            x: scaled(axis("Time", context.unit("s"))),
+            y: scaled(axis("Mean-square displacement", context.unit("m²"))),
+            series: (0..context.sets.len()).map(|set| context.series(set, ChartStyle::Line, points(set))).collect(),
             note: if D == 2 { "In two dimensions the slope has no limit at late times.".into() } else { String::new() },
         }
     }
-
-    fn temperature_chart(&self, context: &Context) -> Chart {
-        let points = self.samples.iter().map(|sample| [sample.time, sample.temperature]).collect();
-        Chart {
-            name: "temperature".into(),
-            title: "Temperature".into(),
-            x: axis("Time", context.unit("s")),
-            y: axis("Temperature", context.unit("K")),
-            series: vec![ChartSeries { name: "temperature".into(), points, ..ChartSeries::default() }],
-            note: String::new(),
-        }
-    }
-}
-
-fn theory(name: &str, points: Vec<[f64; 2]>) -> ChartSeries {
-    ChartSeries { name: name.into(), style: ChartStyle::Dashes, points, ..ChartSeries::default() }
 }
 
 /// Counts in bars from `low` to `high` as a probability density.

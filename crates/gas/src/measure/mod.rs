@@ -2,6 +2,7 @@
 
 pub(crate) mod charts;
 pub(crate) mod estimate;
+mod laws;
 mod maxwell;
 mod mixing;
 mod pairs;
@@ -12,7 +13,7 @@ pub(crate) use maxwell::{Maxwell, p_value};
 pub(crate) use mixing::mixing_entropy;
 pub(crate) use sample::{Sample, Snapshot};
 
-use crate::setup::Measure;
+use crate::setup::{Measure, Setup};
 use pairs::Pairs;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +26,8 @@ pub(crate) struct Measures {
     pub samples: Vec<Sample>,
     /// Looks since averages began.
     pub looks: usize,
+    /// Speeds are counted as if the temperature had stayed: in a gas that cools by itself.
+    pub cools: bool,
     /// Counts of speeds for each set, bars of one width.
     pub speeds: Vec<Vec<u64>>,
     /// Counts of velocities along x for each set, from minus to plus the largest speed.
@@ -43,8 +46,10 @@ pub(crate) struct Measures {
 }
 
 impl Measures {
-    pub fn new(measure: &Measure, sets: usize, largest: Vec<f64>, pair_distance: f64) -> Self {
+    pub fn new<const D: usize>(setup: &Setup<D>, sets: usize, largest: Vec<f64>) -> Self {
+        let measure = &setup.measure;
         Measures {
+            cools: setup.restitution < 1.0,
             samples: Vec::new(),
             looks: 0,
             speeds: vec![vec![0; measure.speed_bins]; sets],
@@ -52,7 +57,7 @@ impl Measures {
             largest,
             temperatures: 0.0,
             profile: vec![vec![0; measure.profile_bins]; sets],
-            pairs: Pairs::new(pair_distance, measure.pair_bins),
+            pairs: Pairs::new(setup.pair_distance(), measure.pair_bins),
             starts: Vec::new(),
             started: f64::NAN,
         }
@@ -88,15 +93,18 @@ impl Measures {
     fn count<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
         let axis = measure.profile_axis.min(D - 1);
         let [low, high] = snapshot.extent[axis];
+        let now = snapshot.sample.temperature;
+        let first = self.samples.first().map_or(now, |sample| sample.temperature);
+        let (temperature, factor) = if self.cools { (first, (first / now).sqrt()) } else { (now, 1.0) };
         for (number, velocity) in snapshot.velocity.iter().enumerate() {
             let set = snapshot.set[number] as usize;
-            let speed = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let speed = factor * velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
             let largest = self.largest[set];
             tally(&mut self.speeds[set], speed / largest);
-            tally(&mut self.velocities[set], 0.5 + 0.5 * velocity[0] / largest);
+            tally(&mut self.velocities[set], 0.5 + 0.5 * factor * velocity[0] / largest);
             tally(&mut self.profile[set], (snapshot.position[number][axis] - low) / (high - low));
         }
-        self.temperatures += snapshot.sample.temperature;
+        self.temperatures += temperature;
         if self.looks.is_multiple_of(LOOKS_PER_PAIRS) {
             self.pairs.count(snapshot);
         }

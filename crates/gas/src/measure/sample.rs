@@ -9,6 +9,8 @@ pub(crate) struct Sample {
     pub temperature: f64,
     pub kinetic: f64,
     pub volume: f64,
+    /// Area (in three dimensions volume) open to the balls' centres.
+    pub open: f64,
     /// Counts and sums since the start.
     pub collisions: u64,
     pub virial: f64,
@@ -19,6 +21,10 @@ pub(crate) struct Sample {
     pub areas: Vec<f64>,
     /// Mean-square displacement of each set since averages began.
     pub displacement: Vec<f64>,
+    /// Entropy of mixing, where there are several sets.
+    pub mixing: f64,
+    /// Balls of each set beyond the partition.
+    pub beyond: Vec<f64>,
 }
 
 /// The gas at one time, ball by ball in order of their numbers.

@@ -95,7 +95,8 @@ fn charts_gauges_and_path_are_given() {
     assert!(path.times.len() > 3 && path.times.windows(2).all(|pair| pair[0] <= pair[1]));
     assert_eq!(*path.times.last().unwrap(), 20.0);
     // Straight from bend to bend, at the ball's speed: every density integrates to one.
-    let speeds = &gas.charts()[0].series[0].points;
+    let speeds =
+        gas.charts().into_iter().find(|chart| chart.name == "speed_histogram").unwrap().series.remove(0).points;
     let width = speeds[1][0] - speeds[0][0];
     assert!((speeds.iter().map(|point| point[1] * width).sum::<f64>() - 1.0).abs() < 1e-9);
     let errors: Vec<f64> = gas.ledger().balances.iter().map(|balance| balance.relative_error().abs()).collect();

@@ -15,10 +15,10 @@ pub(super) const ADIABATIC: Case = Case {
 
 fn adiabatic(_: &Options) -> Vec<Row> {
     let measure = || {
-        let mut rows = Compression { size: [1000.0, 500.0], packing: 0.001, to: 0.5, speed: 0.01 }.rows("dilute")?;
+        let mut rows = Compression { size: [1000.0, 500.0], packing: 0.001, to: 0.5, speed: 0.02 }.rows("dilute")?;
         rows.extend(Compression { size: [300.0, 20.0, 20.0], packing: 0.001, to: 0.5, speed: 0.005 }.rows("dilute")?);
-        rows.extend(Compression { size: [300.0, 12.0], packing: 0.3, to: 0.75, speed: 0.05 }.rows("30")?);
-        rows.extend(Compression { size: [300.0, 6.0, 6.0], packing: 0.3, to: 0.8, speed: 0.2 }.rows("30")?);
+        rows.extend(Compression { size: [300.0, 20.0], packing: 0.3, to: 0.8, speed: 0.05 }.rows("30")?);
+        rows.extend(Compression { size: [300.0, 5.0, 5.0], packing: 0.3, to: 0.85, speed: 0.2 }.rows("30")?);
         rows.push(reflection()?);
         Ok(rows)
     };

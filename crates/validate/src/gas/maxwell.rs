@@ -18,6 +18,7 @@ fn maxwell(_: &Options) -> Vec<Row> {
         let mut rows = speeds::<2>()?;
         rows.extend(speeds::<3>()?);
         rows.extend(long_run()?);
+        rows.push(at_hits()?);
         rows.extend(there_and_back()?);
         Ok(rows)
     };
@@ -79,6 +80,22 @@ fn long_run() -> Result<Vec<Row>, ModelError> {
         row("relative_energy_drift", drift, 1e-11),
         row("deepest_overlap_over_radius", overlap, 1e-9),
     ])
+}
+
+/// Deepest overlap at the moments of one ball's hits, when balls touch: a first run tells when, a second stops there.
+fn at_hits() -> Result<Row, ModelError> {
+    let mut setup = classroom();
+    setup.follow = Some(0);
+    let mut gas = setup.build()?;
+    advance(&mut gas, 2000.0)?;
+    let hits = gas.path();
+    let mut gas = classroom().build()?;
+    let mut overlap = 0.0_f64;
+    for (time, _) in hits {
+        advance(&mut gas, time)?;
+        overlap = overlap.max(gas.deepest_overlap());
+    }
+    Ok(row("deepest_overlap_at_hits_over_radius", overlap, 1e-9))
 }
 
 /// Farthest that a ball is from its start, over its radius, after so many collisions of each ball and all the way back.

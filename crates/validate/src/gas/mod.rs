@@ -1,6 +1,7 @@
 //! Cases of the gas model.
 
 mod adiabatic;
+pub(crate) mod bench;
 mod brownian;
 mod enskog;
 mod equation_of_state;

@@ -2,11 +2,12 @@
 
 use crate::GaugeTable;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn};
-use corpuscle_scene::{Gas, Units};
+use corpuscle_scene::{Gas, Speeds, Units};
 
 /// What is charted, and the quantities that belong there; in the report's order.
-const KINDS: [(&str, &[(&str, &str)]); 9] = [
+const KINDS: [(&str, &[(&str, &str)]); 10] = [
     ("Pressure", &[("pressure_virial", "from collisions"), ("pressure_walls", "on the walls")]),
+    ("Pressure on the walls", &[("pressure", "")]),
     ("Temperature", &[("temperature", "")]),
     ("Energy", &[("kinetic_energy", "kinetic"), ("energy", "all"), ("work", "work and heat")]),
     ("Place of the wall", &[("position", "")]),
@@ -20,13 +21,40 @@ const KINDS: [(&str, &[(&str, &str)]); 9] = [
 /// A chart for each kind of quantity that changes. What the model charts itself has none.
 pub(super) fn over_time(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable, known: &[Chart]) -> Vec<Chart> {
     let drawn = |(title, quantities): &(&str, &[(&str, &str)])| {
-        let of_kind = |index: &usize| quantities.iter().any(|(quantity, _)| columns[*index].quantity == *quantity);
+        let of_kind = |index: &usize| {
+            is_told(gas, &columns[*index])
+                && quantities.iter().any(|(quantity, _)| columns[*index].quantity == *quantity)
+        };
         let members: Vec<usize> = (0..columns.len()).filter(of_kind).filter(|index| changes(table, *index)).collect();
         let name = quantities[0].0;
         let is_known = known.iter().any(|chart| chart.name == name);
         (!members.is_empty() && !is_known).then(|| chart(gas, columns, table, (title, quantities), &members))
     };
     KINDS.iter().filter_map(drawn).collect()
+}
+
+/// False for what says nothing in this gas: one pressure for all of a box with a partition or gravity in it, or else that on
+/// each wall; energy that is all kinetic, or goes as the temperature does; agreement with Maxwell where it was there from the
+/// start; mixing where nothing parts the kinds at first.
+fn is_told(gas: &Gas, column: &GaugeColumn) -> bool {
+    let parted = gas.partition.as_ref().map(|partition| partition.axis.index());
+    let uneven = parted.or_else(|| gas.gravity().iter().position(|&gravity| gravity != 0.0));
+    match column.quantity {
+        "pressure_virial" | "pressure_walls" => uneven.is_none(),
+        "pressure" => uneven.is_some_and(|axis| column.gauge.starts_with(["x", "y", "z"][axis])),
+        "energy" => gas.gravity() != [0.0; 3],
+        "kinetic_energy" => gas.restitution == 1.0,
+        "maxwell_p_value" => gas.species.iter().any(|species| species.speeds == Speeds::Equal),
+        "mixing_entropy" => gas.partition.as_ref().is_some_and(|partition| partition.lifted_at_s.is_some()),
+        _ => true,
+    }
+}
+
+/// The colour of a kind of balls.
+fn colour_of(gas: &Gas, name: &str) -> Option<String> {
+    let species = gas.species.iter().map(|species| (&species.name, &species.colour));
+    let balls = gas.ball.iter().map(|ball| (&ball.name, &ball.colour));
+    species.chain(balls).find(|(known, _)| *known == name)?.1.clone()
 }
 
 /// True where a column has different values, beyond rounding.
@@ -53,7 +81,7 @@ fn chart(
             (false, words) => words.to_owned(),
         };
         let points = table.times.iter().zip(&table.rows).map(|(time, row)| [*time, row[index]]).collect();
-        ChartSeries { name, points, ..ChartSeries::default() }
+        ChartSeries { name, points, colour: colour_of(gas, gauge), ..ChartSeries::default() }
     });
     let time = if gas.units == Units::Si { "s" } else { "" };
     Chart {
@@ -68,6 +96,8 @@ fn chart(
 
 /// A unit of a file's header as it is printed: `m2_per_s` as `m²/s`.
 fn printed(unit: &str) -> String {
+    // What counts up has no unit above the line: `per_s` is 1/s.
+    let unit = unit.strip_prefix("per_").map_or_else(|| unit.to_owned(), |below| format!("1/{below}"));
     unit.replace("_per_", "/").replace("m2", "m²").replace("m3", "m³").replace("s2", "s²")
 }
 

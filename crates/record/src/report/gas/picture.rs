@@ -71,8 +71,14 @@ fn key(gas: &Gas, frame: &Frame) -> Key {
     Key::Kinds(frame.sets.iter().map(kind).collect())
 }
 
-/// The speed that has the last colour: the same at all times, so that pictures can be compared.
+/// The speed that has the last colour: the same at all times, so that pictures can be compared; in a gas that cools by itself
+/// that of the moment.
 fn fastest(gas: &Gas, frame: &Frame) -> f64 {
+    if gas.restitution < 1.0 {
+        let squares = || frame.sets.iter().flat_map(|set| &set.velocity).map(|velocity| length(*velocity).powi(2));
+        let mean = squares().sum::<f64>() / squares().count() as f64;
+        return if mean > 0.0 { FASTEST * mean.sqrt() } else { 1.0 };
+    }
     let freedom = gas.dimensions() as f64 * gas.units.boltzmann();
     let thermal = gas.species.iter().map(|species| (freedom * species.temperature / species.mass).sqrt());
     let given = gas.ball.iter().filter_map(|ball| ball.velocity.as_deref()).map(|velocity| length(padded(velocity)));
