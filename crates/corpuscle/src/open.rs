@@ -2,6 +2,7 @@
 
 use crate::{Error, Simulation};
 use corpuscle_flood::Flood;
+use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
 use corpuscle_terrain::Terrain;

@@ -54,7 +54,7 @@ impl Sampler<'_> {
     /// The share of the surroundings of (x, y) that images beyond walls and periodic sides cover.
     fn covered_by_images(&self, x: f64, y: f64) -> f64 {
         let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
-        let places = cells.ranges(x, y, 1.1 * cells.reach_at(x, y)).into_iter().flatten();
+        let places = cells.ranges(x, y, 1.1 * cells.reach_at(x, y)).flatten();
         let weight = |place: usize| {
             let image = images.binary_search_by_key(&(place as u32), |(image, _)| *image).ok()?;
             let shown = &self.particles[particle[images[image].1 as usize] as usize];

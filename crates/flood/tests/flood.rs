@@ -68,6 +68,7 @@ fn water_reaches_up_to_walls_and_periodic_sides() {
         terrain.plane.extent = { length_m = 40, width_m = 30, cell_m = 0.5 }
         [flood]
         spacing_m = 3
+        paper.smoothing_length_m = 8
         water = [{ depth_m = 1 }]
         edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
     "#;
