@@ -116,6 +116,7 @@ impl Flood {
                     gravity: flood.gravity_m_per_s2,
                     eta: flood.balanced.smoothing,
                     largest_h: flood.balanced.largest_smoothing * h,
+                    viscosity: flood.balanced.viscosity,
                     cfl: flood.balanced.cfl,
                     longest_step: flood.balanced.cfl * h / shallow,
                 };
@@ -239,6 +240,7 @@ impl Flood {
 
     /// Sorts the particles into cells as large as they need them now.
     fn arrange(&mut self) {
+        let smoothing = self.smoothing();
         let State { particles, cell_size, .. } = &mut self.state;
         let renew_block = |particles: &mut [Particle]| {
             let renewed = particles.iter_mut().map(|particle| {
@@ -249,7 +251,7 @@ impl Flood {
         };
         particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.of_blocks);
         if !particles.is_empty() {
-            *cell_size = CELL_OVER_H * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
+            *cell_size = CELL_OVER_H * smoothing * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
         }
         self.scheme.arrange(particles, &self.surroundings, *cell_size);
     }

@@ -10,7 +10,7 @@
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::edges::EdgeRule;
 use crate::particle::Particle;
-use crate::scheme::{Evaluation, Scheme, Surroundings};
+use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::Paper as Parameters;
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
@@ -26,7 +26,8 @@ struct Parcel {
     y: f64,
     u: f64,
     v: f64,
-    mass: f64,
+    /// Area that it stands for, mass over density, m2.
+    area: f64,
     density: f64,
     pressure: f64,
     h: f64,
@@ -40,6 +41,7 @@ pub(crate) struct Paper {
     parcels: Vec<Parcel>,
     densities: Vec<f64>,
     accelerations: Vec<[f64; 2]>,
+    of_groups: Vec<[f64; 2]>,
     spare: Vec<Particle>,
 }
 
@@ -52,6 +54,7 @@ impl Paper {
             parcels: Vec::new(),
             densities: Vec::new(),
             accelerations: Vec::new(),
+            of_groups: Vec::new(),
             spare: Vec::new(),
         }
     }
@@ -65,11 +68,14 @@ impl Paper {
         // same, and each list is read once only.
         lists.search(cells, x, y, reach_squared, &mut self.densities, &NumberDensities { reach_squared });
         debug_assert_eq!(entries.len(), x.len());
-        particles.par_iter_mut().zip(&*real).for_each(|(particle, &place)| {
-            let density = rho0 * particle.volume * self.densities[place as usize];
-            particle.depth = density / rho0;
-            particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
-            (particle.ground, particle.ground_slope) = surroundings.ground(particle.x, particle.y);
+        let groups = particles.par_chunks_mut(TOGETHER).zip(real.par_chunks(TOGETHER));
+        groups.for_each(|(particles, places)| {
+            surroundings.find_ground(particles);
+            for (particle, &place) in particles.iter_mut().zip(places) {
+                let density = rho0 * particle.volume * self.densities[place as usize];
+                particle.depth = density / rho0;
+                particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
+            }
         });
     }
 
@@ -88,7 +94,7 @@ impl Paper {
                 y: particle.y,
                 u: particle.u,
                 v: particle.v,
-                mass: rho0 * particle.volume,
+                area: particle.area(),
                 density,
                 pressure: if clip_negative_pressure { pressure.max(0.0) } else { pressure },
                 h: particle.h,
@@ -110,52 +116,72 @@ impl Paper {
     }
 
     /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
-    fn take_over(&self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
-        particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &place)| {
-            if particle.outside.is_some() {
-                [particle.ax, particle.ay] = [0.0; 2];
-                return;
+    fn take_over(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
+        let controlled = self.parameters.control_force && step > 0.0;
+        let Self { parameters, gravity, accelerations, of_groups, .. } = self;
+        let groups = particles.par_chunks_mut(CONTROLLED).zip(self.arrangement.real.par_chunks(CONTROLLED));
+        let of_group = |(particles, places): (&mut [Particle], &[u32])| {
+            let controls = if controlled {
+                control(parameters, particles, &surroundings.terrain, step)
+            } else {
+                [[0.0; 2]; CONTROLLED]
+            };
+            let mut sum = [0.0; 2];
+            for ((particle, &place), control) in particles.iter_mut().zip(places).zip(controls) {
+                let pairs = accelerations[place as usize];
+                let slope = particle.ground_slope;
+                let acceleration = [0, 1].map(|k| match particle.outside {
+                    None => pairs[k] - *gravity * slope[k] + control[k],
+                    Some(_) => 0.0,
+                });
+                [particle.ax, particle.ay] = acceleration;
+                sum = [0, 1].map(|k| sum[k] + particle.volume * acceleration[k]);
             }
-            let [mut ax, mut ay] = self.accelerations[place as usize];
-            let slope = particle.ground_slope;
-            ax -= self.gravity * slope[0];
-            ay -= self.gravity * slope[1];
-            if self.parameters.control_force && step > 0.0 {
-                let control = self.control(particle, &surroundings.terrain, step);
-                ax += control[0];
-                ay += control[1];
-            }
-            (particle.ax, particle.ay) = (ax, ay);
-        });
-        particles.iter().fold([0.0; 2], |sum, p| [sum[0] + p.volume * p.ax, sum[1] + p.volume * p.ay])
+            sum
+        };
+        groups.map(of_group).collect_into_vec(of_groups);
+        of_groups.iter().fold([0.0; 2], |all, group| [0, 1].map(|k| all[k] + group[k]))
     }
+}
 
-    /// The terrain-difference velocity control force: f = (h_D^2/4) (f_A + f_B + f_C + f_D) with f = (rho2D/rho3D) NP at
-    /// the corners of a square of side h_D = alpha h0 sqrt(rho0/rho).
-    ///
-    /// NP is the way between the ground points under a corner now (N) and at the step before (P). Our reading, for the
-    /// paper's units do not close: its size is |NP| in three dimensions, it acts against the horizontal motion, and it is
-    /// an acceleration times `control_strength`. It stops the motion at most.
-    fn control(&self, particle: &Particle, terrain: &Terrain, step: f64) -> [f64; 2] {
+/// Particles whose control forces are found together: each looks at four places of the ground.
+const CONTROLLED: usize = TOGETHER / 4;
+
+/// The terrain-difference velocity control force on some particles: f = (h_D^2/4) (f_A + f_B + f_C + f_D) with
+/// f = (rho2D/rho3D) NP at the corners of a square of side h_D = alpha h0 sqrt(rho0/rho).
+///
+/// NP is the way between the ground points under a corner now (N) and at the step before (P); the ground rises by its slope
+/// halfway times the way, which is exact to third order. Our reading, for the paper's units do not close: its size is |NP| in
+/// three dimensions, it acts against the horizontal motion, and it is an acceleration times `control_strength`. It stops
+/// the motion at most.
+fn control(parameters: &Parameters, particles: &[Particle], terrain: &Terrain, step: f64) -> [[f64; 2]; CONTROLLED] {
+    const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+    let [mut x, mut y] = [[0.0; TOGETHER]; 2];
+    for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
+        let Some(particle) = particles.get(k / 4) else { break };
+        let side = parameters.control_square * particle.next_h;
+        let [across, up] = CORNERS[k % 4];
+        *x = particle.x + across * side - 0.5 * step * particle.u;
+        *y = particle.y + up * side - 0.5 * step * particle.v;
+    }
+    let [_, slope_x, slope_y] = terrain.heights_and_slopes(&x, &y);
+    let mut controls = [[0.0; 2]; CONTROLLED];
+    for (number, (control, particle)) in controls.iter_mut().zip(particles).enumerate() {
         let speed = particle.speed();
         if speed == 0.0 {
-            return [0.0; 2];
+            continue;
         }
-        let side = self.parameters.control_square * particle.next_h;
         let (dx, dy) = (step * particle.u, step * particle.v);
-        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
-        let way: f64 = corners
-            .iter()
-            .map(|(cx, cy)| {
-                let (x, y) = (particle.x + cx * side, particle.y + cy * side);
-                let rise = terrain.height(x, y) - terrain.height(x - dx, y - dy);
-                (dx * dx + dy * dy + rise * rise).sqrt()
-            })
-            .sum();
-        let force = self.parameters.control_strength * 0.25 * side * side * particle.depth * way;
+        let ways = (4 * number..4 * number + 4).map(|k| {
+            let rise = slope_x[k] * dx + slope_y[k] * dy;
+            (dx * dx + dy * dy + rise * rise).sqrt()
+        });
+        let side = parameters.control_square * particle.next_h;
+        let force = parameters.control_strength * 0.25 * side * side * particle.depth * ways.sum::<f64>();
         let force = force.min(speed / step);
-        [-force * particle.u / speed, -force * particle.v / speed]
+        *control = [-force * particle.u / speed, -force * particle.v / speed];
     }
+    controls
 }
 
 /// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2; from the squares of the reaches h.
@@ -196,13 +222,12 @@ fn pair_forces<S: Simd>(
         let viscous = viscosity_laplacian(0.0, own.h) / own.h;
         let [mut fx, mut fy] = [Lanes::splat(simd, 0.0); 2];
         for (index, r) in arrangement.lists.of(i).lanes(simd) {
-            let [x, y, u, v, mass, density, pressure, _] = gather(simd, rows, index);
+            let [x, y, u, v, area, _, pressure, _] = gather(simd, rows, index);
             let (ex, ey) = (x - own.x, y - own.y);
             let inside = (own.h - r).positive();
-            let share = mass / density;
             // f = -sum m_j (p_i + p_j)/(2 rho_j) grad W + mu sum m_j (v_j - v_i)/rho_j lap W
-            let push = share * (pressure + own.pressure) * inside * inside * (0.5 * spiky) / r;
-            let drag = share * inside * (viscosity * viscous);
+            let push = area * (pressure + own.pressure) * inside * inside * (0.5 * spiky) / r;
+            let drag = area * inside * (viscosity * viscous);
             fx += drag * (u - own.u) - push * ex;
             fy += drag * (v - own.v) - push * ey;
         }

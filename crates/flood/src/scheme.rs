@@ -14,17 +14,26 @@ pub(crate) struct Surroundings {
     pub time: f64,
 }
 
+/// How many places of the ground are looked up together.
+pub(crate) const TOGETHER: usize = 64;
+
 impl Surroundings {
-    /// Height and slope of the ground. Beyond an edge it goes on as it falls towards it, and never rises.
-    pub fn ground(&self, x: f64, y: f64) -> (f64, [f64; 2]) {
-        let (height, slope) = self.terrain.height_and_slope(x, y);
+    /// Looks up the ground under [`TOGETHER`] particles, or fewer. Beyond an edge it goes on as it falls towards it, and never
+    /// rises.
+    pub fn find_ground(&self, particles: &mut [Particle]) {
+        let last = particles.len() - 1;
+        let places: [_; TOGETHER] = std::array::from_fn(|k| &particles[k.min(last)]);
+        let [heights, slopes_x, slopes_y] =
+            self.terrain.heights_and_slopes(&places.map(|particle| particle.x), &places.map(|particle| particle.y));
         let bounds = self.edges.bounds;
-        if bounds.contains(x, y) {
-            return (height, slope);
+        for (k, particle) in particles.iter_mut().enumerate() {
+            (particle.ground, particle.ground_slope) = (heights[k], [slopes_x[k], slopes_y[k]]);
+            if !bounds.contains(particle.x, particle.y) {
+                let dx = particle.x - particle.x.clamp(bounds.x_min, bounds.x_max);
+                let dy = particle.y - particle.y.clamp(bounds.y_min, bounds.y_max);
+                particle.ground += (slopes_x[k] * dx).min(0.0) + (slopes_y[k] * dy).min(0.0);
+            }
         }
-        let dx = x - x.clamp(bounds.x_min, bounds.x_max);
-        let dy = y - y.clamp(bounds.y_min, bounds.y_max);
-        (height + (slope[0] * dx).min(0.0) + (slope[1] * dy).min(0.0), slope)
     }
 
     /// The level at which the side over which a particle has left is held, m, if it is.

@@ -105,11 +105,13 @@ pub struct Balanced {
     pub smoothing: f64,
     /// Smoothing length at most this many times that in water of depth `spacing_depth_m`.
     pub largest_smoothing: f64,
+    /// Artificial viscosity, in shares of the dissipation of an unreconstructed Riemann problem.
+    pub viscosity: f64,
 }
 
 impl Default for Balanced {
     fn default() -> Self {
-        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0 }
+        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0, viscosity: 0.1 }
     }
 }
 

@@ -5,9 +5,10 @@
 
 mod cells;
 pub mod kernel;
-mod lanes;
 mod neighbours;
 
 pub use cells::{Cells, FEWEST};
-pub use lanes::{LANES, Lanes, LanesExt, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, gather};
+pub use corpuscle_lanes::{
+    LANES, Lanes, LanesExt, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, gather,
+};
 pub use neighbours::{BLOCK, FAR_AWAY, NeighbourLists, Neighbours, PairSum};

@@ -6,6 +6,8 @@
 //! property of Bernstein polynomials): the surface never over- or undershoots the data, makes no pits and no bumps of
 //! its own, and is exact for a plane.
 
+use bytemuck::{Pod, Zeroable};
+use corpuscle_lanes::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
 
 /// A slope is at most this many times the lesser of the two one-sided differences. 3 keeps an edge of a patch monotone
@@ -14,7 +16,7 @@ const STEEPEST: f64 = 1.5;
 
 /// What is known of the ground at one node, in units of cells: derivatives are differences per cell.
 /// In this order two neighbouring numbers are treated alike, which the compiler turns into vector instructions.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 struct Node {
     height: f64,
@@ -76,6 +78,69 @@ impl Surface {
         let slope_y = across(&dv, south_height, north_height, south_slope, north_slope);
         (height, [slope_x * self.per_metre[0], slope_y * self.per_metre[1]])
     }
+
+    /// [`Self::height_and_slope`] at [`LANES`] places at once, to the same bits: height, dz/dx, dz/dy.
+    #[inline(always)]
+    pub(crate) fn heights_and_slopes<S: Simd>(&self, simd: S, x: Lanes<S>, y: Lanes<S>) -> [Lanes<S>; 3] {
+        let (columns, u) = patches(simd, (x - self.corner[0]) * self.per_metre[0], self.patches[0]);
+        let (rows, v) = patches(simd, (y - self.corner[1]) * self.per_metre[1], self.patches[1]);
+        // Two neighbours in a row make eight numbers: west's and east's height, y-slope, x-slope and twist.
+        let numbers: &[f64] = bytemuck::must_cast_slice(&self.nodes);
+        let pairs = |north: usize| {
+            transposed(std::array::from_fn(
+                #[inline(always)]
+                |lane| {
+                    let west = 4 * ((rows[lane] + north) * self.stride + columns[lane]);
+                    Lanes::from_slice(simd, &numbers[west..west + LANES])
+                },
+            ))
+        };
+        let (south, north) = (pairs(0), pairs(1));
+        let (bu, du) = hermite_lanes(u);
+        let (bv, dv) = hermite_lanes(v);
+        let [south_height, south_slope] = along_lanes(&bu, &south);
+        let [north_height, north_slope] = along_lanes(&bu, &north);
+        let [south_dx, south_twist] = along_lanes(&du, &south);
+        let [north_dx, north_twist] = along_lanes(&du, &north);
+        let height = weighted(&bv, [south_height, north_height, south_slope, north_slope]);
+        let slope_x = weighted(&bv, [south_dx, north_dx, south_twist, north_twist]);
+        let slope_y = weighted(&dv, [south_height, north_height, south_slope, north_slope]);
+        [height, slope_x * self.per_metre[0], slope_y * self.per_metre[1]]
+    }
+}
+
+/// [`patch`] lane by lane.
+#[inline(always)]
+fn patches<S: Simd>(simd: S, position: Lanes<S>, patches: usize) -> ([usize; LANES], Lanes<S>) {
+    let position = position.max(0.0).min(patches as f64);
+    let places: [f64; LANES] = position.into();
+    let index = places.map(|place| (place as usize).min(patches - 1));
+    (index, position - Lanes::from_fn(simd, |lane| index[lane] as f64))
+}
+
+/// [`hermite`] lane by lane.
+#[inline(always)]
+fn hermite_lanes<S: Simd>(t: Lanes<S>) -> ([Lanes<S>; 4], [Lanes<S>; 4]) {
+    let s = 1.0 - t;
+    let right = t * t * (3.0 - 2.0 * t);
+    let rise = 6.0 * t * s;
+    ([1.0 - right, right, t * s * s, -t * t * s], [-rise, rise, s * (1.0 - 3.0 * t), t * (3.0 * t - 2.0)])
+}
+
+/// [`along`] lane by lane.
+#[inline(always)]
+fn along_lanes<S: Simd>(weights: &[Lanes<S>; 4], pair: &[Lanes<S>; LANES]) -> [Lanes<S>; 2] {
+    let [west_height, west_slope_y, west_slope_x, west_twist, east_height, east_slope_y, east_slope_x, east_twist] =
+        *pair;
+    [
+        weighted(weights, [west_height, east_height, west_slope_x, east_slope_x]),
+        weighted(weights, [west_slope_y, east_slope_y, west_twist, east_twist]),
+    ]
+}
+
+#[inline(always)]
+fn weighted<S: Simd>(w: &[Lanes<S>; 4], [p, q, dp, dq]: [Lanes<S>; 4]) -> Lanes<S> {
+    w[0] * p + w[1] * q + w[2] * dp + w[3] * dq
 }
 
 /// Two neighbours in a row.

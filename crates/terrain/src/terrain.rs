@@ -3,6 +3,7 @@
 use crate::frame::Frame;
 use crate::surface::Surface;
 use crate::{Bounds, MapGrid, TerrainError, file, generated};
+use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
 use corpuscle_scene::Terrain as Scene;
 use rayon::prelude::*;
 use std::fmt;
@@ -39,6 +40,25 @@ impl fmt::Debug for Ground {
             Self::Function(_) => "Function",
             Self::Surface(_) => "Surface",
         })
+    }
+}
+
+#[inline(always)]
+fn on_surface<S: Simd, const N: usize>(
+    simd: S,
+    surface: &Surface,
+    bounds: Bounds,
+    x: &[f64; N],
+    y: &[f64; N],
+    found: &mut [[f64; N]; 3],
+) {
+    for first in (0..N).step_by(LANES) {
+        let lanes = first..first + LANES;
+        let x = Lanes::from_slice(simd, &x[lanes.clone()]).max(bounds.x_min).min(bounds.x_max);
+        let y = Lanes::from_slice(simd, &y[lanes.clone()]).max(bounds.y_min).min(bounds.y_max);
+        for (found, lanes_found) in found.iter_mut().zip(surface.heights_and_slopes(simd, x, y)) {
+            lanes_found.store_slice(&mut found[lanes.clone()]);
+        }
     }
 }
 
@@ -109,6 +129,26 @@ impl Terrain {
             Ground::Surface(surface) => surface.height_and_slope(x, y),
             Ground::Function(function) => function(x, y),
         }
+    }
+
+    /// [`Self::height_and_slope`] at many places at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
+    /// `N` is a multiple of [`corpuscle_lanes::LANES`].
+    pub fn heights_and_slopes<const N: usize>(&self, x: &[f64; N], y: &[f64; N]) -> [[f64; N]; 3] {
+        const { assert!(N.is_multiple_of(LANES)) };
+        let mut found = [[0.0; N]; 3];
+        match &self.ground {
+            Ground::Surface(surface) => {
+                dispatch!(Level::new(), simd => on_surface(simd, surface, self.bounds, x, y, &mut found));
+            }
+            Ground::Function(function) => {
+                for k in 0..N {
+                    let [x, y] = self.bounds.nearest(x[k], y[k]);
+                    let (height, slope) = function(x, y);
+                    (found[0][k], [found[1][k], found[2][k]]) = (height, slope);
+                }
+            }
+        }
+        found
     }
 
     /// The terrain's own grid, on which maps are given back.

@@ -1,6 +1,6 @@
 //! Pair forces: a Riemann problem across the area that two particles share.
 
-use super::{Column, Slopes};
+use super::{Column, Parameters, Slopes};
 use crate::arrangement::Arrangement;
 use corpuscle_sph::kernel::cubic_spline;
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch, gather};
@@ -21,21 +21,21 @@ const SHARED: f64 = 3.0;
 
 /// Finds the forces on all particles.
 pub(super) fn find(
-    gravity: f64,
+    parameters: &Parameters,
     arrangement: &Arrangement,
     columns: &[Column],
     slopes: &[Slopes],
     forces: &mut [Force],
 ) {
     forces.par_chunks_mut(BLOCK).enumerate().for_each(|(block, forces)| {
-        dispatch!(Level::new(), simd => find_block(simd, gravity, arrangement, columns, slopes, block * BLOCK, forces));
+        dispatch!(Level::new(), simd => find_block(simd, parameters, arrangement, columns, slopes, block * BLOCK, forces));
     });
 }
 
 #[inline(always)]
 fn find_block<S: Simd>(
     simd: S,
-    gravity: f64,
+    parameters: &Parameters,
     arrangement: &Arrangement,
     columns: &[Column],
     slopes: &[Slopes],
@@ -43,7 +43,7 @@ fn find_block<S: Simd>(
     forces: &mut [Force],
 ) {
     for (k, force) in forces.iter_mut().enumerate() {
-        *force = on_one(simd, gravity, columns, slopes, arrangement.lists.of(first + k), first + k);
+        *force = on_one(simd, parameters, columns, slopes, arrangement.lists.of(first + k), first + k);
     }
 }
 
@@ -57,7 +57,15 @@ fn limited<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
 }
 
 #[inline(always)]
-fn on_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], slopes: &[Slopes], list: Neighbours, i: usize) -> Force {
+fn on_one<S: Simd>(
+    simd: S,
+    parameters: &Parameters,
+    columns: &[Column],
+    slopes: &[Slopes],
+    list: Neighbours,
+    i: usize,
+) -> Force {
+    let &Parameters { gravity, viscosity, .. } = parameters;
     let column_rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
     let slope_rows: &[[f64; LANES]] = bytemuck::must_cast_slice(slopes);
     let own = columns[i];
@@ -117,19 +125,26 @@ fn on_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], slopes: &[Slopes],
         let pressure_j = depth_j * depth_j * (0.5 * gravity);
         let impedance_i = depth_i * sloped.wave_speed;
         let impedance_j = depth_j * wave_speed;
+        let inverse_sum = 1.0 / (impedance_i + impedance_j);
+        let both = impedance_i * impedance_j * inverse_sum;
         let pressure =
-            ((impedance_j * pressure_i + impedance_i * pressure_j + impedance_i * impedance_j * (w_i - w_j))
-                / (impedance_i + impedance_j))
-                .positive();
+            ((impedance_j * pressure_i + impedance_i * pressure_j) * inverse_sum + both * (w_i - w_j)).positive();
 
         // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
         let own_depth = (own.surface - middle).positive();
         let ground_push = own_pressure - (own_depth * own_depth) * (0.5 * gravity);
         fx += area_x * (pressure + ground_push);
         fy += area_y * (pressure + ground_push);
+        // Artificial viscosity at signal speed (after Monaghan 1997, J. Comput. Phys. 136, 298), by the whole difference in
+        // velocity: the reconstruction takes the noise of disordered particles for slopes, and rough fast water never calms.
+        let drag = ((area_x * ex + area_y * ey) * inverse_r).positive() * both * viscosity;
+        let drag_x = drag * (own.u - u);
+        let drag_y = drag * (own.v - v);
+        fx += drag_x;
+        fy += drag_y;
         let external_push = pressure * outside + ground_push;
-        external_x += area_x * external_push;
-        external_y += area_y * external_push;
+        external_x += area_x * external_push + drag_x * outside;
+        external_y += area_y * external_push + drag_y * outside;
     }
     // Ground pushes by way of pairs; a particle without any slides down its slope as any body does.
     let volume = own.depth * own.area;

@@ -14,7 +14,7 @@ mod images;
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::density::{Densities, Density};
 use crate::particle::Particle;
-use crate::scheme::{Evaluation, Scheme, Surroundings};
+use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_sph::BLOCK;
 use forces::Force;
@@ -67,6 +67,8 @@ pub(crate) struct Parameters {
     pub eta: f64,
     /// Largest smoothing length, m.
     pub largest_h: f64,
+    /// Artificial viscosity, in shares of the dissipation of an unreconstructed Riemann problem.
+    pub viscosity: f64,
     /// Time step over (smoothing length / wave speed).
     pub cfl: f64,
     /// Time step where nothing moves, s.
@@ -111,14 +113,18 @@ impl Balanced {
     /// Hands depth, ground and next smoothing length to the particles.
     fn find_depths(&self, particles: &mut [Particle], surroundings: &Surroundings) {
         let Parameters { eta, largest_h, .. } = self.parameters;
-        particles.par_iter_mut().zip(&self.arrangement.real).for_each(|(particle, &place)| {
+        let find = |particle: &mut Particle, place: u32| {
             let density = &self.densities[place as usize];
             particle.depth = particle.volume * density.number;
             particle.next_h = density.next_h(particle.h, eta).min(largest_h);
-            (particle.ground, particle.ground_slope) = surroundings.ground(particle.x, particle.y);
             if let Some(level) = surroundings.stage(particle.outside) {
                 particle.depth = (level - particle.ground).max(SHALLOWEST_STAGE * particle.depth);
             }
+        };
+        let groups = particles.par_chunks_mut(TOGETHER).zip(self.arrangement.real.par_chunks(TOGETHER));
+        groups.for_each(|(particles, places)| {
+            surroundings.find_ground(particles);
+            particles.iter_mut().zip(places).for_each(|(particle, &place)| find(particle, place));
         });
     }
 
@@ -208,7 +214,7 @@ impl Scheme for Balanced {
         gradients::find(self.parameters.gravity, &self.arrangement, &self.columns, &mut self.slopes);
         self.turn_images(&surroundings.edges);
         self.forces.resize(self.arrangement.len(), Force::default());
-        forces::find(self.parameters.gravity, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
+        forces::find(&self.parameters, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
         self.take_over(particles)
     }
 

@@ -52,7 +52,10 @@ impl Check {
         self.require("flood.balanced.smoothing", (1.0..=4.0).contains(&balanced.smoothing), || {
             "must be from 1 to 4".into()
         })?;
-        self.at_least("flood.balanced.largest_smoothing", balanced.largest_smoothing, 1.0)
+        self.at_least("flood.balanced.largest_smoothing", balanced.largest_smoothing, 1.0)?;
+        self.require("flood.balanced.viscosity", (0.0..=1.0).contains(&balanced.viscosity), || {
+            "must be from 0 to 1".into()
+        })
     }
 
     fn paper(&self, paper: &Paper) -> Checked {

@@ -3,6 +3,8 @@
 //! Every operation used here gives the same bits on every processor: no fused multiplication and addition, and sums in
 //! one fixed order.
 
+#![warn(missing_docs)]
+
 use fearless_simd::f64x8;
 pub use fearless_simd::prelude::{Select, SimdBase, SimdFloat, SimdFrom, SimdMask};
 pub use fearless_simd::{Level, Simd, dispatch};
@@ -57,10 +59,15 @@ impl<S: Simd> LanesExt<S> for Lanes<S> {
 /// Whole rows in, then three rounds of interleaving: far fewer instructions than fetching number by number.
 #[inline(always)]
 pub fn gather<S: Simd>(simd: S, rows: &[[f64; LANES]], index: [usize; LANES]) -> [Lanes<S>; LANES] {
-    let mut rows = index.map(
+    transposed(index.map(
         #[inline(always)]
         |row| Lanes::simd_from(simd, rows[row]),
-    );
+    ))
+}
+
+/// Rows turned to columns: the k-th result holds the k-th number of every row.
+#[inline(always)]
+pub fn transposed<S: Simd>(mut rows: [Lanes<S>; LANES]) -> [Lanes<S>; LANES] {
     for _ in 0..3 {
         let [a, b, c, d, e, f, g, h] = rows;
         let ((a, e), (b, f), (c, g), (d, h)) = (a.interleave(e), b.interleave(f), c.interleave(g), d.interleave(h));
