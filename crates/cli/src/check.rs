@@ -27,8 +27,7 @@ const SHORTEST_PROBE: f64 = 1e-3;
 /// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
 
-/// Memory for each ball of a gas, bytes, measured: the ball, its next event, its place in cells and queue, and what is
-/// measured of it.
+/// Memory for each ball of a gas, bytes: 340 measured where no frames are written, and room to write them.
 const BYTES_PER_BALL: f64 = 500.0;
 
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
