@@ -34,8 +34,10 @@ fn the_valleys_gauges_and_inflow_are_in_the_channel() {
     let FloodScene { terrain, flood } = scene.flood().unwrap();
     let Terrain::Valley(valley) = terrain else { panic!("{terrain:?}") };
     let gauges = flood.gauge.iter().map(|gauge| gauge.at.unwrap());
+    // The inflow's line goes across the channel, from bank to bank.
     let ends = flood.inflow[0].line.clone().unwrap();
-    for [x, y] in gauges.chain(ends) {
+    let middle = [0, 1].map(|axis| 0.5 * (ends[0][axis] + ends[1][axis]));
+    for [x, y] in gauges.chain([middle]) {
         let centre = valley_centre(valley, scene.seed, x);
         assert!(
             (y - centre).abs() < 0.5 * valley.channel_width_m,
