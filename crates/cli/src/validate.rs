@@ -34,7 +34,8 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     }
     let count = |verdict: Option<bool>| rows.iter().filter(|row| row.pass == verdict).count();
     let failed = count(Some(false));
-    eprintln!("{} passed, {failed} failed, {} skipped", count(Some(true)), count(None));
+    let skipped = rows.iter().filter(|row| row.pass.is_none() && row.value.is_none()).count();
+    eprintln!("{} passed, {failed} failed, {skipped} skipped", count(Some(true)));
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
@@ -43,6 +44,7 @@ fn line(row: &Row) -> String {
     let verdict = match row.pass {
         Some(true) => "pass",
         Some(false) => "FAIL",
+        None if row.value.is_some() => "note",
         None => "skip",
     };
     let value = row.value.map_or("-".into(), number);
@@ -71,7 +73,9 @@ mod tests {
         let text = line(&row);
         let words = ["pass", "flood/stoker", "relative_l1_error_1m", "0.0015", "<= 0.0032 m/s"];
         assert!(words.iter().all(|word| text.contains(word)), "{text}");
-        (row.value, row.pass, row.reason) = (None, None, Some("no data".into()));
+        (row.pass, row.reason) = (None, Some("a peer's".into()));
+        assert!(line(&row).starts_with("note") && line(&row).contains("0.0015"));
+        (row.value, row.reason) = (None, Some("no data".into()));
         assert!(line(&row).starts_with("skip") && line(&row).contains("(no data)"));
     }
 }

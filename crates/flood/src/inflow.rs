@@ -1,9 +1,9 @@
 //! Water that comes in: at points, along lines, and at edges held at a level.
 
 use crate::edges::{EdgeRule, EdgeRules};
-use crate::ledger::ExactSum;
 use crate::particle::Particle;
 use crate::sampling::Sampler;
+use corpuscle_model::ExactSum;
 use corpuscle_scene::Table;
 use corpuscle_sph::kernel::cubic_spline;
 use rand::{RngExt, SeedableRng};

@@ -17,7 +17,6 @@ mod method;
 mod random;
 mod scene;
 mod setup;
-mod sum;
 pub mod theory;
 mod world;
 

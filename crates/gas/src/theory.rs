@@ -120,6 +120,7 @@ mod tests {
         agree(collision_rate::<3>(0.3, 0.5, 1.0), 10.102, 1e-4);
         agree(collision_rate::<3>(0.49, 0.5, 1.0), 37.78, 1e-4);
         agree(collision_rate::<2>(0.3, 0.5, 1.0), 2.3995, 1e-4);
+        agree(collision_rate::<2>(0.6, 0.5, 1.0), 12.311, 1e-4);
         // Half the size, four times the density, a third of the speed.
         agree(collision_rate::<2>(0.6, 0.25, 1.0 / 3.0), 12.311 * 2.0 / 3.0, 1e-4);
     }

@@ -19,9 +19,9 @@ pub struct Row {
     pub relation: String,
     /// The bound.
     pub bound: f64,
-    /// Whether the bound was kept; none where the case was skipped.
+    /// Whether the bound was kept; none where the case was skipped, or is only shown beside a peer's value.
     pub pass: Option<bool>,
-    /// Why the case was skipped.
+    /// Why the bound does not count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }
@@ -76,6 +76,11 @@ impl Row {
     /// A measure that must reach its bound.
     pub fn at_least(case: &str, measure: &str, value: f64, unit: &str, bound: f64) -> Self {
         Self::new(case, measure, value, unit, ">=", bound, value >= bound)
+    }
+
+    /// A measure that is known to miss what a peer gets: shown beside it, neither kept nor failed.
+    pub fn beside(case: &str, measure: &str, value: f64, unit: &str, peer: f64, why: &str) -> Self {
+        Self { pass: None, reason: Some(why.into()), ..Self::at_most(case, measure, value, unit, peer) }
     }
 
     /// A case that did not come to its end.

@@ -5,8 +5,8 @@ use crate::hash::Hash;
 use crate::measure::estimate::{average, change, duration};
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
 use crate::method::{Mover, Nearest};
-use crate::sum::ExactSum;
 use crate::world::speed;
+use corpuscle_model::ExactSum;
 
 /// Looks over which the pressure and such of the moment are taken.
 const RECENT: usize = 10;

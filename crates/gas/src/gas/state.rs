@@ -4,8 +4,8 @@ use super::Gas;
 use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
-use crate::sum::ExactSum;
 use crate::world::{Ball, NONE, Record, Tally, Wall, WallTally, World};
+use corpuscle_model::ExactSum;
 use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
 

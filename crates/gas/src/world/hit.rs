@@ -4,7 +4,7 @@ use super::contact::Mode;
 use super::wall::{Facing, Wall};
 use super::{World, speed};
 use crate::random::{flux, normal};
-use crate::sum::ExactSum;
+use corpuscle_model::ExactSum;
 use serde::{Deserialize, Serialize};
 
 /// Sums over the hits of a wall.

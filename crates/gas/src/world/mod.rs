@@ -12,7 +12,7 @@ pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straigh
 pub(crate) use hit::WallTally;
 pub(crate) use wall::{Facing, Wall, first_contact};
 
-use crate::sum::ExactSum;
+use corpuscle_model::ExactSum;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 

@@ -6,41 +6,35 @@ use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-pub(crate) const BENCHES: &[Bench] = &[
-    Bench { name: "gas/2d-0.30-10k", about: FLAT, run: |options| rate::<2>("gas/2d-0.30-10k", 10_000, 0.30, options) },
-    Bench {
-        name: "gas/2d-0.30-100k",
-        about: FLAT,
-        run: |options| rate::<2>("gas/2d-0.30-100k", 100_000, 0.30, options),
-    },
-    Bench { name: "gas/2d-0.30-1m", about: FLAT, run: |options| rate::<2>("gas/2d-0.30-1m", 1_000_000, 0.30, options) },
-    Bench { name: "gas/2d-0.60-10k", about: FLAT, run: |options| rate::<2>("gas/2d-0.60-10k", 10_000, 0.60, options) },
-    Bench {
-        name: "gas/2d-0.60-100k",
-        about: FLAT,
-        run: |options| rate::<2>("gas/2d-0.60-100k", 100_000, 0.60, options),
-    },
-    Bench { name: "gas/2d-0.60-1m", about: FLAT, run: |options| rate::<2>("gas/2d-0.60-1m", 1_000_000, 0.60, options) },
-    Bench { name: "gas/3d-0.30-10k", about: DEEP, run: |options| rate::<3>("gas/3d-0.30-10k", 10_000, 0.30, options) },
-    Bench {
-        name: "gas/3d-0.30-100k",
-        about: DEEP,
-        run: |options| rate::<3>("gas/3d-0.30-100k", 100_000, 0.30, options),
-    },
-    Bench { name: "gas/3d-0.30-1m", about: DEEP, run: |options| rate::<3>("gas/3d-0.30-1m", 1_000_000, 0.30, options) },
-    Bench { name: "gas/3d-0.49-10k", about: DEEP, run: |options| rate::<3>("gas/3d-0.49-10k", 10_000, 0.49, options) },
-    Bench {
-        name: "gas/3d-0.49-100k",
-        about: DEEP,
-        run: |options| rate::<3>("gas/3d-0.49-100k", 100_000, 0.49, options),
-    },
-    Bench { name: "gas/3d-0.49-1m", about: DEEP, run: |options| rate::<3>("gas/3d-0.49-1m", 1_000_000, 0.49, options) },
-];
+/// A bench by its dimensions, packing, and number of balls in words and digits.
+macro_rules! fluid {
+    ($dimensions:literal, $packing:literal, $words:literal, $count:literal) => {
+        Bench {
+            name: concat!("gas/", $dimensions, "d-", $packing, "-", $words),
+            about: "Equal balls in a periodic box, event-driven, after five collisions of each; dimensions, packing and \
+                    number by name.",
+            run: |options| {
+                let name = concat!("gas/", $dimensions, "d-", $packing, "-", $words);
+                rate::<$dimensions>(name, $count, $packing, options)
+            },
+        }
+    };
+}
 
-const FLAT: &str =
-    "Equal disks in a periodic square, event-driven, after five collisions of each: packing and number by name.";
-const DEEP: &str =
-    "Equal balls in a periodic cube, event-driven, after five collisions of each: packing and number by name.";
+pub(crate) const BENCHES: &[Bench] = &[
+    fluid!(2, 0.30, "10k", 10_000),
+    fluid!(2, 0.30, "100k", 100_000),
+    fluid!(2, 0.30, "1m", 1_000_000),
+    fluid!(2, 0.60, "10k", 10_000),
+    fluid!(2, 0.60, "100k", 100_000),
+    fluid!(2, 0.60, "1m", 1_000_000),
+    fluid!(3, 0.30, "10k", 10_000),
+    fluid!(3, 0.30, "100k", 100_000),
+    fluid!(3, 0.30, "1m", 1_000_000),
+    fluid!(3, 0.49, "10k", 10_000),
+    fluid!(3, 0.49, "100k", 100_000),
+    fluid!(3, 0.49, "1m", 1_000_000),
+];
 
 /// Collisions of two balls, over the number of balls, before the clock is started.
 const SETTLED: u64 = 5;
