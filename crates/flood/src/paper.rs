@@ -14,7 +14,7 @@ use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::Paper as Parameters;
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
-use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, PairSum, Simd, SimdBase, dispatch, gather};
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Near, Neighbours, PairSum, Simd, SimdBase, dispatch, gather};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -64,9 +64,10 @@ impl Paper {
         let Parameters { smoothing_length_m: h0, density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
         let Arrangement { cells, lists, x, y, reach_squared, entries, real, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), 0.0);
+        // Kernels at h_i: what a particle does not reach itself adds nothing.
         // All particles hold much the same water; the sum over W alone times the own mass is exact where they hold the
         // same, and each list is read once only.
-        lists.search(cells, x, y, reach_squared, &mut self.densities, &NumberDensities { reach_squared });
+        lists.search(Near::Reached, cells, x, y, reach_squared, &mut self.densities, &NumberDensities { reach_squared });
         debug_assert_eq!(entries.len(), x.len());
         let groups = particles.par_chunks_mut(TOGETHER).zip(real.par_chunks(TOGETHER));
         groups.for_each(|(particles, places)| {
