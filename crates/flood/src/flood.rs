@@ -124,8 +124,10 @@ impl Flood {
                 (Box::new(Balanced::new(parameters)), h)
             }
             SchemeName::Paper => {
-                let h = flood.paper.smoothing_length_m;
-                (Box::new(Paper::new(flood.paper.clone(), flood.gravity_m_per_s2)), h)
+                // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
+                let h = *flood.paper.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
+                flood.paper.radius_m.get_or_insert(0.5 * spacing);
+                (Box::new(Paper::new(flood.paper.clone(), h, flood.gravity_m_per_s2)), h)
             }
         };
         limits::check_blocks(flood, &terrain)?;
@@ -197,7 +199,7 @@ impl Flood {
             for particle in &mut particles {
                 [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
                 if flood.scheme == SchemeName::Paper {
-                    particle.h = flood.paper.smoothing_length_m;
+                    particle.h = self.h;
                 }
             }
             self.state.particles.append(&mut particles);
@@ -496,6 +498,9 @@ impl Flood {
     }
 }
 
+/// Smoothing length in Table 1 of scheme paper, over the root of the volume of its particles, m^(-1/2).
+const TABLE_1_SMOOTHING: f64 = 2.66;
+
 /// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in
 /// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
 const CELL_OVER_H_BALANCED: f64 = 1.2;
@@ -560,7 +565,7 @@ impl Model for Flood {
         let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
         let radius = |particle: &Particle| match self.settings.scheme {
             SchemeName::Balanced => 0.5 * particle.area().sqrt(),
-            SchemeName::Paper => self.settings.paper.radius_m,
+            SchemeName::Paper => self.settings.paper.radius_m.unwrap_or(0.5 * self.spacing),
         };
         let terrain = &self.surroundings.terrain;
         let on_ground = order.into_iter().map(|particle| {

@@ -38,6 +38,8 @@ struct Parcel {
 /// The scheme with its working memory.
 pub(crate) struct Paper {
     parameters: Parameters,
+    /// Initial smoothing length, m.
+    h0: f64,
     gravity: f64,
     arrangement: Arrangement,
     parcels: Vec<Parcel>,
@@ -48,9 +50,10 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    pub fn new(parameters: Parameters, gravity: f64) -> Self {
+    pub fn new(parameters: Parameters, h0: f64, gravity: f64) -> Self {
         Self {
             parameters,
+            h0,
             gravity,
             arrangement: Arrangement::default(),
             parcels: Vec::new(),
@@ -64,7 +67,8 @@ impl Paper {
     /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; h = h0 sqrt(rho0 / rho) for the next step; and what
     /// follows from them for the forces.
     fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings) {
-        let Parameters { smoothing_length_m: h0, density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
+        let Parameters { density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
+        let h0 = self.h0;
         let Arrangement { cells, lists, x, y, reach_squared, entries, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), 0.0);
         // Kernels at h_i: what a particle does not reach itself adds nothing. All particles hold much the same water; the
