@@ -199,7 +199,7 @@ impl Flood {
             for particle in &mut particles {
                 [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
                 if flood.scheme == SchemeName::Paper {
-                    particle.h = self.h;
+                    (particle.h, particle.next_h) = (self.h, self.h);
                 }
             }
             self.state.particles.append(&mut particles);
