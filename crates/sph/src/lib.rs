@@ -1,11 +1,12 @@
 //! What the particle models share: kernels, cells, neighbour lists, and lanes for vector arithmetic.
 //!
-//! Everything here gives the same bits for any number of threads: every particle gathers from its neighbours in one
-//! fixed order.
+//! The modules at the root work in the plane, [`space`] in three dimensions. Everything here gives the same bits for any
+//! number of threads: every particle gathers from its neighbours in one fixed order.
 
 mod cells;
 pub mod kernel;
 mod neighbours;
+pub mod space;
 
 pub use cells::{Cells, FEWEST};
 pub use corpuscle_lanes::{
