@@ -170,6 +170,22 @@ fn what_condenses_is_on_the_pane_or_has_dripped() {
 }
 
 #[test]
+fn shares_of_sites_sum_to_all_water_and_lie_where_it_is() {
+    let mut drops = on_pane(laws(), sites(40, 0.02));
+    for _ in 0..100 {
+        (0..1600).for_each(|site| drops.condense(site, WATER_DENSITY * 5e-6 * 0.25e-6));
+        drops.advance(1e-2);
+    }
+    drops.add(0, [0.0, 0.03, 0.0], [0.0; 3], half_ball(1e-3));
+    let shares = drops.shares();
+    let (water, covered) = shares.iter().fold((0.0, 0.0), |(w, c), share| (w + share.water, c + share.covered));
+    assert!((water / drops.water() - 1.0).abs() < 1e-12 && (covered / drops.covered_area() - 1.0).abs() < 1e-12);
+    // A drop beside all patches is that of the nearest, at y = 9.75 mm, z = -0.25 or 0.25 mm.
+    let (wettest, _) = shares.iter().enumerate().max_by(|a, b| a.1.water.total_cmp(&b.1.water)).unwrap();
+    assert!([39 * 40 + 19, 39 * 40 + 20].contains(&wettest), "{wettest}");
+}
+
+#[test]
 fn the_two_sides_of_a_pane_do_not_see_each_other() {
     let mut drops = on_pane(laws(), Vec::new());
     drops.add(0, [0.0; 3], [0.0; 3], half_ball(6e-3));

@@ -1,8 +1,6 @@
 //! Finding drops near a place, small and large ones alike.
 
-use super::Drop;
-
-/// Drops filed by place, each in cells as wide as it is or up to twice as wide: a level for each power of two of their
+/// Drops (or patches) filed by place, each in cells as wide as it is or up to twice as wide: a level for each power of two of their
 /// reach. A drop is looked for in the cells of each level that it may reach from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
@@ -14,26 +12,25 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// Files drops by their reach.
-    pub fn new(drops: &[Drop], reach: &[f64]) -> Self {
+    /// Files drops at these places by their reach.
+    pub fn new(places: impl Iterator<Item = [f64; 3]>, reach: &[f64]) -> Self {
         let smallest = reach.iter().copied().fold(f64::INFINITY, f64::min);
-        let buckets = (2 * drops.len()).next_power_of_two();
-        let mut grid = Self { smallest, levels: 0, starts: vec![0; buckets + 1], filed: vec![0; drops.len()] };
-        let places: Vec<usize> = drops
-            .iter()
+        let buckets = (2 * reach.len()).next_power_of_two();
+        let mut grid = Self { smallest, levels: 0, starts: vec![0; buckets + 1], filed: vec![0; reach.len()] };
+        let buckets_of: Vec<usize> = places
             .zip(reach)
-            .map(|(drop, &reach)| {
+            .map(|(place, &reach)| {
                 let level = grid.level(reach);
                 grid.levels = grid.levels.max(level + 1);
-                grid.bucket(level, grid.cell(level, drop.position))
+                grid.bucket(level, grid.cell(level, place))
             })
             .collect();
-        places.iter().for_each(|&bucket| grid.starts[bucket + 1] += 1);
+        buckets_of.iter().for_each(|&bucket| grid.starts[bucket + 1] += 1);
         for bucket in 0..buckets {
             grid.starts[bucket + 1] += grid.starts[bucket];
         }
         let mut next = grid.starts.clone();
-        for (drop, &bucket) in places.iter().enumerate() {
+        for (drop, &bucket) in buckets_of.iter().enumerate() {
             grid.filed[next[bucket] as usize] = drop as u32;
             next[bucket] += 1;
         }

@@ -7,10 +7,12 @@
 
 mod cap;
 mod grid;
+mod map;
 mod merge;
 mod motion;
 
 pub use cap::Cap;
+pub use map::Share;
 
 use corpuscle_model::ExactSum;
 use corpuscle_solids::Solid;
@@ -241,7 +243,7 @@ impl Drops {
     fn file(&mut self) {
         let reach = |drop: &Drop| self.cap.reach(drop.mass / self.laws.density);
         self.reach = self.state.drops.iter().map(reach).collect();
-        self.grid = Grid::new(&self.state.drops, &self.reach);
+        self.grid = Grid::new(self.state.drops.iter().map(|drop| drop.position), &self.reach);
     }
 }
 
