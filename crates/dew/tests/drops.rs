@@ -145,10 +145,10 @@ fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
 fn what_condenses_is_on_the_pane_or_has_dripped() {
     let mut drops = on_pane(laws(), sites(40, 0.02));
     let (mut condensed, count) = (ExactSum::default(), 1600);
-    for _ in 0..400 {
+    for _ in 0..200 {
         for site in 0..count {
-            // Thickness of 5 micrometres on each patch of half a millimetre.
-            let mass = WATER_DENSITY * 5e-6 * 0.25e-6;
+            // Thickness of 10 micrometres on each patch of half a millimetre.
+            let mass = WATER_DENSITY * 1e-5 * 0.25e-6;
             drops.condense(site, mass);
             condensed.add(mass);
         }
@@ -160,8 +160,8 @@ fn what_condenses_is_on_the_pane_or_has_dripped() {
     let error = (drops.water() + drops.dripped()) / condensed - 1.0;
     assert!(error.abs() < 1e-13, "{error}");
     let mut evaporated = ExactSum::default();
-    for _ in 0..400 {
-        (0..count).for_each(|site| evaporated.add(drops.evaporate(site, 1e-8)));
+    for _ in 0..200 {
+        (0..count).for_each(|site| evaporated.add(drops.evaporate(site, 2e-8)));
         drops.advance(1e-2);
     }
     let error = (drops.water() + drops.dripped() + evaporated.value()) / condensed - 1.0;
@@ -203,12 +203,12 @@ fn saved_and_restored_or_not_the_same_bits() {
         }
     };
     let mut through = on_pane(laws(), sites(40, 0.02));
-    run(&mut through, 200);
+    run(&mut through, 80);
     let mut other = on_pane(laws(), sites(40, 0.02));
-    run(&mut other, 100);
+    run(&mut other, 40);
     let mut resumed = on_pane(laws(), sites(40, 0.02));
     resumed.restore(other.state());
-    run(&mut resumed, 100);
+    run(&mut resumed, 40);
     assert_eq!(through.state(), resumed.state());
 }
 
