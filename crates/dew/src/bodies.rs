@@ -23,7 +23,7 @@ pub struct Body {
     pub held: bool,
     /// The particles that stand for it.
     pub samples: Samples,
-    /// What was put right in its mesh, in sentences.
+    /// What was put right in its mesh, and where it is too thin for its particles, in sentences.
     pub notes: Vec<String>,
 }
 
@@ -118,13 +118,14 @@ pub fn open(dew: &Dew, folder: &Path) -> Result<Vec<Body>, BodyError> {
 fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Body, BodyError> {
     let name = written.name.clone();
     let wrong = |source| BodyError::Solid { name: name.clone(), row, source };
-    let (solid, notes) = solid(written, folder).map_err(wrong)?;
+    let (solid, mut notes) = solid(written, folder).map_err(wrong)?;
     let [from, to] = solid.bounds();
     if (0..3).any(|axis| to[axis] <= 0.0 || from[axis] >= dew.size_m[axis]) {
         return Err(BodyError::Outside { name, row, from, to, size: dew.size_m });
     }
     let depth = written.layers.map_or(Depth::Full, Depth::Layers);
     let samples = solid.sample(dew.spacing_m, depth).map_err(wrong)?;
+    notes.extend(thin(&name, &samples, dew.spacing_m));
     Ok(Body {
         material: material(row, written)?,
         temperature: written.temperature_c.load(folder)?,
@@ -133,6 +134,18 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
         solid,
         samples,
         notes,
+    })
+}
+
+/// What to know of a solid many of whose particles fill less than half a cell.
+fn thin(name: &str, samples: &Samples, spacing: f64) -> Option<String> {
+    let small = samples.volumes.iter().filter(|&&volume| volume < 0.5 * spacing.powi(3)).count();
+    let is_thin = 10 * small > samples.volumes.len();
+    is_thin.then(|| {
+        format!(
+            "the solid \"{name}\" is thinner than the distance between particles, {spacing} m, in many places: air on its two sides may \
+             feel each other through it; give a smaller dew.spacing_m"
+        )
     })
 }
 

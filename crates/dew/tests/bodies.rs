@@ -61,6 +61,13 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
+fn a_solid_too_thin_for_its_particles_is_noted() {
+    assert_eq!(made(PANE).unwrap()[0].notes, [""; 0]);
+    let thin = made(&PANE.replace("[0.005, 0.1, 0.1]", "[0.002, 0.1, 0.1]")).unwrap();
+    assert!(thin[0].notes[0].contains("\"pane\" is thinner than"), "{:?}", thin[0].notes);
+}
+
+#[test]
 fn solids_may_touch() {
     let beside = PANE.replace("\"pane\"", "\"other\"").replace("[0.1, 0.05, 0.1]", "[0.105, 0.05, 0.1]");
     assert_eq!(made(&format!("{PANE}, {beside}")).unwrap().len(), 2);
