@@ -85,12 +85,12 @@ fn full(terrain: Terrain) -> Scene {
         scheme: Scheme::Balanced,
         spacing_m: 1.0,
         spacing_depth_m: Some(1.0),
+        paper: Paper { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..Paper::default() },
         gravity_m_per_s2: 1.0,
         manning: Manning::Number(0.0),
         wet_depth_m: 1.0,
         map_every_s: Some(1.0),
         balanced: Balanced::default(),
-        paper: Paper::default(),
         edges: Edges::default(),
         water: vec![water, in_the_air],
         inflow: vec![Inflow {

@@ -1,0 +1,3 @@
+//! Humid air that condenses on cold solids.
+
+pub mod humid_air;
