@@ -15,7 +15,7 @@ const FAR: u64 = 200;
 /// Entries that wait, in a ring.
 #[derive(Debug)]
 pub(super) struct Mail {
-    letters: Box<[(u64, Slip); ROOM]>,
+    letters: [(u64, Slip); ROOM],
     posted: usize,
     /// No bucket that an entry waits for is before this.
     first: u64,
@@ -23,7 +23,7 @@ pub(super) struct Mail {
 
 impl Mail {
     pub fn new() -> Self {
-        Mail { letters: Box::new([(0, Slip::default()); ROOM]), posted: 0, first: u64::MAX }
+        Mail { letters: [(0, Slip::default()); ROOM], posted: 0, first: u64::MAX }
     }
 }
 
