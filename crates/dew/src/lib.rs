@@ -1,3 +1,4 @@
 //! Humid air that condenses on cold solids.
 
+pub mod bodies;
 pub mod humid_air;
