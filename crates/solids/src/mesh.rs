@@ -101,11 +101,6 @@ impl Mesh {
         self.area
     }
 
-    /// Its corners, m, and the three of each triangle.
-    pub fn triangles(&self) -> (impl Iterator<Item = [f64; 3]> + '_, &[[u32; 3]]) {
-        (self.triangles.vertices().iter().map(|&corner| corner.into()), self.triangles.indices())
-    }
-
     /// What was put right, in sentences.
     pub fn notes(&self) -> &[String] {
         &self.notes
