@@ -1,5 +1,6 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
+use crate::humid_air::ZERO_CELSIUS;
 use corpuscle_model::ModelError;
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Table};
@@ -43,6 +44,19 @@ pub enum BodyError {
     /// A temperature over time that cannot be read.
     #[error(transparent)]
     Temperature(#[from] SceneError),
+    /// A temperature over time that cannot be.
+    #[error(
+        "the solid \"{name}\" (dew.solid.{row}): its temperature over time goes down to {celsius} °C, below absolute zero, -273.15 °C: it \
+         is told in °C, not in K"
+    )]
+    TooCold {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// The lowest temperature, °C.
+        celsius: f64,
+    },
     /// A name of no material.
     #[error(
         "the solid \"{name}\" (dew.solid.{row}): there is no material \"{material}\"; there are {known}, or give its numbers"
@@ -126,15 +140,12 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
     let depth = written.layers.map_or(Depth::Full, Depth::Layers);
     let samples = solid.sample(dew.spacing_m, depth).map_err(wrong)?;
     notes.extend(thin(&name, &samples, dew.spacing_m));
-    Ok(Body {
-        material: material(row, written)?,
-        temperature: written.temperature_c.load(folder)?,
-        held: written.held,
-        name,
-        solid,
-        samples,
-        notes,
-    })
+    let temperature = written.temperature_c.load(folder)?;
+    let celsius = temperature.rows().iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
+    if celsius < -ZERO_CELSIUS {
+        return Err(BodyError::TooCold { name, row, celsius });
+    }
+    Ok(Body { material: material(row, written)?, temperature, held: written.held, name, solid, samples, notes })
 }
 
 /// What to know of a solid many of whose particles fill less than half a cell.

@@ -68,6 +68,15 @@ fn a_solid_too_thin_for_its_particles_is_noted() {
 }
 
 #[test]
+fn a_file_of_temperatures_below_absolute_zero_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "time_s,temperature_c\n0,5\n10,-300\n").unwrap();
+    let pane = PANE.replace("temperature_c = 5", "temperature_c = { csv = \"t.csv\" }, held = true");
+    let refused = made_in(folder.path(), &pane).unwrap_err();
+    assert!(refused.contains("\"pane\"") && refused.contains("-300") && refused.contains("absolute zero"), "{refused}");
+}
+
+#[test]
 fn solids_may_touch() {
     let beside = PANE.replace("\"pane\"", "\"other\"").replace("[0.1, 0.05, 0.1]", "[0.105, 0.05, 0.1]");
     assert_eq!(made(&format!("{PANE}, {beside}")).unwrap().len(), 2);

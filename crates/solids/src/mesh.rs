@@ -15,7 +15,7 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use std::path::Path;
 use std::sync::Arc;
 
-/// More triangles than this are refused: each takes about a kilobyte while it is checked and searched.
+/// More triangles than this are refused: each takes half a kilobyte while it is checked (measured: 739 MB for 1.44 million).
 pub const MOST_TRIANGLES: usize = 2_000_000;
 
 /// Larger files are refused before they are read, bytes.
