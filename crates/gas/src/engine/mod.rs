@@ -4,6 +4,7 @@
 //! a calendar. A ball whose partner is hit by another is disturbed: its event is found out of date when its time comes,
 //! and a new one is looked for then; nothing can have happened to it earlier.
 
+mod ahead;
 mod event;
 mod grid;
 mod near;
@@ -16,6 +17,7 @@ mod saved;
 pub(crate) use saved::Saved;
 
 use crate::world::{Facing, World};
+use ahead::Ahead;
 use event::Event;
 use grid::Grid;
 use near::Near;
@@ -29,6 +31,7 @@ pub(crate) struct Engine<const D: usize> {
     grid: Grid<D>,
     queue: Queue,
     near: Box<Near<D>>,
+    ahead: Ahead,
     /// True where all balls have the same radius.
     alike: bool,
     /// True where a wall is not only met in the outermost cells.
@@ -52,6 +55,7 @@ impl<const D: usize> Engine<D> {
             grid,
             queue: Queue::new::<D>(&[]),
             near: Box::new(Near::new()),
+            ahead: Ahead::new(),
             handled: 0,
             crossings: 0,
             disturbed: 0,

@@ -1,6 +1,7 @@
 //! The loop over events.
 
 use super::Engine;
+use super::ahead::MANY;
 use crate::method::Pause;
 use crate::world::{Falling, Growing, Mode, Straight};
 use multiversion::multiversion;
@@ -28,6 +29,7 @@ impl<const D: usize> Engine<D> {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64) -> Pause {
+    let many = engine.events.len() >= MANY;
     for _ in 0..most {
         let Some((time, ball)) = engine.queue.peek(&engine.events) else { return Pause::Reached };
         if time > until {
@@ -35,6 +37,9 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
         }
         if engine.window_is_full() {
             return Pause::WindowFull;
+        }
+        if many {
+            engine.look_ahead();
         }
         engine.handled += 1;
         engine.queue.pop();
