@@ -14,7 +14,7 @@ fn taylor_green(n: usize, background: f64, c: f64, sw: f64) {
     let mut air = Properties::at_room_temperature(c);
     air.density = 1.0;
     air.viscosity = 0.01;
-    air.background = background;
+    air.spreading = background;
     air.conductivity = 1e-6;
     air.vapour_diffusivity = 1e-9;
     let mut settings = Settings::new(d, 300.0, 0.0);
@@ -71,7 +71,7 @@ fn taylor_green(n: usize, background: f64, c: f64, sw: f64) {
     }
 }
 fn main() {
-    for bg in [0.0, 0.02, 0.1, 0.5] {
+    for bg in [0.1, 0.3, 1.0] {
         taylor_green(32, bg, 10.0, 0.0);
     }
 }

@@ -69,6 +69,9 @@ const ACCELERATION_LIMIT: f64 = 0.25;
 /// Part of the longest step for which no diffusion overshoots its neighbours.
 const DIFFUSION_LIMIT: f64 = 0.9;
 
+/// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
+const FARTHEST_SPREAD: f64 = 0.05;
+
 /// What a [`Dew`] is made from.
 pub struct Setup {
     /// How the model works.
@@ -185,11 +188,18 @@ impl Dew {
     /// Half a kick with the old acceleration, then on by a whole step.
     fn drift(&mut self, step: f64) {
         let room = self.room;
+        let farthest = FARTHEST_SPREAD * self.scale.spacing;
         self.state.air.par_iter_mut().with_min_len(1024).for_each(|particle| {
             if particle.role == Role::Inside {
                 (0..3).for_each(|axis| particle.velocity[axis] += 0.5 * step * particle.acceleration[axis]);
             }
-            (0..3).for_each(|axis| particle.position[axis] += step * particle.velocity[axis]);
+            // The transport velocity (Adami, Hu & Adams 2013, equations 6 and 8).
+            let along = |axis: usize| {
+                let spread = (step * step * particle.spreading[axis]).clamp(-farthest, farthest);
+                step * particle.velocity[axis] + spread
+            };
+            let moved = [along(0), along(1), along(2)];
+            (0..3).for_each(|axis| particle.position[axis] += moved[axis]);
             room.keep(&mut particle.position, &mut particle.velocity);
         });
     }
@@ -279,7 +289,8 @@ impl Dew {
 
     /// The second half of the kick; heat and vapour of the whole step.
     fn kick(&mut self, step: f64) {
-        let Self { settings, state, rates, .. } = self;
+        let Self { settings, state, rates, air, .. } = self;
+        let spreading = air.spreading * air.sound_speed * air.sound_speed;
         state.air.par_iter_mut().zip(rates).with_min_len(1024).for_each(|(particle, rates)| {
             if particle.role != Role::Inside {
                 return;
@@ -293,6 +304,7 @@ impl Dew {
                 particle.acceleration[axis] = rates.acceleration[axis] + external;
                 particle.velocity[axis] += 0.5 * step * particle.acceleration[axis];
             }
+            particle.spreading = rates.spread.map(|along| spreading * along);
             particle.temperature += step * rates.warming;
             particle.vapour += step * rates.moistening;
         });

@@ -81,7 +81,10 @@ impl Push<'_> {
         let parts: Vec<Rates> = parts.collect();
         for (near, part) in contact.near.iter().zip(parts) {
             let rates = &mut rates[near.particle as usize];
-            (0..3).for_each(|axis| rates.acceleration[axis] += part.acceleration[axis]);
+            for axis in 0..3 {
+                rates.acceleration[axis] += part.acceleration[axis];
+                rates.spread[axis] += part.spread[axis];
+            }
             rates.weights += part.weights;
         }
     }
@@ -90,31 +93,35 @@ impl Push<'_> {
         &self.columns[self.arrangement.place_of[near.particle as usize] as usize]
     }
 
-    /// Adds `strength` along the way from a site to the air for each site near.
-    fn along(&self, contact: &Contact, near: &Near, rates: &mut Rates, strength: impl Fn(f64, f64) -> f64) {
+    /// Sum of `strength`, of distance and volume, along the way from each site near to the air.
+    fn along(&self, contact: &Contact, near: &Near, strength: impl Fn(f64, f64) -> f64) -> [f64; 3] {
         let own = self.column(near);
+        let mut sum = [0.0; 3];
         for pair in contact.of_air(near) {
             let site = contact.sites[pair.other as usize].position;
             let r = pair.r.max(1e-9 * self.scale.spacing);
             let push = strength(r, contact.volumes[pair.other as usize]) / r;
-            (0..3).for_each(|axis| rates.acceleration[axis] += push * (own.position[axis] - site[axis]));
+            (0..3).for_each(|axis| sum[axis] += push * (own.position[axis] - site[axis]));
         }
+        sum
     }
 
     /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): it pushes, and
-    /// never pulls.
+    /// never pulls. Particles spread from it as from each other.
     fn press(&self, near: &Near, rates: &mut Rates) {
         let Scale { kernels, to_gradient, .. } = *self.scale;
-        let pressure = 2.0 * self.column(near).pressure.max(0.0);
-        let factor = self.kappa * self.air.density * to_gradient * pressure;
-        self.along(self.pushing, near, rates, |r, volume| factor * volume * kernels.spiky_slope(r));
+        let slope = 2.0 * self.kappa * to_gradient;
+        let spread = self.along(self.pushing, near, |r, volume| slope * volume * kernels.spiky_slope(r));
+        let pressure = self.air.density * self.column(near).pressure.max(0.0);
+        rates.spread = spread;
+        rates.acceleration = spread.map(|along| pressure * along);
     }
 
     /// D ((r_0/r)^4 - (r_0/r)^2)/r (Monaghan 1994, equation 4.1).
     fn repel(&self, near: &Near, rates: &mut Rates) {
         let range = RANGE * self.scale.spacing;
         let strength = STRENGTH * self.air.sound_speed * self.air.sound_speed;
-        self.along(self.pushing, near, rates, |r, _| {
+        rates.acceleration = self.along(self.pushing, near, |r, _| {
             let ratio = (range / r).powi(2);
             if r < range { strength * (ratio * ratio - ratio) / r } else { 0.0 }
         });

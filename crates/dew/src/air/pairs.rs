@@ -32,6 +32,8 @@ pub struct Column {
 pub struct Rates {
     /// By pressure and viscosity, m/s2.
     pub acceleration: [f64; 3],
+    /// Gradient of how crowded it is, 1/m, towards where it is not: -2 sum V grad W, 0 on a lattice.
+    pub spread: [f64; 3],
     /// K/s.
     pub warming: f64,
     /// 1/s.
@@ -71,11 +73,13 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let Scale { volume, kernels, to_gradient, moment, .. } = *scale;
     // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1, with the spiky kernel).
     let of_pressure = air.density * volume * to_gradient * kernels.spiky_factor();
+    let of_spread = 2.0 * volume * to_gradient * kernels.spiky_factor();
     let of_laplacian = 0.5 * volume * kernels.spiky_factor() / moment;
     // Distances below this are those of a place to itself.
     let nothing = Lanes::splat(simd, 1e-18 * kernels.support() * kernels.support());
     let zero = Lanes::splat(simd, 0.0);
     let [mut ax, mut ay, mut az, mut shear_x, mut shear_y, mut shear_z] = [zero; 6];
+    let [mut spread_x, mut spread_y, mut spread_z] = [zero; 3];
     let [mut warming, mut moistening, mut weights] = [zero; 3];
     for index in list.chunks_exact(LANES) {
         let first: [usize; LANES] = std::array::from_fn(|lane| 2 * index[lane] as usize);
@@ -85,10 +89,14 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         let r_squared = dx * dx + dy * dy + dz * dz;
         let r = r_squared.max(nothing).sqrt();
         let inside = kernels.inside(r);
-        let push = (pressure + own.pressure) * (inside * inside) / r * of_pressure;
+        let slope = inside * inside / r;
+        let push = (pressure + own.pressure) * slope * of_pressure;
         ax += push * dx;
         ay += push * dy;
         az += push * dz;
+        spread_x += slope * dx;
+        spread_y += slope * dy;
+        spread_z += slope * dz;
         let weight = r_squared.select_below(nothing, zero, inside * (evenness + own.evenness) * of_laplacian);
         shear_x += weight * (u - own.velocity[0]);
         shear_y += weight * (v - own.velocity[1]);
@@ -100,6 +108,7 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let acceleration = [(ax, shear_x), (ay, shear_y), (az, shear_z)];
     Rates {
         acceleration: acceleration.map(|(push, shear)| push.sum() + air.viscosity * shear.sum()),
+        spread: [spread_x, spread_y, spread_z].map(|along| of_spread * along.sum()),
         warming: air.heat_diffusivity() * warming.sum(),
         moistening: air.vapour_diffusivity * moistening.sum(),
         weights: weights.sum(),

@@ -11,6 +11,8 @@ pub struct Particle {
     pub velocity: [f64; 3],
     /// Acceleration, m/s2.
     pub acceleration: [f64; 3],
+    /// How its place is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
+    pub spreading: [f64; 3],
     /// Temperature, K.
     pub temperature: f64,
     /// Part of the mass that is vapour; where humidity diffuses to the letter of the patent, relative humidity.
@@ -45,6 +47,7 @@ impl Particle {
             position,
             velocity: [0.0; 3],
             acceleration: [0.0; 3],
+            spreading: [0.0; 3],
             temperature,
             vapour,
             fog: 0.0,

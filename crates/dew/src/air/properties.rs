@@ -20,9 +20,10 @@ pub struct Properties {
     pub pressure: f64,
     /// Artificial speed of sound, m/s: about ten times the fastest motion keeps the density within a percent (Monaghan 1994).
     pub sound_speed: f64,
-    /// Pressure at rest in the equation of state, over density times the square of the speed of sound. Without it the
-    /// pressure between particles would be drawn below 0 in a sucking flow, and they would clump.
-    pub background: f64,
+    /// Pressure by which particles spread evenly, over density times the square of the speed of sound (Adami, Hu & Adams
+    /// 2013, who take 1). It moves particles, not the air: without it they would clump where the pressure is below that
+    /// at rest, and with a background in the equation of state instead, its noise would brake the air.
+    pub spreading: f64,
 }
 
 impl Properties {
@@ -37,7 +38,7 @@ impl Properties {
             vapour_diffusivity: 2.5e-5,
             pressure: 101_325.0,
             sound_speed,
-            background: 0.1,
+            spreading: 1.0,
         }
     }
 
@@ -51,9 +52,8 @@ impl Properties {
         Conductor { conductivity: self.conductivity, capacity: self.density * self.heat_capacity }
     }
 
-    /// Pressure at a density, Pa: p = c^2 (rho - rho_0 + b rho_0), the weakly compressible equation of state with a
-    /// background.
+    /// Pressure at a density less that at rest, Pa: p = c^2 (rho - rho_0), the weakly compressible equation of state.
     pub fn pressure_at(&self, density: f64) -> f64 {
-        self.sound_speed * self.sound_speed * (density - (1.0 - self.background) * self.density)
+        self.sound_speed * self.sound_speed * (density - self.density)
     }
 }
