@@ -24,6 +24,8 @@ pub struct Dew {
     conductances: Vec<f64>,
     /// Heat of condensation, J/kg.
     pub(crate) latent_heat: f64,
+    /// Density at which the pressure is that at rest, kg/m3: the air's, but for how evenly its particles can stand.
+    rest_density: f64,
     pub(crate) state: State,
     arrangement: Arrangement,
     contact: Contact,
@@ -72,6 +74,12 @@ const DIFFUSION_LIMIT: f64 = 0.9;
 /// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
 const FARTHEST_SPREAD: f64 = 0.05;
 
+/// Most steps by which the air is evened out at the start, how far each goes over the square of the spacing and the
+/// gradient of crowding, and the gradient, over the spacing, that is even enough.
+const SETTLING: u32 = 200;
+const SETTLING_STEP: f64 = 0.2;
+const EVEN: f64 = 1e-3;
+
 /// What a [`Dew`] is made from.
 pub struct Setup {
     /// How the model works.
@@ -102,7 +110,7 @@ impl Dew {
         let volume = |site: &crate::solids::Site| solids.particles[site.particle as usize].volume;
         let contact = Contact::new(&sites, volume, scale.h());
         let ghosts = match settings.walls {
-            WallTreatment::Ghosts => crate::solids::ghost_contact(bodies, room, &scale, *seed)?,
+            WallTreatment::Ghosts => crate::solids::ghost_contact(bodies, &solids, room, &scale, *seed)?,
             _ => Contact::default(),
         };
         let temperatures =
@@ -131,6 +139,7 @@ impl Dew {
             solids,
             conduction,
             conductances,
+            rest_density: air.density,
             state,
             arrangement: Arrangement::default(),
             contact,
@@ -146,11 +155,40 @@ impl Dew {
             let what = "the solids leave no room for air: take a larger room, smaller solids or a smaller spacing";
             return Err(ModelError::Setup(what.into()));
         }
-        dew.evaluate(0.0);
+        dew.settle();
         dew.state.time_step = dew.next_step(&[]);
         dew.state.water.initial = dew.water();
         dew.state.energy.initial = dew.energy();
         Ok(dew)
+    }
+
+    /// Spreads the air evenly between the solids before anything happens.
+    fn settle(&mut self) {
+        let (room, spacing) = (self.room, self.scale.spacing);
+        let completed = matches!(self.settings.walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        for _ in 0..if completed { SETTLING } else { 0 } {
+            self.evaluate(0.0);
+            let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
+            if self.rates.par_iter().map(uneven).reduce(|| 0.0, f64::max) * spacing < EVEN {
+                break;
+            }
+            let particles = self.state.air.par_iter_mut().zip(&self.rates).with_min_len(1024);
+            particles.filter(|(particle, _)| particle.role == Role::Inside).for_each(|(particle, rates)| {
+                let farthest = FARTHEST_SPREAD * spacing;
+                for axis in 0..3 {
+                    let step = SETTLING_STEP * spacing * spacing * rates.spread[axis];
+                    particle.position[axis] += step.clamp(-farthest, farthest);
+                }
+                room.keep(&mut particle.position, &mut particle.velocity);
+            });
+        }
+        self.evaluate(0.0);
+        // The pressure at rest is that of the air as it stands: neither too much nor too little of it is in the room.
+        if completed {
+            let sum: f64 = self.inside().map(|particle| particle.density).sum();
+            self.rest_density = sum / (self.inside().count() as f64).max(1.0);
+        }
+        self.evaluate(0.0);
     }
 
     /// Mass of an air particle, kg.
@@ -206,7 +244,21 @@ impl Dew {
 
     /// Arranges the air and finds what acts on it; velocities are taken `ahead` s on.
     fn evaluate(&mut self, ahead: f64) {
-        let Self { settings, air, room, scale, arrangement, contact, ghosts, sums, columns, rates, state, .. } = self;
+        let Self {
+            settings,
+            air,
+            room,
+            scale,
+            arrangement,
+            contact,
+            ghosts,
+            sums,
+            columns,
+            rates,
+            state,
+            rest_density,
+            ..
+        } = self;
         arrangement.arrange(&mut state.air, room, scale.h());
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
@@ -217,7 +269,7 @@ impl Dew {
             WallTreatment::VirtualForce | WallTreatment::None => {}
         }
         walls::add_moment(contact, arrangement, scale, sums);
-        fill_columns(arrangement, sums, columns, &mut state.air, air, ahead);
+        fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead);
         rates.resize(state.air.len(), Rates::default());
         let at_work = Properties {
             conductivity: settings.faster * air.conductivity,
@@ -484,13 +536,14 @@ fn fill_columns(
     columns: &mut Vec<Column>,
     particles: &mut [Particle],
     air: &Properties,
+    rest_density: f64,
     ahead: f64,
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
         if matches!(particle.role, Role::Leaving(..)) {
             // Beyond an outlet the air is as it is at rest.
-            particle.density = air.density;
+            particle.density = rest_density;
         }
     });
     let particles = &*particles;
@@ -509,7 +562,8 @@ fn fill_columns(
         Column {
             position: arrangement.at(place),
             velocity,
-            pressure: air.pressure_at(particle.density) / (particle.density * particle.density),
+            pressure: air.sound_speed * air.sound_speed * (particle.density - rest_density)
+                / (particle.density * particle.density),
             // A particle with few neighbours diffuses no faster than one with half of them.
             evenness: 1.0 / sums[place_of_particle].moment.max(0.5),
             temperature: particle.temperature,

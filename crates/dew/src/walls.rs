@@ -55,10 +55,10 @@ pub struct Push<'a> {
 
 /// Repulsion at the distance at which it begins, over the square of the speed of sound and the spacing's inverse
 /// (Monaghan 1994 takes the square of the fastest speed, a hundredth of that; the strong force is to hold at any speed).
-const STRENGTH: f64 = 0.1;
+const STRENGTH: f64 = 0.3;
 
 /// Distance from a solid's particle at which repulsion begins, over the spacing.
-const RANGE: f64 = 1.25;
+const RANGE: f64 = 1.5;
 
 impl Push<'_> {
     /// Adds to the rates.
@@ -106,13 +106,13 @@ impl Push<'_> {
         sum
     }
 
-    /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): it pushes, and
-    /// never pulls. Particles spread from it as from each other.
+    /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): a
+    /// pressure that is the same everywhere moves nothing. Particles spread from it as from each other.
     fn press(&self, near: &Near, rates: &mut Rates) {
         let Scale { kernels, to_gradient, .. } = *self.scale;
         let slope = 2.0 * self.kappa * to_gradient;
         let spread = self.along(self.pushing, near, |r, volume| slope * volume * kernels.spiky_slope(r));
-        let pressure = self.air.density * self.column(near).pressure.max(0.0);
+        let pressure = self.air.density * self.column(near).pressure;
         rates.spread = spread;
         rates.acceleration = spread.map(|along| pressure * along);
     }

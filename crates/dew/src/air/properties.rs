@@ -51,9 +51,4 @@ impl Properties {
     pub fn conductor(&self) -> Conductor {
         Conductor { conductivity: self.conductivity, capacity: self.density * self.heat_capacity }
     }
-
-    /// Pressure at a density less that at rest, Pa: p = c^2 (rho - rho_0), the weakly compressible equation of state.
-    pub fn pressure_at(&self, density: f64) -> f64 {
-        self.sound_speed * self.sound_speed * (density - self.density)
-    }
 }

@@ -1,31 +1,84 @@
 //! Ghost samples: random, evenly spread, throughout a solid (Schechter & Bridson, Ghost SPH, 2012).
 
-use super::{Body, distance_squared};
+use super::{Body, Searched, Site, Solids, distance_squared};
 use crate::air::Scale;
+use crate::contact::Contact;
+use crate::room::Room;
+use corpuscle_model::ModelError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Tries to find room for a sample (their section 4).
 const TRIES: u32 = 30;
 
 /// Least distance of samples over the spacing of the air: denser than the air.
-const NEAREST: f64 = 0.8;
+const NEAREST: f64 = 0.5;
 
 /// Times that every sample looks for a better place.
-const SWEEPS: u32 = 3;
+const SWEEPS: u32 = 5;
 
-/// Samples of a body and the volume that each stands for, m3. None where the body does not tell its surface.
-pub fn ghosts(body: &Body, scale: &Scale, seed: u64) -> Option<(Vec<[f64; 3]>, f64)> {
-    let surface = body.surface.as_ref()?;
+/// Times that the volumes of samples are corrected.
+const CORRECTIONS: u32 = 8;
+
+/// Ghost samples of all bodies, to be in contact with air.
+///
+/// # Errors
+/// Where a body does not tell its surface.
+pub(crate) fn ghost_contact(
+    bodies: &[Body],
+    solids: &Solids,
+    room: &Room,
+    scale: &Scale,
+    seed: u64,
+) -> Result<Contact, ModelError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let apart = NEAREST * scale.spacing;
-    let mut samples =
-        Samples { apart, inside: |place| surface(place) < 0.0, taken: HashMap::new(), places: Vec::new() };
-    samples.fill(body, scale.spacing, &mut random);
-    samples.relax(&mut random);
-    let volume = body.volumes.iter().sum::<f64>() / samples.places.len() as f64;
-    Some((samples.places, volume))
+    let mut places = Vec::new();
+    for (number, body) in bodies.iter().enumerate() {
+        let Some(surface) = &body.surface else {
+            return Err(ModelError::Setup(format!(
+                "ghost samples need the surface of solid {number}, which is not known"
+            )));
+        };
+        let inside = |place| surface(place) < 0.0 && room.contains(place);
+        let apart = NEAREST * scale.spacing;
+        let mut samples = Samples { apart, inside, taken: HashMap::new(), places: Vec::new() };
+        samples.fill(body, scale.spacing, &mut random);
+        samples.relax(&mut random);
+        places.append(&mut samples.places);
+    }
+    let mut sites = Vec::new();
+    for (number, &position) in places.iter().enumerate() {
+        let site = Site { position, particle: number as u32, image: false };
+        sites.push(site);
+        room.images(position, scale.h(), |image| {
+            sites.push(Site { position: image.position, image: true, ..site });
+        });
+    }
+    let volumes = volumes(&places, &sites, solids, room, scale);
+    Ok(Contact::new(&sites, |site| volumes[site.particle as usize], scale.h()))
+}
+
+/// Volumes of samples with which they fill the room as the solids' own particles do.
+fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, room: &Room, scale: &Scale) -> Vec<f64> {
+    let h = scale.h();
+    let samples = Searched::new(sites, h);
+    let particles = Searched::new(&solids.sites(room, h, |_| true), h);
+    let filling = |of: &Searched, place: [f64; 3], volume: &(dyn Fn(&Site) -> f64 + Sync)| {
+        of.near(place, h).map(|(site, r_squared)| volume(site) * scale.kernels.poly6(r_squared)).sum::<f64>()
+    };
+    let of_particle = |site: &Site| solids.particles[site.particle as usize].volume;
+    let wanted: Vec<f64> = places.par_iter().map(|&place| filling(&particles, place, &of_particle)).collect();
+    let total: f64 = solids.particles.iter().map(|particle| particle.volume).sum();
+    let mut volumes = vec![total / places.len() as f64; places.len()];
+    for _ in 0..CORRECTIONS {
+        let before = &volumes;
+        let of_sample = |site: &Site| before[site.particle as usize];
+        let corrected = places.par_iter().zip(&wanted).zip(before);
+        volumes = corrected.map(|((&place, wanted), v)| v * wanted / filling(&samples, place, &of_sample)).collect();
+    }
+    volumes
 }
 
 struct Samples<F> {

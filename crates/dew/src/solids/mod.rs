@@ -6,13 +6,13 @@ mod ghosts;
 
 pub use boundary::THRESHOLD;
 pub use conduction::Conduction;
-pub use ghosts::ghosts;
+pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
-use crate::contact::Contact;
 use crate::room::Room;
 use crate::settings::Conductor;
 use corpuscle_model::ModelError;
+use corpuscle_solids::{Depth, Samples, Solid};
 use corpuscle_sph::space::Cells;
 use std::sync::Arc;
 
@@ -93,6 +93,25 @@ pub struct Site {
     pub image: bool,
 }
 
+impl Body {
+    /// A solid sampled so that its particles are about a `spacing` apart, at a temperature, K.
+    ///
+    /// # Errors
+    /// Where it cannot be sampled.
+    pub fn sampled(
+        solid: Solid,
+        spacing: f64,
+        material: Material,
+        temperature: f64,
+        held: bool,
+    ) -> Result<Self, ModelError> {
+        let samples = solid.sample(spacing, Depth::Full).map_err(|error| ModelError::Setup(error.to_string()))?;
+        let Samples { positions, volumes, areas } = samples;
+        let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+        Ok(Self { positions, volumes, areas, material, temperature, held, surface: Some(surface) })
+    }
+}
+
 impl Solids {
     /// The solids' particles. Those whose colour gradient is above `threshold` over the spacing are boundary particles.
     pub fn new(bodies: &[Body], room: &Room, scale: &Scale, threshold: f64) -> Self {
@@ -170,28 +189,4 @@ impl Searched {
 pub(crate) fn distance_squared(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     x * x + y * y + z * z
-}
-
-/// Ghost samples of all bodies, to be in contact with air.
-///
-/// # Errors
-/// Where a body does not tell its surface.
-pub(crate) fn ghost_contact(bodies: &[Body], room: &Room, scale: &Scale, seed: u64) -> Result<Contact, ModelError> {
-    let (mut sites, mut volumes) = (Vec::new(), Vec::new());
-    for (number, body) in bodies.iter().enumerate() {
-        let Some((places, volume)) = ghosts(body, scale, seed) else {
-            return Err(ModelError::Setup(format!(
-                "ghost samples need the surface of solid {number}, which is not known"
-            )));
-        };
-        volumes.push(volume);
-        for position in places {
-            let site = Site { position, particle: number as u32, image: false };
-            sites.push(site);
-            room.images(position, scale.h(), |image| {
-                sites.push(Site { position: image.position, image: true, ..site });
-            });
-        }
-    }
-    Ok(Contact::new(&sites, |site| volumes[site.particle as usize], scale.h()))
 }
