@@ -31,6 +31,10 @@ impl Simulation {
                 let model = corpuscle_gas::open(gas, scene.seed, scene.run.until_s, folder)?;
                 Ok(Self::new(scene, None, model))
             }
+            ModelScene::Dew(_) => {
+                Err(ModelError::Setup("dew: this version reads and checks dew scenes, but cannot run them".into())
+                    .into())
+            }
         }
     }
 }

@@ -49,6 +49,7 @@ pub struct Flood {
     state: State,
     /// Working memory.
     of_blocks: Vec<f64>,
+    renewals: Vec<(f64, bool)>,
     /// The time shown, s; up to one step after the state's.
     shown: f64,
 }
@@ -122,8 +123,10 @@ impl Flood {
                 (Box::new(Balanced::new(parameters)), h)
             }
             SchemeName::Paper => {
-                let h = flood.paper.smoothing_length_m;
-                (Box::new(Paper::new(flood.paper.clone(), flood.gravity_m_per_s2)), h)
+                // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
+                let h = *flood.paper.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
+                flood.paper.radius_m.get_or_insert(0.5 * spacing);
+                (Box::new(Paper::new(flood.paper.clone(), h, flood.gravity_m_per_s2)), h)
             }
         };
         limits::check_blocks(flood, &terrain)?;
@@ -162,6 +165,7 @@ impl Flood {
             h,
             state,
             of_blocks: Vec::new(),
+            renewals: Vec::new(),
             shown: 0.0,
         };
         model.fill(bodies);
@@ -194,7 +198,7 @@ impl Flood {
             for particle in &mut particles {
                 [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
                 if flood.scheme == SchemeName::Paper {
-                    particle.h = flood.paper.smoothing_length_m;
+                    (particle.h, particle.next_h) = (self.h, self.h);
                 }
             }
             self.state.particles.append(&mut particles);
@@ -220,9 +224,11 @@ impl Flood {
     fn begin(&mut self) {
         self.state.water.initial = self.stored();
         self.state.momentum.initial = self.momentum();
+        self.renew();
         self.arrange();
         if self.surroundings.edges.holds_level() {
             self.gain(0.0);
+            self.renew();
             self.arrange();
         }
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
@@ -237,22 +243,34 @@ impl Flood {
         if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
 
-    /// Sorts the particles into cells as large as they need them now.
-    fn arrange(&mut self) {
-        let smoothing = self.smoothing();
+    /// Gives the particles the smoothing lengths that they have come to need, and the cells their size; whether all the
+    /// particles are still inside.
+    fn renew(&mut self) -> bool {
+        let edges = &self.surroundings.edges;
         let State { particles, cell_size, .. } = &mut self.state;
         let renew_block = |particles: &mut [Particle]| {
-            let renewed = particles.iter_mut().map(|particle| {
+            let (mut sum, mut all_inside) = (0.0, true);
+            for particle in particles {
                 particle.h = particle.next_h;
-                particle.h
-            });
-            renewed.sum::<f64>()
+                sum += particle.h;
+                all_inside &= particle.outside.is_none() && edges.bounds.contains(particle.x, particle.y);
+            }
+            (sum, all_inside)
         };
-        particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.of_blocks);
+        particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.renewals);
         if !particles.is_empty() {
-            *cell_size = CELL_OVER_H * smoothing * self.of_blocks.iter().sum::<f64>() / particles.len() as f64;
+            let cell_over_h = match self.settings.scheme {
+                SchemeName::Balanced => CELL_OVER_H_BALANCED,
+                SchemeName::Paper => CELL_OVER_H_PAPER,
+            };
+            *cell_size = cell_over_h * self.renewals.iter().map(|(sum, _)| sum).sum::<f64>() / particles.len() as f64;
         }
-        self.scheme.arrange(particles, &self.surroundings, *cell_size);
+        self.renewals.iter().all(|(_, all_inside)| *all_inside)
+    }
+
+    /// Sorts the particles into cells.
+    fn arrange(&mut self) {
+        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.cell_size);
     }
 
     fn step(&mut self) -> Result<(), ModelError> {
@@ -260,7 +278,9 @@ impl Flood {
         self.carry_beyond();
         self.scheme.drift(&mut self.state.particles, step);
         self.gain(step);
-        self.lose();
+        if !self.renew() {
+            self.lose();
+        }
         self.state.time += step;
         self.surroundings.time = self.state.time;
         self.arrange();
@@ -285,10 +305,6 @@ impl Flood {
     /// Books what crosses the edges, and takes out what is well beyond them.
     fn lose(&mut self) {
         let edges = &self.surroundings.edges;
-        let is_inside = |p: &Particle| p.outside.is_none() && edges.bounds.contains(p.x, p.y);
-        if self.state.particles.par_iter().all(is_inside) {
-            return;
-        }
         let gravity = self.settings.gravity_m_per_s2;
         let State { particles, water, momentum, .. } = &mut self.state;
         particles.retain_mut(|particle| {
@@ -481,8 +497,15 @@ impl Flood {
     }
 }
 
-/// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer.
-const CELL_OVER_H: f64 = 1.2;
+/// Smoothing length in Table 1 of scheme paper, over the root of the volume of its particles, m^(-1/2).
+const TABLE_1_SMOOTHING: f64 = 2.66;
+
+/// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in
+/// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
+const CELL_OVER_H_BALANCED: f64 = 1.2;
+
+/// The same for scheme paper, whose particles look as far as they reach themselves.
+const CELL_OVER_H_PAPER: f64 = 1.4;
 
 /// How far beyond an edge particles go on, in smoothing lengths: those before the edge and their neighbours see them.
 const BEYOND: f64 = 4.0;
@@ -541,7 +564,7 @@ impl Model for Flood {
         let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
         let radius = |particle: &Particle| match self.settings.scheme {
             SchemeName::Balanced => 0.5 * particle.area().sqrt(),
-            SchemeName::Paper => self.settings.paper.radius_m,
+            SchemeName::Paper => self.settings.paper.radius_m.unwrap_or(0.5 * self.spacing),
         };
         let terrain = &self.surroundings.terrain;
         let on_ground = order.into_iter().map(|particle| {

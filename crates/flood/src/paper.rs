@@ -14,7 +14,9 @@ use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::Paper as Parameters;
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
-use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, PairSum, Simd, SimdBase, dispatch, gather};
+use corpuscle_sph::{
+    BLOCK, LANES, Lanes, LanesExt, Level, Near, Neighbours, PairSum, Simd, SimdBase, SimdFloat, dispatch, gather,
+};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -36,6 +38,8 @@ struct Parcel {
 /// The scheme with its working memory.
 pub(crate) struct Paper {
     parameters: Parameters,
+    /// Initial smoothing length, m.
+    h0: f64,
     gravity: f64,
     arrangement: Arrangement,
     parcels: Vec<Parcel>,
@@ -46,9 +50,10 @@ pub(crate) struct Paper {
 }
 
 impl Paper {
-    pub fn new(parameters: Parameters, gravity: f64) -> Self {
+    pub fn new(parameters: Parameters, h0: f64, gravity: f64) -> Self {
         Self {
             parameters,
+            h0,
             gravity,
             arrangement: Arrangement::default(),
             parcels: Vec::new(),
@@ -59,16 +64,19 @@ impl Paper {
         }
     }
 
-    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; h = h0 sqrt(rho0 / rho) for the next step.
+    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; h = h0 sqrt(rho0 / rho) for the next step; and what
+    /// follows from them for the forces.
     fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings) {
-        let Parameters { smoothing_length_m: h0, density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
-        let Arrangement { cells, lists, x, y, reach_squared, entries, real, .. } = &mut self.arrangement;
+        let Parameters { density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
+        let h0 = self.h0;
+        let Arrangement { cells, lists, x, y, reach_squared, entries, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), 0.0);
-        // All particles hold much the same water; the sum over W alone times the own mass is exact where they hold the
-        // same, and each list is read once only.
-        lists.search(cells, x, y, reach_squared, &mut self.densities, &NumberDensities { reach_squared });
+        // Kernels at h_i: what a particle does not reach itself adds nothing. All particles hold much the same water; the
+        // sum over W alone times the own mass is exact where they hold the same, and each list is read once only.
+        let sum = NumberDensities { reach_squared };
+        lists.search(Near::Reached, cells, x, y, reach_squared, &mut self.densities, &sum);
         debug_assert_eq!(entries.len(), x.len());
-        let groups = particles.par_chunks_mut(TOGETHER).zip(real.par_chunks(TOGETHER));
+        let groups = particles.par_chunks_mut(TOGETHER).zip(self.arrangement.real.par_chunks(TOGETHER));
         groups.for_each(|(particles, places)| {
             surroundings.find_ground(particles);
             for (particle, &place) in particles.iter_mut().zip(places) {
@@ -147,41 +155,62 @@ impl Paper {
 /// Particles whose control forces are found together: each looks at four places of the ground.
 const CONTROLLED: usize = TOGETHER / 4;
 
+/// Corners of a square of side 1 round the origin.
+const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+
 /// The terrain-difference velocity control force on some particles: f = (h_D^2/4) (f_A + f_B + f_C + f_D) with
 /// f = (rho2D/rho3D) NP at the corners of a square of side h_D = alpha h0 sqrt(rho0/rho).
 ///
-/// NP is the way between the ground points under a corner now (N) and at the step before (P); the ground rises by its slope
-/// halfway times the way, which is exact to third order. Our reading, for the paper's units do not close: its size is |NP| in
-/// three dimensions, it acts against the horizontal motion, and it is an acceleration times `control_strength`. It stops
-/// the motion at most.
+/// Our reading, for the paper's units do not close: the size of NP is |NP| in three dimensions, it acts against the horizontal
+/// motion, and it is an acceleration times `control_strength`. It stops the motion at most.
 fn control(parameters: &Parameters, particles: &[Particle], terrain: &Terrain, step: f64) -> [[f64; 2]; CONTROLLED] {
-    const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
+    let [mut dx, mut dy, mut side] = [[0.0; CONTROLLED]; 3];
     let [mut x, mut y] = [[0.0; TOGETHER]; 2];
-    for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
-        let Some(particle) = particles.get(k / 4) else { break };
-        let side = parameters.control_square * particle.next_h;
-        let [across, up] = CORNERS[k % 4];
-        *x = particle.x + across * side - 0.5 * step * particle.u;
-        *y = particle.y + up * side - 0.5 * step * particle.v;
+    for (k, particle) in particles.iter().enumerate() {
+        (dx[k], dy[k]) = (step * particle.u, step * particle.v);
+        side[k] = parameters.control_square * particle.next_h;
+        for (corner, [across, up]) in CORNERS.into_iter().enumerate() {
+            x[corner * CONTROLLED + k] = particle.x + across * side[k] - 0.5 * dx[k];
+            y[corner * CONTROLLED + k] = particle.y + up * side[k] - 0.5 * dy[k];
+        }
     }
     let [_, slope_x, slope_y] = terrain.heights_and_slopes(&x, &y);
+    let ways = dispatch!(Level::new(), simd => ways(simd, &dx, &dy, &slope_x, &slope_y));
     let mut controls = [[0.0; 2]; CONTROLLED];
-    for (number, (control, particle)) in controls.iter_mut().zip(particles).enumerate() {
+    for (k, (control, particle)) in controls.iter_mut().zip(particles).enumerate() {
         let speed = particle.speed();
-        if speed == 0.0 {
-            continue;
+        if speed > 0.0 {
+            let force = parameters.control_strength * 0.25 * side[k] * side[k] * particle.depth * ways[k];
+            let slowing = (force / speed).min(1.0 / step);
+            *control = [-slowing * particle.u, -slowing * particle.v];
         }
-        let (dx, dy) = (step * particle.u, step * particle.v);
-        let ways = (4 * number..4 * number + 4).map(|k| {
-            let rise = slope_x[k] * dx + slope_y[k] * dy;
-            (dx * dx + dy * dy + rise * rise).sqrt()
-        });
-        let side = parameters.control_square * particle.next_h;
-        let force = parameters.control_strength * 0.25 * side * side * particle.depth * ways.sum::<f64>();
-        let force = force.min(speed / step);
-        *control = [-force * particle.u / speed, -force * particle.v / speed];
     }
     controls
+}
+
+/// |NP| summed over the corners of each particle, m: the way between the ground points under a corner now (N) and at the step
+/// before (P). The ground rises by its slope halfway times the way, which is exact to third order.
+#[inline(always)]
+fn ways<S: Simd>(
+    simd: S,
+    dx: &[f64; CONTROLLED],
+    dy: &[f64; CONTROLLED],
+    slope_x: &[f64; TOGETHER],
+    slope_y: &[f64; TOGETHER],
+) -> [f64; CONTROLLED] {
+    let mut ways = [0.0; CONTROLLED];
+    for (group, ways) in ways.chunks_exact_mut(LANES).enumerate() {
+        let load =
+            |values: &[f64], row: usize| Lanes::from_slice(simd, &values[row * CONTROLLED + group * LANES..][..LANES]);
+        let (dx, dy) = (load(dx, 0), load(dy, 0));
+        let mut sum = Lanes::splat(simd, 0.0);
+        for corner in 0..CORNERS.len() {
+            let rise = load(slope_x, corner) * dx + load(slope_y, corner) * dy;
+            sum += (dx * dx + dy * dy + rise * rise).sqrt();
+        }
+        sum.store_slice(ways);
+    }
+    ways
 }
 
 /// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2; from the squares of the reaches h.

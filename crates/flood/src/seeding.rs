@@ -8,7 +8,7 @@ use crate::density::{Densities, Density};
 use crate::edges::EdgeRules;
 use crate::particle::Particle;
 use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch};
+use corpuscle_sph::{Lanes, LanesExt, Level, Near, Neighbours, Simd, SimdBase, dispatch};
 use corpuscle_terrain::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -125,7 +125,7 @@ impl Body<'_> {
         arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), edges, 1.2 * mean_h.max(1e-12));
         arrangement.sort(particles, spare);
         let Arrangement { cells, lists, x, y, reach_squared, .. } = arrangement;
-        lists.search(cells, x, y, reach_squared, &mut vec![(); x.len()], &());
+        lists.search(Near::Either, cells, x, y, reach_squared, &mut vec![(); x.len()], &());
     }
 
     /// Moves each particle away from where its neighbours crowd, along -sum V grad W.
@@ -167,7 +167,7 @@ impl Body<'_> {
             self.arrange(arrangement, particles, spare, edges);
             let Arrangement { cells, lists, x, y, reach_squared, real, .. } = arrangement;
             densities.resize(x.len(), Density::default());
-            lists.search(cells, x, y, reach_squared, &mut densities, &Densities { reach_squared });
+            lists.search(Near::Either, cells, x, y, reach_squared, &mut densities, &Densities { reach_squared });
             for (particle, &place) in particles.iter_mut().zip(real.iter()) {
                 let density = densities[place as usize];
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);

@@ -71,10 +71,12 @@ fn water_reaches_up_to_walls_and_periodic_sides() {
         water = [{ depth_m = 1 }]
         edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
     "#;
-    let maps = open(&parse(basin, &[])).maps();
-    let depth = &maps.iter().find(|map| map.name == "depth").unwrap().values;
-    let dry = depth.iter().filter(|depth| depth.is_nan()).count();
-    assert_eq!(dry, 0, "of {} places", depth.len());
+    for scheme in ["balanced", "paper"] {
+        let maps = open(&parse(basin, &[("flood.scheme".into(), scheme.into())])).maps();
+        let depth = &maps.iter().find(|map| map.name == "depth").unwrap().values;
+        let dry = depth.iter().filter(|depth| depth.is_nan()).count();
+        assert_eq!(dry, 0, "of {} places, scheme {scheme}", depth.len());
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What a scene must hold to beyond its types.
 
+mod dew;
 mod flood;
 mod gas;
 mod terrain;
@@ -9,6 +10,9 @@ use crate::{ModelScene, Problem, Run, Scene, SceneError, Series};
 use toml::Value;
 
 type Checked = Result<(), Box<Problem>>;
+
+/// The sides of a box by name, for each axis.
+const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
 
 impl Scene {
     /// Checks every value: finite, in range, names unique, exactly one kind given where one is meant.
@@ -33,6 +37,7 @@ impl Scene {
                 check.flood(&scene.flood)
             }
             ModelScene::Gas(gas) => check.gas(gas),
+            ModelScene::Dew(dew) => check.dew(dew),
         }
     }
 }

@@ -121,16 +121,19 @@ impl Default for Balanced {
 pub struct Paper {
     /// Fixed time step, s.
     pub time_step_s: f64,
-    /// Initial smoothing length h0, m.
-    pub smoothing_length_m: f64,
+    /// Initial smoothing length h0, m. Left out: that of Table 1, 2.66 m, scaled with the root of the particles' volume (which
+    /// is 1 m3 there), so that a particle has as many neighbours as in the paper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothing_length_m: Option<f64>,
     /// Density of water rho0 (also the reference two-dimensional density), kg/m3.
     pub density_kg_per_m3: f64,
     /// Gas constant k.
     pub gas_constant: f64,
     /// Viscosity.
     pub viscosity: f64,
-    /// Particle radius, m (drawing only).
-    pub radius_m: f64,
+    /// Particle radius, m (drawing only). Left out: half the spacing, as in Table 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius_m: Option<f64>,
     /// The terrain-difference velocity control force, on or off.
     pub control_force: bool,
     /// Strength of the control force; the paper prints no coefficient.
@@ -147,11 +150,11 @@ impl Default for Paper {
     fn default() -> Self {
         Self {
             time_step_s: 0.02,
-            smoothing_length_m: 2.66,
+            smoothing_length_m: None,
             density_kg_per_m3: 1000.0,
             gas_constant: 10.0,
             viscosity: 0.1,
-            radius_m: 0.5,
+            radius_m: None,
             control_force: true,
             control_strength: 1.0,
             control_square: 0.5,

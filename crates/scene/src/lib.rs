@@ -4,6 +4,8 @@
 //! A [`Scene`] that was read is checked: numbers are finite and in range, names unique, exactly one kind given where
 //! one is meant. Files named in it are opened by whoever uses them.
 
+pub mod dew;
+
 mod builtin;
 mod check;
 mod document;
@@ -19,6 +21,7 @@ mod write;
 mod written;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
+pub use dew::Dew;
 pub use error::{Place, Problem, SceneError};
 pub use flood::*;
 pub use gas::*;

@@ -1,6 +1,6 @@
 //! Which model a scene is for.
 
-use crate::{Flood, Gas, Scene, Terrain};
+use crate::{Dew, Flood, Gas, Scene, Terrain};
 
 /// What a scene says about what is moved: that of one model.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,8 @@ pub enum ModelScene {
     Flood(Box<FloodScene>),
     /// Colliding balls: the table `[gas]`.
     Gas(Box<Gas>),
+    /// Humid air and cold solids: the table `[dew]`.
+    Dew(Box<Dew>),
 }
 
 /// A flood and the ground that it runs over.
@@ -25,15 +27,23 @@ impl Scene {
     pub fn flood(&self) -> Option<&FloodScene> {
         match &self.model {
             ModelScene::Flood(flood) => Some(flood),
-            ModelScene::Gas(_) => None,
+            ModelScene::Gas(_) | ModelScene::Dew(_) => None,
         }
     }
 
     /// The gas, where the scene is one of a gas.
     pub fn gas(&self) -> Option<&Gas> {
         match &self.model {
-            ModelScene::Flood(_) => None,
             ModelScene::Gas(gas) => Some(gas),
+            ModelScene::Flood(_) | ModelScene::Dew(_) => None,
+        }
+    }
+
+    /// The air and its solids, where the scene is one of dew.
+    pub fn dew(&self) -> Option<&Dew> {
+        match &self.model {
+            ModelScene::Dew(dew) => Some(dew),
+            ModelScene::Flood(_) | ModelScene::Gas(_) => None,
         }
     }
 }

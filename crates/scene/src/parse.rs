@@ -75,6 +75,9 @@ fn what_to_give(path: &str, name: &str) -> String {
         "run" => "give a table [run] with until_s, the end of the run in seconds".into(),
         "run.until_s" => "give the end of the run in seconds, as in until_s = 600".into(),
         "gas.size" => "give the sides of the box, two or three numbers, as in size = [800.0, 600.0]".into(),
+        "dew.size_m" => "give the sides of the box in metres, as in size_m = [0.2, 0.1, 0.2]".into(),
+        "dew.spacing_m" => "give the distance between particles in metres, as in spacing_m = 0.005".into(),
+        "dew.air" => "give the air, as in air = { temperature_c = 25.0, relative_humidity = 0.6 }".into(),
         _ if name == "name" => "give a name, unique in the scene, as in name = \"P1\"".into(),
         _ if name == "line" => "give the points of a line, as in line = [[0, 0], [100, 0]]".into(),
         _ if name == "discharge_m3_per_s" => {
@@ -120,6 +123,7 @@ fn wrong_type(message: &str) -> String {
         ("expected a map", "expected a table, as in { key = 1.0 }"),
         ("expected path string", "expected a file's path in quotes"),
         ("expected an array of length 2", "expected two numbers, as in [1.0, 2.0]"),
+        ("expected an array of length 3", "expected three numbers, as in [1.0, 2.0, 3.0]"),
         ("expected a sequence", "expected a list in [ ]; for tables write their header in double brackets"),
         ("wanted exactly 1 element, found 0 elements", "expected exactly one kind, found none"),
         ("wanted exactly 1 element, more than 1 element", "expected exactly one kind, found more"),

@@ -1,5 +1,6 @@
 //! Defaults that depend on the rest of the scene.
 
+use crate::dew::{Dew, HumidityTransport, Mean, Scheme};
 use crate::{Gas, ModelScene, Run, Scene, Wall};
 
 /// Colours that go well together and are told apart by colour-blind eyes too (Okabe & Ito 2008).
@@ -14,7 +15,21 @@ impl Scene {
         match &mut self.model {
             ModelScene::Flood(scene) => _ = scene.flood.map_every_s.get_or_insert(gauge_period),
             ModelScene::Gas(gas) => gas.resolve_defaults(&self.run),
+            ModelScene::Dew(dew) => dew.resolve_defaults(),
         }
+    }
+}
+
+impl Dew {
+    fn resolve_defaults(&mut self) {
+        let is_physical = self.scheme == Scheme::Physical;
+        let (mean, humidity) = match self.scheme {
+            Scheme::Physical => (Mean::Harmonic, HumidityTransport::MassFraction),
+            Scheme::Paper => (Mean::Arithmetic, HumidityTransport::RelativeHumidity),
+        };
+        self.transport.conductivity_mean.get_or_insert(mean);
+        self.transport.humidity.get_or_insert(humidity);
+        self.transport.latent_heat.get_or_insert(is_physical);
     }
 }
 

@@ -1,5 +1,6 @@
 //! From a scene to text.
 
+use crate::dew::{Dew, Shape};
 use crate::{Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, Terrain, Wall};
 use std::path::{Path, PathBuf};
 
@@ -19,6 +20,7 @@ impl Scene {
         let paths = match &mut self.model {
             ModelScene::Flood(scene) => flood_paths(scene),
             ModelScene::Gas(gas) => gas_paths(gas),
+            ModelScene::Dew(dew) => dew_paths(dew),
         };
         for path in paths {
             *path = folder.join(&*path);
@@ -60,4 +62,17 @@ fn gas_paths(gas: &mut Gas) -> Vec<&mut PathBuf> {
         _ => None,
     })
     .collect()
+}
+
+fn dew_paths(dew: &mut Dew) -> Vec<&mut PathBuf> {
+    let mut paths = Vec::new();
+    for solid in &mut dew.solid {
+        if let Shape::Mesh(mesh) = &mut solid.shape {
+            paths.push(&mut mesh.path);
+        }
+        if let Series::File { csv } = &mut solid.temperature_c {
+            paths.push(csv);
+        }
+    }
+    paths
 }

@@ -133,7 +133,7 @@ fn missing_keys_and_tables() {
         ("[run]\nuntil_s = 1\n", ["test.toml: the scene has no model", "[gas]"]),
         (
             "[run]\nuntil_s = 1\n[terrain.plane]\n[gas]\nsize = [1, 1]\n",
-            ["test.toml:3:2: terrain", "no ground below a gas"],
+            ["test.toml:3:2: terrain", "only a flood has ground"],
         ),
         ("[run]\nuntil_s = 1\n[flood]\n[gas]\nsize = [1, 1]\n", ["test.toml:3:1: flood", "one model"]),
         ("[run]\nuntil_s = 1\n[terrain.plane]\n", ["test.toml: flood is missing", "[flood]"]),

@@ -1,5 +1,6 @@
 //! The guide's page on the scene file tells every key that there is, no other, and its default.
 
+use corpuscle_scene::dew::{self, Air, AirInflow, Dew, Face, Faces, LowUtility, Material, MeshFile, Shape, Solid};
 use corpuscle_scene::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -34,6 +35,7 @@ fn collect(name: &str, value: &Value, keys: &mut BTreeMap<Key, Value>) {
             ("scene", key) => key.to_owned(),
             (_, "extent") => "extent".to_owned(),
             ("gas.walls", _) => "side".to_owned(),
+            ("dew.faces", _) => "face".to_owned(),
             (name, key) => format!("{name}.{key}"),
         };
         match value {
@@ -85,12 +87,12 @@ fn full(terrain: Terrain) -> Scene {
         scheme: Scheme::Balanced,
         spacing_m: 1.0,
         spacing_depth_m: Some(1.0),
+        paper: Paper { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..Paper::default() },
         gravity_m_per_s2: 1.0,
         manning: Manning::Number(0.0),
         wet_depth_m: 1.0,
         map_every_s: Some(1.0),
         balanced: Balanced::default(),
-        paper: Paper::default(),
         edges: Edges::default(),
         water: vec![water, in_the_air],
         inflow: vec![Inflow {
@@ -168,14 +170,87 @@ fn full_gas(method: Method) -> Scene {
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 
+/// A dew scene with every key written, whether or not they go together. No field is left to a default.
+fn full_dew() -> Scene {
+    let air = Air {
+        temperature_c: 1.0,
+        relative_humidity: Some(0.5),
+        dew_point_c: Some(1.0),
+        mixing_ratio: Some(0.5),
+        pressure_pa: 1.0,
+        velocity_m_per_s: [0.0; 3],
+    };
+    let inflow = Face::Inflow(AirInflow {
+        velocity_m_per_s: [1.0; 3],
+        temperature_c: Some(1.0),
+        relative_humidity: Some(0.5),
+        dew_point_c: Some(1.0),
+        mixing_ratio: Some(0.5),
+    });
+    let own = Material::Own { conductivity_w_per_m_k: 1.0, heat_capacity_j_per_kg_k: 1.0, density_kg_per_m3: 1.0 };
+    let shapes = [
+        Shape::Box { size_m: [1.0; 3] },
+        Shape::Sphere { radius_m: 1.0 },
+        Shape::Cylinder { radius_m: 1.0, height_m: 1.0 },
+        Shape::Revolution { profile_m: vec![[0.0; 2]] },
+        Shape::WineGlass(dew::WineGlass::default()),
+        Shape::Mesh(MeshFile { path: "a".into(), unit: Some(dew::LengthUnit::Mm) }),
+    ];
+    let solid = |(at, shape)| Solid {
+        name: "a".into(),
+        shape,
+        material: if at == 0 { Material::default() } else { own.clone() },
+        position_m: [0.0; 3],
+        rotation_deg: [0.0; 3],
+        temperature_c: Series::Constant(1.0),
+        held: true,
+        layers: Some(1),
+    };
+    let dew = Dew {
+        size_m: [1.0; 3],
+        spacing_m: 1.0,
+        scheme: dew::Scheme::Paper,
+        gravity_m_per_s2: [0.0; 3],
+        time_factor: 1.0,
+        air,
+        faces: Faces { x_min: inflow, ..Faces::default() },
+        boundary: dew::Boundary { treatment: dew::Treatment::Ghost, colour_threshold: 1.0 },
+        transport: dew::Transport {
+            conductivity_mean: Some(dew::Mean::Harmonic),
+            humidity: Some(dew::HumidityTransport::MassFraction),
+            latent_heat: Some(true),
+            vapour_diffusivity_m2_per_s: 1.0,
+            air_conductivity_w_per_m_k: 1.0,
+            air_heat_capacity_j_per_kg_k: 1.0,
+            air_viscosity_pa_s: 1.0,
+        },
+        drops: dew::Drops {
+            contact_angle_deg: 1.0,
+            friction: 1.0,
+            surface_tension_n_per_m: 1.0,
+            smallest_radius_m: 1.0,
+        },
+        low_utility: Some(LowUtility { distance: 1.0, after_s: 1.0 }),
+        output: dew::Output { air: true, solids: true },
+        solid: shapes.into_iter().enumerate().map(solid).collect(),
+    };
+    let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
+    let model = ModelScene::Dew(Box::new(dew));
+    Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+}
+
 #[test]
 fn the_guide_tells_every_key_and_no_other() {
     let floods = all_terrains().map(full);
     let gases = [Method::EventDriven, Method::FixedStep { time_step_s: 1.0 }].map(full_gas);
-    let mut known: BTreeSet<Key> = floods.iter().chain(&gases).flat_map(|scene| keys_of(scene).into_keys()).collect();
+    let dew = [full_dew()];
+    let scenes = floods.iter().chain(&gases).chain(&dew);
+    let mut known: BTreeSet<Key> = scenes.flat_map(|scene| keys_of(scene).into_keys()).collect();
     // A side is one of several tables, or a word.
     let fixed = Walls { z_min: Some(Wall::Fixed), z_max: Some(Wall::Fixed), ..Walls::default() };
     known.extend(keys_of_value("gas.walls", &Value::try_from(fixed).unwrap()).into_keys());
+    // A face is a word or a table.
+    known.extend(keys_of_value("dew.faces", &Value::try_from(Faces::default()).unwrap()).into_keys());
     let mut told: BTreeSet<Key> = told().into_keys().collect();
     // Its value is the table that follows.
     assert!(told.remove(&("flood.water".into(), "block".into())));
@@ -197,12 +272,15 @@ fn the_guide_tells_the_defaults() {
                { name = \"a\", count = 1, radius = 1, mass = 1, temperature = 1 }], walls = { x_max = { piston = { \
                mass = 1, pressure = 1 } } } }";
     compared += compare_defaults(&Scene::parse(gas, "smallest", &[]).unwrap(), &told);
-    assert!(compared > 65, "{compared}");
+    let dew = "run.until_s = 1\n[dew]\nsize_m = [1, 1, 1]\nspacing_m = 0.1\nlow_utility = {}\nair = { temperature_c = 20, \
+               relative_humidity = 0.5 }\nsolid = [{ name = \"a\", temperature_c = 5, shape = { wine-glass = {} } }]";
+    compared += compare_defaults(&Scene::parse(dew, "smallest", &[]).unwrap(), &told);
+    assert!(compared > 90, "{compared}");
 }
 
 /// Compares the values of keys that the scene does not give with what is told; gives their number.
 fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
-    let given = ["level_m", "water", "inflow", "gauge", "section", "count"];
+    let given = ["level_m", "water", "inflow", "gauge", "section", "count", "relative_humidity"];
     let is_default = |key: &Key| !given.contains(&key.1.as_str()) && told[key] != "required";
     let mut compared = 0;
     for (key, default) in keys_of(scene).into_iter().filter(|(key, _)| is_default(key)) {
@@ -225,6 +303,14 @@ fn the_guide_tells_the_forms_of_values() {
         "{ moving = ",
         "{ motion = ",
         "\"si\"",
+        "{ inflow = ",
+        "{ mesh = ",
+        "\"density-correction\"",
+        "\"virtual-force\"",
+        "\"ghost\"",
+        "\"harmonic\"",
+        "\"relative-humidity\"",
+        "\"mm\"",
         "\"list\"",
         "\"lattice\"",
         "\"open\"",

@@ -11,6 +11,7 @@
 mod error;
 mod glass;
 mod material;
+mod mesh;
 mod nearest;
 mod pose;
 mod profile;
@@ -21,6 +22,7 @@ mod solid;
 pub use error::SolidError;
 pub use glass::WineGlass;
 pub use material::{MATERIALS, Material, material};
+pub use mesh::{MOST_BYTES, MOST_TRIANGLES, Mesh};
 pub use nearest::Nearest;
 pub use pose::Pose;
 pub use profile::Profile;

@@ -1,6 +1,6 @@
 //! A shape or a mesh somewhere in the scene.
 
-use crate::{Depth, Nearest, Pose, Samples, Shape, SolidError, sample};
+use crate::{Depth, Mesh, Nearest, Pose, Samples, Shape, SolidError, sample};
 
 /// A solid in the scene's coordinates, m.
 #[derive(Debug, Clone)]
@@ -12,12 +12,18 @@ pub struct Solid {
 #[derive(Debug, Clone)]
 enum Body {
     Shape(Shape),
+    Mesh(Mesh),
 }
 
 impl Solid {
     /// A shape, turned and moved.
     pub fn of_shape(shape: Shape, pose: Pose) -> Self {
         Self { body: Body::Shape(shape), pose }
+    }
+
+    /// A mesh, turned and moved.
+    pub fn of_mesh(mesh: Mesh, pose: Pose) -> Self {
+        Self { body: Body::Mesh(mesh), pose }
     }
 
     /// Signed distance of a place to the surface and the way out.
@@ -51,6 +57,7 @@ impl Solid {
     pub fn volume(&self) -> f64 {
         match &self.body {
             Body::Shape(shape) => shape.volume(),
+            Body::Mesh(mesh) => mesh.volume(),
         }
     }
 
@@ -58,6 +65,7 @@ impl Solid {
     pub fn area(&self) -> f64 {
         match &self.body {
             Body::Shape(shape) => shape.area(),
+            Body::Mesh(mesh) => mesh.area(),
         }
     }
 
@@ -75,6 +83,7 @@ impl Solid {
     pub(crate) fn nearest_of_its_own(&self, point: [f64; 3]) -> Nearest {
         match &self.body {
             Body::Shape(shape) => shape.nearest(point),
+            Body::Mesh(mesh) => mesh.nearest(point),
         }
     }
 
@@ -82,6 +91,7 @@ impl Solid {
     pub(crate) fn own_bounds(&self) -> [[f64; 3]; 2] {
         match &self.body {
             Body::Shape(shape) => shape.bounds(),
+            Body::Mesh(mesh) => mesh.bounds(),
         }
     }
 }

@@ -12,4 +12,4 @@ pub use cells::{Cells, FEWEST};
 pub use corpuscle_lanes::{
     LANES, Lanes, LanesExt, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, gather,
 };
-pub use neighbours::{BLOCK, FAR_AWAY, NeighbourLists, Neighbours, PairSum};
+pub use neighbours::{BLOCK, FAR_AWAY, Near, NeighbourLists, Neighbours, PairSum};

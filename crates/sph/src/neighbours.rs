@@ -1,4 +1,4 @@
-//! Lists of neighbours: pairs of particles of which at least one reaches the other.
+//! Lists of neighbours: pairs of particles of which one reaches the other.
 
 use crate::Cells;
 use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
@@ -8,8 +8,7 @@ use rayon::prelude::*;
 /// Particles of one block of lists; work is shared out by blocks, so results never depend on the number of threads.
 pub const BLOCK: usize = 256;
 
-/// For each particle, the particles that it reaches or that reach it. Each list is filled up with the particle itself
-/// to a multiple of [`LANES`].
+/// For each particle, its neighbours. Each list is filled up with the particle itself to a multiple of [`LANES`].
 #[derive(Debug, Default)]
 pub struct NeighbourLists {
     blocks: Vec<Block>,
@@ -34,6 +33,15 @@ pub struct Neighbours<'a> {
 /// Distance at which nothing is felt, m; its square is still a number.
 pub const FAR_AWAY: f64 = 1e150;
 
+/// Which particles are neighbours of a particle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Near {
+    /// Those that it reaches.
+    Reached,
+    /// Those that it reaches or that reach it.
+    Either,
+}
+
 /// A sum over the neighbours of a particle.
 pub trait PairSum<T>: Sync {
     /// Sums over the neighbours found of `particle`.
@@ -46,11 +54,11 @@ impl PairSum<()> for () {
 }
 
 impl NeighbourLists {
-    /// Finds the neighbours of all particles. `x`, `y` and `reach` are in the order of `cells`, whose reach is set. Two
-    /// particles are neighbours where their distance is below the larger of their reaches. `sum` is called once for every
-    /// particle with what was found, and its result goes to `out`.
+    /// Finds the neighbours of all particles. `x`, `y` and `reach_squared` are in the order of `cells`, whose reach is set.
+    /// `sum` is called once for every particle with what was found, and its result goes to `out`.
     pub fn search<T: Send>(
         &mut self,
+        near: Near,
         cells: &Cells,
         x: &[f64],
         y: &[f64],
@@ -59,7 +67,7 @@ impl NeighbourLists {
         sum: &impl PairSum<T>,
     ) {
         self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
-        let places = Places { x, y, reach_squared };
+        let places = Places { x, y, reach_squared, near };
         self.blocks.par_iter_mut().zip(out.par_chunks_mut(BLOCK)).enumerate().for_each(|(number, (block, out))| {
             let first = number * BLOCK;
             dispatch!(Level::new(), simd => search_block(simd, block, cells, places, first, out, sum));
@@ -87,6 +95,7 @@ struct Places<'a> {
     x: &'a [f64],
     y: &'a [f64],
     reach_squared: &'a [f64],
+    near: Near,
 }
 
 #[inline(always)]
@@ -108,7 +117,11 @@ fn search_block<S: Simd, T>(
         let begin = end;
         let (xi, yi) = (places.x[i], places.y[i]);
         let mut found = 0;
-        for range in cells.ranges(xi, yi, cells.reach_at(xi, yi)) {
+        let reach = match places.near {
+            Near::Reached => places.reach_squared[i].sqrt(),
+            Near::Either => cells.reach_at(xi, yi),
+        };
+        for range in cells.ranges(xi, yi, reach) {
             // Room for every candidate and for the lanes written beyond the last.
             let room = begin + found + range.len() + 2 * LANES;
             if index.len() < room {
@@ -148,16 +161,20 @@ fn keep_near<S: Simd>(
     let mut at = range.start;
     while at < range.end {
         let lanes = (range.end - at).min(LANES);
-        let (x, y, reaches) = if at + LANES <= places.x.len() {
-            let load = |values: &[f64]| Lanes::from_slice(simd, &values[at..at + LANES]);
-            (load(places.x), load(places.y), load(places.reach_squared))
-        } else {
-            let load = |values: &[f64]| Lanes::from_fn(simd, |lane| values[(at + lane).min(values.len() - 1)]);
-            (load(places.x), load(places.y), load(places.reach_squared))
+        let load = |values: &[f64]| {
+            if at + LANES <= values.len() {
+                Lanes::from_slice(simd, &values[at..at + LANES])
+            } else {
+                Lanes::from_fn(simd, |lane| values[(at + lane).min(values.len() - 1)])
+            }
         };
-        let (dx, dy) = (x - xi, y - yi);
+        let (dx, dy) = (load(places.x) - xi, load(places.y) - yi);
         let r_squared = dx * dx + dy * dy;
-        let mut near = r_squared.simd_lt(reaches.max(reach)).to_bitmask() & ((1 << lanes) - 1);
+        let within = match places.near {
+            Near::Reached => Lanes::splat(simd, reach),
+            Near::Either => load(places.reach_squared).max(reach),
+        };
+        let mut near = r_squared.simd_lt(within).to_bitmask() & ((1 << lanes) - 1);
         if at <= i && i < at + lanes {
             near &= !(1 << (i - at));
         }
@@ -203,6 +220,7 @@ mod tests {
         #[test]
         fn finds_what_all_pairs_find(
             places in prop::collection::vec((0.0..30.0f64, 0.0..30.0f64, 0.5..6.0f64), 0..150),
+            near in prop::sample::select(vec![Near::Reached, Near::Either]),
         ) {
             let x: Vec<f64> = places.iter().map(|p| p.0).collect();
             let y: Vec<f64> = places.iter().map(|p| p.1).collect();
@@ -215,10 +233,11 @@ mod tests {
             let squared: Vec<f64> = reach.iter().map(|r| r * r).collect();
             let mut lists = NeighbourLists::default();
             let mut counts = vec![0; x.len()];
-            lists.search(&cells, &x, &y, &squared, &mut counts, &Count);
+            lists.search(near, &cells, &x, &y, &squared, &mut counts, &Count);
             for i in 0..x.len() {
+                let within = |j: usize| if near == Near::Either { squared[i].max(squared[j]) } else { squared[i] };
                 let mut expected: Vec<u32> = (0..x.len())
-                    .filter(|&j| j != i && (x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2) < squared[i].max(squared[j]))
+                    .filter(|&j| j != i && (x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2) < within(j))
                     .map(|j| j as u32)
                     .collect();
                 prop_assert_eq!(counts[i], expected.len());

@@ -50,7 +50,8 @@ pub struct Options {
 
 /// All cases.
 pub fn cases() -> &'static [Case] {
-    static ALL: LazyLock<Vec<Case>> = LazyLock::new(|| [crate::flood::CASES, crate::gas::CASES].concat());
+    static ALL: LazyLock<Vec<Case>> =
+        LazyLock::new(|| [crate::flood::CASES, crate::gas::CASES, crate::dew::CASES].concat());
     &ALL
 }
 

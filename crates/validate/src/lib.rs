@@ -5,6 +5,7 @@
 
 mod bench;
 mod case;
+mod dew;
 mod flood;
 mod gas;
 

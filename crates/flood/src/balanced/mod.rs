@@ -16,7 +16,7 @@ use crate::density::{Densities, Density};
 use crate::particle::Particle;
 use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
-use corpuscle_sph::BLOCK;
+use corpuscle_sph::{BLOCK, Near};
 use forces::Force;
 use rayon::prelude::*;
 
@@ -107,7 +107,7 @@ impl Balanced {
     fn find_densities(&mut self) {
         let Arrangement { cells, lists, x, y, reach_squared, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), Density::default());
-        lists.search(cells, x, y, reach_squared, &mut self.densities, &Densities { reach_squared });
+        lists.search(Near::Either, cells, x, y, reach_squared, &mut self.densities, &Densities { reach_squared });
     }
 
     /// Hands depth, ground and next smoothing length to the particles.

@@ -60,11 +60,15 @@ impl Check {
 
     fn paper(&self, paper: &Paper) -> Checked {
         self.above("flood.paper.time_step_s", paper.time_step_s, 0.0)?;
-        self.above("flood.paper.smoothing_length_m", paper.smoothing_length_m, 0.0)?;
+        if let Some(length) = paper.smoothing_length_m {
+            self.above("flood.paper.smoothing_length_m", length, 0.0)?;
+        }
         self.above("flood.paper.density_kg_per_m3", paper.density_kg_per_m3, 0.0)?;
         self.at_least("flood.paper.gas_constant", paper.gas_constant, 0.0)?;
         self.at_least("flood.paper.viscosity", paper.viscosity, 0.0)?;
-        self.above("flood.paper.radius_m", paper.radius_m, 0.0)?;
+        if let Some(radius) = paper.radius_m {
+            self.above("flood.paper.radius_m", radius, 0.0)?;
+        }
         self.at_least("flood.paper.control_strength", paper.control_strength, 0.0)?;
         self.above("flood.paper.control_square", paper.control_square, 0.0)?;
         self.at_least("flood.paper.largest_smoothing", paper.largest_smoothing, 1.0)

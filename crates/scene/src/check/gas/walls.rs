@@ -1,10 +1,7 @@
 //! Checks of `[gas.walls]`.
 
-use super::{Check, Checked};
+use crate::check::{Check, Checked, SIDES};
 use crate::{Axis, Gas, Motion, Series, Wall};
-
-/// The sides by name, with the axis along which they lie.
-const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
 
 impl Check {
     pub(super) fn walls(&self, gas: &Gas) -> Checked {

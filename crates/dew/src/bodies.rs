@@ -1,0 +1,212 @@
+//! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
+
+use corpuscle_model::ModelError;
+use corpuscle_scene::dew::{self, Dew, Shape};
+use corpuscle_scene::{SceneError, Table};
+use corpuscle_solids::{
+    self as solids, Depth, MATERIALS, Material, Mesh, Pose, Profile, Samples, Solid, SolidError, WineGlass,
+};
+use std::path::Path;
+
+/// A solid of a scene.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Its name in the scene.
+    pub name: String,
+    /// Where it is.
+    pub solid: Solid,
+    /// What it is made of.
+    pub material: Material,
+    /// Its temperature in °C: at the start, or over time where it is held.
+    pub temperature: Table,
+    /// Whether its temperature is held.
+    pub held: bool,
+    /// The particles that stand for it.
+    pub samples: Samples,
+    /// What was put right in its mesh, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Why the solids of a scene cannot be used. The text says which, what is wrong and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum BodyError {
+    /// A solid that cannot be made.
+    #[error("the solid \"{name}\" (dew.solid.{row}): {source}")]
+    Solid {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// Why.
+        source: SolidError,
+    },
+    /// A temperature over time that cannot be read.
+    #[error(transparent)]
+    Temperature(#[from] SceneError),
+    /// A name of no material.
+    #[error(
+        "the solid \"{name}\" (dew.solid.{row}): there is no material \"{material}\"; there are {known}, or give its numbers"
+    )]
+    Material {
+        /// Name of the solid.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// Name of the material.
+        material: String,
+        /// All that there are.
+        known: String,
+    },
+    /// A solid that the box has nothing of.
+    #[error(
+        "the solid \"{name}\" (dew.solid.{row}) is from {from:.4?} to {to:.4?} m, outside the box of {size:?} m: move it by position_m, \
+         or look whether its unit of length is right"
+    )]
+    Outside {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// Its smallest coordinates, m.
+        from: [f64; 3],
+        /// Its largest coordinates, m.
+        to: [f64; 3],
+        /// The box, m.
+        size: [f64; 3],
+    },
+    /// Solids that leave no room for air.
+    #[error(
+        "the solids fill the box of {size:?} m: there is no place for a particle of air in it; give smaller solids, a larger size_m, \
+         or look whether their units of length are right"
+    )]
+    NoRoom {
+        /// The box, m.
+        size: [f64; 3],
+    },
+    /// Solids that are in one another.
+    #[error("the solids \"{one}\" and \"{other}\" overlap, at {at:.4?} m by {depth:.2e} m: move one of them")]
+    Overlap {
+        /// One of them.
+        one: String,
+        /// The other.
+        other: String,
+        /// Where.
+        at: [f64; 3],
+        /// How deep.
+        depth: f64,
+    },
+}
+
+impl From<BodyError> for ModelError {
+    fn from(error: BodyError) -> Self {
+        ModelError::Setup(error.to_string())
+    }
+}
+
+/// Makes the solids of a scene ready. Relative paths are taken from `folder`.
+///
+/// # Errors
+/// [`BodyError`], where one cannot be made, is outside the box or in another, or where they leave no room for air.
+pub fn open(dew: &Dew, folder: &Path) -> Result<Vec<Body>, BodyError> {
+    let made = dew.solid.iter().enumerate().map(|(row, written)| body(dew, row, written, folder));
+    let bodies = made.collect::<Result<Vec<_>, _>>()?;
+    refuse_overlap(&bodies, dew.spacing_m)?;
+    refuse_a_full_box(&bodies, dew)?;
+    Ok(bodies)
+}
+
+fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Body, BodyError> {
+    let name = written.name.clone();
+    let wrong = |source| BodyError::Solid { name: name.clone(), row, source };
+    let (solid, notes) = solid(written, folder).map_err(wrong)?;
+    let [from, to] = solid.bounds();
+    if (0..3).any(|axis| to[axis] <= 0.0 || from[axis] >= dew.size_m[axis]) {
+        return Err(BodyError::Outside { name, row, from, to, size: dew.size_m });
+    }
+    let depth = written.layers.map_or(Depth::Full, Depth::Layers);
+    let samples = solid.sample(dew.spacing_m, depth).map_err(wrong)?;
+    Ok(Body {
+        material: material(row, written)?,
+        temperature: written.temperature_c.load(folder)?,
+        held: written.held,
+        name,
+        solid,
+        samples,
+        notes,
+    })
+}
+
+fn solid(written: &dew::Solid, folder: &Path) -> Result<(Solid, Vec<String>), SolidError> {
+    let pose = Pose::new(written.position_m, written.rotation_deg);
+    let shape = match &written.shape {
+        Shape::Box { size_m } => solids::Shape::cuboid(*size_m)?,
+        Shape::Sphere { radius_m } => solids::Shape::sphere(*radius_m)?,
+        Shape::Cylinder { radius_m, height_m } => solids::Shape::cylinder(*radius_m, *height_m)?,
+        Shape::Revolution { profile_m } => solids::Shape::Revolution(Profile::new(profile_m.clone())?),
+        Shape::WineGlass(glass) => wine_glass(glass).shape()?,
+        Shape::Mesh(file) => {
+            let mesh = Mesh::read(&folder.join(&file.path), file.unit.map(dew::LengthUnit::in_metres))?;
+            let notes = mesh.notes().iter().map(|note| format!("{}: {note}", file.path.display())).collect();
+            return Ok((Solid::of_mesh(mesh, pose), notes));
+        }
+    };
+    Ok((Solid::of_shape(shape, pose), Vec::new()))
+}
+
+fn wine_glass(glass: &dew::WineGlass) -> WineGlass {
+    WineGlass {
+        height: glass.height_m,
+        bowl_radius: glass.bowl_radius_m,
+        foot_radius: glass.foot_radius_m,
+        stem_radius: glass.stem_radius_m,
+        wall: glass.wall_m,
+    }
+}
+
+fn material(row: usize, written: &dew::Solid) -> Result<Material, BodyError> {
+    match &written.material {
+        dew::Material::Named(material) => solids::material(material).copied().ok_or_else(|| BodyError::Material {
+            name: written.name.clone(),
+            row,
+            material: material.clone(),
+            known: MATERIALS.iter().map(|material| material.name).collect::<Vec<_>>().join(", "),
+        }),
+        dew::Material::Own { conductivity_w_per_m_k, heat_capacity_j_per_kg_k, density_kg_per_m3 } => Ok(Material {
+            name: "own",
+            conductivity: *conductivity_w_per_m_k,
+            heat_capacity: *heat_capacity_j_per_kg_k,
+            density: *density_kg_per_m3,
+            source: "the scene",
+        }),
+    }
+}
+
+/// Solids may touch: particles of one may be in the other by rounding, not by a tenth of a spacing.
+fn refuse_overlap(bodies: &[Body], spacing: f64) -> Result<(), BodyError> {
+    for (at, one) in bodies.iter().enumerate() {
+        for other in bodies.iter().enumerate().filter(|(which, _)| *which != at).map(|(_, other)| other) {
+            let [from, to] = other.solid.bounds();
+            let inside = |point: &&[f64; 3]| (0..3).all(|axis| (from[axis]..=to[axis]).contains(&point[axis]));
+            let depths = one.samples.positions.iter().filter(inside).map(|&at| (at, -other.solid.signed_distance(at)));
+            let deepest = depths.max_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((at, depth)) = deepest.filter(|(_, depth)| *depth > 0.1 * spacing) {
+                return Err(BodyError::Overlap { one: one.name.clone(), other: other.name.clone(), at, depth });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Places along each side of the box that are tried for air.
+const TRIED: f64 = 64.0;
+
+/// Somewhere there is a place half a spacing from all solids.
+fn refuse_a_full_box(bodies: &[Body], dew: &Dew) -> Result<(), BodyError> {
+    let counts = dew.size_m.map(|length| (length / dew.spacing_m).clamp(1.0, TRIED) as u32);
+    let place = |axis: usize, at: u32| dew.size_m[axis] * (f64::from(at) + 0.5) / f64::from(counts[axis]);
+    let is_free = |point: [f64; 3]| bodies.iter().all(|body| body.solid.signed_distance(point) >= 0.5 * dew.spacing_m);
+    let mut places = (0..counts[2])
+        .flat_map(|z| (0..counts[1]).flat_map(move |y| (0..counts[0]).map(move |x| [x, y, z])))
+        .map(|[x, y, z]| [place(0, x), place(1, y), place(2, z)]);
+    if places.any(is_free) { Ok(()) } else { Err(BodyError::NoRoom { size: dew.size_m }) }
+}

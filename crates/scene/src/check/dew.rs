@@ -1,0 +1,154 @@
+//! Checks of `[dew]`.
+
+mod solids;
+
+use super::{Check, Checked, SIDES};
+use crate::Axis;
+use crate::dew::{Air, AirInflow, Dew, Drops, Face, LowUtility, Transport};
+
+/// 0 K in °C.
+const ABSOLUTE_ZERO: f64 = -273.15;
+
+/// The formula for saturated vapour is meant for liquid water: Bolton (1980) fitted it from -30 to 35 °C.
+const COLDEST_AIR: f64 = -100.0;
+const WARMEST_AIR: f64 = 100.0;
+
+/// More particles than this do not fit in the memory of usual machines.
+const MOST_PARTICLES: f64 = 1e8;
+
+impl Check {
+    pub(super) fn dew(&self, dew: &Dew) -> Checked {
+        for (axis, &length) in dew.size_m.iter().enumerate() {
+            self.above(&format!("dew.size_m.{axis}"), length, 0.0)?;
+        }
+        self.above("dew.spacing_m", dew.spacing_m, 0.0)?;
+        let shortest = dew.size_m.iter().copied().fold(f64::INFINITY, f64::min);
+        self.require("dew.spacing_m", dew.spacing_m <= shortest, || {
+            format!("is wider than the box: give at most {shortest}, or a larger size_m")
+        })?;
+        let count = dew.size_m.iter().product::<f64>() / dew.spacing_m.powi(3);
+        self.require("dew.spacing_m", count <= MOST_PARTICLES, || {
+            format!("would make {count:.1e} particles of air; at most {MOST_PARTICLES:.0e} are possible")
+        })?;
+        self.at_least("dew.time_factor", dew.time_factor, 1.0)?;
+        self.air(&dew.air)?;
+        self.faces(dew)?;
+        self.above("dew.boundary.colour_threshold", dew.boundary.colour_threshold, 0.0)?;
+        self.transport(&dew.transport)?;
+        self.drops(&dew.drops)?;
+        if let Some(low_utility) = &dew.low_utility {
+            self.low_utility(low_utility)?;
+        }
+        self.solids(dew)
+    }
+
+    fn air(&self, air: &Air) -> Checked {
+        self.air_temperature("dew.air.temperature_c", air.temperature_c)?;
+        let given = [
+            ("relative_humidity", air.relative_humidity.is_some()),
+            ("dew_point_c", air.dew_point_c.is_some()),
+            ("mixing_ratio", air.mixing_ratio.is_some()),
+        ];
+        self.exactly_one("dew.air", &given)?;
+        self.humidity("dew.air", air.temperature_c, [air.relative_humidity, air.dew_point_c, air.mixing_ratio])?;
+        self.above("dew.air.pressure_pa", air.pressure_pa, 0.0)
+    }
+
+    /// A temperature is one that can be.
+    fn not_below_absolute_zero(&self, key: &str, celsius: f64) -> Checked {
+        self.require(key, celsius >= ABSOLUTE_ZERO, || {
+            format!("is below absolute zero, {ABSOLUTE_ZERO} °C: temperatures are in °C, not in K")
+        })
+    }
+
+    fn air_temperature(&self, key: &str, celsius: f64) -> Checked {
+        self.not_below_absolute_zero(key, celsius)?;
+        self.require(key, (COLDEST_AIR..=WARMEST_AIR).contains(&celsius), || {
+            format!(
+                "must be from {COLDEST_AIR} to {WARMEST_AIR}: what saturated vapour is like beyond is not known here"
+            )
+        })
+    }
+
+    /// Relative humidity, dew point and mixing ratio, where given, of air at a temperature.
+    fn humidity(&self, key: &str, celsius: f64, [relative, dew_point, mixing]: [Option<f64>; 3]) -> Checked {
+        if let Some(relative) = relative {
+            let percent = if relative > 1.0 && relative <= 100.0 { "; it is not in percent" } else { "" };
+            self.require(&format!("{key}.relative_humidity"), (0.0..=1.0).contains(&relative), || {
+                format!("must be from 0 to 1{percent}")
+            })?;
+        }
+        if let Some(dew_point) = dew_point {
+            let key = format!("{key}.dew_point_c");
+            self.air_temperature(&key, dew_point)?;
+            self.require(&key, dew_point <= celsius, || {
+                format!("is above the temperature of the air, {celsius} °C: such air would be fog already")
+            })?;
+        }
+        if let Some(mixing) = mixing {
+            self.require(&format!("{key}.mixing_ratio"), (0.0..1.0).contains(&mixing), || {
+                "must be at least 0 and below 1: it is in kg of vapour for a kg of dry air, as in 0.01".into()
+            })?;
+        }
+        Ok(())
+    }
+
+    fn faces(&self, dew: &Dew) -> Checked {
+        for axis in Axis::ALL {
+            let (names, faces) = (SIDES[axis.index()], dew.faces.along(axis));
+            for side in [0, 1] {
+                let key = format!("dew.faces.{}", names[side]);
+                let alone = *faces[side] == Face::Periodic && *faces[1 - side] != Face::Periodic;
+                self.require(&key, !alone, || {
+                    format!("the opposite side must be periodic too: give {} = \"periodic\"", names[1 - side])
+                })?;
+                if let Face::Inflow(inflow) = faces[side] {
+                    let inward = if side == 0 { 1.0 } else { -1.0 };
+                    let speed = inward * inflow.velocity_m_per_s[axis.index()];
+                    self.air_inflow(&format!("{key}.inflow"), &dew.air, inflow, speed)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Air that comes in, with this speed into the box.
+    fn air_inflow(&self, key: &str, air: &Air, inflow: &AirInflow, speed: f64) -> Checked {
+        self.require(&format!("{key}.velocity_m_per_s"), speed > 0.0, || {
+            "must lead into the box through this side".into()
+        })?;
+        let humidity = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio];
+        let given = humidity.iter().filter(|measure| measure.is_some()).count();
+        self.require(key, given <= 1, || "give at most one of relative_humidity, dew_point_c and mixing_ratio".into())?;
+        let celsius = inflow.temperature_c.unwrap_or(air.temperature_c);
+        self.air_temperature(&format!("{key}.temperature_c"), celsius)?;
+        self.humidity(key, celsius, humidity)
+    }
+
+    fn transport(&self, transport: &Transport) -> Checked {
+        let above_zero = [
+            ("vapour_diffusivity_m2_per_s", transport.vapour_diffusivity_m2_per_s),
+            ("air_conductivity_w_per_m_k", transport.air_conductivity_w_per_m_k),
+            ("air_heat_capacity_j_per_kg_k", transport.air_heat_capacity_j_per_kg_k),
+        ];
+        for (name, value) in above_zero {
+            self.above(&format!("dew.transport.{name}"), value, 0.0)?;
+        }
+        self.at_least("dew.transport.air_viscosity_pa_s", transport.air_viscosity_pa_s, 0.0)
+    }
+
+    fn drops(&self, drops: &Drops) -> Checked {
+        let angle = drops.contact_angle_deg;
+        self.require("dew.drops.contact_angle_deg", angle > 0.0 && angle < 180.0, || {
+            "must be between 0 and 180, both excluded".into()
+        })?;
+        self.at_least("dew.drops.friction", drops.friction, 0.0)?;
+        self.above("dew.drops.surface_tension_n_per_m", drops.surface_tension_n_per_m, 0.0)?;
+        self.above("dew.drops.smallest_radius_m", drops.smallest_radius_m, 0.0)
+    }
+
+    fn low_utility(&self, low_utility: &LowUtility) -> Checked {
+        self.at_least("dew.low_utility.distance", low_utility.distance, 1.0)?;
+        self.at_least("dew.low_utility.after_s", low_utility.after_s, 0.0)
+    }
+}

@@ -1,0 +1,162 @@
+//! The solids.
+
+use crate::Series;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A solid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Solid {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Its form.
+    pub shape: Shape,
+    /// What it is made of.
+    #[serde(default)]
+    pub material: Material,
+    /// Where its own origin is, m.
+    #[serde(default)]
+    pub position_m: [f64; 3],
+    /// Turns about x, then y, then z through its own origin, degrees.
+    #[serde(default)]
+    pub rotation_deg: [f64; 3],
+    /// Temperature, °C: at the start, or over time where it is held.
+    pub temperature_c: Series,
+    /// Whether its temperature is held whatever happens; else it warms and cools.
+    #[serde(default)]
+    pub held: bool,
+    /// Layers of particles below its surface. Left out: it is filled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layers: Option<u32>,
+}
+
+/// The form of a solid, in its own coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Shape {
+    /// A box with its middle at the origin.
+    Box {
+        /// Lengths of its sides, m.
+        size_m: [f64; 3],
+    },
+    /// A ball with its middle at the origin.
+    Sphere {
+        /// Radius, m.
+        radius_m: f64,
+    },
+    /// A cylinder along z with its middle at the origin.
+    Cylinder {
+        /// Radius, m.
+        radius_m: f64,
+        /// Length along z, m.
+        height_m: f64,
+    },
+    /// A profile turned about z.
+    Revolution {
+        /// Corners `[distance from the axis, z]` in turn, m; the last is joined to the first.
+        profile_m: Vec<[f64; 2]>,
+    },
+    /// A wine glass that stands on z = 0.
+    WineGlass(WineGlass),
+    /// A mesh from a file.
+    Mesh(MeshFile),
+}
+
+/// A wine glass that stands on z = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct WineGlass {
+    /// Height of the whole glass, m.
+    pub height_m: f64,
+    /// Largest outer radius of the bowl, m.
+    pub bowl_radius_m: f64,
+    /// Radius of the foot, m.
+    pub foot_radius_m: f64,
+    /// Radius of the stem, m.
+    pub stem_radius_m: f64,
+    /// Thickness of the bowl's wall and of the foot, m.
+    pub wall_m: f64,
+}
+
+impl Default for WineGlass {
+    fn default() -> Self {
+        Self { height_m: 0.2, bowl_radius_m: 0.04, foot_radius_m: 0.035, stem_radius_m: 0.005, wall_m: 0.003 }
+    }
+}
+
+/// A mesh from a file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshFile {
+    /// OBJ, STL, PLY, glTF or GLB.
+    pub path: PathBuf,
+    /// What its numbers are measured in. Required for all but glTF and GLB, which are in metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<LengthUnit>,
+}
+
+impl MeshFile {
+    /// True for the formats that say themselves that they are in metres.
+    pub fn is_in_metres(&self) -> bool {
+        let extension = self.path.extension().and_then(|extension| extension.to_str());
+        extension.is_some_and(|extension| ["gltf", "glb"].contains(&extension.to_ascii_lowercase().as_str()))
+    }
+}
+
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthUnit {
+    /// Metre.
+    M,
+    /// Centimetre.
+    Cm,
+    /// Millimetre.
+    Mm,
+    /// Inch.
+    In,
+    /// Foot.
+    Ft,
+}
+
+impl LengthUnit {
+    /// One of it in m; inch and foot as agreed in 1959.
+    pub fn in_metres(self) -> f64 {
+        match self {
+            Self::M => 1.0,
+            Self::Cm => 0.01,
+            Self::Mm => 0.001,
+            Self::In => 0.0254,
+            Self::Ft => 0.3048,
+        }
+    }
+}
+
+/// What a solid is made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected the name of a material, as in \"glass\", or { conductivity_w_per_m_k = 1.4, heat_capacity_j_per_kg_k \
+                 = 750, density_kg_per_m3 = 2500 }"
+)]
+pub enum Material {
+    /// One of the table of materials.
+    Named(String),
+    /// Told by its numbers.
+    Own {
+        /// Conductivity of heat, W/(m K).
+        conductivity_w_per_m_k: f64,
+        /// Heat capacity, J/(kg K).
+        heat_capacity_j_per_kg_k: f64,
+        /// Density, kg/m3.
+        density_kg_per_m3: f64,
+    },
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self::Named("glass".into())
+    }
+}

@@ -1,0 +1,241 @@
+//! Meshes: every format reads, distances are those of brute force, and what bounds no solid is refused with its reason.
+
+mod common;
+
+use base64::Engine;
+use common::{Soup, ball, cube, torus};
+use corpuscle_solids::{Depth, Mesh, Pose, Solid, SolidError};
+use proptest::prelude::*;
+use std::path::Path;
+
+fn mesh(soup: &Soup) -> Mesh {
+    made(soup).unwrap()
+}
+
+fn made(soup: &Soup) -> Result<Mesh, SolidError> {
+    Mesh::new(Path::new("test"), soup.corners.clone(), soup.triangles.clone())
+}
+
+fn refused(soup: &Soup) -> String {
+    made(soup).unwrap_err().to_string()
+}
+
+fn written(folder: &tempfile::TempDir, name: &str, content: impl AsRef<[u8]>) -> std::path::PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, content).unwrap();
+    path
+}
+
+#[test]
+fn every_format_gives_the_same_solid() {
+    let folder = tempfile::tempdir().unwrap();
+    let soup = ball(1.5, 1);
+    let expected = mesh(&soup);
+    for (name, content) in soup.in_all_formats() {
+        let path = written(&folder, name, content);
+        let is_in_metres = name.ends_with("gltf") || name.ends_with("glb");
+        let read =
+            Mesh::read(&path, (!is_in_metres).then_some(0.001)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let scale: f64 = if is_in_metres { 1.0 } else { 0.001 };
+        assert!((read.volume() / expected.volume() / scale.powi(3) - 1.0).abs() < 1e-6, "{name}");
+        assert!((read.area() / expected.area() / scale.powi(2) - 1.0).abs() < 1e-6, "{name}");
+        assert_eq!(read.notes(), [""; 0], "{name}");
+    }
+}
+
+#[test]
+fn gltf_stands_upright() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut soup = cube([1.0, 2.0, 3.0]);
+    soup.corners.iter_mut().for_each(|corner| corner[1] += 10.0);
+    let (_, content) = soup.in_all_formats().into_iter().find(|(name, _)| *name == "mesh.gltf").unwrap();
+    let read = Mesh::read(&written(&folder, "mesh.gltf", content), None).unwrap();
+    assert_eq!(read.bounds(), [[0.0, -3.0, 10.0], [1.0, 0.0, 12.0]]);
+}
+
+#[test]
+fn what_bounds_no_solid_is_refused() {
+    let whole = ball(1.0, 2);
+    let mut open = whole.clone();
+    open.triangles.truncate(open.triangles.len() - 1);
+    assert!(refused(&open).contains("not watertight: 3 open edges"), "{}", refused(&open));
+    let mut twice = whole.clone();
+    twice.triangles.push(twice.triangles[0]);
+    assert!(refused(&twice).contains("3 edges have more than two triangles"), "{}", refused(&twice));
+    let mut not_a_number = whole.clone();
+    not_a_number.corners[3][1] = f64::NAN;
+    assert!(refused(&not_a_number).contains("corner 3 (counted from 0) is at"), "{}", refused(&not_a_number));
+    let mut unknown = whole.clone();
+    unknown.triangles[5][1] = 9999;
+    assert!(refused(&unknown).contains("triangle 5"), "{}", refused(&unknown));
+    let flat = cube([1.0, 1.0, 1e-12]);
+    assert!(refused(&flat).contains("no volume"), "{}", refused(&flat));
+    assert!(refused(&Soup::default()).contains("no triangles"));
+    let mut crossing = cube([1.0; 3]);
+    let mut other = cube([1.0; 3]);
+    other.corners.iter_mut().for_each(|corner| *corner = corner.map(|x| x + 0.3));
+    crossing.add(&other);
+    assert!(refused(&crossing).contains("crosses itself"), "{}", refused(&crossing));
+    let mut apart = cube([1.0; 3]);
+    other.corners.iter_mut().for_each(|corner| *corner = corner.map(|x| x + 3.0));
+    apart.add(&other);
+    assert!((mesh(&apart).volume() - 2.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_strip_with_one_side_is_refused() {
+    // Five triangles round a ring with one twist, closed to a surface without edges by a second layer: a Klein bottle.
+    let (around, across) = (8_u32, 5_u32);
+    let at = |i: u32, j: u32| {
+        // After one turn the small circle is passed the other way.
+        let (i, j) = if i == around { (0, (across - j) % across) } else { (i, j % across) };
+        i * across + j
+    };
+    let mut soup = Soup::default();
+    for i in 0..around {
+        for j in 0..across {
+            let (u, v) = (f64::from(i), f64::from(j));
+            soup.corners.push([u.sin() * (3.0 + v.cos()), u.cos() * (3.0 + v.cos()), v.sin()]);
+            let next = (j + 1) % across;
+            soup.triangles.push([at(i, j), at(i + 1, j), at(i + 1, next)]);
+            soup.triangles.push([at(i, j), at(i + 1, next), at(i, next)]);
+        }
+    }
+    assert!(refused(&soup).contains("only one side"), "{}", refused(&soup));
+}
+
+#[test]
+fn winding_is_put_right_and_told() {
+    let right = ball(1.0, 1);
+    let mut some = right.clone();
+    for at in [0, 7, 8, 20] {
+        some.triangles[at].swap(0, 1);
+    }
+    let fixed = mesh(&some);
+    assert!((fixed.volume() - mesh(&right).volume()).abs() < 1e-12);
+    assert!(fixed.notes()[0].contains("4 triangles of 80 were wound against the others"), "{:?}", fixed.notes());
+    let mut inward = right.clone();
+    inward.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+    let fixed = mesh(&inward);
+    assert!(fixed.volume() > 0.0 && fixed.nearest([0.0; 3]).distance < 0.0);
+    assert!(fixed.notes()[0].contains("seen from inside"), "{:?}", fixed.notes());
+    let mut flat = right.clone();
+    flat.triangles.push([3, 3, 5]);
+    assert!(mesh(&flat).notes()[0].contains("1 triangles of 81"), "{:?}", mesh(&flat).notes());
+}
+
+#[test]
+fn a_hollow_is_empty() {
+    let mut shell = ball(1.0, 2);
+    let mut hollow = ball(0.5, 2);
+    hollow.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+    shell.add(&hollow);
+    let shell = mesh(&shell);
+    assert!(shell.nearest([0.0, 0.0, 0.1]).distance > 0.0 && shell.nearest([0.0, 0.0, 0.75]).distance < 0.0);
+}
+
+#[test]
+fn files_that_are_no_meshes_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused =
+        |name: &str, content: &[u8]| Mesh::read(&written(&folder, name, content), Some(1.0)).unwrap_err().to_string();
+    let text =
+        b"Dear mesh,\nthis is a letter and no mesh. It is longer than the head of a binary file, which has 84 bytes.\n";
+    for (name, words) in [
+        ("letter.stl", "neither a binary STL"),
+        ("letter.obj", "no triangles"),
+        ("letter.ply", "not a PLY"),
+        ("letter.gltf", "not a glTF"),
+        ("letter.glb", "not a glTF"),
+        ("letter.txt", "must end in .obj, .stl"),
+        ("letter", "must end in .obj, .stl"),
+    ] {
+        let message = refused(name, text);
+        assert!(message.contains(words) && message.contains(name), "{message}");
+        assert!(!refused(name, b"").is_empty() && !refused(name, b"solid ").is_empty());
+    }
+    let solid = refused("solid.stl", b"solid as a rock\nfacet this is not\n");
+    assert!(solid.contains("not an STL that can be read"), "{solid}");
+    let missing = Mesh::read(&folder.path().join("none.stl"), Some(1.0)).unwrap_err().to_string();
+    assert!(missing.contains("cannot read the mesh") && missing.contains("none.stl"), "{missing}");
+    let unit = Mesh::read(&written(&folder, "a.obj", "v 0 0 0"), None).unwrap_err().to_string();
+    assert!(unit.contains("unit of length"), "{unit}");
+}
+
+#[test]
+fn ten_million_triangles_are_refused_before_they_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("huge.stl");
+    let count = 10_000_000_u32;
+    let mut head = vec![0; 80];
+    head.extend(count.to_le_bytes());
+    std::fs::write(&path, head).unwrap();
+    std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(84 + 50 * u64::from(count)).unwrap();
+    let message = Mesh::read(&path, Some(1.0)).unwrap_err().to_string();
+    assert!(message.contains("10000000 triangles or more; 2000000 are possible"), "{message}");
+    let ply = "ply\nformat ascii 1.0\nelement face 10000000\nproperty list uchar int vertex_indices\nend_header\n";
+    let message = Mesh::read(&written(&folder, "huge.ply", ply), Some(1.0)).unwrap_err().to_string();
+    assert!(message.contains("2000000 are possible"), "{message}");
+}
+
+#[test]
+fn files_cut_off_or_damaged_are_refused_without_a_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut refusals = 0;
+    for (name, content) in ball(1.0, 0).in_all_formats() {
+        for cut in (0..content.len()).step_by(content.len() / 97 + 1) {
+            let path = written(&folder, name, &content[..cut]);
+            refusals += usize::from(Mesh::read(&path, Some(1.0)).is_err());
+            let mut damaged = content.clone();
+            damaged[cut] ^= 0x15;
+            // Whatever becomes of it, it does not panic.
+            let _ = Mesh::read(&written(&folder, name, &damaged), Some(1.0));
+        }
+    }
+    assert!(refusals > 300, "{refusals}");
+}
+
+#[test]
+fn a_glb_cannot_reach_beyond_its_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, content) = cube([1.0; 3]).in_all_formats().into_iter().find(|(name, _)| *name == "mesh.gltf").unwrap();
+    let text = String::from_utf8(content).unwrap();
+    let short = base64::engine::general_purpose::STANDARD.encode([0_u8; 12]);
+    let start = text.find("base64,").unwrap() + 7;
+    let end = start + text[start..].find('"').unwrap();
+    let cut = format!("{}{short}{}", &text[..start], &text[end..]);
+    let message = Mesh::read(&written(&folder, "cut.gltf", cut), None).unwrap_err().to_string();
+    assert!(message.contains("shorter than it says"), "{message}");
+    for count in ["0", "4000000000", "18446744073709551615"] {
+        let odd = text.replacen("\"count\":8", &format!("\"count\":{count}"), 1);
+        assert!(Mesh::read(&written(&folder, "odd.gltf", odd), None).is_err(), "{count}");
+    }
+}
+
+#[test]
+fn a_sampled_mesh_sums_to_its_volume() {
+    for soup in [ball(0.5, 3), torus(0.5, 0.2, 40, 20), cube([0.5, 0.4, 0.3])] {
+        let solid = Solid::of_mesh(mesh(&soup), Pose::new([1.0, 2.0, 3.0], [10.0, 20.0, 30.0]));
+        let samples = solid.sample(0.03, Depth::Full).unwrap();
+        assert!((samples.volumes.iter().sum::<f64>() / solid.volume() - 1.0).abs() < 1e-10);
+        assert!((samples.areas.iter().sum::<f64>() / solid.area() - 1.0).abs() < 1e-10);
+        assert!(samples.positions.iter().all(|&at| solid.signed_distance(at) < 0.0));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn distances_are_those_of_brute_force(place in [-1.2..1.2, -1.2..1.2, -1.2..1.2]) {
+        for soup in [ball(1.0, 1), torus(0.7, 0.3, 12, 8), cube([0.9, 0.5, 0.7])] {
+            let mesh = mesh(&soup);
+            let nearest = mesh.nearest(place);
+            let (distance, is_inside) = (soup.distance(place), soup.winding(place) > 0.5);
+            prop_assert!((nearest.distance.abs() - distance).abs() < 1e-9);
+            prop_assert!(distance < 1e-9 || (nearest.distance < 0.0) == is_inside, "{nearest:?} {is_inside}");
+            let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
+            prop_assert!(soup.distance(foot) < 1e-9);
+        }
+    }
+}
