@@ -1,8 +1,28 @@
 //! Humid air that condenses on cold solids.
+//!
+//! [`Dew`] is the model: air as particles in three dimensions (SPH, weakly compressible) round solids sampled into particles
+//! too. Heat goes through both; vapour diffuses through the air and becomes water where a surface is cold enough.
+//! Published as Chinese patent CN106650064B, whose ways can be chosen beside the defaults.
 
 // Loops over axes read several arrays at once.
 #![allow(clippy::needless_range_loop)]
 
+pub mod air;
+mod contact;
+mod dew;
+mod exchange;
+mod faces;
 pub mod bodies;
 pub mod drops;
 pub mod humid_air;
+mod model;
+mod room;
+mod settings;
+pub mod solids;
+#[cfg(test)]
+mod testing;
+mod walls;
+
+pub use dew::{Dew, Setup};
+pub use room::{Face, Image, Inflow, Room};
+pub use settings::{Condensation, Conductor, Mean, Settings, WallTreatment};

@@ -14,7 +14,6 @@ mod flood;
 mod friction;
 mod gauges;
 mod inflow;
-mod ledger;
 mod limits;
 mod maps;
 mod paper;

@@ -33,6 +33,30 @@ impl Balance {
     }
 }
 
+/// What of a conserved quantity was there at the start, what came in and what went out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Account {
+    /// Amount at the start.
+    pub initial: f64,
+    /// Amount that came in since.
+    pub inflow: ExactSum,
+    /// Amount that went out since.
+    pub outflow: ExactSum,
+}
+
+impl Account {
+    /// Books an amount as inflow, or as outflow where it is negative.
+    pub fn book(&mut self, amount: f64) {
+        if amount >= 0.0 { self.inflow.add(amount) } else { self.outflow.add(-amount) }
+    }
+
+    /// The balance, with so much there now.
+    pub fn balance(&self, quantity: &'static str, now: f64) -> Balance {
+        let (inflow, outflow) = (self.inflow.value(), self.outflow.value());
+        Balance { quantity, initial: self.initial, inflow, outflow, now }
+    }
+}
+
 /// A sum whose rounding errors do not add up (Neumaier 1974).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExactSum {
@@ -64,7 +88,7 @@ impl FromIterator<f64> for ExactSum {
 
 #[cfg(test)]
 mod tests {
-    use super::{Balance, ExactSum};
+    use super::{Account, Balance, ExactSum};
 
     #[test]
     fn small_amounts_are_not_lost_beside_large_ones() {
@@ -80,5 +104,13 @@ mod tests {
         assert!((water.relative_error() - 1.5 / 16.5).abs() < 1e-15);
         let none = Balance { quantity: "water_m3", initial: 0.0, inflow: 0.0, outflow: 0.0, now: 0.0 };
         assert_eq!(none.relative_error(), 0.0);
+    }
+
+    #[test]
+    fn bookings_balance() {
+        let mut account = Account { initial: 5.0, ..Account::default() };
+        account.book(3.0);
+        account.book(-1.0);
+        assert_eq!(account.balance("water_m3", 7.0).relative_error(), 0.0);
     }
 }

@@ -14,7 +14,7 @@ pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
 pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
-pub use ledger::{Balance, ExactSum, Ledger};
+pub use ledger::{Account, Balance, ExactSum, Ledger};
 pub use map::Map;
 pub use path::Path;
 

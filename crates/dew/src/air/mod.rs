@@ -1,0 +1,15 @@
+//! The air: particles of equal mass that move, warm and carry vapour.
+
+mod arrangement;
+mod density;
+mod pairs;
+mod particle;
+mod properties;
+mod scale;
+
+pub use arrangement::{Arrangement, Entry};
+pub use density::Sums;
+pub use pairs::{Column, Rates, sum as sum_pairs};
+pub use particle::{Particle, Role};
+pub use properties::Properties;
+pub use scale::Scale;

@@ -1,0 +1,116 @@
+//! What air does to air: pressure, viscosity, diffusion of heat and of vapour, in one pass over pairs.
+//!
+//! Every pair acts on both by the same number with opposite signs, so momentum, heat and vapour are conserved to rounding.
+
+use super::{Arrangement, Properties, Scale};
+use bytemuck::{Pod, Zeroable};
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch, gather};
+use rayon::prelude::*;
+
+/// What the pass reads of a place: two rows of numbers to gather.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub struct Column {
+    /// Place, m.
+    pub position: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Pressure over the square of the density, Pa m6/kg2.
+    pub pressure: f64,
+    /// What the Laplacian is multiplied by so that it is exact where particles stand as they do: 1 on the lattice.
+    pub evenness: f64,
+    /// Temperature, K.
+    pub temperature: f64,
+    /// Part of the mass that is vapour (or relative humidity).
+    pub vapour: f64,
+    /// Fills the second row.
+    pub unused: [f64; 6],
+}
+
+/// What neighbours do to a particle.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Rates {
+    /// By pressure and viscosity, m/s2.
+    pub acceleration: [f64; 3],
+    /// Gradient of how crowded it is, 1/m, towards where it is not: -2 sum V grad W, 0 on a lattice.
+    pub spread: [f64; 3],
+    /// K/s.
+    pub warming: f64,
+    /// 1/s.
+    pub moistening: f64,
+    /// Sum of the weights of the Laplacian, 1/m2: a diffusivity times it is the particle's entry in the diagonal of the
+    /// diffusion matrix.
+    pub weights: f64,
+}
+
+/// Sums over all pairs of air. `viscosity` and diffusivities are in m2/s.
+pub fn sum(arrangement: &Arrangement, columns: &[Column], scale: &Scale, air: &Properties, rates: &mut [Rates]) {
+    rates.par_chunks_mut(BLOCK).enumerate().for_each(|(block, rates)| {
+        dispatch!(Level::new(), simd => sum_block(simd, arrangement, columns, scale, air, block * BLOCK, rates));
+    });
+}
+
+#[inline(always)]
+fn sum_block<S: Simd>(
+    simd: S,
+    arrangement: &Arrangement,
+    columns: &[Column],
+    scale: &Scale,
+    air: &Properties,
+    first: usize,
+    rates: &mut [Rates],
+) {
+    for (k, rates) in rates.iter_mut().enumerate() {
+        let place = arrangement.place_of[first + k] as usize;
+        *rates = of_one(simd, columns, arrangement.lists.of(place), place, scale, air);
+    }
+}
+
+#[inline(always)]
+fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scale: &Scale, air: &Properties) -> Rates {
+    let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
+    let own = &columns[place];
+    let Scale { volume, kernels, to_gradient, moment, .. } = *scale;
+    // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1, with the spiky kernel).
+    let of_pressure = air.density * volume * to_gradient * kernels.spiky_factor();
+    let of_spread = 2.0 * volume * to_gradient * kernels.spiky_factor();
+    let of_laplacian = 0.5 * volume * kernels.spiky_factor() / moment;
+    // Distances below this are those of a place to itself.
+    let nothing = Lanes::splat(simd, 1e-18 * kernels.support() * kernels.support());
+    let zero = Lanes::splat(simd, 0.0);
+    let [mut ax, mut ay, mut az, mut shear_x, mut shear_y, mut shear_z] = [zero; 6];
+    let [mut spread_x, mut spread_y, mut spread_z] = [zero; 3];
+    let [mut warming, mut moistening, mut weights] = [zero; 3];
+    for index in list.chunks_exact(LANES) {
+        let first: [usize; LANES] = std::array::from_fn(|lane| 2 * index[lane] as usize);
+        let [x, y, z, u, v, w, pressure, evenness] = gather(simd, rows, first);
+        let [temperature, vapour, ..] = gather(simd, rows, first.map(|row| row + 1));
+        let (dx, dy, dz) = (own.position[0] - x, own.position[1] - y, own.position[2] - z);
+        let r_squared = dx * dx + dy * dy + dz * dz;
+        let r = r_squared.max(nothing).sqrt();
+        let inside = kernels.inside(r);
+        let slope = inside * inside / r;
+        let push = (pressure + own.pressure) * slope * of_pressure;
+        ax += push * dx;
+        ay += push * dy;
+        az += push * dz;
+        spread_x += slope * dx;
+        spread_y += slope * dy;
+        spread_z += slope * dz;
+        let weight = r_squared.select_below(nothing, zero, inside * (evenness + own.evenness) * of_laplacian);
+        shear_x += weight * (u - own.velocity[0]);
+        shear_y += weight * (v - own.velocity[1]);
+        shear_z += weight * (w - own.velocity[2]);
+        warming += weight * (temperature - own.temperature);
+        moistening += weight * (vapour - own.vapour);
+        weights += weight;
+    }
+    let acceleration = [(ax, shear_x), (ay, shear_y), (az, shear_z)];
+    Rates {
+        acceleration: acceleration.map(|(push, shear)| push.sum() + air.viscosity * shear.sum()),
+        spread: [spread_x, spread_y, spread_z].map(|along| of_spread * along.sum()),
+        warming: air.heat_diffusivity() * warming.sum(),
+        moistening: air.vapour_diffusivity * moistening.sum(),
+        weights: weights.sum(),
+    }
+}

@@ -1,0 +1,65 @@
+//! A parcel of air.
+
+use serde::{Deserialize, Serialize};
+
+/// A parcel of air of constant mass that moves with the flow.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Particle {
+    /// Place, m.
+    pub position: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Acceleration, m/s2.
+    pub acceleration: [f64; 3],
+    /// How its place is evened out among its neighbours: times the square of the time step it is a displacement, m/s2.
+    pub spreading: [f64; 3],
+    /// Temperature, K.
+    pub temperature: f64,
+    /// Part of the mass that is vapour; where humidity diffuses to the letter of the patent, relative humidity.
+    pub vapour: f64,
+    /// Part of the mass that is fog, liquid that the air carries.
+    pub fog: f64,
+    /// Density, kg/m3.
+    pub density: f64,
+    /// Lasting identity.
+    pub id: u64,
+    /// Whether it is in the room.
+    pub role: Role,
+    /// For how long it has been of low utility, s.
+    pub idle: f64,
+}
+
+/// Whether a parcel is in the room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Role {
+    /// In the room.
+    Inside,
+    /// Before an inlet, on its way in: axis and side of the face.
+    Coming(u8, u8),
+    /// Beyond an outlet, on its way off: axis and side of the face.
+    Leaving(u8, u8),
+}
+
+impl Particle {
+    /// Air at rest, without fog.
+    pub fn new(id: u64, position: [f64; 3], temperature: f64, vapour: f64) -> Self {
+        Self {
+            position,
+            velocity: [0.0; 3],
+            acceleration: [0.0; 3],
+            spreading: [0.0; 3],
+            temperature,
+            vapour,
+            fog: 0.0,
+            density: 0.0,
+            id,
+            role: Role::Inside,
+            idle: 0.0,
+        }
+    }
+
+    /// Square of the speed, m2/s2.
+    pub fn speed_squared(&self) -> f64 {
+        self.velocity.iter().map(|along| along * along).sum()
+    }
+}

@@ -1,0 +1,575 @@
+//! The model: air that moves, carries heat and vapour, and leaves water on solids.
+
+use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums, sum_pairs};
+use crate::contact::Contact;
+use crate::exchange::{Exchange, excess};
+use crate::humid_air;
+use crate::room::Room;
+use crate::settings::{Condensation, Settings, WallTreatment};
+use crate::solids::{Body, Conduction, Solids};
+use crate::walls::{self, Push};
+use corpuscle_model::{Account, ExactSum, ModelError};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Humid air round cold solids.
+pub struct Dew {
+    pub(crate) settings: Settings,
+    pub(crate) air: Properties,
+    pub(crate) room: Room,
+    pub(crate) scale: Scale,
+    pub(crate) solids: Solids,
+    conduction: Conduction,
+    /// Sums of the solids' conductances, W/K.
+    conductances: Vec<f64>,
+    /// Heat of condensation, J/kg.
+    pub(crate) latent_heat: f64,
+    /// Density at which the pressure is that at rest, kg/m3: the air's, but for how evenly its particles can stand.
+    rest_density: f64,
+    pub(crate) state: State,
+    arrangement: Arrangement,
+    contact: Contact,
+    ghosts: Contact,
+    sums: Vec<Sums>,
+    columns: Vec<Column>,
+    rates: Vec<Rates>,
+    /// The time shown, s; up to one step after the state's.
+    pub(crate) shown: f64,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// Everything that changes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct State {
+    pub time: f64,
+    pub steps: u64,
+    pub particle_steps: u64,
+    /// Largest sound time step from here, s.
+    pub time_step: f64,
+    pub next_id: u64,
+    pub air: Vec<Particle>,
+    /// Temperature of each particle of the solids, K.
+    pub temperatures: Vec<f64>,
+    /// Water on each particle of the solids, kg.
+    pub water_on: Vec<f64>,
+    /// Vapour that has become fog less fog that has become vapour, kg.
+    pub fogged: ExactSum,
+    /// Heat that has come from solids held at a temperature, J; negative where they took it.
+    pub held_heat: ExactSum,
+    /// How far the air before each inlet has come since its last layer, m.
+    pub inlet_phase: [[f64; 2]; 3],
+    pub water: Account,
+    pub energy: Account,
+}
+
+/// Zero of the energy's temperature, K.
+const COLD: f64 = humid_air::ZERO_CELSIUS;
+
+/// Acceleration limits the time step: this times the root of spacing over acceleration.
+const ACCELERATION_LIMIT: f64 = 0.25;
+
+/// Part of the longest step for which no diffusion overshoots its neighbours.
+const DIFFUSION_LIMIT: f64 = 0.9;
+
+/// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
+const FARTHEST_SPREAD: f64 = 0.05;
+
+/// Most steps by which the air is evened out at the start, how far each goes over the square of the spacing and the
+/// gradient of crowding, and the gradient, over the spacing, that is even enough.
+const SETTLING: u32 = 200;
+const SETTLING_STEP: f64 = 0.2;
+const EVEN: f64 = 1e-3;
+
+/// What a [`Dew`] is made from.
+pub struct Setup {
+    /// How the model works.
+    pub settings: Settings,
+    /// The air.
+    pub air: Properties,
+    /// The box.
+    pub room: Room,
+    /// The solids.
+    pub bodies: Vec<Body>,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Dew {
+    /// Air in a room with solids, at rest on a lattice wherever there is no solid; `start` tells temperature, K, and vapour,
+    /// part of the mass, at a place.
+    ///
+    /// # Errors
+    /// Where there is no room for air.
+    pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
+        let Setup { settings, air, room, bodies, seed } = setup;
+        let scale = Scale::new(settings.spacing);
+        let solids = Solids::new(bodies, room, &scale, settings.threshold);
+        let conduction = Conduction::new(&solids, room, &scale, settings.mean, settings.faster);
+        let conductances = (0..solids.particles.len()).map(|i| conduction.sum(i)).collect();
+        let sites = solids.sites(room, scale.h(), |particle| particle.near_surface);
+        let volume = |site: &crate::solids::Site| solids.particles[site.particle as usize].volume;
+        let contact = Contact::new(&sites, volume, scale.h());
+        let ghosts = match settings.walls {
+            WallTreatment::Ghosts => crate::solids::ghost_contact(bodies, &solids, room, &scale, *seed)?,
+            _ => Contact::default(),
+        };
+        let temperatures =
+            bodies.iter().flat_map(|body| std::iter::repeat_n(body.temperature, body.positions.len())).collect();
+        let state = State {
+            time: 0.0,
+            steps: 0,
+            particle_steps: 0,
+            time_step: 0.0,
+            next_id: 0,
+            air: Vec::new(),
+            temperatures,
+            water_on: vec![0.0; solids.particles.len()],
+            fogged: ExactSum::default(),
+            held_heat: ExactSum::default(),
+            inlet_phase: [[0.0; 2]; 3],
+            water: Account::default(),
+            energy: Account::default(),
+        };
+        let mut dew = Self {
+            latent_heat: humid_air::latent_heat(settings.ambient_temperature),
+            settings: *settings,
+            air: *air,
+            room: *room,
+            scale,
+            solids,
+            conduction,
+            conductances,
+            rest_density: air.density,
+            state,
+            arrangement: Arrangement::default(),
+            contact,
+            ghosts,
+            sums: Vec::new(),
+            columns: Vec::new(),
+            rates: Vec::new(),
+            shown: 0.0,
+            warnings: Vec::new(),
+        };
+        dew.fill(bodies, start);
+        if dew.state.air.is_empty() {
+            let what = "the solids leave no room for air: take a larger room, smaller solids or a smaller spacing";
+            return Err(ModelError::Setup(what.into()));
+        }
+        dew.settle();
+        dew.state.time_step = dew.next_step(&[]);
+        dew.state.water.initial = dew.water();
+        dew.state.energy.initial = dew.energy();
+        Ok(dew)
+    }
+
+    /// Spreads the air evenly between the solids before anything happens.
+    fn settle(&mut self) {
+        let (room, spacing) = (self.room, self.scale.spacing);
+        let completed = matches!(self.settings.walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        for _ in 0..if completed { SETTLING } else { 0 } {
+            self.evaluate(0.0);
+            let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
+            if self.rates.par_iter().map(uneven).reduce(|| 0.0, f64::max) * spacing < EVEN {
+                break;
+            }
+            let particles = self.state.air.par_iter_mut().zip(&self.rates).with_min_len(1024);
+            particles.filter(|(particle, _)| particle.role == Role::Inside).for_each(|(particle, rates)| {
+                let farthest = FARTHEST_SPREAD * spacing;
+                for axis in 0..3 {
+                    let step = SETTLING_STEP * spacing * spacing * rates.spread[axis];
+                    particle.position[axis] += step.clamp(-farthest, farthest);
+                }
+                room.keep(&mut particle.position, &mut particle.velocity);
+            });
+        }
+        self.evaluate(0.0);
+        // The pressure at rest is that of the air as it stands: neither too much nor too little of it is in the room.
+        if completed {
+            let sum: f64 = self.inside().map(|particle| particle.density).sum();
+            self.rest_density = sum / (self.inside().count() as f64).max(1.0);
+        }
+        self.evaluate(0.0);
+    }
+
+    /// Mass of an air particle, kg.
+    pub fn particle_mass(&self) -> f64 {
+        self.air.density * self.scale.volume
+    }
+
+    /// One step.
+    pub(crate) fn step(&mut self) -> Result<(), ModelError> {
+        let step = self.state.time_step;
+        self.drift(step);
+        self.cross_faces(step);
+        self.evaluate(0.5 * step);
+        let stiff = self.exchange(step);
+        self.kick(step);
+        self.saturate();
+        self.state.time += step;
+        self.state.steps += 1;
+        self.state.particle_steps += self.state.air.len() as u64;
+        let next = self.next_step(&stiff);
+        self.state.time_step = next;
+        if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
+            return Ok(());
+        }
+        Err(ModelError::Breakdown {
+            time: self.state.time,
+            step: self.state.steps,
+            what: format!(
+                "the time step fell from {step:.3e} s to {next:.3e} s. Try a higher speed of sound, or look in the last \
+                 frame for the place where the air is fast or hot"
+            ),
+        })
+    }
+
+    /// Half a kick with the old acceleration, then on by a whole step.
+    fn drift(&mut self, step: f64) {
+        let room = self.room;
+        let farthest = FARTHEST_SPREAD * self.scale.spacing;
+        self.state.air.par_iter_mut().with_min_len(1024).for_each(|particle| {
+            if particle.role == Role::Inside {
+                (0..3).for_each(|axis| particle.velocity[axis] += 0.5 * step * particle.acceleration[axis]);
+            }
+            // The transport velocity (Adami, Hu & Adams 2013, equations 6 and 8).
+            let along = |axis: usize| {
+                let spread = (step * step * particle.spreading[axis]).clamp(-farthest, farthest);
+                step * particle.velocity[axis] + spread
+            };
+            let moved = [along(0), along(1), along(2)];
+            (0..3).for_each(|axis| particle.position[axis] += moved[axis]);
+            room.keep(&mut particle.position, &mut particle.velocity);
+        });
+    }
+
+    /// Arranges the air and finds what acts on it; velocities are taken `ahead` s on.
+    fn evaluate(&mut self, ahead: f64) {
+        let Self {
+            settings,
+            air,
+            room,
+            scale,
+            arrangement,
+            contact,
+            ghosts,
+            sums,
+            columns,
+            rates,
+            state,
+            rest_density,
+            ..
+        } = self;
+        arrangement.arrange(&mut state.air, room, scale.h());
+        arrangement.search(scale, sums);
+        contact.update(arrangement, scale);
+        ghosts.update(arrangement, scale);
+        match settings.walls {
+            WallTreatment::DensityCorrection => walls::add_density(contact, arrangement, scale, settings.kappa, sums),
+            WallTreatment::Ghosts => walls::add_density(ghosts, arrangement, scale, 1.0, sums),
+            WallTreatment::VirtualForce | WallTreatment::None => {}
+        }
+        walls::add_moment(contact, arrangement, scale, sums);
+        fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead);
+        rates.resize(state.air.len(), Rates::default());
+        let at_work = Properties {
+            conductivity: settings.faster * air.conductivity,
+            vapour_diffusivity: settings.faster * air.vapour_diffusivity,
+            ..*air
+        };
+        sum_pairs(arrangement, columns, scale, &at_work, rates);
+        let ghostly = settings.walls == WallTreatment::Ghosts;
+        let pushing = if ghostly { &*ghosts } else { &*contact };
+        let kappa = if ghostly { 1.0 } else { settings.kappa };
+        let sticking = &*contact;
+        let push = Push { treatment: settings.walls, pushing, sticking, arrangement, columns, scale, air, kappa };
+        push.add(rates);
+    }
+
+    /// Heat and vapour between air and solids, and through solids, in a step; how stiff it was for air near solids.
+    fn exchange(&mut self, step: f64) -> Vec<f64> {
+        let exchange = Exchange {
+            contact: &self.contact,
+            arrangement: &self.arrangement,
+            columns: &self.columns,
+            solids: &self.solids,
+            temperatures: &self.state.temperatures,
+            water: &self.state.water_on,
+            scale: &self.scale,
+            air: &self.air,
+            settings: &self.settings,
+            latent_heat: self.latent_heat,
+        };
+        let to_solids = exchange.to_solids(step);
+        let mut share_of = vec![1.0; self.solids.particles.len()];
+        let mut heat: Vec<f64> = (0..self.solids.particles.len())
+            .into_par_iter()
+            .with_min_len(1024)
+            .map(|i| self.conduction.heat(i, &self.state.temperatures))
+            .collect();
+        let mut stiff = vec![0.0; self.contact.near.len() + self.solids.particles.len()];
+        let (of_air, of_solids) = stiff.split_at_mut(self.contact.near.len());
+        of_solids.copy_from_slice(&self.conductances);
+        let real = self.contact.sites.iter().zip(&to_solids).filter(|(site, _)| !site.image);
+        for (site, given) in real.clone() {
+            let particle = site.particle as usize;
+            share_of[particle] = given.share;
+            heat[particle] += given.heat;
+            of_solids[particle] += given.conductance;
+        }
+        let to_air = exchange.to_air(&share_of);
+        for (site, given) in real {
+            self.state.water_on[site.particle as usize] += step * given.water;
+        }
+        for (i, heat) in heat.into_iter().enumerate() {
+            of_solids[i] /= self.solids.heat_capacity(i);
+            if self.solids.is_held(i) {
+                self.state.held_heat.add(-step * heat);
+                self.state.energy.book(-step * heat);
+                of_solids[i] = 0.0;
+            } else {
+                self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
+            }
+        }
+        for ((near, given), stiff) in self.contact.near.iter().zip(to_air).zip(of_air) {
+            let rates = &mut self.rates[near.particle as usize];
+            rates.warming += given.warming;
+            rates.moistening += given.moistening;
+            *stiff = given.stiffness;
+        }
+        stiff
+    }
+
+    /// The second half of the kick; heat and vapour of the whole step.
+    fn kick(&mut self, step: f64) {
+        let Self { settings, state, rates, air, .. } = self;
+        let spreading = air.spreading * air.sound_speed * air.sound_speed;
+        state.air.par_iter_mut().zip(rates).with_min_len(1024).for_each(|(particle, rates)| {
+            if particle.role != Role::Inside {
+                return;
+            }
+            // Boussinesq: air lighter than the ambient air by its temperature and vapour rises.
+            let lightness = virtual_temperature(particle.temperature, particle.vapour)
+                / virtual_temperature(settings.ambient_temperature, settings.ambient_vapour)
+                - 1.0;
+            for axis in 0..3 {
+                let external = settings.body_acceleration[axis] - lightness * settings.gravity[axis];
+                particle.acceleration[axis] = rates.acceleration[axis] + external;
+                particle.velocity[axis] += 0.5 * step * particle.acceleration[axis];
+            }
+            particle.spreading = rates.spread.map(|along| spreading * along);
+            particle.temperature += step * rates.warming;
+            particle.vapour += step * rates.moistening;
+        });
+    }
+
+    /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
+    /// again in drier air.
+    fn saturate(&mut self) {
+        let Self { settings, air, state, latent_heat, .. } = self;
+        let mut excesses: Vec<f64> = if settings.fog || settings.condensation == Condensation::Parcel {
+            let find = |particle: &Particle| {
+                let near_saturation = particle.role == Role::Inside
+                    && (particle.fog > 0.0 || particle.vapour > crate::exchange::saturation(particle.temperature, air));
+                if near_saturation { excess(particle, air, *latent_heat).max(-particle.fog) } else { 0.0 }
+            };
+            state.air.par_iter().with_min_len(1024).map(find).collect()
+        } else {
+            return;
+        };
+        self.deposit(&mut excesses);
+        if !self.settings.fog {
+            return;
+        }
+        let mass = self.particle_mass();
+        let warming = self.latent_heat / self.air.heat_capacity;
+        for (particle, excess) in self.state.air.iter_mut().zip(excesses).filter(|(_, excess)| *excess != 0.0) {
+            particle.vapour -= excess;
+            particle.fog += excess;
+            particle.temperature += warming * excess;
+            self.state.fogged.add(mass * excess);
+        }
+    }
+
+    /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
+    fn deposit(&mut self, excesses: &mut [f64]) {
+        let mass = self.particle_mass();
+        let exchange = Exchange {
+            contact: &self.contact,
+            arrangement: &self.arrangement,
+            columns: &self.columns,
+            solids: &self.solids,
+            temperatures: &self.state.temperatures,
+            water: &self.state.water_on,
+            scale: &self.scale,
+            air: &self.air,
+            settings: &self.settings,
+            latent_heat: self.latent_heat,
+        };
+        let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
+        let deposits: Vec<_> =
+            near.map(|near| (near.particle as usize, exchange.shares(near))).filter(|(_, to)| !to.is_empty()).collect();
+        for (particle, shares) in deposits {
+            let air = &mut self.state.air[particle];
+            let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
+            air.vapour -= water / mass;
+            for (site, share) in shares {
+                let site = site as usize;
+                let heat = self.latent_heat * water * share;
+                self.state.water_on[site] += water * share;
+                // The heat is set free at the surface, from where the better conductor takes the most of it.
+                let conductivity = self.solids.material(site).conductivity;
+                let to_solid = conductivity / (conductivity + self.air.conductivity);
+                air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+                if self.solids.is_held(site) {
+                    self.state.held_heat.add(-to_solid * heat);
+                    self.state.energy.book(-to_solid * heat);
+                } else {
+                    self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
+                }
+            }
+        }
+    }
+
+    /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
+    fn next_step(&self, stiff: &[f64]) -> f64 {
+        let Properties { sound_speed, viscosity, vapour_diffusivity, .. } = self.air;
+        let diffusivity = viscosity.max(self.settings.faster * vapour_diffusivity.max(self.air.heat_diffusivity()));
+        let largest =
+            |of: fn(&Particle) -> f64| self.state.air.par_iter().with_min_len(4096).map(of).reduce(|| 0.0, f64::max);
+        let speed = largest(Particle::speed_squared).sqrt();
+        let acceleration =
+            largest(|particle| particle.acceleration.iter().map(|along| along * along).sum::<f64>()).sqrt();
+        let weights = self.rates.par_iter().with_min_len(4096).map(|rates| rates.weights).reduce(|| 0.0, f64::max);
+        let stiffest = stiff.iter().copied().fold(diffusivity * weights, f64::max);
+        let by_sound = self.settings.cfl * self.scale.h() / (sound_speed + speed);
+        let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();
+        let by_diffusion = DIFFUSION_LIMIT / stiffest.max(1e-30);
+        // What is not a number must not be lost in a minimum.
+        if speed.is_finite() && acceleration.is_finite() && stiffest.is_finite() {
+            by_sound.min(by_force).min(by_diffusion)
+        } else {
+            f64::NAN
+        }
+    }
+
+    /// The air in the room.
+    pub(crate) fn inside(&self) -> impl Iterator<Item = &Particle> {
+        self.state.air.iter().filter(|particle| particle.role == Role::Inside)
+    }
+
+    /// Water in the air as vapour and fog and on the solids, kg.
+    pub(crate) fn water(&self) -> f64 {
+        let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
+        in_air.chain(self.state.water_on.iter().copied()).collect::<ExactSum>().value()
+    }
+
+    /// Energy of a parcel of air, J: its heat above 0 °C, and the heat that its vapour gives off when it condenses.
+    pub(crate) fn energy_of(&self, particle: &Particle) -> f64 {
+        let heat = self.air.heat_capacity * (particle.temperature - COLD);
+        self.particle_mass() * (heat + self.latent_heat * particle.vapour)
+    }
+
+    /// Energy of the air and of the solids that are free to warm, J.
+    pub(crate) fn energy(&self) -> f64 {
+        let free = (0..self.solids.particles.len()).filter(|&i| !self.solids.is_held(i));
+        let solids = free.map(|i| self.solids.heat_capacity(i) * (self.state.temperatures[i] - COLD));
+        self.inside().map(|particle| self.energy_of(particle)).chain(solids).collect::<ExactSum>().value()
+    }
+
+    /// Gives the air in the room velocities, m/s, by place.
+    pub fn stir(&mut self, velocity: impl Fn([f64; 3]) -> [f64; 3]) {
+        for particle in self.state.air.iter_mut().filter(|particle| particle.role == Role::Inside) {
+            particle.velocity = velocity(particle.position);
+        }
+        self.evaluate(0.0);
+        self.state.time_step = self.next_step(&[]);
+    }
+
+    /// The air, as it stands at the end of the last step; parcels before inlets and beyond outlets among it.
+    pub fn air(&self) -> &[Particle] {
+        &self.state.air
+    }
+
+    /// The solids.
+    pub fn solids(&self) -> &Solids {
+        &self.solids
+    }
+
+    /// Temperature of each particle of the solids, K.
+    pub fn temperatures(&self) -> &[f64] {
+        &self.state.temperatures
+    }
+
+    /// Water on each particle of the solids, kg.
+    pub fn water_on_solids(&self) -> &[f64] {
+        &self.state.water_on
+    }
+
+    /// Largest sound time step from here, s.
+    pub fn time_step(&self) -> f64 {
+        self.state.time_step
+    }
+
+    /// Bytes held for the particles and the work on them.
+    pub fn bytes(&self) -> usize {
+        let air = self.state.air.capacity() * size_of::<Particle>();
+        let work = self.columns.capacity() * size_of::<Column>()
+            + self.rates.capacity() * size_of::<Rates>()
+            + self.sums.capacity() * size_of::<Sums>();
+        air + work + self.arrangement.bytes() + self.contact.bytes() + self.ghosts.bytes() + self.conduction.bytes()
+    }
+
+    pub(crate) fn scale(&self) -> &Scale {
+        &self.scale
+    }
+}
+
+/// T (1 + 0.608 Y), K: temperature at which dry air is as light (Stull 1988, equation 1.5.1).
+fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
+    temperature * (1.0 + 0.608 * vapour)
+}
+
+/// Fills the columns of particles, with their densities, and of their images.
+fn fill_columns(
+    arrangement: &Arrangement,
+    sums: &[Sums],
+    columns: &mut Vec<Column>,
+    particles: &mut [Particle],
+    air: &Properties,
+    rest_density: f64,
+    ahead: f64,
+) {
+    particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
+        particle.density = air.density * sums[place as usize].filling;
+        if matches!(particle.role, Role::Leaving(..)) {
+            // Beyond an outlet the air is as it is at rest.
+            particle.density = rest_density;
+        }
+    });
+    let particles = &*particles;
+    let column = |(place, entry): (usize, &crate::air::Entry)| {
+        let particle = &particles[entry.particle as usize];
+        let place_of_particle = arrangement.place_of[entry.particle as usize] as usize;
+        let mut velocity = particle.velocity;
+        for axis in 0..3 {
+            if particle.role == Role::Inside {
+                velocity[axis] += ahead * particle.acceleration[axis];
+            }
+            if entry.mirrored[axis] {
+                velocity[axis] = -velocity[axis];
+            }
+        }
+        Column {
+            position: arrangement.at(place),
+            velocity,
+            pressure: air.sound_speed * air.sound_speed * (particle.density - rest_density)
+                / (particle.density * particle.density),
+            // A particle with few neighbours diffuses no faster than one with half of them.
+            evenness: 1.0 / sums[place_of_particle].moment.max(0.5),
+            temperature: particle.temperature,
+            vapour: particle.vapour,
+            unused: [0.0; 6],
+        }
+    };
+    arrangement.entries.par_iter().enumerate().with_min_len(1024).map(column).collect_into_vec(columns);
+}

@@ -1,0 +1,150 @@
+//! The box that the air is in, and what its faces do.
+
+use serde::{Deserialize, Serialize};
+
+/// What happens at a face of the room.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Face {
+    /// What leaves comes in at the opposite face, which must be periodic too.
+    Periodic,
+    /// A smooth wall that lets neither air nor heat nor vapour through.
+    Wall,
+    /// Air comes in.
+    Inlet(Inflow),
+    /// Air goes out.
+    Outlet,
+}
+
+/// Air as it comes in.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Inflow {
+    /// Speed into the room, m/s, above 0.
+    pub speed: f64,
+    /// Temperature, K.
+    pub temperature: f64,
+    /// Part of the mass that is vapour.
+    pub vapour: f64,
+}
+
+/// A box with its six faces.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Room {
+    /// Corner at the smallest coordinates, m.
+    pub low: [f64; 3],
+    /// Corner at the largest coordinates, m.
+    pub high: [f64; 3],
+    /// The faces at low and high x, y and z.
+    pub faces: [[Face; 2]; 3],
+}
+
+/// An image of a place beyond faces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Image {
+    /// Where it stands, m.
+    pub position: [f64; 3],
+    /// The axes along which it is mirrored: what moves along them moves the other way.
+    pub mirrored: [bool; 3],
+}
+
+impl Room {
+    /// Lengths of the sides, m.
+    pub fn size(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.high[axis] - self.low[axis])
+    }
+
+    /// Whether a place is inside.
+    pub fn contains(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|axis| self.low[axis] <= place[axis] && place[axis] < self.high[axis])
+    }
+
+    /// Calls `found` with every image of a place that is within `reach` of the room, beyond periodic faces and walls.
+    pub fn images(&self, place: [f64; 3], reach: f64, mut found: impl FnMut(Image)) {
+        let near = |axis: usize| place[axis] - self.low[axis] < reach || self.high[axis] - place[axis] < reach;
+        if !(0..3).any(near) {
+            return;
+        }
+        // Along each axis: the place itself, its image beyond the low face, and that beyond the high one.
+        let along = [0, 1, 2].map(|axis| {
+            let (low, high, at) = (self.low[axis], self.high[axis], place[axis]);
+            let image = |side: usize| match self.faces[axis][side] {
+                Face::Periodic => Some((at + [low - high, high - low][side], false)),
+                Face::Wall => Some((2.0 * [low, high][side] - at, true)),
+                Face::Inlet(_) | Face::Outlet => None,
+            };
+            let seen = |&(at, _): &(f64, bool)| at > low - reach && at < high + reach;
+            [Some((at, false)), image(0).filter(seen), image(1).filter(seen)]
+        });
+        for which in 1..27 {
+            let choice = [which % 3, which / 3 % 3, which / 9];
+            let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(|axis: usize| along[axis][choice[axis]]) else { continue };
+            found(Image { position: [x.0, y.0, z.0], mirrored: [x.1, y.1, z.1] });
+        }
+    }
+
+    /// Brings back what has crossed periodic faces and walls.
+    pub fn keep(&self, place: &mut [f64; 3], velocity: &mut [f64; 3]) {
+        for axis in 0..3 {
+            let (low, high) = (self.low[axis], self.high[axis]);
+            let side = usize::from(place[axis] >= high);
+            if place[axis] >= low && side == 0 {
+                continue;
+            }
+            match self.faces[axis][side] {
+                Face::Periodic => {
+                    let shifted = low + (place[axis] - low).rem_euclid(high - low);
+                    place[axis] = if shifted < high { shifted } else { low };
+                }
+                Face::Wall => {
+                    place[axis] = (2.0 * [low, high][side] - place[axis]).clamp(low, high.next_down());
+                    velocity[axis] = -velocity[axis];
+                }
+                Face::Inlet(_) | Face::Outlet => {}
+            }
+        }
+    }
+
+    /// The inlet or outlet beyond which a place lies: axis and side.
+    pub fn beyond(&self, place: [f64; 3]) -> Option<(usize, usize)> {
+        (0..3).find_map(|axis| {
+            let side = if place[axis] < self.low[axis] {
+                0
+            } else if place[axis] >= self.high[axis] {
+                1
+            } else {
+                return None;
+            };
+            matches!(self.faces[axis][side], Face::Inlet(_) | Face::Outlet).then_some((axis, side))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn room(faces: [[Face; 2]; 3]) -> Room {
+        Room { low: [0.0; 3], high: [1.0, 2.0, 3.0], faces }
+    }
+
+    #[test]
+    fn a_corner_has_seven_images() {
+        let walls = room([[Face::Wall; 2]; 3]);
+        let mut images = Vec::new();
+        walls.images([0.1, 0.1, 2.9], 0.2, |image| images.push(image));
+        assert_eq!(images.len(), 7);
+        assert!(images.contains(&Image { position: [-0.1, -0.1, 0.1 + 3.0], mirrored: [true; 3] }));
+        let mut one = Vec::new();
+        room([[Face::Periodic; 2]; 3]).images([0.5, 1.9, 1.0], 0.2, |image| one.push(image.position));
+        assert_eq!(one.len(), 1);
+        assert!((one[0][1] + 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_leaves_comes_back() {
+        let mixed = room([[Face::Periodic; 2], [Face::Wall; 2], [Face::Outlet; 2]]);
+        let (mut place, mut velocity) = ([-0.25, 2.5, 3.5], [1.0; 3]);
+        mixed.keep(&mut place, &mut velocity);
+        assert_eq!((place, velocity), ([0.75, 1.5, 3.5], [1.0, -1.0, 1.0]));
+        assert_eq!(mixed.beyond(place), Some((2, 1)));
+    }
+}

@@ -1,0 +1,115 @@
+//! How the model works, as far as it can be chosen.
+
+use serde::{Deserialize, Serialize};
+
+/// What keeps air out of solids.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum WallTreatment {
+    /// The solid's particles join the air's density, and push back with the air's own pressure.
+    #[default]
+    DensityCorrection,
+    /// A strong short-range repulsion (Monaghan 1994).
+    VirtualForce,
+    /// Random samples throughout the solid stand for air (Schechter & Bridson 2012).
+    Ghosts,
+    /// Nothing: to show what the others are for.
+    None,
+}
+
+/// How heat passes between unlike neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Mean {
+    /// By the harmonic mean of the conductivities, 2 a b / (a + b): that of two resistances in a row (Cleary & Monaghan
+    /// 1999, equation 29).
+    #[default]
+    Harmonic,
+    /// By the arithmetic mean of the conductivities, to show what it errs by.
+    Arithmetic,
+    /// As published: each warms by the arithmetic mean of the diffusivities. Heat is not conserved.
+    Diffusivity,
+}
+
+/// What conducts heat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conductor {
+    /// Conductivity, W/(m K).
+    pub conductivity: f64,
+    /// Heat capacity of a cubic metre, J/(m3 K).
+    pub capacity: f64,
+}
+
+impl Mean {
+    /// Conductivity with which `own` is warmed by `other`, W/(m K).
+    pub fn conductivity(self, own: Conductor, other: Conductor) -> f64 {
+        let (a, b) = (own.conductivity, other.conductivity);
+        match self {
+            Self::Harmonic if a + b > 0.0 => 2.0 * a * b / (a + b),
+            Self::Harmonic => 0.0,
+            Self::Arithmetic => 0.5 * (a + b),
+            Self::Diffusivity => 0.5 * (a + own.capacity * b / other.capacity),
+        }
+    }
+}
+
+/// How vapour becomes water on a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Condensation {
+    /// Vapour diffuses to the surface, where air is saturated at the surface's temperature; and back from water there.
+    #[default]
+    Diffusion,
+    /// As published: a parcel of air at the surface that is colder than its dew point gives up what it has too much.
+    Parcel,
+}
+
+/// What can be chosen of how the model works.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Distance of air particles, m.
+    pub spacing: f64,
+    /// What keeps air out of solids.
+    pub walls: WallTreatment,
+    /// How heat passes between unlike neighbours.
+    pub mean: Mean,
+    /// How vapour becomes water on a surface.
+    pub condensation: Condensation,
+    /// Whether supersaturated air away from solids turns to fog.
+    pub fog: bool,
+    /// Acceleration of gravity by which warm and moist air rises, m/s2.
+    pub gravity: [f64; 3],
+    /// Temperature of air that neither rises nor sinks, K.
+    pub ambient_temperature: f64,
+    /// Vapour of air that neither rises nor sinks, part of the mass.
+    pub ambient_vapour: f64,
+    /// Acceleration of all air, m/s2.
+    pub body_acceleration: [f64; 3],
+    /// Factor on all transport of heat and vapour: accelerated time.
+    pub faster: f64,
+    /// Time step over the time in which sound crosses a smoothing length.
+    pub cfl: f64,
+    /// Colour gradient over the spacing above which a solid's particle is a boundary particle.
+    pub threshold: f64,
+    /// The constant kappa that makes up for how sparsely solids are sampled: with 1.1 air stands half a spacing away from
+    /// planes, cylinders and balls alike, with 1 a twentieth nearer.
+    pub kappa: f64,
+}
+
+impl Settings {
+    /// The defaults for air particles a `spacing` apart, m, at a temperature, K, with so much vapour.
+    pub fn new(spacing: f64, ambient_temperature: f64, ambient_vapour: f64) -> Self {
+        Self {
+            spacing,
+            walls: WallTreatment::default(),
+            mean: Mean::default(),
+            condensation: Condensation::default(),
+            fog: true,
+            gravity: [0.0, 0.0, -9.81],
+            ambient_temperature,
+            ambient_vapour,
+            body_acceleration: [0.0; 3],
+            faster: 1.0,
+            cfl: 0.25,
+            threshold: crate::solids::THRESHOLD,
+            kappa: 1.1,
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Heat through and between solids.
+
+use super::{Searched, Site, Solids};
+use crate::air::Scale;
+use crate::room::Room;
+use crate::settings::Mean;
+use corpuscle_sph::BLOCK;
+use rayon::prelude::*;
+
+/// Conductances of all pairs of solid particles within reach of each other.
+#[derive(Debug, Clone, Default)]
+pub struct Conduction {
+    start: Vec<u32>,
+    other: Vec<u32>,
+    /// W/K.
+    conductance: Vec<f64>,
+}
+
+/// Two neighbours at opposite offsets lie within this of each other's image, over the spacing.
+const OPPOSITE: f64 = 0.5;
+
+impl Conduction {
+    /// Finds the pairs. `faster` multiplies all transport.
+    ///
+    /// dT_i/dt = (1/(rho_i c_i)) sum_j V_j k_ij (T_j - T_i) lap W_ij (Cleary & Monaghan 1999 with the viscosity kernel's
+    /// Laplacian), divided by the Laplacian's second moment where the particles stand as they do: exact for what is
+    /// parabolic along every axis of a lattice.
+    pub fn new(solids: &Solids, room: &Room, scale: &Scale, mean: Mean, faster: f64) -> Self {
+        let h = scale.h();
+        let all = Searched::new(&solids.sites(room, h, |_| true), h);
+        let evenness: Vec<f64> =
+            (0..solids.particles.len()).into_par_iter().map(|i| evenness(solids, &all, scale, i)).collect();
+        let pairs_of = |i: usize| {
+            let own = &solids.particles[i];
+            let near = all.near(own.position, h).filter(|(_, r_squared)| *r_squared > 0.0);
+            let pair = |(site, r_squared): (&Site, f64)| {
+                let j = site.particle as usize;
+                let even = 0.5 * (evenness[i] + evenness[j]);
+                let laplacian = even * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / scale.moment;
+                let volumes = own.volume * solids.particles[j].volume;
+                let (own, other) = (solids.material(i), solids.material(j));
+                let conductivity = mean.conductivity(own.conductor(), other.conductor());
+                (site.particle, faster * volumes * conductivity * laplacian)
+            };
+            near.map(pair).collect::<Vec<_>>()
+        };
+        let mut conduction = Self { start: vec![0], ..Self::default() };
+        // In blocks, so that lists of pairs do not fill the memory twice.
+        for first in (0..solids.particles.len()).step_by(16 * BLOCK) {
+            let last = (first + 16 * BLOCK).min(solids.particles.len());
+            for pairs in (first..last).into_par_iter().map(pairs_of).collect::<Vec<_>>() {
+                for (other, conductance) in pairs {
+                    conduction.other.push(other);
+                    conduction.conductance.push(conductance);
+                }
+                conduction.start.push(conduction.other.len() as u32);
+            }
+        }
+        conduction
+    }
+
+    fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.start[i] as usize..self.start[i + 1] as usize;
+        self.other[range.clone()].iter().map(|&other| other as usize).zip(self.conductance[range].iter().copied())
+    }
+
+    /// Heat that flows to particle `i`, W.
+    pub fn heat(&self, i: usize, temperatures: &[f64]) -> f64 {
+        self.pairs(i).map(|(other, conductance)| conductance * (temperatures[other] - temperatures[i])).sum()
+    }
+
+    /// Sum of the conductances of a particle, W/K.
+    pub fn sum(&self, i: usize) -> f64 {
+        self.pairs(i).map(|(_, conductance)| conductance).sum()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.start.capacity() + self.other.capacity()) + 8 * self.conductance.capacity()
+    }
+}
+
+/// What the Laplacian of particle `i` is multiplied by, 1 in a lattice of the air's spacing. A neighbour that has none
+/// opposite, at a surface, counts twice, as if the solid went on there.
+fn evenness(solids: &Solids, all: &Searched, scale: &Scale, i: usize) -> f64 {
+    let position = solids.particles[i].position;
+    let near: Vec<_> = all.near(position, scale.h()).filter(|(_, r_squared)| *r_squared > 0.0).collect();
+    let opposite = |site: &Site| {
+        let image = [0, 1, 2].map(|axis| 2.0 * position[axis] - site.position[axis]);
+        all.near(image, OPPOSITE * scale.spacing).next().is_some()
+    };
+    let moment: f64 = near
+        .iter()
+        .map(|(site, r_squared)| {
+            let share = if opposite(site) { 1.0 } else { 2.0 };
+            let volume = solids.particles[site.particle as usize].volume;
+            share * volume * r_squared * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / 6.0
+        })
+        .sum();
+    // A few stray particles conduct no better than a lattice would at half its strength.
+    scale.moment / moment.max(0.5 * scale.moment)
+}

@@ -1,0 +1,159 @@
+//! Ghost samples: random, evenly spread, throughout a solid (Schechter & Bridson, Ghost SPH, 2012).
+
+use super::{Body, Searched, Site, Solids, distance_squared};
+use crate::air::Scale;
+use crate::contact::Contact;
+use crate::room::Room;
+use corpuscle_model::ModelError;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Tries to find room for a sample (their section 4).
+const TRIES: u32 = 30;
+
+/// Least distance of samples over the spacing of the air: denser than the air.
+const NEAREST: f64 = 0.5;
+
+/// Times that every sample looks for a better place.
+const SWEEPS: u32 = 5;
+
+/// Times that the volumes of samples are corrected.
+const CORRECTIONS: u32 = 8;
+
+/// Ghost samples of all bodies, to be in contact with air.
+///
+/// # Errors
+/// Where a body does not tell its surface.
+pub(crate) fn ghost_contact(
+    bodies: &[Body],
+    solids: &Solids,
+    room: &Room,
+    scale: &Scale,
+    seed: u64,
+) -> Result<Contact, ModelError> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut places = Vec::new();
+    for (number, body) in bodies.iter().enumerate() {
+        let Some(surface) = &body.surface else {
+            return Err(ModelError::Setup(format!(
+                "ghost samples need the surface of solid {number}, which is not known"
+            )));
+        };
+        let inside = |place| surface(place) < 0.0 && room.contains(place);
+        let apart = NEAREST * scale.spacing;
+        let mut samples = Samples { apart, inside, taken: HashMap::new(), places: Vec::new() };
+        samples.fill(body, scale.spacing, &mut random);
+        samples.relax(&mut random);
+        places.append(&mut samples.places);
+    }
+    let mut sites = Vec::new();
+    for (number, &position) in places.iter().enumerate() {
+        let site = Site { position, particle: number as u32, image: false };
+        sites.push(site);
+        room.images(position, scale.h(), |image| {
+            sites.push(Site { position: image.position, image: true, ..site });
+        });
+    }
+    let volumes = volumes(&places, &sites, solids, room, scale);
+    Ok(Contact::new(&sites, |site| volumes[site.particle as usize], scale.h()))
+}
+
+/// Volumes of samples with which they fill the room as the solids' own particles do.
+fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, room: &Room, scale: &Scale) -> Vec<f64> {
+    let h = scale.h();
+    let samples = Searched::new(sites, h);
+    let particles = Searched::new(&solids.sites(room, h, |_| true), h);
+    let filling = |of: &Searched, place: [f64; 3], volume: &(dyn Fn(&Site) -> f64 + Sync)| {
+        of.near(place, h).map(|(site, r_squared)| volume(site) * scale.kernels.poly6(r_squared)).sum::<f64>()
+    };
+    let of_particle = |site: &Site| solids.particles[site.particle as usize].volume;
+    let wanted: Vec<f64> = places.par_iter().map(|&place| filling(&particles, place, &of_particle)).collect();
+    let total: f64 = solids.particles.iter().map(|particle| particle.volume).sum();
+    let mut volumes = vec![total / places.len() as f64; places.len()];
+    for _ in 0..CORRECTIONS {
+        let before = &volumes;
+        let of_sample = |site: &Site| before[site.particle as usize];
+        let corrected = places.par_iter().zip(&wanted).zip(before);
+        volumes = corrected.map(|((&place, wanted), v)| v * wanted / filling(&samples, place, &of_sample)).collect();
+    }
+    volumes
+}
+
+struct Samples<F> {
+    apart: f64,
+    inside: F,
+    /// Samples in each cell of side `apart`.
+    taken: HashMap<[i64; 3], Vec<usize>>,
+    places: Vec<[f64; 3]>,
+}
+
+impl<F: Fn([f64; 3]) -> bool> Samples<F> {
+    fn cell(&self, place: [f64; 3]) -> [i64; 3] {
+        place.map(|at| (at / self.apart).floor() as i64)
+    }
+
+    /// Throws samples into cells so small that each holds one at most; every cell is tried [`TRIES`] times.
+    fn fill(&mut self, body: &Body, spacing: f64, random: &mut ChaCha8Rng) {
+        let side = self.apart / 3.0_f64.sqrt();
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for position in &body.positions {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(position[axis] - spacing);
+                high[axis] = high[axis].max(position[axis] + spacing);
+            }
+        }
+        let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / side).ceil() as u64);
+        for number in 0..counts.iter().product() {
+            let cell = [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
+            for _ in 0..TRIES {
+                let place = [0, 1, 2].map(|axis| low[axis] + side * (cell[axis] as f64 + random.random::<f64>()));
+                if (self.inside)(place) && self.room(place, None) >= self.apart * self.apart {
+                    self.taken.entry(self.cell(place)).or_default().push(self.places.len());
+                    self.places.push(place);
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Square of the distance to the nearest sample but `except`; more than the square of `apart` where none is near.
+    fn room(&self, place: [f64; 3], except: Option<usize>) -> f64 {
+        let middle = self.cell(place);
+        let mut nearest = 4.0 * self.apart * self.apart;
+        for which in 0..27_i64 {
+            let cell = [which % 3, which / 3 % 3, which / 9];
+            let cell = [0, 1, 2].map(|axis| middle[axis] + cell[axis] - 1);
+            for &other in self.taken.get(&cell).into_iter().flatten().filter(|&&other| Some(other) != except) {
+                nearest = nearest.min(distance_squared(place, self.places[other]));
+            }
+        }
+        nearest
+    }
+
+    /// Moves each sample to the roomiest of some random places near it (their algorithm 2).
+    fn relax(&mut self, random: &mut ChaCha8Rng) {
+        for sweep in 0..SWEEPS {
+            let reach = self.apart / f64::from(1 << sweep);
+            for number in 0..self.places.len() {
+                let from = self.places[number];
+                let mut best = (self.room(from, Some(number)), from);
+                for _ in 0..TRIES {
+                    let place = from.map(|at| at + reach * (2.0 * random.random::<f64>() - 1.0));
+                    let room = self.room(place, Some(number));
+                    if room > best.0 && (self.inside)(place) {
+                        best = (room, place);
+                    }
+                }
+                let (old, new) = (self.cell(from), self.cell(best.1));
+                if let Some(cell) = self.taken.get_mut(&old) {
+                    cell.retain(|&other| other != number);
+                }
+                self.taken.entry(new).or_default().push(number);
+                self.places[number] = best.1;
+            }
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Solids as particles that stay where they are: what they are made of, where their surface is, how heat goes through them.
+
+mod boundary;
+mod conduction;
+mod ghosts;
+
+pub use boundary::THRESHOLD;
+pub use conduction::Conduction;
+pub(crate) use ghosts::ghost_contact;
+
+use crate::air::Scale;
+use crate::room::Room;
+use crate::settings::Conductor;
+use corpuscle_model::ModelError;
+use corpuscle_solids::{Depth, Samples, Solid};
+use corpuscle_sph::space::Cells;
+use std::sync::Arc;
+
+/// What a solid is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// Conductivity of heat, W/(m K).
+    pub conductivity: f64,
+    /// Heat capacity, J/(kg K).
+    pub heat_capacity: f64,
+    /// Density, kg/m3.
+    pub density: f64,
+}
+
+impl Material {
+    /// What matters for conduction.
+    pub fn conductor(&self) -> Conductor {
+        Conductor { conductivity: self.conductivity, capacity: self.heat_capacity * self.density }
+    }
+}
+
+/// Signed distance of a place to a surface, m, negative inside.
+pub type Surface = Arc<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
+
+/// A solid as given: particles, and what they have in common.
+#[derive(Clone)]
+pub struct Body {
+    /// Places of its particles, m, half a spacing below the surface and deeper.
+    pub positions: Vec<[f64; 3]>,
+    /// Their volumes, m3.
+    pub volumes: Vec<f64>,
+    /// The surface that each stands for, m2, 0 for those inside.
+    pub areas: Vec<f64>,
+    /// What it is made of.
+    pub material: Material,
+    /// Temperature at the start, K.
+    pub temperature: f64,
+    /// Whether it is held at that temperature, or free to warm.
+    pub held: bool,
+    /// Where its surface is, if known: ghost samples need it, and air starts outside it.
+    pub surface: Option<Surface>,
+}
+
+/// A particle of a solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolidParticle {
+    /// Place, m.
+    pub position: [f64; 3],
+    /// Volume, m3.
+    pub volume: f64,
+    /// The surface that it stands for, m2.
+    pub area: f64,
+    /// Which body it is of.
+    pub body: u32,
+    /// The way out, of length 1, where it is a boundary particle.
+    pub normal: Option<[f64; 3]>,
+    /// Whether air can come within reach of it.
+    pub near_surface: bool,
+}
+
+/// All solids of a scene.
+#[derive(Debug, Clone, Default)]
+pub struct Solids {
+    /// The particles.
+    pub particles: Vec<SolidParticle>,
+    /// What each body is made of and whether its temperature is held.
+    pub bodies: Vec<(Material, bool)>,
+}
+
+/// Where a particle of a solid or its image stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Place, m.
+    pub position: [f64; 3],
+    /// The particle's number.
+    pub particle: u32,
+    /// Whether it is an image beyond a face.
+    pub image: bool,
+}
+
+impl Body {
+    /// A solid sampled so that its particles are about a `spacing` apart, at a temperature, K.
+    ///
+    /// # Errors
+    /// Where it cannot be sampled.
+    pub fn sampled(
+        solid: Solid,
+        spacing: f64,
+        material: Material,
+        temperature: f64,
+        held: bool,
+    ) -> Result<Self, ModelError> {
+        let samples = solid.sample(spacing, Depth::Full).map_err(|error| ModelError::Setup(error.to_string()))?;
+        let Samples { positions, volumes, areas } = samples;
+        let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+        Ok(Self { positions, volumes, areas, material, temperature, held, surface: Some(surface) })
+    }
+}
+
+impl Solids {
+    /// The solids' particles. Those whose colour gradient is above `threshold` over the spacing are boundary particles.
+    pub fn new(bodies: &[Body], room: &Room, scale: &Scale, threshold: f64) -> Self {
+        let mut particles = Vec::new();
+        for (number, body) in bodies.iter().enumerate() {
+            for ((&position, &volume), &area) in body.positions.iter().zip(&body.volumes).zip(&body.areas) {
+                let body = number as u32;
+                particles.push(SolidParticle { position, volume, area, body, normal: None, near_surface: false });
+            }
+        }
+        let mut solids = Self { particles, bodies: bodies.iter().map(|body| (body.material, body.held)).collect() };
+        solids.find_boundary(room, scale, threshold);
+        solids
+    }
+
+    /// Material of a particle.
+    pub fn material(&self, particle: usize) -> &Material {
+        &self.bodies[self.particles[particle].body as usize].0
+    }
+
+    /// Whether a particle's temperature is held.
+    pub fn is_held(&self, particle: usize) -> bool {
+        self.bodies[self.particles[particle].body as usize].1
+    }
+
+    /// Heat capacity of a particle, J/K.
+    pub fn heat_capacity(&self, particle: usize) -> f64 {
+        let Material { heat_capacity, density, .. } = *self.material(particle);
+        heat_capacity * density * self.particles[particle].volume
+    }
+
+    /// Boundary particles.
+    pub fn boundary(&self) -> impl Iterator<Item = &SolidParticle> {
+        self.particles.iter().filter(|particle| particle.normal.is_some())
+    }
+
+    /// The particles that pass `wanted`, and their images within `reach` of the room.
+    pub fn sites(&self, room: &Room, reach: f64, wanted: impl Fn(&SolidParticle) -> bool) -> Vec<Site> {
+        let mut sites = Vec::new();
+        for (number, particle) in self.particles.iter().enumerate().filter(|(_, particle)| wanted(particle)) {
+            let site = Site { position: particle.position, particle: number as u32, image: false };
+            sites.push(site);
+            room.images(particle.position, reach, |image| {
+                sites.push(Site { position: image.position, image: true, ..site });
+            });
+        }
+        sites
+    }
+}
+
+/// Sites in the order of their cells, to be searched.
+#[derive(Debug, Default)]
+pub(crate) struct Searched {
+    pub sites: Vec<Site>,
+    cells: Cells,
+}
+
+impl Searched {
+    pub fn new(sites: &[Site], reach: f64) -> Self {
+        let [x, y, z] = [0, 1, 2].map(|axis| sites.iter().map(|site| site.position[axis]).collect::<Vec<f64>>());
+        let mut cells = Cells::default();
+        let sites = cells.sort([&x, &y, &z], reach).iter().map(|&from| sites[from as usize]).collect();
+        Self { sites, cells }
+    }
+
+    /// The sites within `reach` of a place, and the squares of their distances.
+    pub fn near(&self, place: [f64; 3], reach: f64) -> impl Iterator<Item = (&Site, f64)> {
+        let ranges = if self.sites.is_empty() { None } else { Some(self.cells.ranges(place, reach)) };
+        let sites = ranges.into_iter().flatten().flat_map(|range| &self.sites[range]);
+        sites.map(move |site| (site, distance_squared(site.position, place))).filter(move |(_, r)| *r < reach * reach)
+    }
+}
+
+/// Square of the distance of two places, m2.
+pub(crate) fn distance_squared(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    x * x + y * y + z * z
+}

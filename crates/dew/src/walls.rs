@@ -1,0 +1,141 @@
+//! What solids do to the motion of the air.
+
+use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
+use crate::contact::{Contact, Near};
+use crate::settings::WallTreatment;
+use rayon::prelude::*;
+
+/// Solids join the density of the air near them: rho_i = sum_air m_j W_ij + sum_b V_b kappa rho_0 W_ib. The kernel lets a
+/// wall's part fade smoothly with its distance.
+pub fn add_density(contact: &Contact, arrangement: &Arrangement, scale: &Scale, kappa: f64, sums: &mut [Sums]) {
+    let of_one = |near: &Near| {
+        let part =
+            |pair: &crate::contact::Pair| contact.volumes[pair.other as usize] * scale.kernels.poly6(pair.r * pair.r);
+        contact.of_air(near).iter().map(part).sum::<f64>()
+    };
+    let parts: Vec<f64> = contact.near.par_iter().map(of_one).collect();
+    for (near, part) in contact.near.iter().zip(parts) {
+        sums[arrangement.place_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
+    }
+}
+
+/// Solids join the second moment of the Laplacian, by which diffusion is made exact.
+pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums]) {
+    let of_one = |near: &Near| {
+        let part = |pair: &crate::contact::Pair| {
+            contact.volumes[pair.other as usize] * pair.r * pair.r * scale.kernels.viscosity_laplacian(pair.r)
+        };
+        contact.of_air(near).iter().map(part).sum::<f64>()
+    };
+    let parts: Vec<f64> = contact.near.par_iter().map(of_one).collect();
+    for (near, part) in contact.near.iter().zip(parts) {
+        sums[arrangement.place_of[near.particle as usize] as usize].moment += part / (6.0 * scale.moment);
+    }
+}
+
+/// What a treatment and the wall's friction add to the acceleration of the air near solids.
+pub struct Push<'a> {
+    /// How air is kept out.
+    pub treatment: WallTreatment,
+    /// Sites that push: those of the solids, or ghosts.
+    pub pushing: &'a Contact,
+    /// Sites of the solids, on which air sticks.
+    pub sticking: &'a Contact,
+    /// As arranged.
+    pub arrangement: &'a Arrangement,
+    /// Columns of the air.
+    pub columns: &'a [Column],
+    /// Size of particles.
+    pub scale: &'a Scale,
+    /// The air.
+    pub air: &'a Properties,
+    /// The constant kappa of the density.
+    pub kappa: f64,
+}
+
+/// Repulsion at the distance at which it begins, over the square of the speed of sound and the spacing's inverse
+/// (Monaghan 1994 takes the square of the fastest speed, a hundredth of that; the strong force is to hold at any speed).
+const STRENGTH: f64 = 0.3;
+
+/// Distance from a solid's particle at which repulsion begins, over the spacing.
+const RANGE: f64 = 1.5;
+
+impl Push<'_> {
+    /// Adds to the rates.
+    pub fn add(&self, rates: &mut [Rates]) {
+        if self.treatment != WallTreatment::None {
+            self.add_of(self.pushing, rates, |near, rates| match self.treatment {
+                WallTreatment::VirtualForce => self.repel(near, rates),
+                _ => self.press(near, rates),
+            });
+        }
+        self.add_of(self.sticking, rates, |near, rates| self.stick(near, rates));
+    }
+
+    fn add_of(&self, contact: &Contact, rates: &mut [Rates], add: impl Fn(&Near, &mut Rates) + Sync) {
+        let parts = contact.near.par_iter().map(|near| {
+            let mut part = Rates::default();
+            add(near, &mut part);
+            part
+        });
+        let parts: Vec<Rates> = parts.collect();
+        for (near, part) in contact.near.iter().zip(parts) {
+            let rates = &mut rates[near.particle as usize];
+            for axis in 0..3 {
+                rates.acceleration[axis] += part.acceleration[axis];
+                rates.spread[axis] += part.spread[axis];
+            }
+            rates.weights += part.weights;
+        }
+    }
+
+    fn column(&self, near: &Near) -> &Column {
+        &self.columns[self.arrangement.place_of[near.particle as usize] as usize]
+    }
+
+    /// Sum of `strength`, of distance and volume, along the way from each site near to the air.
+    fn along(&self, contact: &Contact, near: &Near, strength: impl Fn(f64, f64) -> f64) -> [f64; 3] {
+        let own = self.column(near);
+        let mut sum = [0.0; 3];
+        for pair in contact.of_air(near) {
+            let site = contact.sites[pair.other as usize].position;
+            let r = pair.r.max(1e-9 * self.scale.spacing);
+            let push = strength(r, contact.volumes[pair.other as usize]) / r;
+            (0..3).for_each(|axis| sum[axis] += push * (own.position[axis] - site[axis]));
+        }
+        sum
+    }
+
+    /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): a
+    /// pressure that is the same everywhere moves nothing. Particles spread from it as from each other.
+    fn press(&self, near: &Near, rates: &mut Rates) {
+        let Scale { kernels, to_gradient, .. } = *self.scale;
+        let slope = 2.0 * self.kappa * to_gradient;
+        let spread = self.along(self.pushing, near, |r, volume| slope * volume * kernels.spiky_slope(r));
+        let pressure = self.air.density * self.column(near).pressure;
+        rates.spread = spread;
+        rates.acceleration = spread.map(|along| pressure * along);
+    }
+
+    /// D ((r_0/r)^4 - (r_0/r)^2)/r (Monaghan 1994, equation 4.1).
+    fn repel(&self, near: &Near, rates: &mut Rates) {
+        let range = RANGE * self.scale.spacing;
+        let strength = STRENGTH * self.air.sound_speed * self.air.sound_speed;
+        rates.acceleration = self.along(self.pushing, near, |r, _| {
+            let ratio = (range / r).powi(2);
+            if r < range { strength * (ratio * ratio - ratio) / r } else { 0.0 }
+        });
+    }
+
+    /// Air at a wall is at rest: viscosity against a wall half way between the air and the site.
+    fn stick(&self, near: &Near, rates: &mut Rates) {
+        let own = self.column(near);
+        let Scale { kernels, moment, .. } = *self.scale;
+        let weight = |pair: &crate::contact::Pair| {
+            self.sticking.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r)
+        };
+        let weight = self.sticking.of_air(near).iter().map(weight).sum::<f64>() * own.evenness / moment;
+        (0..3).for_each(|axis| rates.acceleration[axis] -= 2.0 * self.air.viscosity * weight * own.velocity[axis]);
+        rates.weights += 2.0 * weight;
+    }
+}
