@@ -31,9 +31,9 @@ impl Simulation {
                 let model = corpuscle_gas::open(gas, scene.seed, scene.run.until_s, folder)?;
                 Ok(Self::new(scene, None, model))
             }
-            ModelScene::Dew(_) => {
-                Err(ModelError::Setup("dew: this version reads and checks dew scenes, but cannot run them".into())
-                    .into())
+            ModelScene::Dew(dew) => {
+                let model = corpuscle_dew::open(dew, scene.seed, folder)?;
+                Ok(Self::new(scene, None, Box::new(model)))
             }
         }
     }

@@ -107,7 +107,8 @@ impl Sink for Recorder {
         }
         match &self.terrain {
             Some(terrain) => Report::read(self.folder.path(), &self.scene, terrain)?.write()?,
-            None => GasReport::new(self.folder.path(), &self.scene, model)?.write()?,
+            None if self.scene.gas().is_some() => GasReport::new(self.folder.path(), &self.scene, model)?.write()?,
+            None => {}
         }
         Ok(())
     }

@@ -8,7 +8,10 @@ use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
 use crate::solids::{Body, Conduction, Solids};
 use crate::walls::{self, Push};
+use crate::wetting::Wetting;
 use corpuscle_model::{Account, ExactSum, ModelError};
+use corpuscle_scene::Table;
+use corpuscle_scene::dew::Output;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +39,14 @@ pub struct Dew {
     /// The time shown, s; up to one step after the state's.
     pub(crate) shown: f64,
     pub(crate) warnings: Vec<String>,
+    /// Names of the bodies; none where they do not come from a scene.
+    pub(crate) names: Vec<String>,
+    /// Temperature over time, °C, of the bodies that are held at one told by a scene.
+    pub(crate) held_to: Vec<Option<Table>>,
+    /// What frames show.
+    pub(crate) shows: Output,
+    /// The drops on the solids, where water there forms any.
+    pub(crate) wetting: Option<Wetting>,
 }
 
 /// Everything that changes.
@@ -149,6 +160,10 @@ impl Dew {
             rates: Vec::new(),
             shown: 0.0,
             warnings: Vec::new(),
+            names: Vec::new(),
+            held_to: Vec::new(),
+            shows: Output::default(),
+            wetting: None,
         };
         dew.fill(bodies, start);
         if dew.state.air.is_empty() {
@@ -208,6 +223,8 @@ impl Dew {
         self.state.time += step;
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
+        self.hold();
+        self.tend_drops();
         let next = self.next_step(&stiff);
         self.state.time_step = next;
         if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
@@ -221,6 +238,27 @@ impl Dew {
                  frame for the place where the air is fast or hot"
             ),
         })
+    }
+
+    /// Brings solids whose temperature is told over time to that of now.
+    fn hold(&mut self) {
+        let changing = |table: &&Table| table.rows().len() > 1;
+        if !self.held_to.iter().flatten().any(|table| changing(&table)) {
+            return;
+        }
+        let now: Vec<_> =
+            self.held_to.iter().map(|table| table.as_ref().map(|table| COLD + table.at(self.state.time))).collect();
+        for (particle, temperature) in self.solids.particles.iter().zip(&mut self.state.temperatures) {
+            if let Some(held) = now[particle.body as usize] {
+                *temperature = held;
+            }
+        }
+    }
+
+    /// From here on what condenses sets no heat free.
+    pub(crate) fn without_latent_heat(&mut self) {
+        self.latent_heat = 0.0;
+        self.state.energy.initial = self.energy();
     }
 
     /// Half a kick with the old acceleration, then on by a whole step.
@@ -460,7 +498,15 @@ impl Dew {
     /// Water in the air as vapour and fog and on the solids, kg.
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
-        in_air.chain(self.state.water_on.iter().copied()).collect::<ExactSum>().value()
+        let on_solids = self.water_on_all();
+        in_air.chain([on_solids]).collect::<ExactSum>().value()
+    }
+
+    /// Water on the solids, kg.
+    pub(crate) fn water_on_all(&self) -> f64 {
+        let water = &self.state.water_on;
+        let sum = || water.iter().copied().collect::<ExactSum>().value();
+        self.wetting.as_ref().map_or_else(sum, |wetting| wetting.water(water))
     }
 
     /// Energy of a parcel of air, J: its heat above 0 °C, and the heat that its vapour gives off when it condenses.

@@ -8,21 +8,24 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod air;
+pub mod bodies;
 mod contact;
 mod dew;
+pub mod drops;
 mod exchange;
 mod faces;
-pub mod bodies;
-pub mod drops;
 pub mod humid_air;
 mod model;
+mod open;
 mod room;
 mod settings;
 pub mod solids;
 #[cfg(test)]
 mod testing;
 mod walls;
+mod wetting;
 
 pub use dew::{Dew, Setup};
+pub use open::open;
 pub use room::{Face, Image, Inflow, Room};
 pub use settings::{Condensation, Conductor, Mean, Settings, WallTreatment};

@@ -2,6 +2,7 @@
 
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
+use crate::wetting::{Wetting, WettingState};
 use corpuscle_model::{Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -39,6 +40,18 @@ impl Dew {
                 Column { name: "fog", unit: "kg/kg", values: scalar(&|particle| particle.fog) },
             ],
         }
+    }
+
+    /// Water on a body, kg, and its mean temperature, K.
+    fn totals_of(&self, body: usize) -> [f64; 2] {
+        let of_body = |at: &usize| self.solids.particles[*at].body as usize == body;
+        let (mut water, mut heat, mut volume) = (0.0, 0.0, 0.0);
+        for at in (0..self.solids.particles.len()).filter(of_body) {
+            water += self.state.water_on[at];
+            heat += self.solids.particles[at].volume * self.state.temperatures[at];
+            volume += self.solids.particles[at].volume;
+        }
+        [water, heat / volume]
     }
 
     fn solid_set(&self) -> ParticleSet {
@@ -102,12 +115,15 @@ impl Model for Dew {
     }
 
     fn frame(&self) -> Frame {
-        Frame { time: self.shown, sets: vec![self.air_set(), self.solid_set()] }
+        let air = self.shows.air.then(|| self.air_set());
+        let solid = self.shows.solids.then(|| self.solid_set());
+        let drops = self.wetting.as_ref().map(Wetting::set);
+        Frame { time: self.shown, sets: air.into_iter().chain(solid).chain(drops).collect() }
     }
 
     fn gauge_columns(&self) -> Vec<GaugeColumn> {
         let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };
-        vec![
+        let mut columns = vec![
             column("water", "vapour", "kg"),
             column("water", "fog", "kg"),
             column("water", "on_solids", "kg"),
@@ -115,7 +131,19 @@ impl Model for Dew {
             column("air", "largest_speed", "m_per_s"),
             column("solids", "covered_area", "m2"),
             column("solids", "heat_from_held", "J"),
-        ]
+        ];
+        if self.wetting.is_some() {
+            columns.extend([
+                column("drops", "number", ""),
+                column("drops", "largest_radius", "m"),
+                column("drops", "first_at", "s"),
+                column("drops", "left", "kg"),
+            ]);
+        }
+        for name in &self.names {
+            columns.extend([column(name, "water", "kg"), column(name, "mean_temperature", "K")]);
+        }
+        columns
     }
 
     fn gauge_row(&self) -> Vec<f64> {
@@ -124,16 +152,28 @@ impl Model for Dew {
         let sum = |of: fn(&crate::air::Particle) -> f64| self.inside().map(of).sum::<f64>();
         let speed = self.inside().map(crate::air::Particle::speed_squared).fold(0.0, f64::max).sqrt();
         let particles = self.solids().particles.iter().zip(&self.state.water_on);
-        let covered = particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
-        vec![
+        let wet = || particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
+        let drops = self.wetting.as_ref().map(Wetting::drops);
+        let covered = drops.map_or_else(wet, |drops| drops.covered_area());
+        let mut row = vec![
             mass * sum(|particle| particle.vapour),
             mass * sum(|particle| particle.fog),
-            self.state.water_on.iter().sum(),
+            self.water_on_all(),
             sum(|particle| particle.temperature) / count,
             speed,
             covered,
             self.state.held_heat.value(),
-        ]
+        ];
+        if let Some(wetting) = &self.wetting {
+            let drops = wetting.drops();
+            let largest = drops.drops().iter().map(|drop| drops.covered_radius(drop)).fold(0.0, f64::max);
+            let first = wetting.first().unwrap_or(f64::NAN);
+            row.extend([drops.drops().len() as f64, largest, first, drops.dripped()]);
+        }
+        for body in 0..self.names.len() {
+            row.extend(self.totals_of(body));
+        }
+        row
     }
 
     fn maps(&self) -> Vec<Map> {
@@ -155,16 +195,24 @@ impl Model for Dew {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(self.shown, &self.state)).unwrap_or_default()
+        postcard::to_stdvec(&(self.shown, &self.state, self.wetting.as_ref().map(Wetting::state))).unwrap_or_default()
     }
 
     fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
         let refused = |what: String| ModelError::Checkpoint(what);
-        let (shown, state): (f64, State) =
+        let (shown, state, drops): (f64, State, Option<WettingState>) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         if state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
         {
+            return Err(refused("it belongs to another scene".into()));
+        }
+        let fits = match (&mut self.wetting, drops) {
+            (None, None) => true,
+            (Some(wetting), Some(drops)) => wetting.restore(drops),
+            _ => false,
+        };
+        if !fits {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);

@@ -111,7 +111,7 @@ pub struct Boundary {
 
 impl Default for Boundary {
     fn default() -> Self {
-        Self { treatment: Treatment::default(), colour_threshold: 0.1 }
+        Self { treatment: Treatment::default(), colour_threshold: 0.15 }
     }
 }
 

@@ -12,7 +12,7 @@ mod merge;
 mod motion;
 
 pub use cap::Cap;
-pub use map::Share;
+pub use map::{Portion, Share};
 
 use corpuscle_model::ExactSum;
 use corpuscle_solids::Solid;
@@ -133,6 +133,11 @@ impl Drops {
         let nearest = self.solids[solid as usize].nearest(place);
         let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
         (foot, nearest.normal)
+    }
+
+    /// What holds for them.
+    pub fn laws(&self) -> &DropLaws {
+        &self.laws
     }
 
     /// Shape of a drop.

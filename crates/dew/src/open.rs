@@ -1,0 +1,255 @@
+//! From a scene to a model.
+
+use crate::air::Properties;
+use crate::bodies;
+use crate::dew::{Dew, Setup};
+use crate::drops::{DropLaws, WATER_DENSITY};
+use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
+use crate::room::{Face, Inflow, Room};
+use crate::settings::{Condensation, Mean, Settings, WallTreatment};
+use crate::solids::{Body, Material, Surface};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Axis;
+use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment};
+use corpuscle_solids::Solid;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The speed of sound over the fastest motion: the density then stays within a percent (Monaghan 1994).
+const SOUND_OVER_MOTION: f64 = 10.0;
+
+/// Least speed of sound, m/s: air at rest stays evenly spread.
+const LEAST_SOUND: f64 = 0.1;
+
+/// Makes the model of a scene; `seed` is that of everything random, relative paths are taken from `folder`.
+///
+/// # Errors
+/// [`ModelError::Setup`] where a solid cannot be made, or the scene asks for what this version cannot do.
+pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, ModelError> {
+    refuse_what_cannot_be(scene)?;
+    let bodies = bodies::open(scene, folder)?;
+    let start = humid_air(&scene.air);
+    let room = room(scene, &start);
+    let air = properties(scene, &start, &room, &bodies);
+    let settings = settings(scene, &start);
+    let particles = bodies.iter().map(|body| particles(body, &room)).collect();
+    let setup = Setup { settings, air, room, bodies: particles, seed };
+    let mut dew = Dew::new(&setup, |_| [start.temperature, start.mass_fraction()])?;
+    if !releases_heat(scene) {
+        dew.without_latent_heat();
+    }
+    if scene.air.velocity_m_per_s != [0.0; 3] {
+        dew.stir(|_| scene.air.velocity_m_per_s);
+    }
+    dew.names = bodies.iter().map(|body| body.name.clone()).collect();
+    dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
+    dew.shows = scene.output.clone();
+    dew.warnings = warnings(scene, &bodies);
+    let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();
+    dew.lay_drops(laws(scene), Arc::from(solids), seed);
+    Ok(dew)
+}
+
+/// What scenes can say and this version cannot do, by the name of the key.
+fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
+    let refuse = |what: &str| Err(ModelError::Setup(what.into()));
+    if humidity_transport(scene) == HumidityTransport::RelativeHumidity {
+        return refuse(
+            "dew.transport.humidity: this version cannot diffuse relative humidity; give dew.transport.humidity = \
+             \"mass-fraction\" (in the scheme \"paper\" it must be said, everything else there is as patented)",
+        );
+    }
+    if scene.low_utility.is_some() {
+        return refuse(
+            "dew.low_utility: this version computes all air and cannot take any out; leave [dew.low_utility] out",
+        );
+    }
+    let mut faces = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis).map(|face| (axis, face)));
+    if faces.clone().any(|(_, face)| *face == written::Face::Open) {
+        return refuse(
+            "dew.faces: this version cannot let air in by an \"open\" side; give \"outflow\" where air leaves, and { inflow \
+             = { velocity_m_per_s = [...] } } where it comes in",
+        );
+    }
+    let leaves = faces.clone().any(|(_, face)| *face == written::Face::Outflow);
+    let slanting = |(axis, face): (Axis, &written::Face)| match face {
+        written::Face::Inflow(inflow) => {
+            (0..3).any(|across| across != axis.index() && inflow.velocity_m_per_s[across] != 0.0)
+        }
+        _ => false,
+    };
+    if faces.clone().any(slanting) {
+        return refuse(
+            "dew.faces: this version lets air in straight only: of velocity_m_per_s all but the number across the side must be 0",
+        );
+    }
+    if faces.any(|(_, face)| matches!(face, written::Face::Inflow(_))) && !leaves {
+        return refuse("dew.faces: air comes in and can leave nowhere; make a side \"outflow\"");
+    }
+    Ok(())
+}
+
+fn humidity_transport(scene: &written::Dew) -> HumidityTransport {
+    let of_scheme = match scene.scheme {
+        Scheme::Physical => HumidityTransport::MassFraction,
+        Scheme::Paper => HumidityTransport::RelativeHumidity,
+    };
+    scene.transport.humidity.unwrap_or(of_scheme)
+}
+
+fn releases_heat(scene: &written::Dew) -> bool {
+    scene.transport.latent_heat.unwrap_or(scene.scheme == Scheme::Physical)
+}
+
+/// Air of one of three measures of humidity; the first that is given holds.
+fn air_of(celsius: f64, pressure: f64, measures: [Option<f64>; 3]) -> Option<HumidAir> {
+    let temperature = celsius + ZERO_CELSIUS;
+    let [relative, dew_point, mixing] = measures;
+    let relative = relative.map(|humidity| HumidAir::with_relative_humidity(temperature, pressure, humidity));
+    let dew_point = dew_point.map(|point| HumidAir::with_dew_point(temperature, pressure, point + ZERO_CELSIUS));
+    let mixing = mixing.map(|ratio| HumidAir::with_mixing_ratio(temperature, pressure, ratio));
+    relative.or(dew_point).or(mixing)
+}
+
+fn humid_air(air: &written::Air) -> HumidAir {
+    let measures = [air.relative_humidity, air.dew_point_c, air.mixing_ratio];
+    let dry = || HumidAir::with_relative_humidity(air.temperature_c + ZERO_CELSIUS, air.pressure_pa, 0.0);
+    air_of(air.temperature_c, air.pressure_pa, measures).unwrap_or_else(dry)
+}
+
+fn room(scene: &written::Dew, start: &HumidAir) -> Room {
+    let faces = Axis::ALL.map(|axis| scene.faces.along(axis).map(|face| self::face(face, axis, scene, start)));
+    Room { low: [0.0; 3], high: scene.size_m, faces }
+}
+
+fn face(face: &written::Face, axis: Axis, scene: &written::Dew, start: &HumidAir) -> Face {
+    match face {
+        written::Face::Wall => Face::Wall,
+        written::Face::Periodic => Face::Periodic,
+        written::Face::Open | written::Face::Outflow => Face::Outlet,
+        written::Face::Inflow(inflow) => {
+            let celsius = inflow.temperature_c.unwrap_or(scene.air.temperature_c);
+            let measures = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio];
+            // Without a measure of its own it holds as much vapour as the air at the start.
+            let as_at_start =
+                || HumidAir::with_mass_fraction(celsius + ZERO_CELSIUS, start.pressure, start.mass_fraction());
+            let air = air_of(celsius, start.pressure, measures).unwrap_or_else(as_at_start);
+            let speed = inflow.velocity_m_per_s[axis.index()].abs();
+            Face::Inlet(Inflow { speed, temperature: air.temperature, vapour: air.mass_fraction() })
+        }
+    }
+}
+
+fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
+    let paper = scene.scheme == Scheme::Paper;
+    let of_scheme = if paper { written::Mean::Arithmetic } else { written::Mean::Harmonic };
+    Settings {
+        walls: match scene.boundary.treatment {
+            Treatment::DensityCorrection => WallTreatment::DensityCorrection,
+            Treatment::VirtualForce => WallTreatment::VirtualForce,
+            Treatment::Ghost => WallTreatment::Ghosts,
+            Treatment::None => WallTreatment::None,
+        },
+        mean: match scene.transport.conductivity_mean.unwrap_or(of_scheme) {
+            written::Mean::Harmonic => Mean::Harmonic,
+            written::Mean::Arithmetic if paper => Mean::Diffusivity,
+            written::Mean::Arithmetic => Mean::Arithmetic,
+        },
+        condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
+        gravity: scene.gravity_m_per_s2,
+        faster: scene.time_factor,
+        threshold: scene.boundary.colour_threshold,
+        ..Settings::new(scene.spacing_m, start.temperature, start.mass_fraction())
+    }
+}
+
+fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> Properties {
+    let transport = &scene.transport;
+    Properties {
+        density: start.density(),
+        viscosity: transport.air_viscosity_pa_s / start.density(),
+        conductivity: transport.air_conductivity_w_per_m_k,
+        heat_capacity: transport.air_heat_capacity_j_per_kg_k,
+        vapour_diffusivity: transport.vapour_diffusivity_m2_per_s,
+        pressure: start.pressure,
+        ..Properties::at_room_temperature((SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND))
+    }
+}
+
+/// The fastest motion to come, m/s: that of the air at the start and at inlets, or the speed sqrt(g H dT/T) with which warm
+/// air would rise through the whole box.
+fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> f64 {
+    let length = |vector: [f64; 3]| vector.iter().map(|along| along * along).sum::<f64>().sqrt();
+    let inlets = room.faces.iter().flatten().filter_map(|face| match face {
+        Face::Inlet(inflow) => Some(inflow),
+        _ => None,
+    });
+    let of_solids = bodies.iter().flat_map(|body| body.temperature.rows().iter().map(|row| row[1] + ZERO_CELSIUS));
+    let temperatures = of_solids.chain(inlets.clone().map(|inflow| inflow.temperature));
+    let contrast = temperatures.map(|other| (other / start.temperature - 1.0).abs()).fold(0.0, f64::max);
+    let fall: f64 = (0..3).map(|axis| scene.gravity_m_per_s2[axis].abs() * scene.size_m[axis]).sum();
+    inlets.map(|inflow| inflow.speed).fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
+}
+
+/// The particles of a solid that are in the room, or beyond a face that air passes.
+fn particles(body: &bodies::Body, room: &Room) -> Body {
+    let is_open = |axis: usize, side: usize| matches!(room.faces[axis][side], Face::Inlet(_) | Face::Outlet);
+    let counts = |place: &[f64; 3]| {
+        (0..3).all(|axis| {
+            (place[axis] >= room.low[axis] || is_open(axis, 0)) && (place[axis] < room.high[axis] || is_open(axis, 1))
+        })
+    };
+    let samples = &body.samples;
+    let kept: Vec<usize> = (0..samples.positions.len()).filter(|&at| counts(&samples.positions[at])).collect();
+    let solid = body.solid.clone();
+    let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
+    Body {
+        positions: kept.iter().map(|&at| samples.positions[at]).collect(),
+        volumes: kept.iter().map(|&at| samples.volumes[at]).collect(),
+        areas: kept.iter().map(|&at| samples.areas[at]).collect(),
+        material: Material {
+            conductivity: body.material.conductivity,
+            heat_capacity: body.material.heat_capacity,
+            density: body.material.density,
+        },
+        temperature: body.temperature.at(0.0) + ZERO_CELSIUS,
+        held: body.held,
+        surface: Some(surface),
+    }
+}
+
+fn laws(scene: &written::Dew) -> DropLaws {
+    DropLaws {
+        contact_angle: scene.drops.contact_angle_deg.to_radians(),
+        friction: scene.drops.friction,
+        pressure: scene.air.pressure_pa,
+        surface_tension: scene.drops.surface_tension_n_per_m,
+        gravity: scene.gravity_m_per_s2,
+        smallest_radius: scene.drops.smallest_radius_m,
+        density: WATER_DENSITY,
+    }
+}
+
+fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
+    let mut warnings: Vec<String> = bodies.iter().flat_map(|body| body.notes.iter().cloned()).collect();
+    let coldest = |body: &bodies::Body| body.temperature.rows().iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
+    for body in bodies.iter().filter(|body| is_frost(coldest(body) + ZERO_CELSIUS)) {
+        warnings.push(format!(
+            "the solid \"{}\" is at {} °C: below 0 °C there would be frost, which is out of scope; what condenses there is taken as \
+             water",
+            body.name,
+            coldest(body)
+        ));
+    }
+    if scene.time_factor != 1.0 {
+        warnings.push(format!(
+            "time_factor: heat, vapour and phase change go {} times faster than in reality, while air and drops move at their own \
+             pace",
+            scene.time_factor
+        ));
+    }
+    if scene.boundary.treatment == Treatment::None {
+        warnings.push("dew.boundary.treatment = \"none\": nothing keeps the air out of the solids".into());
+    }
+    warnings
+}

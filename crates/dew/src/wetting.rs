@@ -1,0 +1,162 @@
+//! The water on the solids as drops.
+//!
+//! The air gives water to boundary particles and takes it from them; every few steps the drops take that over: what came
+//! condenses into them, what went evaporates from them, they move, and each boundary particle has what then lies on it.
+
+use crate::dew::Dew;
+use crate::drops::{DropLaws, DropState, Drops, Portion, Share, Site};
+use corpuscle_model::{Column, ExactSum, ParticleSet, Values};
+use corpuscle_solids::Solid;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Drops take over what condensed once in so many steps: they hardly move in one, and finding them costs.
+const STEPS: u64 = 10;
+
+/// Drops, and where the boundary particles have their water from.
+pub(crate) struct Wetting {
+    drops: Drops,
+    /// The boundary particle of each site.
+    particles: Vec<u32>,
+    /// What each site had of the drops when they last moved.
+    shares: Vec<Share>,
+    portions: Vec<Portion>,
+    /// When they last moved, s.
+    since: f64,
+    /// When the first drop was seen, s.
+    first: Option<f64>,
+}
+
+/// What of it changes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct WettingState {
+    drops: DropState,
+    since: f64,
+    first: Option<f64>,
+}
+
+impl Wetting {
+    fn new(drops: Drops, particles: Vec<u32>) -> Self {
+        let mut wetting = Self { drops, particles, shares: Vec::new(), portions: Vec::new(), since: 0.0, first: None };
+        wetting.share();
+        wetting
+    }
+
+    fn share(&mut self) {
+        self.portions = self.drops.portions();
+        self.shares = self.drops.shares_of(&self.portions);
+    }
+
+    pub fn drops(&self) -> &Drops {
+        &self.drops
+    }
+
+    /// When the first drop was seen, s.
+    pub fn first(&self) -> Option<f64> {
+        self.first
+    }
+
+    /// The drops take over what condensed on and evaporated from the boundary particles, and move up to `time`. Gives the water
+    /// that left the solids as drops, kg.
+    fn take_over(&mut self, water_on: &mut [f64], time: f64) -> f64 {
+        let sites = || self.particles.iter().zip(&self.shares);
+        let gained: Vec<f64> = sites().map(|(&particle, share)| water_on[particle as usize] - share.water).collect();
+        self.drops.evaporate_from(&self.portions, &self.shares, &gained);
+        for (site, &mass) in gained.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
+            self.drops.condense(site, mass);
+        }
+        let before = self.drops.dripped();
+        self.drops.advance(time - self.since);
+        self.since = time;
+        if self.first.is_none() && !self.drops.drops().is_empty() {
+            self.first = Some(time);
+        }
+        self.share();
+        for (&particle, share) in self.particles.iter().zip(&self.shares) {
+            water_on[particle as usize] = share.water;
+        }
+        self.drops.dripped() - before
+    }
+
+    /// Water on the solids, kg: the drops, and what they have not taken over yet.
+    pub fn water(&self, water_on: &[f64]) -> f64 {
+        let new = self.particles.iter().zip(&self.shares).map(|(&at, share)| water_on[at as usize] - share.water);
+        new.chain([self.drops.water()]).collect::<ExactSum>().value()
+    }
+
+    pub fn state(&self) -> WettingState {
+        WettingState { drops: self.drops.state(), since: self.since, first: self.first }
+    }
+
+    /// Takes back a state; false where it belongs to other solids.
+    pub fn restore(&mut self, state: WettingState) -> bool {
+        if state.drops.film.len() != self.particles.len() {
+            return false;
+        }
+        self.drops.restore(state.drops);
+        (self.since, self.first) = (state.since, state.first);
+        self.share();
+        true
+    }
+
+    /// The drops as particles: middle and radius of the disk that each covers.
+    pub fn set(&self) -> ParticleSet {
+        let drops = self.drops.drops();
+        let height = |mass: f64| self.drops.cap().height(mass / self.drops.laws().density);
+        ParticleSet {
+            name: "drops".into(),
+            id: drops.iter().map(|drop| drop.id).collect(),
+            position: drops.iter().map(|drop| drop.position).collect(),
+            velocity: drops.iter().map(|drop| drop.velocity).collect(),
+            radius: drops.iter().map(|drop| self.drops.covered_radius(drop)).collect(),
+            mass: drops.iter().map(|drop| drop.mass).collect(),
+            columns: vec![
+                Column {
+                    name: "height",
+                    unit: "m",
+                    values: Values::Scalar(drops.iter().map(|drop| height(drop.mass)).collect()),
+                },
+                Column {
+                    name: "solid",
+                    unit: "",
+                    values: Values::Scalar(drops.iter().map(|drop| f64::from(drop.solid)).collect()),
+                },
+                Column {
+                    name: "normal",
+                    unit: "",
+                    values: Values::Vector(drops.iter().map(|drop| drop.normal).collect()),
+                },
+            ],
+        }
+    }
+}
+
+impl Dew {
+    /// From here on water on the solids forms drops. `solids` are the bodies, in order.
+    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, seed: u64) {
+        let (mut particles, mut sites) = (Vec::new(), Vec::new());
+        for (number, particle) in self.solids.particles.iter().enumerate() {
+            if particle.normal.is_none() || particle.area <= 0.0 {
+                continue;
+            }
+            let nearest = solids[particle.body as usize].nearest(particle.position);
+            let foot = |axis: usize| particle.position[axis] - nearest.distance * nearest.normal[axis];
+            particles.push(number as u32);
+            sites.push(Site {
+                solid: particle.body,
+                position: [0, 1, 2].map(foot),
+                normal: nearest.normal,
+                half_width: 0.5 * particle.area.sqrt(),
+            });
+        }
+        let drops = Drops::new(laws, solids, sites, [self.room.low, self.room.high], seed);
+        self.wetting = Some(Wetting::new(drops, particles));
+    }
+
+    /// Drops take over what condensed, where it is their turn.
+    pub(crate) fn tend_drops(&mut self) {
+        let Some(wetting) = self.wetting.as_mut().filter(|_| self.state.steps.is_multiple_of(STEPS)) else { return };
+        let left = wetting.take_over(&mut self.state.water_on, self.state.time);
+        self.state.water.book(-left);
+    }
+}
