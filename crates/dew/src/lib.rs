@@ -4,12 +4,12 @@
 //! too. Heat goes through both; vapour diffuses through the air and becomes water where a surface is cold enough.
 //! Published as Chinese patent CN106650064B, whose ways can be chosen beside the defaults.
 
+pub mod air;
+pub mod bodies;
 mod contact;
 mod dew;
 mod exchange;
 mod faces;
-pub mod air;
-pub mod bodies;
 pub mod humid_air;
 mod model;
 mod room;

@@ -2,7 +2,9 @@
 
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
-use corpuscle_model::{Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_model::{
+    Column, Container, ExactSum, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -132,7 +134,7 @@ impl Model for Dew {
             sum(|particle| particle.temperature) / count,
             speed,
             covered,
-            self.state.held_heat.value(),
+            self.state.held_heat.iter().map(ExactSum::value).sum(),
         ]
     }
 
@@ -162,7 +164,8 @@ impl Model for Dew {
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
-        if state.temperatures.len() != self.state.temperatures.len()
+        if state.held_heat.len() != self.state.held_heat.len()
+            || state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
         {
             return Err(refused("it belongs to another scene".into()));
