@@ -2,7 +2,7 @@
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums, sum_pairs};
 use crate::contact::Contact;
-use crate::exchange::{Exchange, excess};
+use crate::exchange::{Exchange, ToAir, excess};
 use crate::humid_air;
 use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
@@ -314,7 +314,9 @@ impl Dew {
         }
         let to_air = exchange.to_air(&share_of);
         for (site, given) in real {
-            self.state.water_on[site.particle as usize] += step * given.water;
+            // What rounding leaves of the last of the water is nothing.
+            let water = &mut self.state.water_on[site.particle as usize];
+            *water = (*water + step * given.water).max(0.0);
         }
         for (i, heat) in heat.into_iter().enumerate() {
             of_solids[i] /= self.solids.heat_capacity(i);
@@ -326,6 +328,7 @@ impl Dew {
                 self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
             }
         }
+        self.book_open_faces(step, &to_air);
         for ((near, given), stiff) in self.contact.near.iter().zip(to_air).zip(of_air) {
             let rates = &mut self.rates[near.particle as usize];
             rates.warming += given.warming;
@@ -333,6 +336,30 @@ impl Dew {
             *stiff = given.stiffness;
         }
         stiff
+    }
+
+    /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
+    /// from beyond; and what solids give to air beyond has left.
+    fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
+        let State { air, water, energy, .. } = &mut self.state;
+        if air.iter().all(|particle| particle.role == Role::Inside) {
+            return;
+        }
+        let mass = self.air.density * self.scale.volume;
+        let energy_of = |warming: f64, moistening: f64| {
+            mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
+        };
+        let inside = || air.iter().zip(&self.rates).filter(|(particle, _)| particle.role == Role::Inside);
+        let gained: ExactSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
+        water.book(gained.value());
+        let gained: ExactSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
+        energy.book(gained.value());
+        for (near, given) in self.contact.near.iter().zip(to_air) {
+            if air[near.particle as usize].role != Role::Inside {
+                water.book(-mass * step * given.moistening);
+                energy.book(-energy_of(given.warming, given.moistening));
+            }
+        }
     }
 
     /// The second half of the kick; heat and vapour of the whole step.
