@@ -2,7 +2,7 @@
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums, sum_pairs};
 use crate::contact::Contact;
-use crate::exchange::{Exchange, excess};
+use crate::exchange::{Exchange, ToAir, excess};
 use crate::humid_air;
 use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
@@ -65,8 +65,8 @@ pub(crate) struct State {
     pub water_on: Vec<f64>,
     /// Vapour that has become fog less fog that has become vapour, kg.
     pub fogged: ExactSum,
-    /// Heat that has come from solids held at a temperature, J; negative where they took it.
-    pub held_heat: ExactSum,
+    /// Heat that has come from each solid held at a temperature, J; negative where it took it.
+    pub held_heat: Vec<ExactSum>,
     /// How far the air before each inlet has come since its last layer, m.
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
@@ -110,7 +110,7 @@ impl Dew {
     /// part of the mass, at a place.
     ///
     /// # Errors
-    /// Where there is no room for air.
+    /// Where ghost samples are asked for and a body does not tell its surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
         let Setup { settings, air, room, bodies, seed } = setup;
         let scale = Scale::new(settings.spacing);
@@ -136,7 +136,7 @@ impl Dew {
             temperatures,
             water_on: vec![0.0; solids.particles.len()],
             fogged: ExactSum::default(),
-            held_heat: ExactSum::default(),
+            held_heat: vec![ExactSum::default(); bodies.len()],
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
@@ -166,10 +166,6 @@ impl Dew {
             wetting: None,
         };
         dew.fill(bodies, start);
-        if dew.state.air.is_empty() {
-            let what = "the solids leave no room for air: take a larger room, smaller solids or a smaller spacing";
-            return Err(ModelError::Setup(what.into()));
-        }
         dew.settle();
         dew.state.time_step = dew.next_step(&[]);
         dew.state.water.initial = dew.water();
@@ -356,18 +352,21 @@ impl Dew {
         }
         let to_air = exchange.to_air(&share_of);
         for (site, given) in real {
-            self.state.water_on[site.particle as usize] += step * given.water;
+            // What rounding leaves of the last of the water is nothing.
+            let water = &mut self.state.water_on[site.particle as usize];
+            *water = (*water + step * given.water).max(0.0);
         }
         for (i, heat) in heat.into_iter().enumerate() {
             of_solids[i] /= self.solids.heat_capacity(i);
             if self.solids.is_held(i) {
-                self.state.held_heat.add(-step * heat);
+                self.state.held_heat[self.solids.particles[i].body as usize].add(-step * heat);
                 self.state.energy.book(-step * heat);
                 of_solids[i] = 0.0;
             } else {
                 self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
             }
         }
+        self.book_open_faces(step, &to_air);
         for ((near, given), stiff) in self.contact.near.iter().zip(to_air).zip(of_air) {
             let rates = &mut self.rates[near.particle as usize];
             rates.warming += given.warming;
@@ -375,6 +374,30 @@ impl Dew {
             *stiff = given.stiffness;
         }
         stiff
+    }
+
+    /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
+    /// from beyond; and what solids give to air beyond has left.
+    fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
+        let State { air, water, energy, .. } = &mut self.state;
+        if air.iter().all(|particle| particle.role == Role::Inside) {
+            return;
+        }
+        let mass = self.air.density * self.scale.volume;
+        let energy_of = |warming: f64, moistening: f64| {
+            mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
+        };
+        let inside = || air.iter().zip(&self.rates).filter(|(particle, _)| particle.role == Role::Inside);
+        let gained: ExactSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
+        water.book(gained.value());
+        let gained: ExactSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
+        energy.book(gained.value());
+        for (near, given) in self.contact.near.iter().zip(to_air) {
+            if air[near.particle as usize].role != Role::Inside {
+                water.book(-mass * step * given.moistening);
+                energy.book(-energy_of(given.warming, given.moistening));
+            }
+        }
     }
 
     /// The second half of the kick; heat and vapour of the whole step.
@@ -459,7 +482,7 @@ impl Dew {
                 let to_solid = conductivity / (conductivity + self.air.conductivity);
                 air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
                 if self.solids.is_held(site) {
-                    self.state.held_heat.add(-to_solid * heat);
+                    self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
                     self.state.energy.book(-to_solid * heat);
                 } else {
                     self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
@@ -529,6 +552,27 @@ impl Dew {
         }
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[]);
+    }
+
+    /// Lays water on the boundary particles of a body, in kg/m2, as there from the start.
+    pub fn wet(&mut self, body: usize, amount: f64) {
+        for (particle, water) in self.solids.particles.iter().zip(&mut self.state.water_on) {
+            if particle.body as usize == body && particle.normal.is_some() {
+                *water += amount * particle.area;
+            }
+        }
+        self.state.water.initial = self.water();
+    }
+
+    /// Heat that has come from a body held at a temperature, J; negative where it took it.
+    pub fn heat_from(&self, body: usize) -> f64 {
+        self.state.held_heat[body].value()
+    }
+
+    /// Water on a body, kg.
+    pub fn water_on_body(&self, body: usize) -> f64 {
+        let on = self.solids.particles.iter().zip(&self.state.water_on);
+        on.filter(|(particle, _)| particle.body as usize == body).map(|(_, water)| water).sum()
     }
 
     /// The air, as it stands at the end of the last step; parcels before inlets and beyond outlets among it.

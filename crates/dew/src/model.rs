@@ -3,7 +3,9 @@
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
 use crate::wetting::{Wetting, WettingState};
-use corpuscle_model::{Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_model::{
+    Column, Container, ExactSum, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -141,7 +143,11 @@ impl Model for Dew {
             ]);
         }
         for name in &self.names {
-            columns.extend([column(name, "water", "kg"), column(name, "mean_temperature", "K")]);
+            columns.extend([
+                column(name, "water", "kg"),
+                column(name, "mean_temperature", "K"),
+                column(name, "heat_given", "J"),
+            ]);
         }
         columns
     }
@@ -162,7 +168,7 @@ impl Model for Dew {
             sum(|particle| particle.temperature) / count,
             speed,
             covered,
-            self.state.held_heat.value(),
+            self.state.held_heat.iter().map(ExactSum::value).sum(),
         ];
         if let Some(wetting) = &self.wetting {
             let drops = wetting.drops();
@@ -172,6 +178,7 @@ impl Model for Dew {
         }
         for body in 0..self.names.len() {
             row.extend(self.totals_of(body));
+            row.push(self.heat_from(body));
         }
         row
     }
@@ -202,7 +209,8 @@ impl Model for Dew {
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, state, drops): (f64, State, Option<WettingState>) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
-        if state.temperatures.len() != self.state.temperatures.len()
+        if state.held_heat.len() != self.state.held_heat.len()
+            || state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
         {
             return Err(refused("it belongs to another scene".into()));

@@ -88,8 +88,7 @@ pub struct Settings {
     pub cfl: f64,
     /// Colour gradient over the spacing above which a solid's particle is a boundary particle.
     pub threshold: f64,
-    /// The constant kappa that makes up for how sparsely solids are sampled: with 1.1 air stands half a spacing away from
-    /// planes, cylinders and balls alike, with 1 a twentieth nearer.
+    /// The constant kappa that makes up for how sparsely solids are sampled: 1 where their particles fill them.
     pub kappa: f64,
 }
 
@@ -109,7 +108,7 @@ impl Settings {
             faster: 1.0,
             cfl: 0.25,
             threshold: crate::solids::THRESHOLD,
-            kappa: 1.1,
+            kappa: 1.0,
         }
     }
 }

@@ -1,8 +1,46 @@
 //! Cases of the dew model.
 
+mod boundaries;
 mod dew_point;
+mod fick;
+mod film;
 mod slide;
+mod two_slabs;
 
-use crate::Case;
+use crate::{Case, Row};
+use corpuscle_dew::solids::{Body, Material};
+use corpuscle_dew::{Dew, Face, Room};
+use corpuscle_model::{Model, ModelError};
+use std::sync::atomic::AtomicBool;
 
-pub(crate) const CASES: &[Case] = &[dew_point::DEW_POINT, slide::SLIDE];
+pub(crate) const CASES: &[Case] =
+    &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, boundaries::BOUNDARIES, slide::SLIDE];
+
+/// Moves air on to a time.
+fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
+    dew.advance_to(time, &AtomicBool::new(false))
+}
+
+/// Rows of a case, or the row of its failure.
+fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
+    result.unwrap_or_else(|error| vec![Row::broken(case, &error.to_string())])
+}
+
+/// Particles across a column, along y and along z.
+const ACROSS: usize = 2;
+
+/// A column along x from 0 to `length` m of particles a `spacing` apart, periodic across, walled at its ends.
+fn column(length: f64, spacing: f64) -> Room {
+    let width = ACROSS as f64 * spacing;
+    let periodic = [Face::Periodic; 2];
+    Room { low: [0.0; 3], high: [length, width, width], faces: [[Face::Wall; 2], periodic, periodic] }
+}
+
+/// A slab of a [`column`], `from` so many layers on, so many `layers` thick.
+fn slab(from: usize, layers: usize, spacing: f64, material: Material, temperature: f64, held: bool) -> Body {
+    let at = |index: usize| (index as f64 + 0.5) * spacing;
+    let across = |x: usize| (0..ACROSS * ACROSS).map(move |k| [at(x), at(k % ACROSS), at(k / ACROSS)]);
+    let positions: Vec<_> = (from..from + layers).flat_map(across).collect();
+    let (volumes, areas) = (vec![spacing.powi(3); positions.len()], vec![spacing.powi(2); positions.len()]);
+    Body { positions, volumes, areas, material, temperature, held, surface: None }
+}

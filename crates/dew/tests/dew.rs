@@ -1,0 +1,193 @@
+//! What the model keeps whatever the air does: water and energy, momentum, and its bits.
+
+use corpuscle_dew::air::Properties;
+use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
+use corpuscle_dew::solids::{Body, Material};
+use corpuscle_dew::{Condensation, Dew, Face, Inflow, Mean, Room, Settings, Setup, WallTreatment};
+use corpuscle_model::Model;
+use corpuscle_solids::{Pose, Shape, Solid};
+use std::sync::atomic::AtomicBool;
+
+const D: f64 = 2e-3;
+const WARM: f64 = ZERO_CELSIUS + 25.0;
+const COLD: f64 = ZERO_CELSIUS + 5.0;
+const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
+
+fn vapour(temperature: f64, humidity: f64) -> f64 {
+    HumidAir::with_relative_humidity(temperature, 101_325.0, humidity).mass_fraction()
+}
+
+/// A box of 12 x 8 x 12 particles with a cold ball in its midst.
+fn ball(held: bool, faces: [[Face; 2]; 3]) -> Setup {
+    let size = [12.0 * D, 8.0 * D, 12.0 * D];
+    let shape = Shape::sphere(3.0 * D).unwrap();
+    let solid = Solid::of_shape(shape, Pose::new(size.map(|side| 0.5 * side), [0.0; 3]));
+    Setup {
+        settings: Settings::new(D, WARM, vapour(WARM, 0.8)),
+        air: Properties::at_room_temperature(0.5),
+        room: Room { low: [0.0; 3], high: size, faces },
+        bodies: vec![Body::sampled(solid, D, GLASS, COLD, held).unwrap()],
+        seed: 1,
+    }
+}
+
+fn through_flow() -> [[Face; 2]; 3] {
+    let inflow = Inflow { speed: 0.05, temperature: WARM, vapour: vapour(WARM, 0.9) };
+    [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]]
+}
+
+fn open(setup: &Setup) -> Dew {
+    Dew::new(setup, |_| [WARM, vapour(WARM, 0.8)]).unwrap()
+}
+
+fn advance(dew: &mut Dew, time: f64) {
+    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+#[test]
+fn water_and_energy_balance_with_flow_condensation_and_fog() {
+    for held in [false, true] {
+        let mut dew = open(&ball(held, through_flow()));
+        advance(&mut dew, 1.5);
+        let row = dew.gauge_row();
+        assert!(row[2] > 0.0, "water on the ball {}", row[2]);
+        for balance in dew.ledger().balances {
+            assert!(balance.inflow > 0.0 && balance.outflow > 0.0, "{balance:?}");
+            assert!(balance.relative_error().abs() < 1e-10, "{balance:?}: {:e}", balance.relative_error());
+        }
+    }
+}
+
+#[test]
+fn water_evaporates_into_dry_air_and_no_more_than_there_is() {
+    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    setup.bodies[0].temperature = WARM;
+    let mut dew = Dew::new(&setup, |_| [WARM, vapour(WARM, 0.2)]).unwrap();
+    dew.wet(0, 1e-5);
+    let start = dew.water_on_body(0);
+    advance(&mut dew, 2.0);
+    assert!(dew.water_on_body(0) < 0.5 * start);
+    assert!(dew.water_on_solids().iter().all(|&water| water >= 0.0));
+    assert!(dew.ledger().balances[0].relative_error().abs() < 1e-10);
+}
+
+#[test]
+fn a_surface_above_the_dew_point_stays_dry() {
+    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    setup.bodies[0].temperature = WARM - 3.0;
+    let mut dew = open(&setup);
+    advance(&mut dew, 2.0);
+    assert_eq!(dew.water_on_body(0), 0.0);
+}
+
+#[test]
+fn published_ways_can_be_chosen() {
+    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    setup.settings.condensation = Condensation::Parcel;
+    let mut dew = open(&setup);
+    advance(&mut dew, 1.0);
+    assert!(dew.water_on_body(0) > 0.0);
+    assert!(dew.ledger().balances[0].relative_error().abs() < 1e-10);
+    // Each warms by the mean of the diffusivities: heat is not conserved, which is why it is not the default.
+    setup.settings.mean = Mean::Diffusivity;
+    setup.bodies[0].held = false;
+    let mut dew = open(&setup);
+    advance(&mut dew, 0.2);
+    assert!(dew.ledger().balances[1].relative_error().abs() > 1e-6);
+}
+
+#[test]
+fn momentum_is_conserved_in_stirred_air() {
+    let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+    setup.bodies.clear();
+    setup.settings.gravity = [0.0; 3];
+    let mut dew = open(&setup);
+    let size = setup.room.size();
+    let wave = |at: f64, side: f64| 0.05 * (std::f64::consts::TAU * at / side).sin();
+    dew.stir(|[x, _, z]| [wave(z, size[2]), wave(x, size[0]), 0.02]);
+    let momentum = |dew: &Dew| [0, 1, 2].map(|axis| dew.air().iter().map(|p| p.velocity[axis]).sum::<f64>());
+    let before = momentum(&dew);
+    advance(&mut dew, 1.0);
+    let after = momentum(&dew);
+    for axis in 0..3 {
+        assert!((after[axis] - before[axis]).abs() < 1e-11 * dew.air().len() as f64, "{before:?} {after:?}");
+    }
+    let nearest = nearest_pair(&dew, size);
+    assert!(nearest > 0.5 * D, "particles clump: {}", nearest / D);
+}
+
+fn nearest_pair(dew: &Dew, size: [f64; 3]) -> f64 {
+    let places: Vec<[f64; 3]> = dew.air().iter().map(|particle| particle.position).collect();
+    let mut nearest = f64::INFINITY;
+    for (i, a) in places.iter().enumerate() {
+        for b in &places[..i] {
+            let squared = (0..3).map(|axis| {
+                let along = (a[axis] - b[axis]).abs();
+                along.min(size[axis] - along).powi(2)
+            });
+            nearest = nearest.min(squared.sum::<f64>());
+        }
+    }
+    nearest.sqrt()
+}
+
+#[test]
+fn warm_air_rises() {
+    let mut setup = ball(true, [[Face::Wall; 2]; 3]);
+    setup.bodies.clear();
+    let middle = 0.5 * setup.room.high[0];
+    let mut dew = Dew::new(&setup, |[x, ..]| [if x < middle { WARM + 5.0 } else { WARM }, vapour(WARM, 0.8)]).unwrap();
+    advance(&mut dew, 0.1);
+    let rising = |side: bool| {
+        let there = dew.air().iter().filter(|particle| (particle.position[0] < middle) == side);
+        there.map(|particle| particle.velocity[2]).sum::<f64>()
+    };
+    assert!(rising(true) > 0.0 && rising(false) < 0.0, "{} {}", rising(true), rising(false));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut dew = open(&ball(false, through_flow()));
+            advance(&mut dew, 0.3);
+            dew.save()
+        })
+    };
+    assert_eq!(run(1), run(3));
+}
+
+#[test]
+fn looking_and_stopping_do_not_change_the_air() {
+    let setup = ball(false, through_flow());
+    let mut straight = open(&setup);
+    advance(&mut straight, 0.3);
+    let mut looked_at = open(&setup);
+    for look in 1..=10 {
+        advance(&mut looked_at, 0.03 * f64::from(look));
+        let _ = (looked_at.frame(), looked_at.gauge_row());
+        let saved = looked_at.save();
+        looked_at = open(&setup);
+        looked_at.restore(&saved).unwrap();
+    }
+    advance(&mut looked_at, 0.3);
+    assert!(straight.save() == looked_at.save());
+    assert!(looked_at.restore(b"not a state").is_err());
+}
+
+#[test]
+fn every_treatment_but_none_keeps_air_out() {
+    for (walls, keeps) in
+        [(WallTreatment::DensityCorrection, true), (WallTreatment::Ghosts, true), (WallTreatment::None, false)]
+    {
+        let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
+        setup.settings.walls = walls;
+        setup.settings.body_acceleration = [0.05, 0.0, 0.0];
+        let mut dew = open(&setup);
+        advance(&mut dew, 0.6);
+        let solid = setup.bodies[0].surface.clone().unwrap();
+        let deepest = dew.air().iter().map(|particle| solid(particle.position)).fold(f64::INFINITY, f64::min);
+        assert_eq!(deepest >= 0.0, keeps, "{walls:?}: {}", deepest / D);
+    }
+}
