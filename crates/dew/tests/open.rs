@@ -1,0 +1,136 @@
+//! From a scene to drops: water and energy are kept, what is saved goes on to the same bits, and what cannot be is refused.
+
+use corpuscle_dew::{Dew, open};
+use corpuscle_model::{Model, Values};
+use corpuscle_scene::Scene;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// A small pane at 5 °C over which humid air flows down, time going 100 times faster.
+const PANE: &str = r#"
+run.until_s = 1
+[dew]
+size_m = [0.010, 0.012, 0.016]
+spacing_m = 0.002
+time_factor = 100
+air = { temperature_c = 25, relative_humidity = 0.8 }
+drops = { smallest_radius_m = 2e-5, friction = 1e-7 }
+[dew.faces]
+y_min = "periodic"
+y_max = "periodic"
+z_max = { inflow = { velocity_m_per_s = [0, 0, -0.3] } }
+z_min = "outflow"
+[[dew.solid]]
+name = "pane"
+shape = { box = { size_m = [0.004, 0.012, 0.016] } }
+position_m = [0.002, 0.006, 0.008]
+temperature_c = 5
+held = true
+"#;
+
+fn parsed(text: &str) -> corpuscle_scene::Dew {
+    Scene::parse(text, "test", &[]).unwrap().dew().unwrap().clone()
+}
+
+fn dew(text: &str) -> Dew {
+    open(&parsed(text), 1, Path::new("")).unwrap()
+}
+
+fn refused(text: &str) -> String {
+    open(&parsed(text), 1, Path::new("")).err().expect("refused").to_string()
+}
+
+fn advance(dew: &mut Dew, time: f64) {
+    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+fn gauge(dew: &Dew, header: &str) -> f64 {
+    let at = dew.gauge_columns().iter().position(|column| column.header() == header).expect(header);
+    dew.gauge_row()[at]
+}
+
+#[test]
+fn drops_form_and_run_off_and_no_water_is_lost() {
+    let mut dew = dew(PANE);
+    advance(&mut dew, 0.4);
+    assert!(gauge(&dew, "drops.number") > 10.0 && gauge(&dew, "drops.left_kg") > 0.0);
+    assert!(gauge(&dew, "drops.first_at_s") > 0.0 && gauge(&dew, "pane.heat_given_J") < 0.0);
+    let on_pane = gauge(&dew, "pane.water_kg");
+    assert!((on_pane / gauge(&dew, "water.on_solids_kg") - 1.0).abs() < 1e-12 && on_pane > 0.0);
+    for balance in dew.ledger().balances {
+        assert!(balance.relative_error().abs() < 1e-10, "{balance:?}: {:e}", balance.relative_error());
+    }
+}
+
+#[test]
+fn frames_show_air_solids_and_drops() {
+    let mut dew = dew(PANE);
+    advance(&mut dew, 0.1);
+    let frame = dew.frame();
+    let names: Vec<_> = frame.sets.iter().map(|set| set.name.as_str()).collect();
+    assert_eq!(names, ["air", "solid", "drops"]);
+    for set in &frame.sets {
+        for column in &set.columns {
+            let length = match &column.values {
+                Values::Scalar(values) => values.len(),
+                Values::Vector(values) => values.len(),
+            };
+            assert_eq!(length, set.len(), "{} of {}", column.name, set.name);
+        }
+    }
+    let shown = "output = { air = false, solids = false }\n[dew.faces]";
+    assert_eq!(self::dew(&PANE.replace("[dew.faces]", shown)).frame().sets.len(), 1);
+}
+
+#[test]
+fn saved_and_restored_it_goes_on_to_the_same_bits() {
+    let mut through = dew(PANE);
+    advance(&mut through, 0.2);
+    let mut first = dew(PANE);
+    // Between two turns of the drops.
+    let between = 0.1 + 1.5 * first.time_step();
+    advance(&mut first, between);
+    let mut resumed = dew(PANE);
+    resumed.restore(&first.save()).unwrap();
+    advance(&mut resumed, 0.2);
+    assert_eq!(resumed.save(), through.save());
+    let other = dew(&PANE.replace("spacing_m = 0.002", "spacing_m = 0.001")).save();
+    assert!(resumed.restore(&other).is_err());
+}
+
+#[test]
+fn a_pane_above_the_dew_point_stays_dry() {
+    let mut dew = dew(&PANE.replace("temperature_c = 5", "temperature_c = 22"));
+    advance(&mut dew, 0.3);
+    assert_eq!(gauge(&dew, "water.on_solids_kg"), 0.0);
+    assert!(gauge(&dew, "drops.first_at_s").is_nan());
+}
+
+#[test]
+fn a_fogged_pane_clears_when_it_is_warmed() {
+    let text = PANE.replace("temperature_c = 5", "temperature_c = [[0, 5], [0.1, 5], [0.15, 60]]");
+    let mut dew = dew(&text.replace("friction = 1e-7", "friction = 1e-3"));
+    advance(&mut dew, 0.1);
+    assert!(gauge(&dew, "water.on_solids_kg") > 0.0);
+    advance(&mut dew, 0.4);
+    assert_eq!((gauge(&dew, "water.on_solids_kg"), gauge(&dew, "drops.number")), (0.0, 0.0));
+    let water = &dew.ledger().balances[0];
+    assert!(water.relative_error().abs() < 1e-10, "{water:?}");
+}
+
+#[test]
+fn what_this_version_cannot_do_is_refused_by_its_key() {
+    let with = |key: &str| refused(&PANE.replace("[dew.faces]", &format!("{key}\n[dew.faces]")));
+    assert!(with("scheme = \"paper\"").contains("dew.transport.humidity"));
+    assert!(with("low_utility = {}").contains("dew.low_utility"));
+    assert!(refused(&PANE.replace("\"outflow\"", "\"open\"")).contains("\"open\""));
+    assert!(refused(&PANE.replace("\"outflow\"", "\"wall\"")).contains("can leave nowhere"));
+    assert!(refused(&PANE.replace("[0, 0, -0.3]", "[0.1, 0, -0.3]")).contains("straight"));
+}
+
+#[test]
+fn frost_and_accelerated_time_are_said() {
+    let warnings = dew(&PANE.replace("temperature_c = 5", "temperature_c = -5")).warnings();
+    assert!(warnings.iter().any(|warning| warning.contains("frost")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.contains("100 times faster")), "{warnings:?}");
+}
