@@ -1,5 +1,6 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
+use crate::humid_air::ZERO_CELSIUS;
 use corpuscle_model::ModelError;
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Table};
@@ -23,7 +24,7 @@ pub struct Body {
     pub held: bool,
     /// The particles that stand for it.
     pub samples: Samples,
-    /// What was put right in its mesh, in sentences.
+    /// What was put right in its mesh, and where it is too thin for its particles, in sentences.
     pub notes: Vec<String>,
 }
 
@@ -43,6 +44,19 @@ pub enum BodyError {
     /// A temperature over time that cannot be read.
     #[error(transparent)]
     Temperature(#[from] SceneError),
+    /// A temperature over time that cannot be.
+    #[error(
+        "the solid \"{name}\" (dew.solid.{row}): its temperature over time goes down to {celsius} °C, below absolute zero, -273.15 °C: it \
+         is told in °C, not in K"
+    )]
+    TooCold {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// The lowest temperature, °C.
+        celsius: f64,
+    },
     /// A name of no material.
     #[error(
         "the solid \"{name}\" (dew.solid.{row}): there is no material \"{material}\"; there are {known}, or give its numbers"
@@ -118,21 +132,31 @@ pub fn open(dew: &Dew, folder: &Path) -> Result<Vec<Body>, BodyError> {
 fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Body, BodyError> {
     let name = written.name.clone();
     let wrong = |source| BodyError::Solid { name: name.clone(), row, source };
-    let (solid, notes) = solid(written, folder).map_err(wrong)?;
+    let (solid, mut notes) = solid(written, folder).map_err(wrong)?;
     let [from, to] = solid.bounds();
     if (0..3).any(|axis| to[axis] <= 0.0 || from[axis] >= dew.size_m[axis]) {
         return Err(BodyError::Outside { name, row, from, to, size: dew.size_m });
     }
     let depth = written.layers.map_or(Depth::Full, Depth::Layers);
     let samples = solid.sample(dew.spacing_m, depth).map_err(wrong)?;
-    Ok(Body {
-        material: material(row, written)?,
-        temperature: written.temperature_c.load(folder)?,
-        held: written.held,
-        name,
-        solid,
-        samples,
-        notes,
+    notes.extend(thin(&name, &samples, dew.spacing_m));
+    let temperature = written.temperature_c.load(folder)?;
+    let celsius = temperature.rows().iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
+    if celsius < -ZERO_CELSIUS {
+        return Err(BodyError::TooCold { name, row, celsius });
+    }
+    Ok(Body { material: material(row, written)?, temperature, held: written.held, name, solid, samples, notes })
+}
+
+/// What to know of a solid many of whose particles fill less than half a cell.
+fn thin(name: &str, samples: &Samples, spacing: f64) -> Option<String> {
+    let small = samples.volumes.iter().filter(|&&volume| volume < 0.5 * spacing.powi(3)).count();
+    let is_thin = 10 * small > samples.volumes.len();
+    is_thin.then(|| {
+        format!(
+            "the solid \"{name}\" is thinner than the distance between particles, {spacing} m, in many places: air on its two sides may \
+             feel each other through it; give a smaller dew.spacing_m"
+        )
     })
 }
 

@@ -4,10 +4,14 @@
 //! too. Heat goes through both; vapour diffuses through the air and becomes water where a surface is cold enough.
 //! Published as Chinese patent CN106650064B, whose ways can be chosen beside the defaults.
 
+// Loops over axes read several arrays at once.
+#![allow(clippy::needless_range_loop)]
+
 pub mod air;
 pub mod bodies;
 mod contact;
 mod dew;
+pub mod drops;
 mod exchange;
 mod faces;
 pub mod humid_air;

@@ -61,6 +61,22 @@ fn what_cannot_be_is_refused_by_name() {
 }
 
 #[test]
+fn a_solid_too_thin_for_its_particles_is_noted() {
+    assert_eq!(made(PANE).unwrap()[0].notes, [""; 0]);
+    let thin = made(&PANE.replace("[0.005, 0.1, 0.1]", "[0.002, 0.1, 0.1]")).unwrap();
+    assert!(thin[0].notes[0].contains("\"pane\" is thinner than"), "{:?}", thin[0].notes);
+}
+
+#[test]
+fn a_file_of_temperatures_below_absolute_zero_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "time_s,temperature_c\n0,5\n10,-300\n").unwrap();
+    let pane = PANE.replace("temperature_c = 5", "temperature_c = { csv = \"t.csv\" }, held = true");
+    let refused = made_in(folder.path(), &pane).unwrap_err();
+    assert!(refused.contains("\"pane\"") && refused.contains("-300") && refused.contains("absolute zero"), "{refused}");
+}
+
+#[test]
 fn solids_may_touch() {
     let beside = PANE.replace("\"pane\"", "\"other\"").replace("[0.1, 0.05, 0.1]", "[0.105, 0.05, 0.1]");
     assert_eq!(made(&format!("{PANE}, {beside}")).unwrap().len(), 2);

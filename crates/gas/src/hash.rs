@@ -37,6 +37,14 @@ impl<const D: usize> Hash<D> {
         (0..D).rev().fold(0, |number, axis| number * self.count[axis] + cell[axis])
     }
 
+    /// Numbers of places, those in one cell together and in the cells' order: so that what is looked at in a row is near in memory.
+    pub fn in_order(&self, places: impl Iterator<Item = [f64; D]>) -> Vec<usize> {
+        let mut order: Vec<(usize, usize)> =
+            places.enumerate().map(|(place, position)| (self.number(self.cell(&position)), place)).collect();
+        order.sort_unstable();
+        order.into_iter().map(|(_, place)| place).collect()
+    }
+
     /// Files a ball.
     pub fn add(&mut self, position: [f64; D], radius: f64) {
         let number = self.number(self.cell(&position));
@@ -57,18 +65,38 @@ impl<const D: usize> Hash<D> {
         deepest
     }
 
+    /// True where a ball would overlap none that is filed.
+    pub fn is_clear(&self, position: &[f64; D], radius: f64) -> bool {
+        self.cells_around(position).all(|cell| {
+            self.chain(cell).all(|ball| {
+                let (other, reach) = (&self.balls[ball].0, radius + self.balls[ball].1);
+                self.distance2(position, other) >= reach * reach
+            })
+        })
+    }
+
     /// Tells of each filed ball in the cells around a place, with its distance.
     pub fn near(&self, position: &[f64; D], mut tell: impl FnMut(usize, f64)) {
-        let centre = self.cell(position);
-        for around in 0..3_usize.pow(D as u32) {
-            let step: [usize; D] = std::array::from_fn(|axis| around / 3_usize.pow(axis as u32) % 3);
-            let Some(cell) = self.neighbour(&centre, &step) else { continue };
-            let mut at = self.heads[self.number(cell)];
-            while at != NONE {
-                tell(at as usize, self.distance(position, &self.balls[at as usize].0));
-                at = self.next[at as usize];
+        for cell in self.cells_around(position) {
+            for ball in self.chain(cell) {
+                tell(ball, self.distance2(position, &self.balls[ball].0).sqrt());
             }
         }
+    }
+
+    /// Numbers of the cells around a place, its own among them.
+    fn cells_around(&self, position: &[f64; D]) -> impl Iterator<Item = usize> {
+        let centre = self.cell(position);
+        (0..3_usize.pow(D as u32)).filter_map(move |around| {
+            let step: [usize; D] = std::array::from_fn(|axis| around / 3_usize.pow(axis as u32) % 3);
+            self.neighbour(&centre, &step).map(|cell| self.number(cell))
+        })
+    }
+
+    /// The balls in a cell.
+    fn chain(&self, cell: usize) -> impl Iterator<Item = usize> {
+        let after = |&ball: &u32| Some(self.next[ball as usize]).filter(|&next| next != NONE);
+        std::iter::successors(Some(self.heads[cell]).filter(|&head| head != NONE), after).map(|ball| ball as usize)
     }
 
     /// The cell one down (0), at (1) or one up (2) along each axis; none beyond a wall, or where it is met another way.
@@ -89,14 +117,19 @@ impl<const D: usize> Hash<D> {
         Some(cell)
     }
 
-    fn distance(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
+    fn distance2(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
         let square = |axis: usize| {
             let mut apart = a[axis] - b[axis];
             if self.period[axis] > 0.0 {
-                apart -= self.period[axis] * (apart / self.period[axis]).round();
+                // Places lie in the box: no more than one period is too much.
+                if apart > 0.5 * self.period[axis] {
+                    apart -= self.period[axis];
+                } else if apart < -0.5 * self.period[axis] {
+                    apart += self.period[axis];
+                }
             }
             apart * apart
         };
-        (0..D).map(square).sum::<f64>().sqrt()
+        (0..D).map(square).sum()
     }
 }

@@ -26,7 +26,7 @@ pub(crate) enum Pause {
 /// A gas and how it is moved on.
 #[derive(Debug)]
 pub(crate) enum Mover<const D: usize> {
-    EventDriven(Engine<D>),
+    EventDriven(Box<Engine<D>>),
     List(List<D>),
     FixedStep(FixedStep<D>),
 }

@@ -15,7 +15,7 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use std::path::Path;
 use std::sync::Arc;
 
-/// More triangles than this are refused: each takes about a kilobyte while it is checked and searched.
+/// More triangles than this are refused: each takes half a kilobyte while it is checked (measured: 739 MB for 1.44 million).
 pub const MOST_TRIANGLES: usize = 2_000_000;
 
 /// Larger files are refused before they are read, bytes.
@@ -99,11 +99,6 @@ impl Mesh {
     /// Its surface, m².
     pub fn area(&self) -> f64 {
         self.area
-    }
-
-    /// Its corners, m, and the three of each triangle.
-    pub fn triangles(&self) -> (impl Iterator<Item = [f64; 3]> + '_, &[[u32; 3]]) {
-        (self.triangles.vertices().iter().map(|&corner| corner.into()), self.triangles.indices())
     }
 
     /// What was put right, in sentences.

@@ -100,6 +100,7 @@ fn joined(cells: &Cells, mut found: Vec<Cell>) -> (Vec<Cell>, u64) {
     for cell in found.iter_mut().filter(|cell| cell.is_cut) {
         cells.move_inside(cell);
     }
+    found.retain(|cell| cell.fraction > 0.0);
     (found, grown)
 }
 

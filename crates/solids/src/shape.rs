@@ -28,19 +28,28 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// A box. # Errors [`SolidError::Size`] for a side that is not above 0.
+    /// A box.
+    ///
+    /// # Errors
+    /// [`SolidError::Size`] for a side that is not above 0.
     pub fn cuboid(size: [f64; 3]) -> Result<Self, SolidError> {
         size.iter().try_for_each(|&side| above_zero("the side of a box in m", side))?;
         Ok(Self::Box { size })
     }
 
-    /// A ball. # Errors [`SolidError::Size`] for a radius that is not above 0.
+    /// A ball.
+    ///
+    /// # Errors
+    /// [`SolidError::Size`] for a radius that is not above 0.
     pub fn sphere(radius: f64) -> Result<Self, SolidError> {
         above_zero("the radius of a sphere in m", radius)?;
         Ok(Self::Sphere { radius })
     }
 
-    /// A cylinder. # Errors [`SolidError::Size`] for a radius or height that is not above 0.
+    /// A cylinder.
+    ///
+    /// # Errors
+    /// [`SolidError::Size`] for a radius or height that is not above 0.
     pub fn cylinder(radius: f64, height: f64) -> Result<Self, SolidError> {
         above_zero("the radius of a cylinder in m", radius)?;
         above_zero("the height of a cylinder in m", height)?;

@@ -130,6 +130,25 @@ proptest! {
         }
     }
 
+    #[test]
+    fn any_solid_sums_to_its_volume_by_particles_inside_it(
+        kind in 0..4, size in [0.05..1.0, 0.05..1.0, 0.05..1.0], turn in [0.0..360.0, 0.0..360.0, 0.0..360.0], spacing in 0.03..0.2,
+    ) {
+        let [a, b, c] = size;
+        let shape = match kind {
+            0 => Shape::cuboid(size),
+            1 => Shape::sphere(a),
+            2 => Shape::cylinder(a, b),
+            _ => Profile::new(vec![[a, 0.0], [a + b, 0.0], [a + 0.5 * b, c]]).map(Shape::Revolution),
+        };
+        let solid = Solid::of_shape(shape.unwrap(), Pose::new([1.0, 2.0, 3.0], turn));
+        let samples = solid.sample(spacing, Depth::Full).unwrap();
+        prop_assert!((samples.volumes.iter().sum::<f64>() / solid.volume() - 1.0).abs() < 1e-9);
+        prop_assert!((samples.areas.iter().sum::<f64>() / solid.area() - 1.0).abs() < 1e-9);
+        prop_assert!(samples.volumes.iter().all(|&volume| volume > 0.0));
+        prop_assert!(samples.positions.iter().all(|&at| solid.signed_distance(at) < 0.0));
+    }
+
     /// The sign of the distance agrees with counting: the part of random places that are inside is the volume.
     #[test]
     fn the_volume_is_where_the_distance_is_negative(places in prop::collection::vec([0.0..1.0, 0.0..1.0, 0.0..1.0], 4000)) {

@@ -4,6 +4,7 @@
 //! a calendar. A ball whose partner is hit by another is disturbed: its event is found out of date when its time comes,
 //! and a new one is looked for then; nothing can have happened to it earlier.
 
+mod ahead;
 mod event;
 mod grid;
 mod near;
@@ -12,10 +13,12 @@ mod queue;
 mod rebuild;
 mod run;
 mod saved;
+mod watch;
 
 pub(crate) use saved::Saved;
 
 use crate::world::{Facing, World};
+use ahead::Ahead;
 use event::Event;
 use grid::Grid;
 use near::Near;
@@ -29,10 +32,16 @@ pub(crate) struct Engine<const D: usize> {
     grid: Grid<D>,
     queue: Queue,
     near: Box<Near<D>>,
+    ahead: Ahead,
     /// True where all balls have the same radius.
     alike: bool,
     /// True where a wall is not only met in the outermost cells.
     walls_roam: bool,
+    /// When balls are to be told again of each wall, and the first of these times.
+    watches: Vec<f64>,
+    next_watch: f64,
+    /// Working memory: balls beside a wall.
+    beside_wall: Vec<u32>,
     /// Events handled since the window was moved on.
     handled: u64,
     /// Cell edges crossed, and looks at what comes next because a partner was lost.
@@ -52,6 +61,10 @@ impl<const D: usize> Engine<D> {
             grid,
             queue: Queue::new::<D>(&[]),
             near: Box::new(Near::new()),
+            ahead: Ahead::new(),
+            watches: Vec::new(),
+            next_watch: f64::INFINITY,
+            beside_wall: Vec::new(),
             handled: 0,
             crossings: 0,
             disturbed: 0,

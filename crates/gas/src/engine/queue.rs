@@ -5,12 +5,17 @@
 //! time is in the ball's own record. Entries are not taken out when a ball's event is replaced: their number no longer
 //! fits, and they are passed over when their bucket comes up.
 
+mod mail;
+
+use super::ahead::MANY;
 use super::event::Event;
 use crate::memory;
 use crate::world::NONE;
+use mail::Mail;
 
-/// How many entries a bucket has when it comes up, about.
-const PER_BUCKET: f64 = 8.0;
+/// How many entries a bucket has when it comes up, about: with few balls; and with many, where the buckets to come are looked into
+/// one by one.
+const PER_BUCKET: [f64; 2] = [8.0, 3.0];
 
 /// Entries in a chunk; what is left of its cache line links it.
 const ROOM: usize = 7;
@@ -59,6 +64,9 @@ pub(crate) struct Queue {
     in_ring: usize,
     /// Entries for times beyond the ring.
     later: Vec<Slip>,
+    mail: Mail,
+    /// True where entries go by mail.
+    many: bool,
 }
 
 impl Queue {
@@ -66,11 +74,12 @@ impl Queue {
     pub fn new<const D: usize>(events: &[Event<D>]) -> Self {
         let mut times: Vec<f64> = events.iter().map(|event| event.time).filter(|time| time.is_finite()).collect();
         let nth = times.len() / 4;
+        let many = events.len() >= MANY;
         let per_time = if times.is_empty() {
             1.0
         } else {
             let (_, soon, _) = times.select_nth_unstable_by(nth, f64::total_cmp);
-            ((nth + 1) as f64 / PER_BUCKET / soon.max(f64::MIN_POSITIVE)).min(1e300)
+            ((nth + 1) as f64 / PER_BUCKET[usize::from(many)] / soon.max(f64::MIN_POSITIVE)).min(1e300)
         };
         let buckets = events.len().next_power_of_two().max(64);
         Queue {
@@ -82,6 +91,8 @@ impl Queue {
             front: Vec::with_capacity(64),
             in_ring: 0,
             later: Vec::new(),
+            mail: Mail::new(),
+            many,
         }
     }
 
@@ -96,6 +107,8 @@ impl Queue {
             let due = Due { time: time.to_bits(), ball, stamp };
             let at = self.front.partition_point(|other| *other > due);
             self.front.insert(at, due);
+        } else if self.many && self.is_far(bucket) {
+            self.post(bucket, Slip { ball, stamp });
         } else {
             self.file(bucket, Slip { ball, stamp });
         }
@@ -156,6 +169,7 @@ impl Queue {
     /// Goes on to the next bucket; false where nothing is left.
     fn turn<const D: usize>(&mut self, events: &[Event<D>]) -> bool {
         let round = self.ring.len() as u64;
+        self.deliver_when_due();
         if self.in_ring == 0 && !self.skip(events) {
             return false;
         }
@@ -203,6 +217,32 @@ impl Queue {
                 let bucket = (event.time * self.per_time) as i64 as u64;
                 self.file(bucket, slip);
             }
+        }
+    }
+
+    /// Number of the bucket at the front.
+    #[inline(always)]
+    pub fn front_bucket(&self) -> u64 {
+        self.front_bucket
+    }
+
+    /// Asks for the memory of the last chunk of a bucket in the ring.
+    #[inline(always)]
+    pub fn ask_for_chunk(&self, bucket: u64) {
+        let place = self.ring[bucket as usize & (self.ring.len() - 1)];
+        if place != NONE {
+            memory::prefetch(&self.chunks[(place >> BITS) as usize]);
+        }
+    }
+
+    /// Tells ball and number of the entries in a bucket of the ring.
+    #[inline(always)]
+    pub fn each_in(&self, bucket: u64, mut tell: impl FnMut(u32, u32)) {
+        let mut place = self.ring[bucket as usize & (self.ring.len() - 1)];
+        while place != NONE {
+            let chunk = &self.chunks[(place >> BITS) as usize];
+            chunk.slips[..(place & FULL) as usize].iter().for_each(|slip| tell(slip.ball, slip.stamp));
+            place = chunk.next;
         }
     }
 

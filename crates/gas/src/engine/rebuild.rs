@@ -1,6 +1,7 @@
 //! Starting afresh, at first and from time to time.
 
 use super::Engine;
+use super::ahead::Ahead;
 use super::event::{Event, What};
 use super::grid::Grid;
 use super::queue::Queue;
@@ -34,6 +35,7 @@ impl<const D: usize> Engine<D> {
         self.sort();
         self.fill_cells();
         self.handled = 0;
+        self.watch_none();
         foresee_all::<D, M>(self);
         self.fill_queue();
     }
@@ -41,6 +43,7 @@ impl<const D: usize> Engine<D> {
     /// A queue of the events of all balls.
     pub(super) fn fill_queue(&mut self) {
         self.queue = Queue::new(&self.events);
+        self.ahead = Ahead::new();
         for (ball, event) in self.events.iter().enumerate() {
             self.queue.push(event.time, ball as u32, event.stamp);
         }

@@ -36,7 +36,7 @@ impl<const D: usize> Gas<D> {
         let largest = setup.largest_speeds(&sets, &world);
         let measures = Measures::new(&setup, sets.len(), largest);
         let mover = match setup.method {
-            Method::EventDriven => Mover::EventDriven(Engine::new(world)),
+            Method::EventDriven => Mover::EventDriven(Box::new(Engine::new(world))),
             Method::List => Mover::List(List::new(world)),
             Method::FixedStep(step) => Mover::FixedStep(FixedStep::new(world, step)),
         };

@@ -223,7 +223,9 @@ impl<const D: usize> Setup<D> {
             std::array::from_fn(|axis| if self.sides[axis][0] == Side::Periodic { self.size[axis] } else { 0.0 });
         let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
         let mut hash = Hash::new([0.0; D], self.size, period, 2.0 * largest, places.len());
-        for (number, placed) in places.iter().enumerate() {
+        let order = hash.in_order(places.iter().map(|placed| placed.position));
+        for &number in &order {
+            let placed = &places[number];
             let what = || format!("ball {number} of radius {} at {:?}", placed.radius, placed.position);
             for axis in (0..D).filter(|&axis| period[axis] == 0.0) {
                 let x = placed.position[axis];
@@ -245,7 +247,7 @@ impl<const D: usize> Setup<D> {
             if let Some((other, depth)) = hash.overlap(&placed.position, placed.radius)
                 && overlaps(depth, placed.radius)
             {
-                return Err(SetupError::Overlap { what: what(), other: format!("ball {other}"), depth });
+                return Err(SetupError::Overlap { what: what(), other: format!("ball {}", order[other]), depth });
             }
             hash.add(placed.position, placed.radius);
         }

@@ -24,8 +24,11 @@ pub(crate) struct Placed<const D: usize> {
 /// Up to these packings balls are dropped one by one (random sequential addition ends at 0.547 and 0.38).
 const DROPPED: [f64; 2] = [0.40, 0.25];
 
-/// Packing from which balls are grown.
-const SEED_PACKING: f64 = 0.1;
+/// Packings from which balls are grown; the second where there is no room for the first.
+const SEEDS: [[f64; 2]; 2] = [[0.25, 0.15], [0.05, 0.05]];
+
+/// Largest radius from which balls are grown, over that which they have in the end.
+const SEED_RADIUS: f64 = 0.9;
 
 /// Speed at which radii grow over the thermal speed: for fluids, and beyond the packings below, slower, to end near jamming.
 const GROWTH: [f64; 2] = [0.3, 0.01];
@@ -34,7 +37,7 @@ const FLUID: [f64; 2] = [0.68, 0.53];
 /// Events for each ball at which growing is given up.
 const PATIENCE: u64 = 6000;
 
-/// Tries for each ball at which dropping is given up.
+/// Tries in vain, one after the other, at which dropping is given up.
 const TRIES: usize = 100_000;
 
 /// A little larger than needed, so that what is left of it is an open gap.
@@ -109,7 +112,7 @@ impl<const D: usize> Site<'_, D> {
         filled.map(ball_volume::<D>).sum::<f64>() / self.length().iter().product::<f64>()
     }
 
-    /// Places at random, one after the other, the largest first; `None` where no more room is found.
+    /// Places at random, the largest balls first; `None` where no more room is found.
     fn drop(&self, radii: &[f64], random: &mut ChaCha8Rng) -> Option<Vec<[f64; D]>> {
         self.drop_scaled(radii, 1.0, random)
     }
@@ -125,17 +128,47 @@ impl<const D: usize> Site<'_, D> {
         let mut order: Vec<usize> = (0..radii.len()).collect();
         order.sort_by(|&a, &b| radii[b].total_cmp(&radii[a]));
         let mut positions = vec![[0.0; D]; radii.len()];
-        for ball in order {
-            let radius = radii[ball] * scale;
-            let free = (0..TRIES).find_map(|_| {
-                let position = self.anywhere(radii[ball], random);
-                (self.clear_of_partition(&position, radii[ball]) && hash.overlap(&position, radius).is_none())
-                    .then_some(position)
-            })?;
-            hash.add(free, radius);
-            positions[ball] = free;
+        let mut rest = &order[..];
+        while !rest.is_empty() {
+            let alike = rest.partition_point(|&ball| radii[ball] > 0.5 * radii[rest[0]]);
+            let mut left = rest[..alike].to_vec();
+            rest = &rest[alike..];
+            let mut in_vain = 0;
+            while !left.is_empty() {
+                let before = left.len();
+                left = self.try_once(&left, radii, scale, &mut positions, &mut hash, random);
+                in_vain = if left.len() < before { 0 } else { in_vain + before };
+                if in_vain > TRIES {
+                    return None;
+                }
+            }
         }
         Some(positions)
+    }
+
+    /// Draws a place for each ball, in the order of the cells; the balls that have no room there.
+    fn try_once(
+        &self,
+        balls: &[usize],
+        radii: &[f64],
+        scale: f64,
+        positions: &mut [[f64; D]],
+        hash: &mut Hash<D>,
+        random: &mut ChaCha8Rng,
+    ) -> Vec<usize> {
+        let drawn: Vec<[f64; D]> = balls.iter().map(|&ball| self.anywhere(radii[ball], random)).collect();
+        let mut left = Vec::new();
+        for at in hash.in_order(drawn.iter().copied()) {
+            let (ball, position) = (balls[at], drawn[at]);
+            let radius = radii[ball] * scale;
+            if self.clear_of_partition(&position, radii[ball]) && hash.is_clear(&position, radius) {
+                hash.add(position, radius);
+                positions[ball] = position;
+            } else {
+                left.push(ball);
+            }
+        }
+        left
     }
 
     /// A place of the region where a ball is inside it.
@@ -154,8 +187,7 @@ impl<const D: usize> Site<'_, D> {
 
     /// Places reached by growing; the packing at which that ended where it jams.
     fn grow(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, f64> {
-        let scale = (SEED_PACKING / packing).powf(1.0 / D as f64).min(0.5);
-        let positions = self.drop_scaled(radii, scale, random).ok_or(SEED_PACKING)?;
+        let (scale, positions) = self.seeds(radii, packing, random)?;
         let speed = GROWTH[usize::from(packing > FLUID[D - 2])];
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
         let field = Field {
@@ -187,6 +219,15 @@ impl<const D: usize> Site<'_, D> {
             }
         }
         Ok(grown)
+    }
+
+    /// Radii over those in the end, and places for balls of them; a packing for which there is no room.
+    fn seeds(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<(f64, Vec<[f64; D]>), f64> {
+        let mut dropped = |seed: [f64; 2]| {
+            let scale = (seed[D - 2] / packing).powf(1.0 / D as f64).min(SEED_RADIUS);
+            self.drop_scaled(radii, scale, random).map(|positions| (scale, positions))
+        };
+        SEEDS.into_iter().find_map(&mut dropped).ok_or(SEEDS[1][D - 2])
     }
 
     /// The balls, small yet, at thermal speeds, and what is in their way.

@@ -142,14 +142,13 @@ impl Quadratic {
         Quadratic { start, a, b, c: if c > 0.0 { c } else { 0.0 } }
     }
 
-    /// False where the balls do not meet, or not before `limit`: the meeting is later than c / (-2 b).
+    /// False where the balls do not meet, or not before `limit`: where a is not negative the meeting is later than c / (-2 b).
     #[inline(always)]
     pub fn maybe_before<M: Mode>(&self, limit: f64) -> bool {
         let meets = self.b * self.b >= self.a * self.c;
-        if M::GROWS {
-            return meets & ((self.b < 0.0) | (self.a < 0.0));
-        }
-        meets & (self.b < 0.0) & (self.c <= -2.0 * self.b * (limit - self.start))
+        let soon = (self.b < 0.0) & (self.c <= -2.0 * self.b * (limit - self.start));
+        // Only balls that grow meet with a negative a.
+        meets & (soon | (M::GROWS & (self.a < 0.0)))
     }
 
     /// The meeting, where there is one: the first root, in the form that loses no digits.

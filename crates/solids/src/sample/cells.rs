@@ -27,11 +27,12 @@ pub(super) struct Cell {
     pub area: f64,
     /// Centre of mass of the part inside, m.
     pub centre: [f64; 3],
-    /// The deepest place that was looked at, m, and its signed distance.
-    pub deepest: ([f64; 3], f64),
     /// Whether it is near the surface. Others are whole.
     pub is_cut: bool,
 }
+
+/// Places along each side of a cell that are tried where its centre of mass is outside the solid.
+const TRIED: u32 = 6;
 
 /// Blocks of more cells than this are divided among threads.
 const SHARED_OUT: u64 = 1 << 12;
@@ -112,7 +113,7 @@ impl<'a> Cells<'a> {
                 for x in from[0]..to[0] {
                     let index = [x, y, z];
                     let centre = self.middle(index);
-                    cells.push(Cell { index, fraction: 1.0, area: 0.0, centre, deepest: (centre, 0.0), is_cut: false });
+                    cells.push(Cell { index, fraction: 1.0, area: 0.0, centre, is_cut: false });
                 }
             }
         }
@@ -127,8 +128,7 @@ impl<'a> Cells<'a> {
     /// falls from all of it to nothing over the width of an octant, and the surface is a hat twice as wide.
     fn cut(&self, index: [u32; 3], middle: [f64; 3]) -> Cell {
         let volume = self.cell_volume() / 8.0;
-        let mut cell =
-            Cell { index, fraction: 0.0, area: 0.0, centre: [0.0; 3], deepest: (middle, f64::INFINITY), is_cut: true };
+        let mut cell = Cell { index, fraction: 0.0, area: 0.0, centre: [0.0; 3], is_cut: true };
         for octant in 0..8 {
             let place: [f64; 3] = std::array::from_fn(|axis| {
                 let side = if octant >> axis & 1 == 0 { -0.25 } else { 0.25 };
@@ -142,27 +142,28 @@ impl<'a> Cells<'a> {
             for axis in 0..3 {
                 cell.centre[axis] += inside * place[axis];
             }
-            if nearest.distance < cell.deepest.1 {
-                cell.deepest = (place, nearest.distance);
-            }
         }
         let fraction = cell.fraction;
         cell.centre = if fraction > 0.0 { cell.centre.map(|sum| sum / fraction) } else { middle };
         cell
     }
 
-    /// Puts the place of a part inside the solid, where its centre of mass is not: in a hollow. Where no place inside is
-    /// known, below the nearest point of the surface.
+    /// Puts the place of a part inside the solid, where its centre of mass is not: in a hollow or at a sharp edge. What is too
+    /// thin for any of the places tried becomes nothing.
     pub fn move_inside(&self, cell: &mut Cell) {
-        if self.solid.nearest_of_its_own(cell.centre).distance < 0.0 {
+        let distance = |place: [f64; 3]| self.solid.nearest_of_its_own(place).distance;
+        if distance(cell.centre) < 0.0 {
             return;
         }
-        let (place, distance) = cell.deepest;
-        cell.centre = place;
-        if distance >= 0.0 {
-            let way_in = self.solid.nearest_of_its_own(place).normal;
-            let step = distance + 1e-3 * length(self.sides);
-            cell.centre = std::array::from_fn(|axis| place[axis] - step * way_in[axis]);
+        let middle = self.middle(cell.index);
+        let places = (0..TRIED.pow(3)).map(|at| [at % TRIED, at / TRIED % TRIED, at / TRIED.pow(2)]).map(|at| {
+            let step = |axis: usize| (f64::from(at[axis]) + 0.5) / f64::from(TRIED) - 0.5;
+            std::array::from_fn(|axis| middle[axis] + step(axis) * self.sides[axis])
+        });
+        let deepest = places.map(|place| (place, distance(place))).min_by(|a, b| a.1.total_cmp(&b.1));
+        match deepest {
+            Some((place, distance)) if distance < 0.0 => cell.centre = place,
+            _ => (cell.fraction, cell.area) = (0.0, 0.0),
         }
     }
 

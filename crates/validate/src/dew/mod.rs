@@ -4,6 +4,7 @@ mod boundaries;
 mod dew_point;
 mod fick;
 mod film;
+mod slide;
 mod two_slabs;
 
 use crate::{Case, Row};
@@ -13,7 +14,7 @@ use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
 pub(crate) const CASES: &[Case] =
-    &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, boundaries::BOUNDARIES];
+    &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, boundaries::BOUNDARIES, slide::SLIDE];
 
 /// Moves air on to a time.
 fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {

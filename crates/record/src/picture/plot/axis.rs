@@ -47,9 +47,13 @@ impl Axis {
         Self { low, high, step: ((high - low) / 6.0).ceil(), logarithmic: true, power: 0 }
     }
 
-    /// The same axis from exactly `low` to `high`; for times, which fill the whole width.
-    pub(super) fn cut_to(self, [low, high]: [f64; 2]) -> Self {
-        if self.logarithmic || low >= high { self } else { Self { low, high, ..self } }
+    /// The same axis from exactly `low` to `high`, with about `most` values printed; for what fills the whole width.
+    pub(super) fn cut_to(self, [low, high]: [f64; 2], most: usize) -> Self {
+        if self.logarithmic || low >= high {
+            self
+        } else {
+            Self { low, high, step: ticks::step(high - low, most), ..self }
+        }
     }
 
     /// The part of the way from the low to the high end at which a value lies; none for a value without a place.
@@ -116,6 +120,13 @@ mod tests {
         let axis = Axis::of(&ChartAxis { logarithmic: true, ..ChartAxis::default() }, [0.03, 500.0], false, 5);
         assert_eq!(texts(&axis), ["10⁻²", "10⁻¹", "1", "10", "10²", "10³"]);
         assert!(axis.part(0.0).is_nan() && (axis.part(0.1) - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_axis_that_is_cut_has_values_enough() {
+        let range = [46.0, 78.0];
+        let axis = Axis::of(&ChartAxis::default(), range, false, 5).cut_to(range, 5);
+        assert_eq!(texts(&axis), ["50", "60", "70"]);
     }
 
     #[test]

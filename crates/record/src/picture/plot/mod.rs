@@ -106,9 +106,9 @@ fn lay_out(chart: &Chart, top: f64, [width, height]: [f64; 2]) -> Plot {
     let y = Axis::of(&chart.y, y_range, bars, ((height - top - BOTTOM) / 34.0).max(2.0) as usize);
     let longest = y.ticks().iter().map(|(_, text)| text.chars().count()).max().unwrap_or(0);
     let left = (longest as f64 * SPACE_OF_LETTER + 14.0).max(34.0);
-    let x = Axis::of(&chart.x, x_range, false, ((width - left) / 70.0).max(2.0) as usize);
+    let most = ((width - left) / 70.0).max(2.0) as usize;
     let from = if x_range[0] >= 0.0 && x_range[0] < 0.2 * x_range[1] { 0.0 } else { x_range[0] };
-    let x = x.cut_to([from, x_range[1]]);
+    let x = Axis::of(&chart.x, x_range, false, most).cut_to([from, x_range[1]], most);
     Plot { x, y, left_top: [left, top], right_bottom: [width - RIGHT, height - BOTTOM] }
 }
 

@@ -1,0 +1,244 @@
+//! Drops: nothing of them is lost, what touches is one, and friction holds them up to its bound.
+
+use corpuscle_dew::drops::{Drop, DropLaws, Drops, Site, WATER_DENSITY};
+use corpuscle_model::ExactSum;
+use corpuscle_solids::{Pose, Shape, Solid};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+fn laws() -> DropLaws {
+    DropLaws {
+        contact_angle: 0.5 * PI,
+        friction: 1.3e-4,
+        pressure: 101_325.0,
+        surface_tension: 0.0728,
+        gravity: [0.0, 0.0, -9.81],
+        smallest_radius: 5e-5,
+        density: WATER_DENSITY,
+    }
+}
+
+const ROOM: [[f64; 3]; 2] = [[-1.0; 3], [1.0; 3]];
+
+/// Drops on a pane in the plane x = 0, from y, z = -5 cm to 5 cm, upright.
+fn on_pane(laws: DropLaws, sites: Vec<Site>) -> Drops {
+    let pane = Shape::cuboid([0.01, 0.1, 0.1]).unwrap();
+    let solid = Solid::of_shape(pane, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
+    Drops::new(laws, Arc::from([solid]), sites, ROOM, 1)
+}
+
+/// Patches of a pane, so many along each side.
+fn sites(count: u32, side: f64) -> Vec<Site> {
+    let at = |index: u32| side * ((f64::from(index) + 0.5) / f64::from(count) - 0.5);
+    let site = |y: u32, z: u32| Site {
+        solid: 0,
+        position: [0.0, at(y), at(z)],
+        normal: [1.0, 0.0, 0.0],
+        half_width: 0.5 * side / f64::from(count),
+    };
+    (0..count).flat_map(|y| (0..count).map(move |z| site(y, z))).collect()
+}
+
+/// Mass of a hemisphere.
+fn half_ball(radius: f64) -> f64 {
+    WATER_DENSITY * 2.0 / 3.0 * PI * radius.powi(3)
+}
+
+fn sum(drops: &[Drop], of: impl Fn(&Drop) -> f64) -> f64 {
+    drops.iter().map(of).sum()
+}
+
+fn assert_apart(drops: &Drops) {
+    let all = drops.drops();
+    for (at, one) in all.iter().enumerate() {
+        for other in &all[..at] {
+            let away: f64 = (0..3).map(|axis| (one.position[axis] - other.position[axis]).powi(2)).sum();
+            let touch = drops.covered_radius(one) + drops.covered_radius(other);
+            assert!(away.sqrt() >= touch, "{one:?} touches {other:?}");
+        }
+    }
+}
+
+#[test]
+fn a_drop_stays_up_to_the_bound_of_friction_and_slides_beyond() {
+    // m g = mu p pi r^2 for a hemisphere: r = 3 mu p / (2 rho g).
+    let bound = 1.5 * 1.3e-4 * 101_325.0 / (WATER_DENSITY * 9.81);
+    assert!((bound - 2.02e-3).abs() < 1e-5, "{bound}");
+    for (part, moves) in [(0.5, false), (0.999, false), (1.001, true), (1.5, true)] {
+        let mut drops = on_pane(laws(), Vec::new());
+        drops.add(0, [0.0; 3], [0.0; 3], half_ball(part * bound));
+        drops.advance(0.05);
+        let drop = drops.drops()[0];
+        assert_eq!(drop.velocity != [0.0; 3], moves, "{part}");
+        // Constant force: friction per mass falls as 1 / r.
+        let expected = if moves { -9.81 * (1.0 - 1.0 / part) * 0.05 } else { 0.0 };
+        assert!((drop.velocity[2] - expected).abs() < 1e-9, "{part}: {} {expected}", drop.velocity[2]);
+        assert!((drop.position[2] - 0.5 * expected * 0.05).abs() < 1e-9 && drop.position[0].abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_moving_drop_that_friction_outdoes_comes_to_rest() {
+    let mut drops = on_pane(laws(), Vec::new());
+    drops.add(0, [0.0; 3], [0.0, 0.1, 0.0], half_ball(1e-3));
+    drops.advance(1.0);
+    assert_eq!(drops.drops()[0].velocity, [0.0; 3]);
+    assert!(drops.drops()[0].position[1] > 0.0);
+}
+
+#[test]
+fn a_sliding_drop_sweeps_up_what_it_rolls_over_and_nothing_else() {
+    let mut drops = on_pane(laws(), Vec::new());
+    let large = half_ball(3e-3);
+    drops.add(0, [0.0, 0.0, 0.03], [0.0; 3], large);
+    let below: Vec<f64> = (0..5).map(|at| 0.02 - 0.01 * f64::from(at)).collect();
+    below.iter().for_each(|&z| drops.add(0, [0.0, 1e-3, z], [0.0; 3], half_ball(1e-4)));
+    drops.add(0, [0.0, 0.01, 0.0], [0.0; 3], half_ball(1e-4));
+    while drops.drops().iter().any(|drop| drop.position[2] > -0.04 && drop.velocity != [0.0; 3])
+        || drops.drops().len() > 2
+    {
+        drops.advance(0.01);
+        assert!(drops.dripped() == 0.0, "it left before it had swept up all");
+    }
+    let masses: Vec<f64> = drops.drops().iter().map(|drop| drop.mass).collect();
+    assert!((masses[0] - large - 5.0 * half_ball(1e-4)).abs() < 1e-18 && masses[1] == half_ball(1e-4), "{masses:?}");
+}
+
+#[test]
+fn what_slides_over_an_edge_has_dripped() {
+    let mut drops = on_pane(laws(), Vec::new());
+    let mass = half_ball(3e-3);
+    drops.add(0, [0.0, 0.0, -0.04], [0.0; 3], mass);
+    drops.add(0, [0.0, 0.03, 0.0], [0.0; 3], half_ball(1e-3));
+    drops.advance(1.0);
+    assert_eq!((drops.drops().len(), drops.dripped(), drops.state().dripped_count), (1, mass, 1));
+}
+
+#[test]
+fn drops_fall_from_a_ceiling_when_surface_tension_cannot_hold_them() {
+    // rho g 2 pi / 3 r^3 = 2 pi r gamma: r = sqrt(3 gamma / (rho g)).
+    let bound = (3.0 * 0.0728 / (WATER_DENSITY * 9.81)).sqrt();
+    for (part, stays) in [(0.99, 1), (1.01, 0)] {
+        let mut drops = on_pane(DropLaws { gravity: [9.81, 0.0, 0.0], ..laws() }, Vec::new());
+        drops.add(0, [0.0; 3], [0.0; 3], half_ball(part * bound));
+        drops.advance(0.1);
+        assert_eq!(drops.drops().len(), stays, "{part}");
+    }
+}
+
+#[test]
+fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
+    let ball = Solid::of_shape(Shape::sphere(0.05).unwrap(), Pose::default());
+    let mut drops = Drops::new(DropLaws { friction: 1e-5, ..laws() }, Arc::from([ball.clone()]), Vec::new(), ROOM, 1);
+    let mass = half_ball(5e-3);
+    drops.add(0, [0.01, 0.0, 0.1], [0.0; 3], mass);
+    while let Some(drop) = drops.drops().first() {
+        assert!(ball.signed_distance(drop.position).abs() < 1e-12);
+        assert!((0..3).map(|axis| drop.velocity[axis] * drop.normal[axis]).sum::<f64>().abs() < 1e-12);
+        drops.advance(1e-3);
+    }
+    assert_eq!(drops.dripped(), mass);
+}
+
+#[test]
+fn what_condenses_is_on_the_pane_or_has_dripped() {
+    let mut drops = on_pane(laws(), sites(40, 0.02));
+    let (mut condensed, count) = (ExactSum::default(), 1600);
+    for _ in 0..200 {
+        for site in 0..count {
+            // Thickness of 10 micrometres on each patch of half a millimetre.
+            let mass = WATER_DENSITY * 1e-5 * 0.25e-6;
+            drops.condense(site, mass);
+            condensed.add(mass);
+        }
+        drops.advance(1e-2);
+    }
+    assert_apart(&drops);
+    assert!(drops.dripped() > 0.0, "some drops have run off");
+    let condensed = condensed.value();
+    let error = (drops.water() + drops.dripped()) / condensed - 1.0;
+    assert!(error.abs() < 1e-13, "{error}");
+    let mut evaporated = ExactSum::default();
+    for _ in 0..200 {
+        (0..count).for_each(|site| evaporated.add(drops.evaporate(site, 2e-8)));
+        drops.advance(1e-2);
+    }
+    let error = (drops.water() + drops.dripped() + evaporated.value()) / condensed - 1.0;
+    assert!(error.abs() < 1e-13, "{error}");
+    assert!(drops.water() < 0.01 * condensed, "it dries: {} of {condensed}", drops.water());
+}
+
+#[test]
+fn shares_of_sites_sum_to_all_water_and_lie_where_it_is() {
+    let mut drops = on_pane(laws(), sites(40, 0.02));
+    for _ in 0..100 {
+        (0..1600).for_each(|site| drops.condense(site, WATER_DENSITY * 5e-6 * 0.25e-6));
+        drops.advance(1e-2);
+    }
+    drops.add(0, [0.0, 0.03, 0.0], [0.0; 3], half_ball(1e-3));
+    let shares = drops.shares();
+    let (water, covered) = shares.iter().fold((0.0, 0.0), |(w, c), share| (w + share.water, c + share.covered));
+    assert!((water / drops.water() - 1.0).abs() < 1e-12 && (covered / drops.covered_area() - 1.0).abs() < 1e-12);
+    // A drop beside all patches is that of the nearest, at y = 9.75 mm, z = -0.25 or 0.25 mm.
+    let (wettest, _) = shares.iter().enumerate().max_by(|a, b| a.1.water.total_cmp(&b.1.water)).unwrap();
+    assert!([39 * 40 + 19, 39 * 40 + 20].contains(&wettest), "{wettest}");
+}
+
+#[test]
+fn the_two_sides_of_a_pane_do_not_see_each_other() {
+    let mut drops = on_pane(laws(), Vec::new());
+    drops.add(0, [0.0; 3], [0.0; 3], half_ball(6e-3));
+    drops.add(0, [-0.01, 0.0, 0.0], [0.0; 3], half_ball(6e-3));
+    drops.advance(0.0);
+    assert_eq!(drops.drops().len(), 2);
+}
+
+#[test]
+fn saved_and_restored_or_not_the_same_bits() {
+    let run = |drops: &mut Drops, steps: u32| {
+        for _ in 0..steps {
+            (0..1600).for_each(|site| drops.condense(site, WATER_DENSITY * 5e-6 * 0.25e-6));
+            drops.advance(1e-2);
+        }
+    };
+    let mut through = on_pane(laws(), sites(40, 0.02));
+    run(&mut through, 80);
+    let mut other = on_pane(laws(), sites(40, 0.02));
+    run(&mut other, 40);
+    let mut resumed = on_pane(laws(), sites(40, 0.02));
+    resumed.restore(other.state());
+    run(&mut resumed, 40);
+    assert_eq!(through.state(), resumed.state());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn merging_keeps_mass_momentum_and_centre_and_leaves_none_that_touch(
+        parts in prop::collection::vec(([-0.04..0.04, -0.04..0.04], [-1.0..1.0, -1.0..1.0], -4.0..-2.3), 1..300),
+    ) {
+        // No gravity and no time: all that happens is merging.
+        let mut drops = on_pane(DropLaws { gravity: [0.0; 3], ..laws() }, Vec::new());
+        for ([y, z], [v, w], log_radius) in parts {
+            drops.add(0, [0.0, y, z], [0.0, v, w], half_ball(10_f64.powf(log_radius)));
+        }
+        let before = drops.drops().to_vec();
+        drops.advance(0.0);
+        assert_apart(&drops);
+        let after = drops.drops();
+        let mass = sum(&before, |drop| drop.mass);
+        prop_assert!((sum(after, |drop| drop.mass) / mass - 1.0).abs() < 1e-14);
+        for axis in 1..3 {
+            let scale = sum(&before, |drop| drop.mass * drop.velocity[axis].abs());
+            let momentum = |drops: &[Drop]| sum(drops, |drop| drop.mass * drop.velocity[axis]);
+            prop_assert!((momentum(after) - momentum(&before)).abs() <= 1e-14 * scale);
+            let moment = |drops: &[Drop]| sum(drops, |drop| drop.mass * drop.position[axis]);
+            prop_assert!((moment(after) - moment(&before)).abs() <= 1e-14 * 0.05 * mass);
+        }
+        for drop in after {
+            prop_assert!(before.iter().any(|part| part.id == drop.id));
+        }
+    }
+}

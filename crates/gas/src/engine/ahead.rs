@@ -1,0 +1,151 @@
+//! Looking ahead into memory.
+//!
+//! The next event is anywhere in the gas. In a large one its balls are in no cache, and each read waits for the one before it:
+//! queue, event, partner, cells, balls in them. So events are followed through these stages some time before their turn, and what
+//! they will need is asked for. What happens does not depend on it.
+
+use super::Engine;
+use super::event::Event;
+use super::grid::Grid;
+use crate::memory::prefetch;
+use crate::world::{Ball, NONE};
+
+/// From this number of balls on looking ahead pays: fewer are found in a processor's own cache (2 MiB is usual) often enough.
+pub(super) const MANY: usize = 50_000;
+
+/// How many buckets behind the front are looked into. Too many, and what was asked for is thrown out again before it is used.
+const BUCKETS: u64 = 6;
+
+/// Buckets from the one looked into to the one that is asked for.
+const CHUNKS: u64 = 8;
+
+/// How many events later each stage follows on the one before it: memory needs that long.
+const LAG: usize = 3;
+
+/// Events kept; more than there are stages times [`LAG`].
+const ROOM: usize = 16;
+
+/// Neighbours kept of each event: the first balls of no more than 4 cells along each axis.
+const NEAR: usize = 64;
+
+/// An event to come.
+#[derive(Debug, Clone, Copy)]
+struct Coming {
+    ball: u32,
+    stamp: u32,
+    /// The first balls in the cells that will be looked into, and their number.
+    near: [u32; NEAR],
+    count: usize,
+}
+
+/// Events to come, on their way through the stages.
+#[derive(Debug)]
+pub(super) struct Ahead {
+    coming: Box<[Coming; ROOM]>,
+    /// How many have been found.
+    found: usize,
+    /// Number of the last bucket that was looked into.
+    bucket: u64,
+}
+
+impl Ahead {
+    pub fn new() -> Self {
+        let none = Coming { ball: NONE, stamp: 0, near: [0; NEAR], count: 0 };
+        Ahead { coming: Box::new([none; ROOM]), found: 0, bucket: 0 }
+    }
+
+    /// The event that is so many stages on its way, if it is still to come.
+    #[inline(always)]
+    fn at_stage(&mut self, stage: usize) -> Option<&mut Coming> {
+        let coming = &mut self.coming[self.found.wrapping_sub(stage * LAG) & (ROOM - 1)];
+        (coming.ball != NONE).then_some(coming)
+    }
+}
+
+impl<const D: usize> Engine<D> {
+    /// Follows the events of the buckets that have come near since this was last called.
+    #[inline(always)]
+    pub(super) fn look_ahead(&mut self) {
+        let Engine { queue, events, world, ahead, grid, .. } = self;
+        let front = queue.front_bucket();
+        ahead.bucket = ahead.bucket.max(front);
+        while ahead.bucket < front + BUCKETS {
+            ahead.bucket += 1;
+            queue.ask_for_chunk(ahead.bucket + CHUNKS);
+            queue.each_in(ahead.bucket, |ball, stamp| {
+                let coming = &mut ahead.coming[ahead.found & (ROOM - 1)];
+                (coming.ball, coming.stamp) = (ball, stamp);
+                follow(ahead, events, &world.balls, grid);
+                ahead.found += 1;
+            });
+        }
+    }
+}
+
+/// Takes each event one stage further that is due for it.
+#[inline(always)]
+fn follow<const D: usize>(ahead: &mut Ahead, events: &[Event<D>], balls: &[Ball<D>], grid: &Grid<D>) {
+    let ask_for = |ball: u32| {
+        prefetch(&events[ball as usize]);
+        prefetch(&balls[ball as usize]);
+    };
+    if let Some(coming) = ahead.at_stage(0) {
+        ask_for(coming.ball);
+    }
+    if let Some(coming) = ahead.at_stage(1) {
+        let event = &events[coming.ball as usize];
+        if event.stamp != coming.stamp {
+            coming.ball = NONE;
+        } else if let Some(partner) = event.what.ball() {
+            ask_for(partner as u32);
+        }
+    }
+    if let Some(coming) = ahead.at_stage(2) {
+        cells_around(grid, events, coming.ball, |cell| prefetch(&grid.heads[cell]));
+    }
+    if let Some(Coming { ball, near, count, .. }) = ahead.at_stage(3) {
+        *count = 0;
+        cells_around(grid, events, *ball, |cell| {
+            let head = grid.heads[cell];
+            near[*count & (NEAR - 1)] = head;
+            *count += usize::from(head != NONE);
+        });
+        near[..*count].iter().for_each(|&ball| ask_for(ball));
+    }
+    if let Some(coming) = ahead.at_stage(4) {
+        let next = coming.near[..coming.count].iter().map(|&ball| balls[ball as usize].next);
+        next.filter(|&next| next != NONE).for_each(ask_for);
+    }
+}
+
+/// Tells the cells that touch those where a ball and its partner will be, and these themselves.
+#[inline(always)]
+fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, mut tell: impl FnMut(usize)) {
+    let event = &events[ball as usize];
+    let level = &grid.levels[event.level as usize];
+    let (mut low, mut high) = (event.cell, event.cell);
+    if let Some(partner) = event.what.ball() {
+        let theirs = &events[partner];
+        for axis in 0..D {
+            let (a, b) = (event.cell[axis], theirs.cell[axis]);
+            // A partner across a periodic side, or of another size, is passed over.
+            if a.abs_diff(b) == 1 && theirs.level == event.level {
+                (low[axis], high[axis]) = (a.min(b), a.max(b));
+            }
+        }
+    } else if let Some((axis, up)) = event.what.as_edge() {
+        let cell = if up { event.cell[axis] + 1 } else { event.cell[axis] - 1 };
+        low[axis] = cell.clamp(1, level.count[axis]);
+        high[axis] = low[axis];
+    }
+    let column = |axis: usize| &level.table[axis][low[axis] as usize - 1..high[axis] as usize + 2];
+    for x in column(0) {
+        for y in column(1) {
+            if D == 2 {
+                tell((x + y) as usize);
+            } else {
+                column(D - 1).iter().for_each(|z| tell((x + y + z) as usize));
+            }
+        }
+    }
+}

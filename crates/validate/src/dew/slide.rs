@@ -1,0 +1,160 @@
+//! Drops on an upright pane: when they slide, what merging keeps, and how sizes are spread.
+
+use crate::{Case, Options, Row};
+use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Site, WATER_DENSITY};
+use corpuscle_model::ExactSum;
+use corpuscle_solids::{Pose, Shape, Solid};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+pub(super) const SLIDE: Case = Case {
+    name: "dew/slide",
+    about: "Drops on an upright pane with a prescribed condensation: a growing drop slides when its weight passes the bound of \
+            friction, merging keeps mass and momentum, and the spread of sizes stands beside that of Le Fevre & Rose.",
+    slow: true,
+    run: slide,
+};
+
+const GRAVITY: f64 = 9.81;
+const PRESSURE: f64 = 101_325.0;
+
+fn slide(_: &Options) -> Vec<Row> {
+    let name = SLIDE.name;
+    let [left, mass, momentum] = merging_errors();
+    let exponent = size_exponent();
+    vec![
+        Row::at_most(name, "largest_relative_error_of_sliding_radius", largest_sliding_error(), "", 0.05),
+        Row::at_most(name, "relative_error_of_2_mm", (sliding_radius(1.288e-4, 90.0) / 2e-3 - 1.0).abs(), "", 0.05),
+        Row::at_most(name, "drops_left_of_2000", left, "", 1000.0),
+        Row::at_most(name, "relative_mass_error_of_merging", mass, "", 1e-13),
+        Row::at_most(name, "relative_momentum_error_of_merging", momentum, "", 1e-13),
+        Row::beside(
+            name,
+            "exponent_of_size_distribution",
+            exponent,
+            "",
+            -8.0 / 3.0,
+            "shown beside Le Fevre & Rose (1966)",
+        ),
+    ]
+}
+
+fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> DropLaws {
+    DropLaws {
+        contact_angle,
+        friction,
+        pressure: PRESSURE,
+        surface_tension: 0.0728,
+        gravity: [0.0, 0.0, -GRAVITY],
+        smallest_radius,
+        density: WATER_DENSITY,
+    }
+}
+
+/// A pane in the plane x = 0, with drops and sites on its side at larger x.
+fn pane(laws: DropLaws, side: f64, sites: Vec<Site>) -> Drops {
+    let shape = Shape::Box { size: [0.01, side, side] };
+    let solid = Solid::of_shape(shape, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
+    Drops::new(laws, Arc::from([solid]), sites, [[-1.0; 3], [1.0; 3]], 1)
+}
+
+fn site(y: f64, z: f64, half_width: f64) -> Site {
+    Site { solid: 0, position: [0.0, y, z], normal: [1.0, 0.0, 0.0], half_width }
+}
+
+/// Covered radius with which a drop that grows by a thousandth of its mass at a time begins to slide, m.
+fn sliding_radius(friction: f64, degrees: f64) -> f64 {
+    let mut drops = pane(laws(friction, degrees.to_radians(), 1e-4), 0.1, vec![site(0.0, 0.0, 1e-6)]);
+    drops.condense(0, WATER_DENSITY * Cap::new(degrees.to_radians()).volume(2e-4));
+    loop {
+        drops.advance(1e-3);
+        let drop = drops.drops()[0];
+        if drop.velocity != [0.0; 3] {
+            return drops.covered_radius(&drop);
+        }
+        drops.condense(0, 1e-3 * drop.mass);
+    }
+}
+
+/// The bound worked out from the law: m g = mu p pi a^2, m of a cap, solved for a. With a = R sin and
+/// V = pi/3 R^3 (2 + cos)(1 - cos)^2, a = 3 mu p sin^3 / (rho g (2 + cos)(1 - cos)^2).
+fn bound(friction: f64, degrees: f64) -> f64 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    3.0 * friction * PRESSURE * sin.powi(3) / (WATER_DENSITY * GRAVITY * (2.0 + cos) * (1.0 - cos).powi(2))
+}
+
+fn largest_sliding_error() -> f64 {
+    let cases =
+        [5e-5, 1.3e-4, 3e-4].into_iter().flat_map(|friction| [60.0, 90.0, 110.0].map(|angle| (friction, angle)));
+    let errors = cases.map(|(friction, angle)| (sliding_radius(friction, angle) / bound(friction, angle) - 1.0).abs());
+    errors.fold(0.0, f64::max)
+}
+
+/// Number of drops that are left of 2000 at the places of a spiral when they have merged, and relative errors of mass and momentum.
+fn merging_errors() -> [f64; 3] {
+    let mut drops = pane(DropLaws { gravity: [0.0; 3], ..laws(0.0, 0.5 * PI, 1e-5) }, 0.1, Vec::new());
+    for at in 0..2000 {
+        // The golden angle spreads them evenly.
+        let (part, angle) = (f64::from(at) / 2000.0, 2.399_963 * f64::from(at));
+        let away = 0.045 * part.sqrt();
+        let radius = 1e-4 * (1.0 + 20.0 * (0.37 * f64::from(at)).sin().powi(4));
+        let mass = WATER_DENSITY * Cap::new(0.5 * PI).volume(radius);
+        drops.add(0, [0.0, away * angle.cos(), away * angle.sin()], [0.0, angle.sin(), part], mass);
+    }
+    let sums = |drops: &[Drop]| -> [f64; 3] {
+        let sum = |of: &dyn Fn(&Drop) -> f64| drops.iter().map(of).collect::<ExactSum>().value();
+        [sum(&|drop| drop.mass), sum(&|drop| drop.mass * drop.velocity[1]), sum(&|drop| drop.mass * drop.velocity[2])]
+    };
+    let before = sums(drops.drops());
+    drops.advance(0.0);
+    let after = sums(drops.drops());
+    let momentum = (before[1] - after[1]).hypot(before[2] - after[2]) / before[1].hypot(before[2]);
+    [drops.drops().len() as f64, (after[0] / before[0] - 1.0).abs(), momentum]
+}
+
+/// Side of the pane, patches along it, radius of the smallest drop, water for a patch and step as a thickness, m.
+const SIDE: f64 = 0.02;
+const PATCHES: u32 = 200;
+const SMALLEST: f64 = 3e-5;
+const THICKNESS: f64 = 3e-6;
+
+/// Steps until drops have run off, and all.
+const SETTLED: u32 = 180;
+const STEPS: u32 = 300;
+
+/// Exponent n of the number of drops by radius, N ~ r^n, from 2 smallest radii to 0.4 mm, a fifth of the radius that slides, over
+/// many times of a pane on which water condenses evenly.
+fn size_exponent() -> f64 {
+    let width = SIDE / f64::from(PATCHES);
+    let at = |index: u32| width * (f64::from(index) + 0.5) - 0.5 * SIDE;
+    let sites: Vec<_> = (0..PATCHES).flat_map(|y| (0..PATCHES).map(move |z| site(at(y), at(z), 0.5 * width))).collect();
+    let count = sites.len();
+    let mut drops = pane(laws(1.288e-4, 0.5 * PI, SMALLEST), SIDE, sites);
+    let mut radii = Vec::new();
+    for step in 1..=STEPS {
+        (0..count).for_each(|site| drops.condense(site, WATER_DENSITY * THICKNESS * width * width));
+        drops.advance(0.01);
+        if step > SETTLED && step % 10 == 0 {
+            radii.extend(drops.drops().iter().map(|drop| drops.covered_radius(drop)));
+        }
+    }
+    fitted_exponent(&radii, 2.0 * SMALLEST, 4e-4)
+}
+
+/// Slope of log N over log r by least squares, in classes each half as wide again as the one before.
+fn fitted_exponent(radii: &[f64], from: f64, to: f64) -> f64 {
+    let edges: Vec<f64> =
+        std::iter::successors(Some(from), |edge| Some(1.5 * edge)).take_while(|&edge| edge <= to).collect();
+    let points: Vec<[f64; 2]> = edges
+        .windows(2)
+        .map(|class| {
+            let count = radii.iter().filter(|&&radius| radius >= class[0] && radius < class[1]).count() as f64;
+            [(class[0] * class[1]).sqrt().ln(), (count.max(0.5) / (class[1] - class[0])).ln()]
+        })
+        .collect();
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+    let [x, y] = [mean(0), mean(1)];
+    let (across, along) =
+        points.iter().fold((0.0, 0.0), |(xy, xx), p| (xy + (p[0] - x) * (p[1] - y), xx + (p[0] - x).powi(2)));
+    across / along
+}
