@@ -89,8 +89,8 @@ impl<const D: usize> Grid<D> {
     pub fn cell_of(&self, level: u8, position: &[f64; D]) -> [u16; D] {
         let level = &self.levels[level as usize];
         std::array::from_fn(|axis| {
-            let cell = ((position[axis] - self.low[axis]) / level.size[axis]).floor().max(0.0) as usize;
-            (cell as u16).min(level.count[axis] - 1) + 1
+            let cell = ((position[axis] - self.low[axis]) / level.size[axis]).floor();
+            cell.clamp(0.0, f64::from(level.count[axis] - 1)) as u16 + 1
         })
     }
 

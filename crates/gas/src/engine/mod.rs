@@ -13,6 +13,7 @@ mod queue;
 mod rebuild;
 mod run;
 mod saved;
+mod watch;
 
 pub(crate) use saved::Saved;
 
@@ -36,6 +37,11 @@ pub(crate) struct Engine<const D: usize> {
     alike: bool,
     /// True where a wall is not only met in the outermost cells.
     walls_roam: bool,
+    /// When balls are to be told again of each wall, and the first of these times.
+    watches: Vec<f64>,
+    next_watch: f64,
+    /// Working memory: balls beside a wall.
+    beside_wall: Vec<u32>,
     /// Events handled since the window was moved on.
     handled: u64,
     /// Cell edges crossed, and looks at what comes next because a partner was lost.
@@ -56,6 +62,9 @@ impl<const D: usize> Engine<D> {
             queue: Queue::new::<D>(&[]),
             near: Box::new(Near::new()),
             ahead: Ahead::new(),
+            watches: Vec::new(),
+            next_watch: f64::INFINITY,
+            beside_wall: Vec::new(),
             handled: 0,
             crossings: 0,
             disturbed: 0,

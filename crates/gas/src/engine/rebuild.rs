@@ -35,6 +35,7 @@ impl<const D: usize> Engine<D> {
         self.sort();
         self.fill_cells();
         self.handled = 0;
+        self.watch_none();
         foresee_all::<D, M>(self);
         self.fill_queue();
     }

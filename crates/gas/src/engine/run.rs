@@ -3,7 +3,7 @@
 use super::Engine;
 use super::ahead::MANY;
 use crate::method::Pause;
-use crate::world::{Falling, Growing, Mode, Straight};
+use crate::world::{Falling, Growing, Mode, NONE, Straight};
 use multiversion::multiversion;
 
 /// Events handled for each ball before a new window begins.
@@ -31,9 +31,13 @@ impl<const D: usize> Engine<D> {
 fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64) -> Pause {
     let many = engine.events.len() >= MANY;
     for _ in 0..most {
-        let Some((time, ball)) = engine.queue.peek(&engine.events) else { return Pause::Reached };
-        if time > until {
+        let (time, ball) = engine.queue.peek(&engine.events).unwrap_or((f64::INFINITY, NONE));
+        if time.min(engine.next_watch) > until || (ball == NONE && engine.next_watch == f64::INFINITY) {
             return Pause::Reached;
+        }
+        if engine.next_watch <= time {
+            engine.watch::<M>();
+            continue;
         }
         if engine.window_is_full() {
             return Pause::WindowFull;
@@ -107,11 +111,11 @@ impl<const D: usize> Engine<D> {
         self.world.hit::<M>(ball, wall);
         self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
         if self.world.walls[wall].bends != bends {
-            self.wall_bent_as::<M>(wall);
+            self.free_wall_bent::<M>(wall);
         }
     }
 
-    /// Takes notice that a wall's motion changed now: balls that it will hit before anything else happens to them must know.
+    /// Takes notice that a wall's motion changed now by plan: balls that it will hit before anything else happens to them must know.
     pub fn wall_bent(&mut self, wall: usize) {
         if self.world.falls() {
             self.wall_bent_as::<Falling>(wall);
@@ -121,12 +125,6 @@ impl<const D: usize> Engine<D> {
     }
 
     fn wall_bent_as<M: Mode>(&mut self, wall: usize) {
-        for ball in 0..self.events.len() {
-            let radius = self.world.radius(ball);
-            let time = self.world.walls[wall].meeting::<D, M>(&self.world.balls[ball], radius, &self.world.field);
-            if time < self.events[ball].time {
-                self.predict::<M>(ball);
-            }
-        }
+        (0..self.events.len()).for_each(|ball| self.tell_of_wall::<M>(ball, wall));
     }
 }

@@ -13,6 +13,7 @@ pub(crate) struct Saved {
     bends: Vec<u32>,
     cell: Vec<u16>,
     level: Vec<u8>,
+    watches: Vec<f64>,
     handled: u64,
     crossings: u64,
     disturbed: u64,
@@ -29,6 +30,7 @@ impl<const D: usize> Engine<D> {
             bends: events.iter().map(|event| event.bends).collect(),
             cell: events.iter().flat_map(|event| event.cell).collect(),
             level: events.iter().map(|event| event.level).collect(),
+            watches: self.watches.clone(),
             handled: self.handled,
             crossings: self.crossings,
             disturbed: self.disturbed,
@@ -40,7 +42,10 @@ impl<const D: usize> Engine<D> {
         let count = self.world.balls.len();
         let lengths =
             [saved.time.len(), saved.what.len(), saved.partner_bends.len(), saved.bends.len(), saved.level.len()];
-        if lengths.iter().any(|&len| len != count) || saved.cell.len() != count * D {
+        if lengths.iter().any(|&len| len != count)
+            || saved.cell.len() != count * D
+            || saved.watches.len() != self.world.walls.len()
+        {
             return None;
         }
         self.grid = self.fitting_grid();
@@ -60,6 +65,8 @@ impl<const D: usize> Engine<D> {
             self.events.push(Event { time: saved.time[ball], what, partner_bends, bends, stamp: 0, cell, level });
             self.enter_cell(ball);
         }
+        self.watches.clone_from(&saved.watches);
+        self.next_watch = saved.watches.iter().copied().fold(f64::INFINITY, f64::min);
         (self.handled, self.crossings, self.disturbed) = (saved.handled, saved.crossings, saved.disturbed);
         self.fill_queue();
         Some(())

@@ -9,7 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const AT_A_TIME: u64 = 20_000;
 
 /// Shortest mean path between two hits, over the radius, to which walls may press a gas together.
-const LEAST_ROOM: f64 = 1e-4;
+const LEAST_ROOM: f64 = 1e-3;
+
+/// Events up to the time asked for at which a gas is given up: at a million a second they take thirty years.
+const MOST_EVENTS: f64 = 1e15;
 
 impl<const D: usize> Gas<D> {
     /// Moves on to `time`, or to where it was told to stop.
@@ -65,8 +68,10 @@ impl<const D: usize> Gas<D> {
                 Pause::Reached => return Ok(true),
                 Pause::Worked => {}
                 Pause::WindowFull => {
+                    let (past, left) = (self.mover.world().now, until - self.mover.world().now);
                     self.mover.begin_window();
                     self.check()?;
+                    self.check_pace(past, left)?;
                 }
                 Pause::Standstill => {
                     return Err(self.broken(
@@ -101,6 +106,20 @@ impl<const D: usize> Gas<D> {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Some tens of events of each ball took the time `past`: those of the time `left` can be waited for.
+    fn check_pace(&self, past: f64, left: f64) -> Result<(), ModelError> {
+        let events = 10.0 * self.len() as f64 * left / past;
+        // Where nothing moves at all, that is the reason to be named.
+        if events > MOST_EVENTS && self.mover.world().standstill == 0 {
+            return Err(self.broken(&format!(
+                "balls hit each other so often that up to t = {} there would be about {events:.0e} collisions, too many to \
+                 wait for. Ask for a shorter time, or for lower temperatures or fewer balls",
+                self.mover.world().time() + left
+            )));
+        }
+        Ok(())
     }
 
     /// Where walls move: length of path between two hits of a ball since the last check, over the smallest radius.

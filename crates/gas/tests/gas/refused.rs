@@ -102,6 +102,13 @@ fn a_wall_that_crushes_the_gas_is_named() {
 }
 
 #[test]
+fn a_gas_too_hot_to_be_followed_is_named() {
+    let mut species = Species::new("gas", Amount::Count(40));
+    species.temperature = 1e300;
+    assert!(stopped(Setup::<2>::new([12.0, 10.0]).species(species).build().unwrap()).contains("too many to wait for"));
+}
+
+#[test]
 fn inelastic_collapse_is_named_or_guarded() {
     // Three balls in a row: below a restitution of 7 - 4 sqrt(3) they collapse (McNamara and Young 1992).
     let row = |guard: f64| {

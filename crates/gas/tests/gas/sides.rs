@@ -1,7 +1,7 @@
 //! Walls that move, give way, heat, divide.
 
 use crate::common::{advance, deepest, scatter};
-use corpuscle_gas::{Partition, Setup, Side};
+use corpuscle_gas::{Method, Partition, Setup, Side};
 
 #[test]
 fn a_moving_wall_reflects_at_twice_its_speed_less_the_balls() {
@@ -132,4 +132,21 @@ fn a_hole_lets_through_only_what_comes_before_it() {
         let [x, y] = gas.states()[0].0;
         assert!((y - 5.0).abs() >= 0.3 * (1.0 - 1e-9) || x <= 3.5, "in the wall at {x}, {y}");
     }
+}
+
+#[test]
+fn a_piston_bent_far_away_comes_to_balls_at_rest() {
+    // One ball is thrown back and forth and bends the piston's path; the other lies at the far end until the piston is there.
+    let piston = Side::Piston { mass: 1e6, pressure: 0.0, velocity: -1.0 };
+    let setup = Setup::<2>::new([60.0, 6.0]).side(0, 1, piston);
+    let setup = setup.ball([50.0, 4.5], [3.0, 0.0], 0.5, 1.0).ball([10.0, 1.5], [0.0, 0.0], 0.5, 1.0);
+    let mut gas = setup.clone().build().unwrap();
+    advance(&mut gas, 49.0);
+    assert_eq!(gas.states()[1].1, [0.0, 0.0]);
+    let mut list = setup.method(Method::List).build().unwrap();
+    for gas in [&mut gas, &mut list] {
+        advance(gas, 52.0);
+    }
+    assert!(gas.states()[1].1[0] < -1.0, "{:?}", gas.states());
+    assert_eq!(gas.states(), list.states());
 }
