@@ -14,7 +14,7 @@ size_m = [0.010, 0.012, 0.016]
 spacing_m = 0.002
 time_factor = 100
 air = { temperature_c = 25, relative_humidity = 0.8 }
-drops = { smallest_radius_m = 2e-5, friction = 1e-7 }
+drops = { smallest_radius_m = 5e-5, friction = 1e-7 }
 [dew.faces]
 y_min = "periodic"
 y_max = "periodic"
@@ -52,7 +52,7 @@ fn gauge(dew: &Dew, header: &str) -> f64 {
 #[test]
 fn drops_form_and_run_off_and_no_water_is_lost() {
     let mut dew = dew(PANE);
-    advance(&mut dew, 0.4);
+    advance(&mut dew, 0.15);
     assert!(gauge(&dew, "drops.number") > 10.0 && gauge(&dew, "drops.left_kg") > 0.0);
     assert!(gauge(&dew, "drops.first_at_s") > 0.0 && gauge(&dew, "pane.heat_given_J") < 0.0);
     let on_pane = gauge(&dew, "pane.water_kg");
@@ -85,14 +85,14 @@ fn frames_show_air_solids_and_drops() {
 #[test]
 fn saved_and_restored_it_goes_on_to_the_same_bits() {
     let mut through = dew(PANE);
-    advance(&mut through, 0.2);
+    advance(&mut through, 0.06);
     let mut first = dew(PANE);
     // Between two turns of the drops.
-    let between = 0.1 + 1.5 * first.time_step();
+    let between = 0.03 + 1.5 * first.time_step();
     advance(&mut first, between);
     let mut resumed = dew(PANE);
     resumed.restore(&first.save()).unwrap();
-    advance(&mut resumed, 0.2);
+    advance(&mut resumed, 0.06);
     assert_eq!(resumed.save(), through.save());
     let other = dew(&PANE.replace("spacing_m = 0.002", "spacing_m = 0.001")).save();
     assert!(resumed.restore(&other).is_err());
@@ -101,7 +101,7 @@ fn saved_and_restored_it_goes_on_to_the_same_bits() {
 #[test]
 fn a_pane_above_the_dew_point_stays_dry() {
     let mut dew = dew(&PANE.replace("temperature_c = 5", "temperature_c = 22"));
-    advance(&mut dew, 0.3);
+    advance(&mut dew, 0.1);
     assert_eq!(gauge(&dew, "water.on_solids_kg"), 0.0);
     assert!(gauge(&dew, "drops.first_at_s").is_nan());
 }
