@@ -2,7 +2,7 @@
 
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_record::{Clock, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
+use corpuscle_record::{Clock, DewReport, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -108,7 +108,7 @@ impl Sink for Recorder {
         match &self.terrain {
             Some(terrain) => Report::read(self.folder.path(), &self.scene, terrain)?.write()?,
             None if self.scene.gas().is_some() => GasReport::new(self.folder.path(), &self.scene, model)?.write()?,
-            None => {}
+            None => DewReport::new(self.folder.path(), &self.scene, model)?.write()?,
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! A run's folder: particle files, gauges, maps, checkpoint, summary, pictures and the report.
 //!
 //! [`RunFolder`] is written while a run goes on. The [`Report`] of a flood is made from the folder, at the end of the run
-//! or any time later; the [`GasReport`] from the folder and the model at its end.
+//! or any time later; the [`GasReport`] and the [`DewReport`] from the folder and the model at its end.
 
 mod charts;
 mod checkpoint;
@@ -22,6 +22,6 @@ pub use error::RecordError;
 pub use extent::{ExtentScores, compare_extent, write_extent};
 pub use frames::FrameFormat;
 pub use gauges::GaugeTable;
-pub use report::{GasReport, Report};
+pub use report::{DewReport, GasReport, Report};
 pub use run_folder::{RunFolder, next_run_folder};
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};

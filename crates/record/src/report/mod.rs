@@ -1,5 +1,6 @@
-//! The report of a run: of a flood what a planner would show, of a gas what a teacher would.
+//! The report of a run: of a flood what a planner would show, of a gas what a teacher would, of dew where the water is.
 
+mod dew;
 mod facts;
 mod figures;
 mod gas;
@@ -17,6 +18,7 @@ use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
 
+pub use dew::DewReport;
 pub use gas::GasReport;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,69 @@
+//! Gauges of dew over time.
+
+use crate::GaugeTable;
+use corpuscle_model::{Chart, ChartAxis, ChartSeries};
+use corpuscle_scene::Dew;
+
+/// A chart: name, title, unit, what a value is multiplied by, and the columns that it shows with their names.
+type Kind<'a> = (&'a str, &'a str, &'a str, f64, Vec<(String, &'a str)>);
+
+/// Charts of what changes.
+pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
+    let one = |header: &str| vec![(header.to_owned(), "")];
+    let of_solids = |quantity: &str| -> Vec<(String, &str)> {
+        dew.solid.iter().map(|solid| (format!("{}.{quantity}", solid.name), solid.name.as_str())).collect()
+    };
+    let kinds: [Kind<'_>; 7] = [
+        ("covered_area", "Area that drops cover", "mm²", 1e6, one("solids.covered_area_m2")),
+        ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
+        ("largest_drop", "Radius of the largest drop", "mm", 1e3, one("drops.largest_radius_m")),
+        ("water_on_solids", "Water on the solids", "mg", 1e6, of_solids("water_kg")),
+        ("water_left", "Water that ran off", "mg", 1e6, one("drops.left_kg")),
+        ("heat_given", "Heat that held solids gave", "J", 1.0, of_solids("heat_given_J")),
+        ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_solids("mean_temperature_K")),
+    ];
+    kinds.into_iter().filter_map(|kind| chart(table, kind)).collect()
+}
+
+/// None where nothing changes.
+fn chart(table: &GaugeTable, (name, title, unit, factor, columns): Kind<'_>) -> Option<Chart> {
+    let several = columns.len() > 1;
+    let series: Vec<_> = columns
+        .into_iter()
+        .filter_map(|(header, word)| {
+            let values = table.column(&header)?;
+            let changes = values.iter().any(|value| *value != values[0]);
+            let points = table.times.iter().zip(values).map(|(time, value)| [*time, factor * value]).collect();
+            let name = if several { word.to_owned() } else { String::new() };
+            changes.then_some(ChartSeries { name, points, ..ChartSeries::default() })
+        })
+        .collect();
+    (!series.is_empty()).then(|| Chart {
+        name: name.into(),
+        title: title.into(),
+        x: ChartAxis { label: "Time".into(), unit: "s".into(), logarithmic: false },
+        y: ChartAxis { label: String::new(), unit: unit.into(), logarithmic: false },
+        series,
+        note: String::new(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_scene::Scene;
+
+    #[test]
+    fn what_changes_is_charted() {
+        let text = "run.until_s = 1\n[dew]\nsize_m = [1, 1, 1]\nspacing_m = 0.1\nair = { temperature_c = 20, dew_point_c = 9 }";
+        let scene = Scene::parse(text, "test", &[]).unwrap();
+        let table = GaugeTable {
+            columns: ["solids.covered_area_m2", "drops.number"].map(String::from).to_vec(),
+            times: vec![0.0, 1.0],
+            rows: vec![vec![0.0, 3.0], vec![2e-6, 3.0]],
+        };
+        let charts = over_time(&table, scene.dew().unwrap());
+        assert_eq!(charts.len(), 1);
+        assert_eq!(charts[0].series[0].points, [[0.0, 0.0], [1.0, 2.0]]);
+    }
+}

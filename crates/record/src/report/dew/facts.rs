@@ -1,0 +1,50 @@
+//! Numbers in the report of dew.
+
+use crate::picture::{number, time as clock};
+use crate::report::parts::{KeyFigure, how_it_ended};
+use crate::{GaugeTable, Summary};
+use corpuscle_scene::Dew;
+
+/// A time of the scene.
+pub(super) fn time(value: f64) -> String {
+    format!("{} s", number(value))
+}
+
+/// The handful of numbers that come first.
+pub(super) fn key_figures(table: &GaugeTable, summary: &Summary) -> Vec<KeyFigure> {
+    let last = |header: &str| table.column(header).and_then(|values| values.last().copied()).unwrap_or(f64::NAN);
+    let first = last("drops.first_at_s");
+    let figure = |label, value: String, remark: &str| KeyFigure { label, value, remark: remark.into() };
+    let whole = |value: f64| number(value).trim_end_matches(".0").to_owned();
+    let mut figures = vec![
+        figure("First drop", if first.is_finite() { time(first) } else { "none".into() }, "after the start"),
+        figure("Drops", whole(last("drops.number")), "at the end"),
+        figure("Largest drop", format!("{} mm", number(1e3 * last("drops.largest_radius_m"))), "radius, at the end"),
+        figure("Covered", format!("{} mm²", number(1e6 * last("solids.covered_area_m2"))), "by drops, at the end"),
+        figure("On the solids", format!("{} mg", number(1e6 * last("water.on_solids_kg"))), "water, at the end"),
+    ];
+    if let Some(water) = summary.ledger.get("water_kg") {
+        figures.push(figure("Water error", number(water.relative_error.abs()), "relative"));
+    }
+    figures
+}
+
+/// Name and value of what was run.
+pub(super) fn run_facts(dew: &Dew, summary: &Summary) -> Vec<(&'static str, String)> {
+    let size: Vec<String> = dew.size_m.iter().map(|length| number(1e3 * length)).collect();
+    let rate = summary.particle_steps_per_s.unwrap_or(0.0);
+    vec![
+        ("Model", summary.model.clone()),
+        ("Box", format!("{} mm", size.join(" × "))),
+        ("Distance of particles", format!("{} mm", number(1e3 * dew.spacing_m))),
+        ("Time factor", number(dew.time_factor)),
+        ("Simulated time", format!("{} ({})", time(summary.simulated_time_s), how_it_ended(summary))),
+        ("Particles", number(summary.particles as f64).replace(".0", "")),
+        ("Steps", number(summary.steps as f64).replace(".0", "")),
+        (
+            "Computed in",
+            format!("{} on {}, {} particle-steps/s", clock(summary.wall_time_s), summary.backend, number(rate)),
+        ),
+        ("Corpuscle", format!("version {}", summary.version)),
+    ]
+}
