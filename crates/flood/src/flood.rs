@@ -14,7 +14,9 @@ use crate::sampling::{Sample, Sampler};
 use crate::scheme::{Scheme, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
-use corpuscle_model::{Account, Column, ExactSum, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_model::{
+    Account, Column, ExactSum, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
+};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use corpuscle_sph::BLOCK;
 use corpuscle_terrain::Terrain;
