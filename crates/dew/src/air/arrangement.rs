@@ -85,11 +85,6 @@ impl Arrangement {
         }
     }
 
-    /// Places in the arrangement: particles and images.
-    pub fn len(&self) -> usize {
-        self.entries.len()
-    }
-
     /// The places' coordinates.
     pub fn places(&self) -> Places<'_> {
         Places { x: &self.x, y: &self.y, z: &self.z }

@@ -21,7 +21,7 @@ struct Filling<'a> {
 impl Arrangement {
     /// Finds the neighbours of all particles and sums over them; the sums of images stay as they are.
     pub fn search(&mut self, scale: &Scale, sums: &mut Vec<Sums>) {
-        sums.resize(self.len(), Sums::default());
+        sums.resize(self.entries.len(), Sums::default());
         let Self { cells, lists, entries, x, y, z, .. } = self;
         let places = corpuscle_sph::space::Places { x, y, z };
         lists.search(cells, places, scale.h(), sums, &Filling { entries, scale: *scale });

@@ -11,6 +11,9 @@ const AT_A_TIME: u64 = 20_000;
 /// Shortest mean path between two hits, over the radius, to which walls may press a gas together.
 const LEAST_ROOM: f64 = 1e-3;
 
+/// Shortest mean path between two hits, over the radius, of balls that lose energy. A pile at rest has none at all.
+const LEAST_FLIGHT: f64 = 1e-5;
+
 /// Events up to the time asked for at which a gas is given up: at a million a second they take thirty years.
 const MOST_EVENTS: f64 = 1e15;
 
@@ -99,13 +102,22 @@ impl<const D: usize> Gas<D> {
                 return Err(self.broken("two walls have met: nothing is left of the box"));
             }
         }
-        match self.room() {
-            Some(room) if room < LEAST_ROOM => Err(self.broken(&format!(
+        let Some(room) = self.room() else { return Ok(()) };
+        let world = self.mover.world();
+        if world.walls.iter().any(|wall| wall.moves) && room < LEAST_ROOM {
+            return Err(self.broken(&format!(
                 "walls that close in leave the balls hardly any room: between two hits they fly {room:.1e} of a radius, \
                  and would hit each other ever faster without end. Stop the wall earlier, or take fewer or smaller balls"
-            ))),
-            _ => Ok(()),
+            )));
         }
+        if world.rebound.restitution < 1.0 && room < LEAST_FLIGHT {
+            return Err(self.broken(&format!(
+                "the balls have come to rest on each other: between two hits they fly {room:.1e} of a radius. Collisions \
+                 with loss that follow each other without end are a collapse. End before it, or take a longer contact time, \
+                 less gravity or a restitution nearer to 1"
+            )));
+        }
+        Ok(())
     }
 
     /// Some tens of events of each ball took the time `past`: those of the time `left` can be waited for.
@@ -122,15 +134,14 @@ impl<const D: usize> Gas<D> {
         Ok(())
     }
 
-    /// Where walls move: length of path between two hits of a ball since the last check, over the smallest radius.
+    /// Length of path between two hits of a ball since the last check, over the smallest radius; `None` where none was hit.
     fn room(&mut self) -> Option<f64> {
         let world = self.mover.world();
         let hits = world.wall_tallies.iter().map(|tally| tally.hits).sum::<u64>();
         let now = (world.tally.path, 2 * world.tally.collisions + hits);
         let (path, ends) = std::mem::replace(&mut self.checked, now);
         let radius = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
-        let moves = world.walls.iter().any(|wall| wall.moves);
-        (moves && now.1 > ends).then(|| (now.0 - path) / (now.1 - ends) as f64 / radius)
+        (now.1 > ends).then(|| (now.0 - path) / (now.1 - ends) as f64 / radius)
     }
 
     fn broken(&self, what: &str) -> ModelError {

@@ -109,6 +109,13 @@ fn a_gas_too_hot_to_be_followed_is_named() {
 }
 
 #[test]
+fn a_pile_at_rest_is_named() {
+    let pile = Setup::<2>::new([8.0, 20.0]).gravity([0.0, -10.0]).restitution(0.5);
+    let pile = pile.species(Species::new("grains", Amount::Count(20)));
+    assert!(stopped(pile.build().unwrap()).contains("come to rest on each other"));
+}
+
+#[test]
 fn inelastic_collapse_is_named_or_guarded() {
     // Three balls in a row: below a restitution of 7 - 4 sqrt(3) they collapse (McNamara and Young 1992).
     let row = |guard: f64| {

@@ -1,6 +1,5 @@
 //! Cases of the dew model.
 
-mod boundaries;
 mod dew_point;
 mod fick;
 mod film;
@@ -13,8 +12,7 @@ use corpuscle_dew::{Dew, Face, Room};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-pub(crate) const CASES: &[Case] =
-    &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, boundaries::BOUNDARIES, slide::SLIDE];
+pub(crate) const CASES: &[Case] = &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, slide::SLIDE];
 
 /// Moves air on to a time.
 fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {

@@ -40,9 +40,19 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     }
     for (name, ratio) in [("10", 10.0), ("38", 38.0), ("15000", 15_000.0)] {
         rows.push(row(&format!("flux_error_{name}"), flux_error(ratio, Mean::Harmonic)?, 0.005));
-        let arithmetic = flux_error(ratio, Mean::Arithmetic)?;
-        let why = "the arithmetic mean, shown beside the harmonic one";
-        rows.push(Row::beside(TWO_SLABS.name, &format!("flux_error_{name}_arithmetic"), arithmetic, "", 0.005, why));
+        // With the third ratio its time step would be thousands of times shorter.
+        if ratio < 100.0 {
+            let arithmetic = flux_error(ratio, Mean::Arithmetic)?;
+            let why = "the arithmetic mean, shown beside the harmonic one";
+            rows.push(Row::beside(
+                TWO_SLABS.name,
+                &format!("flux_error_{name}_arithmetic"),
+                arithmetic,
+                "",
+                0.005,
+                why,
+            ));
+        }
     }
     Ok(rows)
 }
@@ -57,7 +67,7 @@ fn still() -> Settings {
 }
 
 /// Layers of a slab that is as good as without end.
-const LAYERS: usize = 40;
+const LAYERS: usize = 80;
 
 /// Errors of contact temperature and of profile over the difference: `steel` against warm glass, or, without it, glass against
 /// warm air.
@@ -73,7 +83,7 @@ fn warming(steel: Option<Material>) -> Result<[f64; 2], ModelError> {
     let room = column(2.0 * LAYERS as f64 * SPACING, SPACING);
     let setup = Setup { settings: still(), air, room, bodies, seed: 1 };
     let mut dew = Dew::new(&setup, |_| [WARM, 0.0])?;
-    let time = 4.0;
+    let time = 16.0;
     advance(&mut dew, time)?;
     let effusivity = |m: Material| (m.conductivity * m.heat_capacity * m.density).sqrt();
     let (e_cold, e_warm) = (effusivity(cold), effusivity(warm));
