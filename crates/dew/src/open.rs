@@ -30,6 +30,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let bodies = bodies::open(scene, folder)?;
     let start = humid_air(&scene.air);
     let room = room(scene, &start);
+    refuse_solids_at_inlets(&bodies, &room, scene.spacing_m)?;
     let air = properties(scene, &start, &room, &bodies);
     let settings = settings(scene, &start);
     let particles = bodies.iter().map(|body| particles(body, &room)).collect();
@@ -85,6 +86,32 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
     }
     if faces.any(|(_, face)| matches!(face, written::Face::Inflow(_))) && !leaves {
         return refuse("dew.faces: air comes in and can leave nowhere; make a side \"outflow\"");
+    }
+    Ok(())
+}
+
+/// Air that comes in needs some room before a solid, in spacings.
+const BEFORE_INLET: f64 = 1.5;
+
+fn refuse_solids_at_inlets(bodies: &[bodies::Body], room: &Room, spacing: f64) -> Result<(), ModelError> {
+    for body in bodies {
+        let [from, to] = body.solid.bounds();
+        for axis in 0..3 {
+            let gaps = [from[axis] - room.low[axis], room.high[axis] - to[axis]];
+            for side in 0..2 {
+                if matches!(room.faces[axis][side], Face::Inlet(_)) && gaps[side] < BEFORE_INLET * spacing {
+                    return Err(ModelError::Setup(format!(
+                        "the solid \"{}\" stands in a side of the box where air comes in (dew.faces.{}_{}): leave at least {} m, {} \
+                         spacings, between them",
+                        body.name,
+                        ["x", "y", "z"][axis],
+                        ["min", "max"][side],
+                        BEFORE_INLET * spacing,
+                        BEFORE_INLET
+                    )));
+                }
+            }
+        }
     }
     Ok(())
 }

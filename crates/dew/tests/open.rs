@@ -22,8 +22,8 @@ z_max = { inflow = { velocity_m_per_s = [0, 0, -0.3] } }
 z_min = "outflow"
 [[dew.solid]]
 name = "pane"
-shape = { box = { size_m = [0.004, 0.012, 0.016] } }
-position_m = [0.002, 0.006, 0.008]
+shape = { box = { size_m = [0.004, 0.012, 0.012] } }
+position_m = [0.002, 0.006, 0.006]
 temperature_c = 5
 held = true
 "#;
@@ -125,6 +125,7 @@ fn what_this_version_cannot_do_is_refused_by_its_key() {
     assert!(with("low_utility = {}").contains("dew.low_utility"));
     assert!(refused(&PANE.replace("\"outflow\"", "\"open\"")).contains("\"open\""));
     assert!(refused(&PANE.replace("\"outflow\"", "\"wall\"")).contains("can leave nowhere"));
+    assert!(refused(&PANE.replace("[0.002, 0.006, 0.006]", "[0.002, 0.006, 0.009]")).contains("dew.faces.z_max"));
     assert!(refused(&PANE.replace("[0, 0, -0.3]", "[0.1, 0, -0.3]")).contains("straight"));
 }
 
