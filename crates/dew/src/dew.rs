@@ -223,6 +223,7 @@ impl Dew {
         self.tend_drops();
         let next = self.next_step(&stiff);
         self.state.time_step = next;
+        self.refuse_what_is_faster_than_sound()?;
         if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
             return Ok(());
         }
@@ -255,6 +256,23 @@ impl Dew {
     pub(crate) fn without_latent_heat(&mut self) {
         self.latent_heat = 0.0;
         self.state.energy.initial = self.energy();
+    }
+
+    /// Air faster than the artificial sound is no flow any more.
+    fn refuse_what_is_faster_than_sound(&self) -> Result<(), ModelError> {
+        let fastest = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
+        if fastest <= self.air.sound_speed {
+            return Ok(());
+        }
+        Err(ModelError::Breakdown {
+            time: self.state.time,
+            step: self.state.steps,
+            what: format!(
+                "air goes at {fastest:.3} m/s, faster than sound in this model ({:.3} m/s). Let air in more slowly, give it more room \
+                 round the solids, or a smaller dew.spacing_m",
+                self.air.sound_speed
+            ),
+        })
     }
 
     /// Half a kick with the old acceleration, then on by a whole step.
