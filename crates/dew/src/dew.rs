@@ -258,10 +258,10 @@ impl Dew {
         self.state.energy.initial = self.energy();
     }
 
-    /// Air faster than the artificial sound is no flow any more.
+    /// Air faster than the artificial sound is no flow any more. Where no drops are laid, air may be driven as hard as is asked for.
     fn refuse_what_is_faster_than_sound(&self) -> Result<(), ModelError> {
         let fastest = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
-        if fastest <= self.air.sound_speed {
+        if fastest <= self.air.sound_speed || self.wetting.is_none() {
             return Ok(());
         }
         Err(ModelError::Breakdown {
