@@ -45,7 +45,8 @@ pub struct BenchOptions {
 
 /// All benches.
 pub fn benches() -> &'static [Bench] {
-    static ALL: LazyLock<Vec<Bench>> =
-        LazyLock::new(|| [crate::flood::bench::BENCHES, crate::gas::bench::BENCHES].concat());
+    static ALL: LazyLock<Vec<Bench>> = LazyLock::new(|| {
+        [crate::flood::bench::BENCHES, crate::gas::bench::BENCHES, crate::dew::bench::BENCHES].concat()
+    });
     &ALL
 }

@@ -1,5 +1,6 @@
 //! Cases of the dew model.
 
+pub(crate) mod bench;
 mod dew_point;
 mod fick;
 mod film;
