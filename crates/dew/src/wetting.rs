@@ -136,11 +136,11 @@ impl Dew {
     pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, seed: u64) {
         let (mut particles, mut sites) = (Vec::new(), Vec::new());
         for (number, particle) in self.solids.particles.iter().enumerate() {
-            if particle.normal.is_none() || particle.area <= 0.0 {
-                continue;
-            }
-            let nearest = solids[particle.body as usize].nearest(particle.position);
-            let foot = |axis: usize| particle.position[axis] - nearest.distance * nearest.normal[axis];
+            let Some(normal) = particle.normal.filter(|_| particle.area > 0.0) else { continue };
+            // The surface is looked for from outside: next to a side of the box where the solid goes on, the nearest is the cut.
+            let outside = [0, 1, 2].map(|axis| particle.position[axis] + self.scale.spacing * normal[axis]);
+            let nearest = solids[particle.body as usize].nearest(outside);
+            let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
             particles.push(number as u32);
             sites.push(Site {
                 solid: particle.body,

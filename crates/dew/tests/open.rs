@@ -83,6 +83,22 @@ fn frames_show_air_solids_and_drops() {
 }
 
 #[test]
+fn no_drop_is_on_a_cut_at_a_periodic_side() {
+    let mut dew = dew(PANE);
+    advance(&mut dew, 0.05);
+    let frame = dew.frame();
+    let drops = &frame.sets[2];
+    assert!(!drops.is_empty());
+    let normals = drops.columns.iter().find_map(|column| match &column.values {
+        Values::Vector(normals) => Some(normals),
+        Values::Scalar(_) => None,
+    });
+    for normal in normals.unwrap() {
+        assert!(normal[1].abs() < 0.5, "{normal:?}");
+    }
+}
+
+#[test]
 fn saved_and_restored_it_goes_on_to_the_same_bits() {
     let mut through = dew(PANE);
     advance(&mut through, 0.06);

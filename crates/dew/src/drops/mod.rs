@@ -188,7 +188,9 @@ impl Drops {
         self.state.film[site] += mass;
         if self.state.film[site] >= self.smallest_mass() {
             let mass = std::mem::take(&mut self.state.film[site]);
-            self.add(self.sites[site].solid, place, [0.0; 3], mass);
+            // From outside: within an edge another face may be nearer.
+            let Site { solid, normal, half_width, .. } = self.sites[site];
+            self.add(solid, std::array::from_fn(|axis| place[axis] + half_width * normal[axis]), [0.0; 3], mass);
         }
     }
 
