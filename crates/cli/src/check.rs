@@ -199,10 +199,11 @@ fn text(report: &Report) -> String {
 }
 
 fn particles_line(report: &Report) -> String {
-    let Report { particles_at_start, particles_to_come, .. } = report;
-    match report.terrain {
-        Some(_) => format!("particles  {particles_at_start} at the start, about {particles_to_come} to come"),
-        None => format!("balls      {particles_at_start}"),
+    let Report { model, particles_at_start, particles_to_come, .. } = report;
+    match (&report.terrain, *model) {
+        (Some(_), _) => format!("particles  {particles_at_start} at the start, about {particles_to_come} to come"),
+        (None, "gas") => format!("balls      {particles_at_start}"),
+        (None, _) => format!("particles  {particles_at_start} at the start"),
     }
 }
 
