@@ -337,9 +337,9 @@ impl Dew {
         push.add(rates);
     }
 
-    /// Heat and vapour between air and solids, and through solids, in a step; how stiff it was for air near solids.
-    fn exchange(&mut self, step: f64) -> Vec<f64> {
-        let exchange = Exchange {
+    /// What air and solids exchange as they stand.
+    fn at_surfaces(&self) -> Exchange<'_> {
+        Exchange {
             contact: &self.contact,
             arrangement: &self.arrangement,
             columns: &self.columns,
@@ -350,7 +350,12 @@ impl Dew {
             air: &self.air,
             settings: &self.settings,
             latent_heat: self.latent_heat,
-        };
+        }
+    }
+
+    /// Heat and vapour between air and solids, and through solids, in a step; how stiff it was for air near solids.
+    fn exchange(&mut self, step: f64) -> Vec<f64> {
+        let exchange = self.at_surfaces();
         let to_solids = exchange.to_solids(step);
         let mut share_of = vec![1.0; self.solids.particles.len()];
         let mut heat: Vec<f64> = (0..self.solids.particles.len())
@@ -472,18 +477,7 @@ impl Dew {
     /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
     fn deposit(&mut self, excesses: &mut [f64]) {
         let mass = self.particle_mass();
-        let exchange = Exchange {
-            contact: &self.contact,
-            arrangement: &self.arrangement,
-            columns: &self.columns,
-            solids: &self.solids,
-            temperatures: &self.state.temperatures,
-            water: &self.state.water_on,
-            scale: &self.scale,
-            air: &self.air,
-            settings: &self.settings,
-            latent_heat: self.latent_heat,
-        };
+        let exchange = self.at_surfaces();
         let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
         let deposits: Vec<_> =
             near.map(|near| (near.particle as usize, exchange.shares(near))).filter(|(_, to)| !to.is_empty()).collect();

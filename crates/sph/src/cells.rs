@@ -1,5 +1,6 @@
 //! Square cells over the particles: counting sort, so that those of one cell and of one row of cells lie together.
 
+use crate::counting::{self, range};
 use rayon::prelude::*;
 
 /// A grid of square cells with the particles of each, as ranges of the sorted order.
@@ -39,23 +40,7 @@ impl Cells {
             (row.min(rows - 1) * columns + column.min(columns - 1)) as u32
         };
         x.par_iter().zip(y).with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut self.cell);
-        self.start.clear();
-        self.start.resize(cells + 1, 0);
-        for &cell in &self.cell {
-            self.start[cell as usize + 1] += 1;
-        }
-        for cell in 0..cells {
-            self.start[cell + 1] += self.start[cell];
-        }
-        self.order.resize(x.len(), 0);
-        for (particle, &cell) in self.cell.iter().enumerate() {
-            let place = &mut self.start[cell as usize];
-            self.order[*place as usize] = particle as u32;
-            *place += 1;
-        }
-        // Each start has moved to its cell's end, which is the next cell's start.
-        self.start.copy_within(0..cells, 1);
-        self.start[0] = 0;
+        counting::sort(&self.cell, cells, &mut self.start, &mut self.order);
         &self.order
     }
 
@@ -140,15 +125,6 @@ impl Cells {
     pub fn bytes(&self) -> usize {
         4 * (self.start.capacity() + self.cell.capacity() + self.order.capacity()) + 16 * self.reach.capacity()
     }
-}
-
-fn range(values: &[f64]) -> (f64, f64) {
-    if values.is_empty() {
-        return (0.0, 0.0);
-    }
-    let none = || (f64::INFINITY, f64::NEG_INFINITY);
-    let ranges = values.par_iter().with_min_len(FEWEST).map(|&value| (value, value));
-    ranges.reduce(none, |(low, high), (lower, higher)| (low.min(lower), high.max(higher)))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! number of threads: every particle gathers from its neighbours in one fixed order.
 
 mod cells;
+mod counting;
 pub mod kernel;
 mod neighbours;
 pub mod space;
