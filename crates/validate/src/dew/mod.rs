@@ -1,6 +1,7 @@
 //! Cases of the dew model.
 
 pub(crate) mod bench;
+mod boundaries;
 mod dew_point;
 mod fick;
 mod film;
@@ -13,7 +14,8 @@ use corpuscle_dew::{Dew, Face, Room};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-pub(crate) const CASES: &[Case] = &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, slide::SLIDE];
+pub(crate) const CASES: &[Case] =
+    &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, slide::SLIDE, boundaries::BOUNDARIES];
 
 /// Moves air on to a time.
 fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
