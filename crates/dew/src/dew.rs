@@ -67,6 +67,8 @@ pub(crate) struct State {
     pub fogged: ExactSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
     pub held_heat: Vec<ExactSum>,
+    /// Heat that each solid takes from the air through its surface, W, in the last step.
+    pub heat_flow: Vec<f64>,
     /// How far the air before each inlet has come since its last layer, m.
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
@@ -137,6 +139,7 @@ impl Dew {
             water_on: vec![0.0; solids.particles.len()],
             fogged: ExactSum::default(),
             held_heat: vec![ExactSum::default(); bodies.len()],
+            heat_flow: vec![0.0; bodies.len()],
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
@@ -215,7 +218,7 @@ impl Dew {
         self.evaluate(0.5 * step);
         let stiff = self.exchange(step);
         self.kick(step);
-        self.saturate();
+        self.saturate(step);
         self.state.time += step;
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
@@ -374,7 +377,9 @@ impl Dew {
             of_solids[particle] += given.conductance;
         }
         let to_air = exchange.to_air(&share_of);
+        self.state.heat_flow.fill(0.0);
         for (site, given) in real {
+            self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
             // What rounding leaves of the last of the water is nothing.
             let water = &mut self.state.water_on[site.particle as usize];
             *water = (*water + step * given.water).max(0.0);
@@ -448,7 +453,7 @@ impl Dew {
 
     /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
     /// again in drier air.
-    fn saturate(&mut self) {
+    fn saturate(&mut self, step: f64) {
         let Self { settings, air, state, latent_heat, .. } = self;
         let mut excesses: Vec<f64> = if settings.fog || settings.condensation == Condensation::Parcel {
             let find = |particle: &Particle| {
@@ -460,7 +465,7 @@ impl Dew {
         } else {
             return;
         };
-        self.deposit(&mut excesses);
+        self.deposit(&mut excesses, step);
         if !self.settings.fog {
             return;
         }
@@ -475,7 +480,7 @@ impl Dew {
     }
 
     /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
-    fn deposit(&mut self, excesses: &mut [f64]) {
+    fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
         let exchange = self.at_surfaces();
         let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
@@ -493,6 +498,7 @@ impl Dew {
                 let conductivity = self.solids.material(site).conductivity;
                 let to_solid = conductivity / (conductivity + self.air.conductivity);
                 air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+                self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
                 if self.solids.is_held(site) {
                     self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
                     self.state.energy.book(-to_solid * heat);

@@ -120,6 +120,16 @@ impl Drops {
         &self.state.drops
     }
 
+    /// The solids that they are on.
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// The patches on which water condenses.
+    pub fn sites(&self) -> &[Site] {
+        &self.sites
+    }
+
     /// Adds a drop of this mass (kg) on a solid, with its middle at the point of the surface nearest to `position`.
     pub fn add(&mut self, solid: u32, position: [f64; 3], velocity: [f64; 3], mass: f64) {
         let (position, normal) = self.foot(solid, position);
