@@ -6,7 +6,7 @@ use crate::exchange::{Exchange, ToAir, excess};
 use crate::humid_air;
 use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
-use crate::solids::{Body, Conduction, Solids};
+use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls::{self, Push};
 use crate::wetting::Wetting;
 use corpuscle_model::{Account, ExactSum, ModelError};
@@ -45,6 +45,8 @@ pub struct Dew {
     pub(crate) held_to: Vec<Option<Table>>,
     /// What frames show.
     pub(crate) shows: Output,
+    /// The surfaces of the bodies; none where one does not tell its own.
+    pub(crate) surfaces: Vec<Surface>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
 }
@@ -69,6 +71,8 @@ pub(crate) struct State {
     pub held_heat: Vec<ExactSum>,
     /// Heat that each solid takes from the air through its surface, W, in the last step.
     pub heat_flow: Vec<f64>,
+    /// When it was last looked for air that no longer matters, s.
+    pub utility_seen: f64,
     /// How far the air before each inlet has come since its last layer, m.
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
@@ -112,9 +116,14 @@ impl Dew {
     /// part of the mass, at a place.
     ///
     /// # Errors
-    /// Where ghost samples are asked for and a body does not tell its surface.
+    /// Where ghost samples or air of low utility are asked for and a body does not tell its surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
         let Setup { settings, air, room, bodies, seed } = setup;
+        if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
+            return Err(ModelError::Setup(
+                "how far air is from solids must be known to tell which of it matters".into(),
+            ));
+        }
         let scale = Scale::new(settings.spacing);
         let solids = Solids::new(bodies, room, &scale, settings.threshold);
         let conduction = Conduction::new(&solids, room, &scale, settings.mean, settings.faster);
@@ -140,6 +149,7 @@ impl Dew {
             fogged: ExactSum::default(),
             held_heat: vec![ExactSum::default(); bodies.len()],
             heat_flow: vec![0.0; bodies.len()],
+            utility_seen: 0.0,
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
@@ -166,6 +176,7 @@ impl Dew {
             names: Vec::new(),
             held_to: Vec::new(),
             shows: Output::default(),
+            surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
             wetting: None,
         };
         dew.fill(bodies, start);
@@ -215,6 +226,7 @@ impl Dew {
         let step = self.state.time_step;
         self.drift(step);
         self.cross_faces(step);
+        self.tend_utility();
         self.evaluate(0.5 * step);
         let stiff = self.exchange(step);
         self.kick(step);
@@ -649,8 +661,8 @@ fn fill_columns(
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
-        if matches!(particle.role, Role::Leaving(..)) {
-            // Beyond an outlet the air is as it is at rest.
+        if matches!(particle.role, Role::Leaving(..) | Role::Idle) {
+            // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
         }
     });

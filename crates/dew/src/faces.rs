@@ -62,8 +62,11 @@ impl Dew {
         air.retain_mut(|particle| {
             let beyond = self.room.beyond(particle.position);
             match (particle.role, beyond) {
-                (Role::Inside, Some((axis, side))) => {
-                    self.book(particle, -1.0);
+                (Role::Inside | Role::Idle, Some((axis, side))) => {
+                    // What no longer mattered is booked as gone.
+                    if particle.role == Role::Inside {
+                        self.book(particle, -1.0);
+                    }
                     particle.role = Role::Leaving(axis as u8, side as u8);
                     // It goes on at its speed, but does not stand in the way.
                     let outward = [-1.0, 1.0][side];
@@ -95,7 +98,7 @@ impl Dew {
         }
     }
 
-    fn book(&mut self, particle: &Particle, sign: f64) {
+    pub(crate) fn book(&mut self, particle: &Particle, sign: f64) {
         let water = self.particle_mass() * (particle.vapour + particle.fog);
         let energy = self.energy_of(particle);
         self.state.water.book(sign * water);

@@ -180,6 +180,12 @@ impl Wetting {
     }
 }
 
+/// Area of a plane for each particle of the layer below it, m2. At an edge a particle stands for more; the sides of a solid that the
+/// room cuts would count too.
+fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
+    spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
+}
+
 impl Dew {
     /// From here on water on the solids forms drops. `solids` are the bodies, in order.
     pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, seed: u64) {
@@ -195,7 +201,7 @@ impl Dew {
                 solid: particle.body,
                 position: [0, 1, 2].map(foot),
                 normal: nearest.normal,
-                half_width: 0.5 * particle.area.sqrt(),
+                half_width: 0.5 * particle.area.min(area_in_cell(nearest.normal, self.scale.spacing)).sqrt(),
             });
         }
         let drops = Drops::new(laws, solids, sites, [self.room.low, self.room.high], seed);
