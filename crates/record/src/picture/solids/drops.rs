@@ -42,7 +42,7 @@ pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], colours: &mut [V
         }
     }
     for (colour, mist) in colours.iter_mut().zip(&mist) {
-        let thick = THICKEST * (1.0 - (-mist as f64).exp());
+        let thick = THICKEST * (1.0 - f64::exp(-mist));
         *colour = mix(*colour, MIST, thick);
     }
     for cap in order.into_iter().filter(|cap| cap.radius >= SMALLEST * screen.pixel) {

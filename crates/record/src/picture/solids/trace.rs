@@ -64,7 +64,7 @@ impl Screen {
                 let depths = [shown[solid][0][2], shown[solid][1][2]];
                 Hit { solid: Some(solid), ..self.meet(&solids[solid], boxes[solid], [x, y], depths) }
             });
-            hits.filter(|hit| hit.cover > 0.0).fold(NOTHING, |nearest, hit| nearer(nearest, hit))
+            hits.filter(|hit| hit.cover > 0.0).fold(NOTHING, nearer)
         };
         pixels.map(hit).collect()
     }
