@@ -577,8 +577,17 @@ impl Dew {
 
     /// Gives the air in the room velocities, m/s, by place.
     pub fn stir(&mut self, velocity: impl Fn([f64; 3]) -> [f64; 3]) {
-        for particle in self.state.air.iter_mut().filter(|particle| particle.role == Role::Inside) {
-            particle.velocity = velocity(particle.position);
+        let slowest = self.slowest();
+        for particle in &mut self.state.air {
+            let velocity = velocity(particle.position);
+            match particle.role {
+                Role::Inside => particle.velocity = velocity,
+                Role::Leaving(axis, side) => {
+                    let (axis, side) = (usize::from(axis), usize::from(side));
+                    particle.leave(axis, side, velocity[axis], slowest);
+                }
+                Role::Coming(..) | Role::Idle => {}
+            }
         }
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[]);

@@ -38,15 +38,15 @@ pub enum SetupError {
     },
     /// A random arrangement that was not reached.
     #[error(
-        "gas: {what} would fill {packing:.4} of its region; growing balls from a random start jammed at {reached:.4} (random \
-         arrangements end near {limit}). Ask for a lattice, which exists up to {lattice:.4}, or for fewer balls"
+        "gas: {what} would fill {packing:.4} of its region; balls that grow from a random start jam at {reached:.4} at the latest \
+         (random arrangements end near {limit}). Ask for a lattice, which exists up to {lattice:.4}, or for fewer balls"
     )]
     Jammed {
         /// Which balls.
         what: String,
         /// Part of the region that they would fill.
         packing: f64,
-        /// Part that was reached.
+        /// Part that was reached, or that is known not to be.
         reached: f64,
         /// Part at which random arrangements jam.
         limit: f64,

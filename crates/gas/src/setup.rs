@@ -2,6 +2,7 @@
 
 mod check;
 mod lattice;
+mod pistons;
 mod place;
 mod random;
 mod velocities;

@@ -60,6 +60,13 @@ impl Particle {
         }
     }
 
+    /// Goes on beyond an outlet, along its axis at a velocity, m/s, but outwards and at a speed of at least `slowest`.
+    pub fn leave(&mut self, axis: usize, side: usize, along: f64, slowest: f64) {
+        let outward = [-1.0, 1.0][side];
+        self.role = Role::Leaving(axis as u8, side as u8);
+        self.velocity[axis] = outward * (outward * along).max(slowest);
+    }
+
     /// Square of the speed, m2/s2.
     pub fn speed_squared(&self) -> f64 {
         self.velocity.iter().map(|along| along * along).sum()

@@ -149,3 +149,58 @@ fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Engine;
+    use crate::method::Pause;
+    use crate::world::{Facing, Field, Kind, Start, Wall, World};
+
+    /// Balls of diameter 1 or 0.4 on a lattice 1.1 wide, with velocities without order: parts of the multiples of irrational numbers
+    /// (Weyl 1916). The box repeats along the last axis.
+    fn world<const D: usize>(along: usize, gravity: f64) -> World<D> {
+        let length = 1.1 * along as f64;
+        let start = |number: usize| Start {
+            position: std::array::from_fn(|axis| 1.1 * ((number / along.pow(axis as u32) % along) as f64 + 0.5)),
+            velocity: std::array::from_fn(|axis| 2.0 * (number as f64 * [2_f64, 3.0, 5.0][axis].sqrt()).fract() - 1.0),
+            kind: (number % 3 / 2) as u32,
+            species: 0,
+        };
+        let starts: Vec<Start<D>> = (0..along.pow(D as u32)).map(start).collect();
+        let mut field = Field { gravity: [0.0; D], scale: 1.0, growth: 0.0, period: [0.0; D] };
+        (field.gravity[0], field.period[D - 1]) = (gravity, length);
+        let kinds = vec![Kind { radius: 0.5, mass: 1.0 }, Kind { radius: 0.2, mass: 0.5 }];
+        let mut world = World::new([0.0; D], [length; D], kinds, &starts, field);
+        for axis in 0..D - 1 {
+            world.walls.push(Wall::fixed(axis, Facing::Up, 0.0));
+            world.walls.push(Wall::fixed(axis, Facing::Down, length));
+        }
+        world.wall_tallies = vec![Default::default(); world.walls.len()];
+        world
+    }
+
+    /// All numbers of the balls after many windows, and the collisions.
+    fn end<const D: usize>(along: usize, gravity: f64, looks_ahead: bool) -> (Vec<u64>, u64) {
+        let mut engine = Engine::new(world::<D>(along, gravity));
+        engine.looks_ahead = looks_ahead;
+        engine.rebuild();
+        let mut windows = 0;
+        while windows < 4 {
+            if engine.run(f64::INFINITY, u64::MAX) == Pause::WindowFull {
+                engine.rebuild();
+                windows += 1;
+            }
+        }
+        let numbers = engine.world.balls.iter().flat_map(|ball| ball.position.into_iter().chain(ball.velocity));
+        (numbers.map(f64::to_bits).collect(), engine.world.tally.collisions)
+    }
+
+    #[test]
+    fn looking_ahead_changes_nothing() {
+        for gravity in [0.0, -0.5] {
+            assert!(end::<2>(20, gravity, true) == end::<2>(20, gravity, false));
+            assert!(end::<3>(8, gravity, true) == end::<3>(8, gravity, false));
+        }
+        assert!(end::<3>(8, 0.0, true).1 > 2000);
+    }
+}

@@ -33,6 +33,8 @@ pub(crate) struct Engine<const D: usize> {
     queue: Queue,
     near: Box<Near<D>>,
     ahead: Ahead,
+    /// True where the memory of coming events is asked for before their turn: in large gases.
+    looks_ahead: bool,
     /// True where all balls have the same radius.
     alike: bool,
     /// True where a wall is not only met in the outermost cells.
@@ -55,11 +57,12 @@ impl<const D: usize> Engine<D> {
         let grid = Grid::new([0.0; D], [1.0; D], [false; D], 1.0, 1.0, 1).expect("one cell without periodic sides");
         let mut engine = Engine {
             events: crate::memory::reserved(world.balls.len()),
+            looks_ahead: world.balls.len() >= ahead::MANY,
             alike: world.kinds.windows(2).all(|pair| pair[0].radius == pair[1].radius),
             walls_roam: world.walls.iter().any(|wall| wall.facing == Facing::Both || wall.moves),
             world,
             grid,
-            queue: Queue::new::<D>(&[]),
+            queue: Queue::new::<D>(&[], false),
             near: Box::new(Near::new()),
             ahead: Ahead::new(),
             watches: Vec::new(),

@@ -7,7 +7,6 @@
 
 mod mail;
 
-use super::ahead::MANY;
 use super::event::Event;
 use crate::memory;
 use crate::world::NONE;
@@ -70,11 +69,10 @@ pub(crate) struct Queue {
 }
 
 impl Queue {
-    /// An empty queue for times from 0 on, its buckets fit for `events`.
-    pub fn new<const D: usize>(events: &[Event<D>]) -> Self {
+    /// An empty queue for times from 0 on, its buckets fit for `events`; with `many` of them, entries go by mail.
+    pub fn new<const D: usize>(events: &[Event<D>], many: bool) -> Self {
         let mut times: Vec<f64> = events.iter().map(|event| event.time).filter(|time| time.is_finite()).collect();
         let nth = times.len() / 4;
-        let many = events.len() >= MANY;
         let per_time = if times.is_empty() {
             1.0
         } else {

@@ -1,7 +1,6 @@
 //! The loop over events.
 
 use super::Engine;
-use super::ahead::MANY;
 use crate::method::Pause;
 use crate::world::{Falling, Growing, Mode, NONE, Straight};
 use multiversion::multiversion;
@@ -29,7 +28,7 @@ impl<const D: usize> Engine<D> {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64) -> Pause {
-    let many = engine.events.len() >= MANY;
+    let looks_ahead = engine.looks_ahead;
     for _ in 0..most {
         let (time, ball) = engine.queue.peek(&engine.events).unwrap_or((f64::INFINITY, NONE));
         if time.min(engine.next_watch) > until || (ball == NONE && engine.next_watch == f64::INFINITY) {
@@ -42,7 +41,7 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
         if engine.window_is_full() {
             return Pause::WindowFull;
         }
-        if many {
+        if looks_ahead {
             engine.look_ahead();
         }
         engine.handled += 1;

@@ -82,6 +82,7 @@ impl<const D: usize> Setup<D> {
         let places = self.places(&mut random)?;
         self.check_overlaps(&places)?;
         self.check_plans(&places)?;
+        self.check_pistons(&places)?;
         let mut table = Table::default();
         let mut starts = Vec::with_capacity(places.len());
         let mut at = places.iter();

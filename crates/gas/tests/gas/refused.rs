@@ -3,6 +3,7 @@
 use corpuscle_gas::{Amount, Partition, Setup, SetupError, Side, Species, Start};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 fn why<const D: usize>(setup: Setup<D>) -> String {
     setup.build().expect_err("must be refused").to_string()
@@ -69,6 +70,108 @@ fn packings_that_do_not_exist_are_refused() {
     // It exists, but not at random.
     let text = why(Setup::<3>::new([6.0; 3]).periodic().species(Species::new("gas", Amount::Packing(0.70))));
     assert!(text.contains("jammed") || text.contains("lattice"), "{text}");
+}
+
+#[test]
+fn random_packings_beyond_jamming_are_refused_at_once() {
+    let start = Instant::now();
+    for count in [300, 20_000, 1_000_000] {
+        let text = why(Setup::<2>::fluid(count, 0.88));
+        assert!(text.contains("jam at 0.87") && text.contains("Ask for a lattice"), "{text}");
+    }
+    let text = why(Setup::<3>::fluid(100_000, 0.68));
+    assert!(text.contains("jam at 0.66"), "{text}");
+    // Of two sizes: grown until it stalls.
+    let small = Species { radius: 0.35, ..dense(0.44, Start::Random) };
+    let text = why(Setup::<2>::new([30.0, 30.0]).periodic().species(dense(0.44, Start::Random)).species(small));
+    assert!(text.contains("jam at 0.8"), "{text}");
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_piston_that_would_crush_the_gas_is_refused() {
+    let gas = |mass: f64, pressure: f64, velocity: f64| {
+        let piston = Side::Piston { mass, pressure, velocity };
+        Setup::<2>::new([100.0, 100.0]).side(0, 1, piston).species(Species::new("gas", Amount::Packing(0.1)))
+    };
+    for (mass, pressure, velocity) in [(1e9, 0.2, -1e4), (1e30, 0.0, -1e12), (1e300, 0.0, -1e300), (1e9, 1e5, 0.0)] {
+        assert!(why(gas(mass, pressure, velocity)).contains("crush"), "{mass} {pressure} {velocity}");
+    }
+    assert!(why(gas(1e-9, 0.2, 0.0)).contains("too light"));
+    // It flies away and does not come back.
+    assert!(gas(1e9, 0.0, 1e4).build().is_ok());
+    assert!(gas(1e6, 0.2, -1.0).build().is_ok());
+}
+
+/// What of a gas can be odd, and how it ends: `None` for well.
+type Odd = (&'static str, Setup<2>, f64, Option<&'static str>);
+
+fn odd() -> Vec<Odd> {
+    let gas = |packing: f64| Setup::<2>::new([30.0, 30.0]).species(Species::new("gas", Amount::Packing(packing)));
+    let closing = |velocity: f64| Side::Moving { velocity, until: None };
+    let piston = |mass: f64, pressure: f64| Side::Piston { mass, pressure, velocity: 0.0 };
+    let cold = Species { temperature: 0.0, ..Species::new("gas", Amount::Count(200)) };
+    let specks = Species { radius: 1e-9, ..Species::new("specks", Amount::Count(200)) };
+    vec![
+        (
+            "between two walls that close in",
+            one([5.0, 4.0], [0.1, 0.2], 1.0, 1.0).side(0, 0, closing(0.5)).side(0, 1, closing(-0.5)),
+            100.0,
+            Some("room"),
+        ),
+        (
+            "at rest between two walls that close in",
+            one([5.0, 4.0], [0.0; 2], 1.0, 1.0).side(0, 0, closing(0.5)).side(0, 1, closing(-0.5)),
+            100.0,
+            Some("room"),
+        ),
+        ("in a corner with loss", one([5.0, 4.0], [-1.0; 2], 1.0, 1.0).gravity([-1.0; 2]).restitution(0.5), 1e3, None),
+        (
+            "on another with loss",
+            one([5.0, 1.0], [0.0; 2], 1.0, 1.0)
+                .ball([5.0, 4.0], [0.0; 2], 1.0, 1.0)
+                .gravity([0.0, -1.0])
+                .restitution(0.9),
+            1e4,
+            Some("come to rest on each other"),
+        ),
+        ("hardly any rebound", gas(0.5).restitution(1e-6), 1e5, Some("longer contact time")),
+        ("a thin gas with hardly any rebound", gas(0.1).restitution(0.01), 1e4, None),
+        ("one much heavier, at rest", gas(0.1).ball([15.0; 2], [0.0; 2], 3.0, 1e12), 10.0, None),
+        ("one much heavier, moving", gas(0.1).ball([15.0; 2], [1.0, 0.7], 3.0, 1e12), 30.0, None),
+        ("specks", Setup::new([30.0, 30.0]).species(specks), 100.0, None),
+        ("a light piston", gas(0.3).side(0, 1, piston(1e-6, 0.3)), 1.0, None),
+        ("two pistons", gas(0.3).side(0, 0, piston(10.0, 5.0)).side(0, 1, piston(10.0, 5.0)), 20.0, None),
+        (
+            "two pistons with nothing behind",
+            gas(0.3).side(0, 0, piston(1.0, 0.0)).side(0, 1, piston(1.0, 0.0)),
+            1e5,
+            None,
+        ),
+        (
+            "a piston on a gas at rest",
+            Setup::new([30.0, 30.0]).side(0, 1, piston(100.0, 1.0)).species(cold),
+            30.0,
+            None,
+        ),
+        ("a very long box", Setup::new([1e7, 3.0]).species(Species::new("gas", Amount::Count(200))), 10.0, None),
+    ]
+}
+
+#[test]
+fn odd_scenes_end_or_are_named_soon() {
+    for (what, setup, end, named) in odd() {
+        let start = Instant::now();
+        match (
+            setup.build().unwrap_or_else(|error| panic!("{what}: {error}")).advance_to(end, &AtomicBool::new(false)),
+            named,
+        ) {
+            (Ok(()), None) => {}
+            (Err(ModelError::Breakdown { what: text, .. }), Some(named)) if text.contains(named) => {}
+            (other, _) => panic!("{what}: {other:?}"),
+        }
+        assert!(start.elapsed().as_secs() < 10, "{what}: {:?}", start.elapsed());
+    }
 }
 
 fn stopped(mut gas: corpuscle_gas::Gas<2>) -> String {

@@ -1,6 +1,7 @@
 //! Cases of the dew model.
 
 pub(crate) mod bench;
+mod boundaries;
 mod dew_point;
 mod fick;
 mod film;
@@ -22,6 +23,7 @@ pub(crate) const CASES: &[Case] = &[
     fick::FICK,
     film::FILM,
     ledger::LEDGER,
+    boundaries::BOUNDARIES,
     slide::SLIDE,
     low_utility::CASE,
     pane::PANE,

@@ -71,9 +71,10 @@ impl Queue {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::ahead::MANY;
     use super::super::super::event::{Event, What};
     use super::Queue;
+
+    const MANY: usize = 5000;
 
     /// Numbers without order from 0 to 1: parts of the multiples of the golden ratio (Weyl 1916).
     fn scattered(number: usize) -> f64 {
@@ -92,7 +93,7 @@ mod tests {
             level: 0,
         };
         let mut events: Vec<Event<3>> = (0..MANY).map(event).collect();
-        let mut queue = Queue::new(&events);
+        let mut queue = Queue::new(&events, true);
         for (ball, event) in events.iter().enumerate() {
             queue.push(event.time, ball as u32, event.stamp);
         }
