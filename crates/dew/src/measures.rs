@@ -25,6 +25,7 @@ impl Dew {
                 column("drops", "largest_radius", "m"),
                 column("drops", "mean_radius", "m"),
                 column("drops", "first_at", "s"),
+                column("drops", "merged", ""),
                 column("drops", "left", "kg"),
             ]);
         }
@@ -79,7 +80,14 @@ impl Dew {
         let number = drops.drops().len() as f64;
         let firsts = wetting.stories().iter().filter_map(|story| story.first);
         let first = firsts.min_by(f64::total_cmp).unwrap_or(f64::NAN);
-        vec![number, radii.clone().fold(0.0, f64::max), radii.sum::<f64>() / number, first, drops.dripped()]
+        vec![
+            number,
+            radii.clone().fold(0.0, f64::max),
+            radii.sum::<f64>() / number,
+            first,
+            drops.merged() as f64,
+            drops.dripped(),
+        ]
     }
 
     fn measured_of(&self, body: usize) -> Vec<f64> {

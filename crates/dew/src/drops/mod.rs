@@ -95,6 +95,8 @@ pub struct DropState {
     pub dripped: ExactSum,
     /// Number of drops that left.
     pub dripped_count: u64,
+    /// Number of drops that became part of others.
+    pub merged: u64,
     /// Drops that there ever were.
     next_id: u64,
     /// Random numbers used.
@@ -188,6 +190,11 @@ impl Drops {
     /// Water that left the solids as drops, kg.
     pub fn dripped(&self) -> f64 {
         self.state.dripped.value()
+    }
+
+    /// Number of drops that became part of others.
+    pub fn merged(&self) -> u64 {
+        self.state.merged
     }
 
     /// What changes, between two calls of [`Drops::advance`] and before anything condenses or evaporates.

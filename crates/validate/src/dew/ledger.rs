@@ -72,6 +72,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     });
     let happened = [
         ("condensed_kg", wettest, "kg"),
+        ("drops_merged", gauge(&dew, "drops.merged"), ""),
         ("dripped_kg", dripped, "kg"),
         ("evaporated_kg", evaporated, "kg"),
         ("air_taken_out", gauge(&whole, "air.particles") - filled, ""),
