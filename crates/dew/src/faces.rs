@@ -64,8 +64,11 @@ impl Dew {
         air.retain_mut(|particle| {
             let beyond = self.room.beyond(particle.position);
             match (particle.role, beyond) {
-                (Role::Inside, Some((axis, side))) => {
-                    self.book(particle, -1.0);
+                (Role::Inside | Role::Idle, Some((axis, side))) => {
+                    // What no longer mattered is booked as gone.
+                    if particle.role == Role::Inside {
+                        self.book(particle, -1.0);
+                    }
                     particle.leave(axis, side, particle.velocity[axis], slowest);
                 }
                 (Role::Leaving(axis, side), _) => {
@@ -115,7 +118,7 @@ impl Dew {
         sum / f64::from(count.max(1))
     }
 
-    fn book(&mut self, particle: &Particle, sign: f64) {
+    pub(crate) fn book(&mut self, particle: &Particle, sign: f64) {
         let water = self.particle_mass() * (particle.vapour + particle.fog);
         let energy = self.energy_of(particle);
         self.state.water.book(sign * water);

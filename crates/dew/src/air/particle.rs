@@ -32,12 +32,14 @@ pub struct Particle {
 /// Whether a parcel is in the room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
-    /// In the room.
+    /// In the room, and taking part in everything.
     Inside,
     /// Before an inlet, on its way in: axis and side of the face.
     Coming(u8, u8),
     /// Beyond an outlet, on its way off: axis and side of the face.
     Leaving(u8, u8),
+    /// In the room, but of low utility: it only moves on. The ledger has it as gone.
+    Idle,
 }
 
 impl Particle {
