@@ -1,9 +1,10 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums, sum_pairs};
-use crate::contact::Contact;
+use crate::contact::{Contact, Pair};
 use crate::exchange::{Exchange, ToAir, excess};
 use crate::humid_air;
+use crate::layer::Layer;
 use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
 use crate::solids::{Body, Conduction, Solids, Surface};
@@ -31,8 +32,8 @@ pub struct Dew {
     rest_density: f64,
     pub(crate) state: State,
     arrangement: Arrangement,
-    contact: Contact,
-    ghosts: Contact,
+    pub(crate) contact: Contact,
+    pub(crate) ghosts: Contact,
     sums: Vec<Sums>,
     columns: Vec<Column>,
     rates: Vec<Rates>,
@@ -41,6 +42,8 @@ pub struct Dew {
     pub(crate) warnings: Vec<String>,
     /// Names of the bodies; none where they do not come from a scene.
     pub(crate) names: Vec<String>,
+    /// The air before the bodies that say how they keep it out.
+    pub(crate) layers: Vec<Option<Layer>>,
     /// Temperature over time, °C, of the bodies that are held at one told by a scene.
     pub(crate) held_to: Vec<Option<Table>>,
     /// What frames show.
@@ -158,11 +161,10 @@ impl Dew {
         let conductances = (0..solids.particles.len()).map(|i| conduction.sum(i)).collect();
         let sites = solids.sites(room, scale.h(), |particle| particle.near_surface);
         let volume = |site: &crate::solids::Site| solids.particles[site.particle as usize].volume;
-        let contact = Contact::new(&sites, volume, scale.h());
-        let ghosts = match settings.walls {
-            WallTreatment::Ghosts => crate::solids::ghost_contact(bodies, &solids, room, &scale, *seed)?,
-            _ => Contact::default(),
-        };
+        let walls: Vec<_> = bodies.iter().map(|body| body.walls.unwrap_or(settings.walls)).collect();
+        let wall_of = |site: &crate::solids::Site| walls[solids.particles[site.particle as usize].body as usize];
+        let contact = Contact::new(&sites, volume, wall_of, scale.h());
+        let ghosts = crate::solids::ghost_contact(bodies, &walls, &solids, room, &scale, *seed)?;
         let temperatures =
             bodies.iter().flat_map(|body| std::iter::repeat_n(body.temperature, body.positions.len())).collect();
         let state = State {
@@ -202,6 +204,7 @@ impl Dew {
             shown: 0.0,
             warnings: Vec::new(),
             names: Vec::new(),
+            layers: Vec::new(),
             held_to: Vec::new(),
             shows: Output::default(),
             surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
@@ -218,7 +221,19 @@ impl Dew {
     /// Spreads the air evenly between the solids before anything happens.
     fn settle(&mut self) {
         let (room, spacing) = (self.room, self.scale.spacing);
-        let completed = matches!(self.settings.walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        let completes =
+            |walls: &WallTreatment| matches!(walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        let completed = self.contact.walls.is_empty() || self.contact.walls.iter().any(completes);
+        let walls = self.contact.walls.clone();
+        if completed {
+            // Solids that leave the air's density incomplete would draw the air in that spreads between the others.
+            let completing = |walls: &&mut WallTreatment| !completes(walls);
+            self.contact
+                .walls
+                .iter_mut()
+                .filter(completing)
+                .for_each(|walls| *walls = WallTreatment::DensityCorrection);
+        }
         for _ in 0..if completed { SETTLING } else { 0 } {
             self.evaluate(0.0);
             let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
@@ -241,6 +256,23 @@ impl Dew {
             let sum: f64 = self.inside().map(|particle| particle.density).sum();
             self.rest_density = sum / (self.inside().count() as f64).max(1.0);
         }
+        self.contact.walls = walls;
+        self.evaluate(0.0);
+        self.take_out_repelled();
+    }
+
+    /// Takes out air that a virtual force would throw off at the start: where it acts there is a vacuum.
+    fn take_out_repelled(&mut self) {
+        let Self { contact, state, scale, .. } = self;
+        let is_repelled = |pair: &Pair| {
+            contact.walls[pair.other as usize] == WallTreatment::VirtualForce && pair.r < walls::CALM * scale.spacing
+        };
+        let mut stays = vec![true; state.air.len()];
+        for near in contact.near.iter().filter(|near| contact.of_air(near).iter().any(is_repelled)) {
+            stays[near.particle as usize] = false;
+        }
+        let mut stays = stays.into_iter();
+        state.air.retain(|_| stays.next() == Some(true));
         self.evaluate(0.0);
     }
 
@@ -357,11 +389,8 @@ impl Dew {
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
         ghosts.update(arrangement, scale);
-        match settings.walls {
-            WallTreatment::DensityCorrection => walls::add_density(contact, arrangement, scale, settings.kappa, sums),
-            WallTreatment::Ghosts => walls::add_density(ghosts, arrangement, scale, 1.0, sums),
-            WallTreatment::VirtualForce | WallTreatment::None => {}
-        }
+        walls::add_density(contact, arrangement, scale, settings.kappa, sums);
+        walls::add_density(ghosts, arrangement, scale, 1.0, sums);
         walls::add_moment(contact, arrangement, scale, sums);
         fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead);
         rates.resize(state.air.len(), Rates::default());
@@ -371,11 +400,7 @@ impl Dew {
             ..*air
         };
         sum_pairs(arrangement, columns, scale, &at_work, rates);
-        let ghostly = settings.walls == WallTreatment::Ghosts;
-        let pushing = if ghostly { &*ghosts } else { &*contact };
-        let kappa = if ghostly { 1.0 } else { settings.kappa };
-        let sticking = &*contact;
-        let push = Push { treatment: settings.walls, pushing, sticking, arrangement, columns, scale, air, kappa };
+        let push = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
         push.add(rates);
     }
 

@@ -16,6 +16,7 @@ mod exchange;
 mod faces;
 mod fogging;
 pub mod humid_air;
+mod layer;
 mod measures;
 mod model;
 mod open;

@@ -5,6 +5,7 @@ use crate::bodies;
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, WATER_DENSITY};
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
+use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
 use crate::settings::{Condensation, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::{Body, Material, Surface};
@@ -42,6 +43,8 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     if scene.air.velocity_m_per_s != [0.0; 3] {
         dew.stir(|_| scene.air.velocity_m_per_s);
     }
+    let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
+    dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
     dew.shows = scene.output.clone();
@@ -168,16 +171,20 @@ fn face(face: &written::Face, axis: Axis, scene: &written::Dew, start: &HumidAir
     }
 }
 
+fn walls(treatment: Treatment) -> WallTreatment {
+    match treatment {
+        Treatment::DensityCorrection => WallTreatment::DensityCorrection,
+        Treatment::VirtualForce => WallTreatment::VirtualForce,
+        Treatment::Ghost => WallTreatment::Ghosts,
+        Treatment::None => WallTreatment::None,
+    }
+}
+
 fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
     let paper = scene.scheme == Scheme::Paper;
     let of_scheme = if paper { written::Mean::Arithmetic } else { written::Mean::Harmonic };
     Settings {
-        walls: match scene.boundary.treatment {
-            Treatment::DensityCorrection => WallTreatment::DensityCorrection,
-            Treatment::VirtualForce => WallTreatment::VirtualForce,
-            Treatment::Ghost => WallTreatment::Ghosts,
-            Treatment::None => WallTreatment::None,
-        },
+        walls: walls(scene.boundary.treatment),
         mean: match scene.transport.conductivity_mean.unwrap_or(of_scheme) {
             written::Mean::Harmonic => Mean::Harmonic,
             written::Mean::Arithmetic if paper => Mean::Diffusivity,
@@ -245,6 +252,7 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
         temperature: body.temperature.at(0.0) + ZERO_CELSIUS,
         held: body.held,
         surface: Some(surface),
+        walls: body.treatment.map(walls),
     }
 }
 
