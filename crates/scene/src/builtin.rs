@@ -32,6 +32,9 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "gas/atmosphere",
     "gas/argon",
     "gas/million",
+    "dew/pane",
+    "dew/lens",
+    "dew/glassware",
 ];
 
 /// The built-in scene called `name`.
