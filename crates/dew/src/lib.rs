@@ -32,4 +32,4 @@ mod wetting;
 pub use dew::{Dew, Setup};
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};
-pub use settings::{Condensation, Conductor, LowUtility, Mean, Settings, WallTreatment};
+pub use settings::{Condensation, Conductor, Humidity, LowUtility, Mean, Settings, WallTreatment};

@@ -7,7 +7,7 @@ use crate::drops::{DropLaws, WATER_DENSITY};
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
-use crate::settings::{Condensation, LowUtility, Mean, Settings, WallTreatment};
+use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::{Body, Material, Surface};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Axis;
@@ -57,10 +57,10 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
 /// What scenes can say and this version cannot do, by the name of the key.
 fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
     let refuse = |what: &str| Err(ModelError::Setup(what.into()));
-    if humidity_transport(scene) == HumidityTransport::RelativeHumidity {
+    if humidity_transport(scene) == HumidityTransport::RelativeHumidity && scene.scheme == Scheme::Physical {
         return refuse(
-            "dew.transport.humidity: this version cannot diffuse relative humidity; give dew.transport.humidity = \
-             \"mass-fraction\" (in the scheme \"paper\" it must be said, everything else there is as patented)",
+            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"paper\" only, where parcels of air condense: give \
+             scheme = \"paper\", or \"mass-fraction\"",
         );
     }
     let mut faces = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis).map(|face| (axis, face)));
@@ -190,6 +190,10 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
             written::Mean::Arithmetic if paper => Mean::Diffusivity,
             written::Mean::Arithmetic => Mean::Arithmetic,
         },
+        humidity: match humidity_transport(scene) {
+            HumidityTransport::MassFraction => Humidity::MassFraction,
+            HumidityTransport::RelativeHumidity => Humidity::Relative,
+        },
         condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
         gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
         low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
@@ -277,6 +281,12 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
              water",
             body.name,
             coldest(body)
+        ));
+    }
+    if is_frost(scene.air.temperature_c + ZERO_CELSIUS) {
+        warnings.push(format!(
+            "the air is at {} °C: below 0 °C there would be frost and ice, which are out of scope; fog there is taken as water",
+            scene.air.temperature_c
         ));
     }
     if scene.time_factor != 1.0 {
