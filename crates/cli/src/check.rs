@@ -30,6 +30,9 @@ const BYTES_PER_PARTICLE: f64 = 1000.0;
 /// Memory for each ball of a gas, bytes: 340 measured where no frames are written, and room to write them.
 const BYTES_PER_BALL: f64 = 500.0;
 
+/// Memory for each particle of dew, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
+const BYTES_PER_PARCEL: f64 = 1300.0;
+
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
 
@@ -123,8 +126,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         terrain,
         particles_at_start,
         particles_to_come,
-        memory_bytes: particles * if is_gas { BYTES_PER_BALL } else { BYTES_PER_PARTICLE }
-            + cells as f64 * BYTES_PER_CELL,
+        memory_bytes: particles * bytes_per_particle(simulation.model().name()) + cells as f64 * BYTES_PER_CELL,
         time_step_s: probe.time_step.filter(|_| !is_gas),
         // Where most of the water comes later its start says little about the rest.
         estimated_wall_time_s: (particles_to_come < particles_at_start)
@@ -136,6 +138,14 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         gauges: simulation.model().gauge_columns().iter().map(|column| column.header()).collect(),
         warnings: simulation.warnings(),
     })
+}
+
+fn bytes_per_particle(model: &str) -> f64 {
+    match model {
+        "gas" => BYTES_PER_BALL,
+        "dew" => BYTES_PER_PARCEL,
+        _ => BYTES_PER_PARTICLE,
+    }
 }
 
 /// What a short run shows.

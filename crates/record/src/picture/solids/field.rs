@@ -13,7 +13,7 @@ pub(super) struct Field<'a> {
 }
 
 /// How far the value of a patch reaches, in its half widths.
-const REACH: f64 = 3.0;
+const REACH: f64 = 4.5;
 
 impl<'a> Field<'a> {
     pub(super) fn new(surface: &'a Surface, values: &'a [f64]) -> Self {
