@@ -78,7 +78,7 @@ impl SolidsPicture<'_> {
         self.compose(&screen, &colours, |svg, top, width| {
             svg.text([0.0, top + 16.0], Anchor::Start, "text", title);
             scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", [width - 8.0, top + 6.0]);
-            value_bar(svg, most, [0.0, top + 24.0], (0.7 * width).min(300.0))
+            value_bar(svg, most, [8.0, top + 24.0], (0.7 * width).min(300.0))
         })
     }
 
