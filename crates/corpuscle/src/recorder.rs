@@ -79,6 +79,9 @@ impl Sink for Recorder {
         if self.scene.gas().is_some() {
             GasReport::new(self.folder.path(), &self.scene, model)?.write_moment()?;
         }
+        if self.scene.dew().is_some() {
+            DewReport::new(self.folder.path(), &self.scene, model)?.write_moment()?;
+        }
         Ok(())
     }
 
@@ -102,6 +105,7 @@ impl Sink for Recorder {
         }
         self.folder.finish(summary)?;
         self.folder.write_charts(&model.charts(), &model.paths())?;
+        self.folder.write_surfaces(&model.surfaces())?;
         if summary.status == Status::Stopped {
             return Ok(());
         }

@@ -6,7 +6,7 @@ use crate::exchange::{Exchange, ToAir, excess};
 use crate::humid_air;
 use crate::room::Room;
 use crate::settings::{Condensation, Settings, WallTreatment};
-use crate::solids::{Body, Conduction, Solids};
+use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls::{self, Push};
 use crate::wetting::Wetting;
 use corpuscle_model::{Account, ExactSum, ModelError};
@@ -45,6 +45,8 @@ pub struct Dew {
     pub(crate) held_to: Vec<Option<Table>>,
     /// What frames show.
     pub(crate) shows: Output,
+    /// The surfaces of the bodies; none where one does not tell its own.
+    pub(crate) surfaces: Vec<Surface>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
 }
@@ -67,6 +69,10 @@ pub(crate) struct State {
     pub fogged: ExactSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
     pub held_heat: Vec<ExactSum>,
+    /// Heat that each solid takes from the air through its surface, W, in the last step.
+    pub heat_flow: Vec<f64>,
+    /// When it was last looked for air that no longer matters, s.
+    pub utility_seen: f64,
     /// How far the air before each inlet has come since its last layer, m.
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
@@ -110,9 +116,14 @@ impl Dew {
     /// part of the mass, at a place.
     ///
     /// # Errors
-    /// Where ghost samples are asked for and a body does not tell its surface.
+    /// Where ghost samples or air of low utility are asked for and a body does not tell its surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
         let Setup { settings, air, room, bodies, seed } = setup;
+        if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
+            return Err(ModelError::Setup(
+                "how far air is from solids must be known to tell which of it matters".into(),
+            ));
+        }
         let scale = Scale::new(settings.spacing);
         let solids = Solids::new(bodies, room, &scale, settings.threshold);
         let conduction = Conduction::new(&solids, room, &scale, settings.mean, settings.faster);
@@ -137,6 +148,8 @@ impl Dew {
             water_on: vec![0.0; solids.particles.len()],
             fogged: ExactSum::default(),
             held_heat: vec![ExactSum::default(); bodies.len()],
+            heat_flow: vec![0.0; bodies.len()],
+            utility_seen: 0.0,
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
@@ -163,6 +176,7 @@ impl Dew {
             names: Vec::new(),
             held_to: Vec::new(),
             shows: Output::default(),
+            surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
             wetting: None,
         };
         dew.fill(bodies, start);
@@ -212,10 +226,11 @@ impl Dew {
         let step = self.state.time_step;
         self.drift(step);
         self.cross_faces(step);
+        self.tend_utility();
         self.evaluate(0.5 * step);
         let stiff = self.exchange(step);
         self.kick(step);
-        self.saturate();
+        self.saturate(step);
         self.state.time += step;
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
@@ -374,7 +389,9 @@ impl Dew {
             of_solids[particle] += given.conductance;
         }
         let to_air = exchange.to_air(&share_of);
+        self.state.heat_flow.fill(0.0);
         for (site, given) in real {
+            self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
             // What rounding leaves of the last of the water is nothing.
             let water = &mut self.state.water_on[site.particle as usize];
             *water = (*water + step * given.water).max(0.0);
@@ -448,7 +465,7 @@ impl Dew {
 
     /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
     /// again in drier air.
-    fn saturate(&mut self) {
+    fn saturate(&mut self, step: f64) {
         let Self { settings, air, state, latent_heat, .. } = self;
         let mut excesses: Vec<f64> = if settings.fog || settings.condensation == Condensation::Parcel {
             let find = |particle: &Particle| {
@@ -460,7 +477,7 @@ impl Dew {
         } else {
             return;
         };
-        self.deposit(&mut excesses);
+        self.deposit(&mut excesses, step);
         if !self.settings.fog {
             return;
         }
@@ -475,7 +492,7 @@ impl Dew {
     }
 
     /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
-    fn deposit(&mut self, excesses: &mut [f64]) {
+    fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
         let exchange = self.at_surfaces();
         let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
@@ -493,6 +510,7 @@ impl Dew {
                 let conductivity = self.solids.material(site).conductivity;
                 let to_solid = conductivity / (conductivity + self.air.conductivity);
                 air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+                self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
                 if self.solids.is_held(site) {
                     self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
                     self.state.energy.book(-to_solid * heat);
@@ -559,8 +577,17 @@ impl Dew {
 
     /// Gives the air in the room velocities, m/s, by place.
     pub fn stir(&mut self, velocity: impl Fn([f64; 3]) -> [f64; 3]) {
-        for particle in self.state.air.iter_mut().filter(|particle| particle.role == Role::Inside) {
-            particle.velocity = velocity(particle.position);
+        let slowest = self.slowest();
+        for particle in &mut self.state.air {
+            let velocity = velocity(particle.position);
+            match particle.role {
+                Role::Inside => particle.velocity = velocity,
+                Role::Leaving(axis, side) => {
+                    let (axis, side) = (usize::from(axis), usize::from(side));
+                    particle.leave(axis, side, velocity[axis], slowest);
+                }
+                Role::Coming(..) | Role::Idle => {}
+            }
         }
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[]);
@@ -643,8 +670,8 @@ fn fill_columns(
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
-        if matches!(particle.role, Role::Leaving(..)) {
-            // Beyond an outlet the air is as it is at rest.
+        if matches!(particle.role, Role::Leaving(..) | Role::Idle) {
+            // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
         }
     });

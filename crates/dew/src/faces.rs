@@ -45,7 +45,7 @@ impl Dew {
                     let [temperature, vapour] = start(place);
                     let particle = Particle::new(self.state.next_id, place, temperature, vapour);
                     self.state.next_id += 1;
-                    self.state.air.push(placed(particle, &self.room, SLOWEST * self.air.sound_speed));
+                    self.state.air.push(placed(particle, &self.room, self.slowest()));
                 }
             }
         }
@@ -58,17 +58,22 @@ impl Dew {
             return;
         }
         let far = BEYOND * self.scale.h();
+        let slowest = self.slowest();
+        let before = [0, 1, 2].map(|axis| [0, 1].map(|side| step * self.acceleration_before(axis, side)));
         let mut air = std::mem::take(&mut self.state.air);
         air.retain_mut(|particle| {
             let beyond = self.room.beyond(particle.position);
             match (particle.role, beyond) {
-                (Role::Inside, Some((axis, side))) => {
-                    self.book(particle, -1.0);
-                    particle.role = Role::Leaving(axis as u8, side as u8);
-                    // It goes on at its speed, but does not stand in the way.
-                    let outward = [-1.0, 1.0][side];
-                    let speed = (outward * particle.velocity[axis]).max(SLOWEST * self.air.sound_speed);
-                    particle.velocity[axis] = outward * speed;
+                (Role::Inside | Role::Idle, Some((axis, side))) => {
+                    // What no longer mattered is booked as gone.
+                    if particle.role == Role::Inside {
+                        self.book(particle, -1.0);
+                    }
+                    particle.leave(axis, side, particle.velocity[axis], slowest);
+                }
+                (Role::Leaving(axis, side), _) => {
+                    let (axis, side) = (usize::from(axis), usize::from(side));
+                    particle.leave(axis, side, particle.velocity[axis] + before[axis][side], slowest);
                 }
                 (Role::Coming(..), None) => {
                     particle.role = Role::Inside;
@@ -95,7 +100,25 @@ impl Dew {
         }
     }
 
-    fn book(&mut self, particle: &Particle, sign: f64) {
+    /// Least speed of air beyond an outlet, m/s: it does not stand in the way.
+    pub(crate) fn slowest(&self) -> f64 {
+        SLOWEST * self.air.sound_speed
+    }
+
+    /// Mean acceleration along its axis of the air within a smoothing length of an outlet, m/s2, with which air beyond goes
+    /// on: each parcel keeps what it is faster or slower by, and a flow that swells or ebbs meets no plug.
+    fn acceleration_before(&self, axis: usize, side: usize) -> f64 {
+        if self.room.faces[axis][side] != Face::Outlet {
+            return 0.0;
+        }
+        let face = [self.room.low, self.room.high][side][axis];
+        let near = self.inside().filter(|particle| (particle.position[axis] - face).abs() < self.scale.h());
+        let (sum, count) =
+            near.fold((0.0, 0_u32), |(sum, count), particle| (sum + particle.acceleration[axis], count + 1));
+        sum / f64::from(count.max(1))
+    }
+
+    pub(crate) fn book(&mut self, particle: &Particle, sign: f64) {
         let water = self.particle_mass() * (particle.vapour + particle.fog);
         let energy = self.energy_of(particle);
         self.state.water.book(sign * water);
@@ -122,7 +145,7 @@ impl Dew {
                     }
                     let particle = Particle::new(self.state.next_id, place, inflow.temperature, inflow.vapour);
                     self.state.next_id += 1;
-                    self.state.air.push(placed(particle, &self.room, SLOWEST * self.air.sound_speed));
+                    self.state.air.push(placed(particle, &self.room, self.slowest()));
                 }
             }
         }
@@ -143,8 +166,7 @@ fn placed(mut particle: Particle, room: &Room, slowest: f64) -> Particle {
             particle.velocity[axis] = inward * inflow.speed;
         }
         _ => {
-            particle.role = Role::Leaving(axis as u8, side as u8);
-            particle.velocity[axis] = -inward * slowest;
+            particle.leave(axis, side, 0.0, slowest);
         }
     }
     particle

@@ -14,7 +14,9 @@ mod dew;
 pub mod drops;
 mod exchange;
 mod faces;
+mod fogging;
 pub mod humid_air;
+mod measures;
 mod model;
 mod open;
 mod room;
@@ -22,10 +24,11 @@ mod settings;
 pub mod solids;
 #[cfg(test)]
 mod testing;
+mod utility;
 mod walls;
 mod wetting;
 
 pub use dew::{Dew, Setup};
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};
-pub use settings::{Condensation, Conductor, Mean, Settings, WallTreatment};
+pub use settings::{Condensation, Conductor, LowUtility, Mean, Settings, WallTreatment};

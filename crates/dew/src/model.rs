@@ -2,9 +2,10 @@
 
 use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
+use crate::measures::drop_sizes;
 use crate::wetting::{Wetting, WettingState};
 use corpuscle_model::{
-    Column, Container, ExactSum, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
+    Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -42,18 +43,6 @@ impl Dew {
                 Column { name: "fog", unit: "kg/kg", values: scalar(&|particle| particle.fog) },
             ],
         }
-    }
-
-    /// Water on a body, kg, and its mean temperature, K.
-    fn totals_of(&self, body: usize) -> [f64; 2] {
-        let of_body = |at: &usize| self.solids.particles[*at].body as usize == body;
-        let (mut water, mut heat, mut volume) = (0.0, 0.0, 0.0);
-        for at in (0..self.solids.particles.len()).filter(of_body) {
-            water += self.state.water_on[at];
-            heat += self.solids.particles[at].volume * self.state.temperatures[at];
-            volume += self.solids.particles[at].volume;
-        }
-        [water, heat / volume]
     }
 
     fn solid_set(&self) -> ParticleSet {
@@ -124,63 +113,23 @@ impl Model for Dew {
     }
 
     fn gauge_columns(&self) -> Vec<GaugeColumn> {
-        let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };
-        let mut columns = vec![
-            column("water", "vapour", "kg"),
-            column("water", "fog", "kg"),
-            column("water", "on_solids", "kg"),
-            column("air", "mean_temperature", "K"),
-            column("air", "largest_speed", "m_per_s"),
-            column("solids", "covered_area", "m2"),
-            column("solids", "heat_from_held", "J"),
-        ];
-        if self.wetting.is_some() {
-            columns.extend([
-                column("drops", "number", ""),
-                column("drops", "largest_radius", "m"),
-                column("drops", "first_at", "s"),
-                column("drops", "left", "kg"),
-            ]);
-        }
-        for name in &self.names {
-            columns.extend([
-                column(name, "water", "kg"),
-                column(name, "mean_temperature", "K"),
-                column(name, "heat_given", "J"),
-            ]);
-        }
-        columns
+        self.measured_columns()
     }
 
     fn gauge_row(&self) -> Vec<f64> {
-        let mass = self.particle_mass();
-        let count = self.inside().count() as f64;
-        let sum = |of: fn(&crate::air::Particle) -> f64| self.inside().map(of).sum::<f64>();
-        let speed = self.inside().map(crate::air::Particle::speed_squared).fold(0.0, f64::max).sqrt();
-        let particles = self.solids().particles.iter().zip(&self.state.water_on);
-        let wet = || particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
-        let drops = self.wetting.as_ref().map(Wetting::drops);
-        let covered = drops.map_or_else(wet, |drops| drops.covered_area());
-        let mut row = vec![
-            mass * sum(|particle| particle.vapour),
-            mass * sum(|particle| particle.fog),
-            self.water_on_all(),
-            sum(|particle| particle.temperature) / count,
-            speed,
-            covered,
-            self.state.held_heat.iter().map(ExactSum::value).sum(),
-        ];
-        if let Some(wetting) = &self.wetting {
-            let drops = wetting.drops();
-            let largest = drops.drops().iter().map(|drop| drops.covered_radius(drop)).fold(0.0, f64::max);
-            let first = wetting.first().unwrap_or(f64::NAN);
-            row.extend([drops.drops().len() as f64, largest, first, drops.dripped()]);
-        }
-        for body in 0..self.names.len() {
-            row.extend(self.totals_of(body));
-            row.push(self.heat_from(body));
-        }
-        row
+        self.measured()
+    }
+
+    fn charts(&self) -> Vec<Chart> {
+        self.wetting.as_ref().and_then(|wetting| drop_sizes(wetting.drops())).into_iter().collect()
+    }
+
+    fn surfaces(&self) -> Vec<Surface> {
+        let names = self.names.iter().enumerate();
+        let of = |wetting: &Wetting| {
+            names.map(|(solid, name)| wetting.surface(solid, name, &self.state.temperatures)).collect()
+        };
+        self.wetting.as_ref().map_or_else(Vec::new, of)
     }
 
     fn maps(&self) -> Vec<Map> {
@@ -210,6 +159,7 @@ impl Model for Dew {
         let (shown, state, drops): (f64, State, Option<WettingState>) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         if state.held_heat.len() != self.state.held_heat.len()
+            || state.heat_flow.len() != self.state.heat_flow.len()
             || state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
         {

@@ -6,7 +6,7 @@ use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, WATER_DENSITY};
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::room::{Face, Inflow, Room};
-use crate::settings::{Condensation, Mean, Settings, WallTreatment};
+use crate::settings::{Condensation, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::{Body, Material, Surface};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Axis;
@@ -60,11 +60,6 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
              \"mass-fraction\" (in the scheme \"paper\" it must be said, everything else there is as patented)",
         );
     }
-    if scene.low_utility.is_some() {
-        return refuse(
-            "dew.low_utility: this version computes all air and cannot take any out; leave [dew.low_utility] out",
-        );
-    }
     let mut faces = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis).map(|face| (axis, face)));
     if faces.clone().any(|(_, face)| *face == written::Face::Open) {
         return refuse(
@@ -73,6 +68,12 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
         );
     }
     let leaves = faces.clone().any(|(_, face)| *face == written::Face::Outflow);
+    if scene.low_utility.is_some() && !leaves {
+        return refuse(
+            "dew.low_utility: air can leave nowhere, and what is taken out would leave a hole; make a side \"outflow\", or leave \
+             [dew.low_utility] out",
+        );
+    }
     let slanting = |(axis, face): (Axis, &written::Face)| match face {
         written::Face::Inflow(inflow) => {
             (0..3).any(|across| across != axis.index() && inflow.velocity_m_per_s[across] != 0.0)
@@ -183,7 +184,8 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
             written::Mean::Arithmetic => Mean::Arithmetic,
         },
         condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
-        gravity: scene.gravity_m_per_s2,
+        gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
+        low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
         faster: scene.time_factor,
         threshold: scene.boundary.colour_threshold,
         ..Settings::new(scene.spacing_m, start.temperature, start.mass_fraction())
@@ -214,7 +216,8 @@ fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies
     let of_solids = bodies.iter().flat_map(|body| body.temperature.rows().iter().map(|row| row[1] + ZERO_CELSIUS));
     let temperatures = of_solids.chain(inlets.clone().map(|inflow| inflow.temperature));
     let contrast = temperatures.map(|other| (other / start.temperature - 1.0).abs()).fold(0.0, f64::max);
-    let fall: f64 = (0..3).map(|axis| scene.gravity_m_per_s2[axis].abs() * scene.size_m[axis]).sum();
+    let gravity = if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] };
+    let fall: f64 = (0..3).map(|axis| gravity[axis].abs() * scene.size_m[axis]).sum();
     inlets.map(|inflow| inflow.speed).fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
 }
 
@@ -270,10 +273,13 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
     }
     if scene.time_factor != 1.0 {
         warnings.push(format!(
-            "time_factor: heat, vapour and phase change go {} times faster than in reality, while air and drops move at their own \
-             pace",
+            "time_factor: heat, vapour and phase change go {0} times faster than in reality, while air and drops move at their own \
+             pace: flows of heat and rates of condensation are {0} times those in reality",
             scene.time_factor
         ));
+    }
+    if !scene.buoyancy && scene.gravity_m_per_s2 != [0.0; 3] {
+        warnings.push("buoyancy = false: air neither rises nor sinks, only drops feel gravity".into());
     }
     if scene.boundary.treatment == Treatment::None {
         warnings.push("dew.boundary.treatment = \"none\": nothing keeps the air out of the solids".into());

@@ -61,6 +61,15 @@ pub enum Condensation {
     Parcel,
 }
 
+/// Air that no longer matters (patent CN106650064B): it only moves, and after a while it is taken out.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LowUtility {
+    /// Air farther than this from all solids that keeps receding is of low utility, smoothing lengths.
+    pub distance: f64,
+    /// It is taken out when it was of low utility for longer than this, s.
+    pub after: f64,
+}
+
 /// What can be chosen of how the model works.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
@@ -84,6 +93,8 @@ pub struct Settings {
     pub body_acceleration: [f64; 3],
     /// Factor on all transport of heat and vapour: accelerated time.
     pub faster: f64,
+    /// Air that no longer matters; none: all air matters.
+    pub low_utility: Option<LowUtility>,
     /// Time step over the time in which sound crosses a smoothing length.
     pub cfl: f64,
     /// Colour gradient over the spacing above which a solid's particle is a boundary particle.
@@ -106,6 +117,7 @@ impl Settings {
             ambient_vapour,
             body_acceleration: [0.0; 3],
             faster: 1.0,
+            low_utility: None,
             cfl: 0.25,
             threshold: crate::solids::THRESHOLD,
             kappa: 1.0,

@@ -107,12 +107,16 @@ impl Push<'_> {
     }
 
     /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): a
-    /// pressure that is the same everywhere moves nothing. Particles spread from it as from each other.
+    /// pressure that is the same everywhere moves nothing. Air that comes against the wall at u is held up by rho c u (Joukowsky
+    /// 1898: the pressure with which a rigid wall stops it). Particles spread from it as from each other.
     fn press(&self, near: &Near, rates: &mut Rates) {
         let Scale { kernels, to_gradient, .. } = *self.scale;
         let slope = 2.0 * self.kappa * to_gradient;
         let spread = self.along(self.pushing, near, |r, volume| slope * volume * kernels.spiky_slope(r));
-        let pressure = self.air.density * self.column(near).pressure;
+        let own = self.column(near);
+        let crowding = spread.iter().map(|along| along * along).sum::<f64>().sqrt();
+        let inward = -(0..3).map(|axis| own.velocity[axis] * spread[axis]).sum::<f64>() / crowding.max(1e-30);
+        let pressure = self.air.density * own.pressure + self.air.sound_speed * inward.max(0.0);
         rates.spread = spread;
         rates.acceleration = spread.map(|along| pressure * along);
     }

@@ -5,7 +5,8 @@
 
 use crate::dew::Dew;
 use crate::drops::{DropLaws, DropState, Drops, Portion, Share, Site};
-use corpuscle_model::{Column, ExactSum, ParticleSet, Values};
+use crate::fogging::{Fogging, Story, open_area};
+use corpuscle_model::{Column, ExactSum, ParticleSet, SolidShape, Surface, Values};
 use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -23,8 +24,10 @@ pub(crate) struct Wetting {
     portions: Vec<Portion>,
     /// When they last moved, s.
     since: f64,
-    /// When the first drop was seen, s.
-    first: Option<f64>,
+    /// What was seen so far.
+    fogging: Fogging,
+    /// Area of each solid on which water can condense, m2.
+    open_areas: Vec<f64>,
 }
 
 /// What of it changes.
@@ -32,12 +35,21 @@ pub(crate) struct Wetting {
 pub(crate) struct WettingState {
     drops: DropState,
     since: f64,
-    first: Option<f64>,
+    fogging: Fogging,
 }
 
 impl Wetting {
     fn new(drops: Drops, particles: Vec<u32>) -> Self {
-        let mut wetting = Self { drops, particles, shares: Vec::new(), portions: Vec::new(), since: 0.0, first: None };
+        let solids = drops.solids().len();
+        let mut wetting = Self {
+            fogging: Fogging::new(particles.len(), solids),
+            open_areas: (0..solids).map(|solid| open_area(drops.sites(), solid)).collect(),
+            drops,
+            particles,
+            shares: Vec::new(),
+            portions: Vec::new(),
+            since: 0.0,
+        };
         wetting.share();
         wetting
     }
@@ -51,9 +63,14 @@ impl Wetting {
         &self.drops
     }
 
-    /// When the first drop was seen, s.
-    pub fn first(&self) -> Option<f64> {
-        self.first
+    /// What was seen of each solid.
+    pub fn stories(&self) -> &[Story] {
+        &self.fogging.stories
+    }
+
+    /// Area of a solid on which water can condense, m2.
+    pub fn open_area(&self, solid: usize) -> f64 {
+        self.open_areas[solid]
     }
 
     /// The drops take over what condensed on and evaporated from the boundary particles, and move up to `time`. Gives the water
@@ -66,12 +83,11 @@ impl Wetting {
             self.drops.condense(site, mass);
         }
         let before = self.drops.dripped();
-        self.drops.advance(time - self.since);
+        let step = time - self.since;
+        self.drops.advance(step);
         self.since = time;
-        if self.first.is_none() && !self.drops.drops().is_empty() {
-            self.first = Some(time);
-        }
         self.share();
+        self.fogging.see(&self.drops, &self.shares, time, step);
         for (&particle, share) in self.particles.iter().zip(&self.shares) {
             water_on[particle as usize] = share.water;
         }
@@ -85,18 +101,51 @@ impl Wetting {
     }
 
     pub fn state(&self) -> WettingState {
-        WettingState { drops: self.drops.state(), since: self.since, first: self.first }
+        WettingState { drops: self.drops.state(), since: self.since, fogging: self.fogging.clone() }
     }
 
     /// Takes back a state; false where it belongs to other solids.
     pub fn restore(&mut self, state: WettingState) -> bool {
-        if state.drops.film.len() != self.particles.len() {
+        let fits = state.drops.film.len() == self.particles.len()
+            && state.fogging.spots.len() == self.particles.len()
+            && state.fogging.stories.len() == self.open_areas.len();
+        if !fits {
             return false;
         }
         self.drops.restore(state.drops);
-        (self.since, self.first) = (state.since, state.first);
+        (self.since, self.fogging) = (state.since, state.fogging);
         self.share();
         true
+    }
+
+    /// The surface of a solid: where and since when it is wet. `temperatures` are those of the solids' particles, K.
+    pub fn surface(&self, solid: usize, name: &str, temperatures: &[f64]) -> Surface {
+        let sites = self.drops.sites();
+        let of_solid: Vec<usize> = (0..sites.len()).filter(|&site| sites[site].solid as usize == solid).collect();
+        let column = |name, unit, of: &dyn Fn(usize) -> f64| Column {
+            name,
+            unit,
+            values: Values::Scalar(of_solid.iter().map(|&site| of(site)).collect()),
+        };
+        let area = |site: usize| (2.0 * sites[site].half_width).powi(2);
+        let spot = |site: usize| self.fogging.spots[site];
+        let shape = self.drops.solids()[solid].clone();
+        Surface {
+            name: name.into(),
+            position: of_solid.iter().map(|&site| sites[site].position).collect(),
+            normal: of_solid.iter().map(|&site| sites[site].normal).collect(),
+            half_width: of_solid.iter().map(|&site| sites[site].half_width).collect(),
+            columns: vec![
+                column("water_kg_per_m2", "kg/m2", &|site| self.shares[site].water / area(site)),
+                // Where a drop ends within a patch the patch may seem more than covered.
+                column("covered_part", "", &|site| (self.shares[site].covered / area(site)).min(1.0)),
+                column("most_water_kg_per_m2", "kg/m2", &|site| spot(site).most_water / area(site)),
+                column("first_drop_at_s", "s", &|site| spot(site).first.unwrap_or(f64::NAN)),
+                column("wet_for_s", "s", &|site| spot(site).wet_for),
+                column("temperature_k", "K", &|site| temperatures[self.particles[site] as usize]),
+            ],
+            shape: SolidShape { bounds: shape.bounds(), distance: Arc::new(move |place| shape.signed_distance(place)) },
+        }
     }
 
     /// The drops as particles: middle and radius of the disk that each covers.
@@ -131,6 +180,12 @@ impl Wetting {
     }
 }
 
+/// Area of a plane for each particle of the layer below it, m2. At an edge a particle stands for more; the sides of a solid that the
+/// room cuts would count too.
+fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
+    spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
+}
+
 impl Dew {
     /// From here on water on the solids forms drops. `solids` are the bodies, in order.
     pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, seed: u64) {
@@ -146,7 +201,7 @@ impl Dew {
                 solid: particle.body,
                 position: [0, 1, 2].map(foot),
                 normal: nearest.normal,
-                half_width: 0.5 * particle.area.sqrt(),
+                half_width: 0.5 * particle.area.min(area_in_cell(nearest.normal, self.scale.spacing)).sqrt(),
             });
         }
         let drops = Drops::new(laws, solids, sites, [self.room.low, self.room.high], seed);

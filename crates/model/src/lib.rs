@@ -9,6 +9,7 @@ mod gauge;
 mod ledger;
 mod map;
 mod path;
+mod surface;
 
 pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
 pub use container::Container;
@@ -17,6 +18,7 @@ pub use gauge::GaugeColumn;
 pub use ledger::{Account, Balance, ExactSum, Ledger};
 pub use map::Map;
 pub use path::Path;
+pub use surface::{Distance, SolidShape, Surface};
 
 use std::sync::atomic::AtomicBool;
 
@@ -88,6 +90,11 @@ pub trait Model: Send {
 
     /// The ways of the particles that are followed, up to the time shown. Empty where none is.
     fn paths(&self) -> Vec<Path> {
+        Vec::new()
+    }
+
+    /// The surfaces of solids, as they stand now. Empty for a model without solids.
+    fn surfaces(&self) -> Vec<Surface> {
         Vec::new()
     }
 

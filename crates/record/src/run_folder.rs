@@ -2,12 +2,12 @@
 
 use crate::charts::{write_chart, write_paths};
 use crate::checkpoint::{Progress, checksum};
-use crate::frames::{FrameFormat, write_pvd};
+use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
 use crate::maps::{self, SNAPSHOT};
-use crate::whole::write_bytes;
+use crate::whole::{write_bytes, write_whole};
 use crate::{Clock, RecordError, Summary, write_extent};
-use corpuscle_model::{Chart, Frame, GaugeColumn, Map};
+use corpuscle_model::{Chart, Frame, GaugeColumn, Map, Surface};
 use corpuscle_terrain::Terrain;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -177,6 +177,22 @@ impl RunFolder {
             Some(depth) => write_extent(&folder.join("extent.geojson"), terrain, &depth.values),
             None => Ok(()),
         }
+    }
+
+    /// Writes what is known of the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
+    /// writes none.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_surfaces(&self, surfaces: &[Surface]) -> Result<(), RecordError> {
+        if surfaces.is_empty() {
+            return Ok(());
+        }
+        let folder = self.subfolder("maps")?;
+        surfaces.iter().try_for_each(|surface| {
+            let name = format!("{}.vtp", surface.name.replace(' ', "_"));
+            write_whole(&folder.join(name), |file| write_surface(file, surface))
+        })
     }
 
     /// Writes charts as tables, `charts/NAME.csv`, and paths, `path.csv`. A model without them writes none.

@@ -24,6 +24,9 @@ pub struct Dew {
     /// Acceleration of gravity, m/s2; a scene is tilted by turning it.
     #[serde(default = "downward")]
     pub gravity_m_per_s2: [f64; 3],
+    /// Whether air rises and sinks by its warmth and vapour; drops feel gravity in any case.
+    #[serde(default = "yes")]
+    pub buoyancy: bool,
     /// Heat, vapour and phase change go this many times faster than in reality, at least 1.
     #[serde(default = "one")]
     pub time_factor: f64,
@@ -50,6 +53,10 @@ pub struct Dew {
     /// The solids.
     #[serde(default)]
     pub solid: Vec<Solid>,
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn one() -> f64 {

@@ -211,6 +211,7 @@ fn full_dew() -> Scene {
         spacing_m: 1.0,
         scheme: dew::Scheme::Paper,
         gravity_m_per_s2: [0.0; 3],
+        buoyancy: true,
         time_factor: 1.0,
         air,
         faces: Faces { x_min: inflow, ..Faces::default() },

@@ -32,12 +32,14 @@ pub struct Particle {
 /// Whether a parcel is in the room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
-    /// In the room.
+    /// In the room, and taking part in everything.
     Inside,
     /// Before an inlet, on its way in: axis and side of the face.
     Coming(u8, u8),
     /// Beyond an outlet, on its way off: axis and side of the face.
     Leaving(u8, u8),
+    /// In the room, but of low utility: it only moves on. The ledger has it as gone.
+    Idle,
 }
 
 impl Particle {
@@ -56,6 +58,13 @@ impl Particle {
             role: Role::Inside,
             idle: 0.0,
         }
+    }
+
+    /// Goes on beyond an outlet, along its axis at a velocity, m/s, but outwards and at a speed of at least `slowest`.
+    pub fn leave(&mut self, axis: usize, side: usize, along: f64, slowest: f64) {
+        let outward = [-1.0, 1.0][side];
+        self.role = Role::Leaving(axis as u8, side as u8);
+        self.velocity[axis] = outward * (outward * along).max(slowest);
     }
 
     /// Square of the speed, m2/s2.

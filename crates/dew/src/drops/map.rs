@@ -1,6 +1,5 @@
 //! Where the water is, patch by patch.
 
-use super::grid::Grid;
 use super::{Drop, Drops, distance2, dot};
 use std::f64::consts::PI;
 
@@ -36,11 +35,9 @@ impl Drops {
 
     /// What each drop has on each site, drop by drop.
     pub fn portions(&self) -> Vec<Portion> {
-        let reach: Vec<f64> = self.sites.iter().map(|site| site.half_width * 2_f64.sqrt()).collect();
-        let grid = Grid::new(self.sites.iter().map(|site| site.position), &reach);
         let mut portions = Vec::new();
         for (number, drop) in self.state.drops.iter().enumerate() {
-            let under = self.sites_under(&grid, drop);
+            let under = self.sites_under(drop);
             let area = |site: usize| self.sites[site].half_width.powi(2);
             let all: f64 = under.iter().map(|&site| area(site)).sum();
             let covered = PI * self.covered_radius(drop).powi(2);
@@ -79,7 +76,7 @@ impl Drops {
     }
 
     /// The sites whose middle a drop covers, or the nearest.
-    fn sites_under(&self, grid: &Grid, drop: &Drop) -> Vec<usize> {
+    fn sites_under(&self, drop: &Drop) -> Vec<usize> {
         let covered = self.covered_radius(drop);
         let is_below = |site: usize| {
             let site = &self.sites[site];
@@ -87,9 +84,9 @@ impl Drops {
         };
         let away = |site: usize| distance2(self.sites[site].position, drop.position);
         let mut near = Vec::new();
-        grid.near(drop.position, covered, 0.0, |site| near.push(site));
+        self.site_grid.near(drop.position, covered, 0.0, |site| near.push(site));
         // Cells that share a bucket give sites that are far, and sites twice.
-        let reach = |site: usize| covered + self.sites[site].half_width * 2_f64.sqrt();
+        let reach = |site: usize| covered + self.sites[site].reach();
         near.retain(|&site| is_below(site) && away(site) < reach(site).powi(2));
         near.sort_unstable();
         near.dedup();

@@ -61,6 +61,7 @@ impl Drops {
             let drop = if members[at] == 1 { parts[at] } else { self.united(&parts[largest[at]], sums[at]) };
             self.state.drops.push(drop);
         }
+        self.state.merged += (parts.len() - self.state.drops.len()) as u64;
     }
 
     fn united(&self, largest: &Drop, (mass, place, momentum): (f64, [f64; 3], [f64; 3])) -> Drop {

@@ -41,6 +41,9 @@ pub struct DropLaws {
     pub density: f64,
 }
 
+/// How often a place of a site is looked for.
+const TRIES: u32 = 30;
+
 /// Density of water at 20 °C, kg/m3 (IAPWS-95 at 1 atm).
 pub const WATER_DENSITY: f64 = 998.2;
 
@@ -55,6 +58,13 @@ pub struct Site {
     pub normal: [f64; 3],
     /// Half the side of the patch, m.
     pub half_width: f64,
+}
+
+impl Site {
+    /// How far its corners are, m.
+    fn reach(&self) -> f64 {
+        self.half_width * 2_f64.sqrt()
+    }
 }
 
 /// A drop.
@@ -85,6 +95,8 @@ pub struct DropState {
     pub dripped: ExactSum,
     /// Number of drops that left.
     pub dripped_count: u64,
+    /// Number of drops that became part of others.
+    pub merged: u64,
     /// Drops that there ever were.
     next_id: u64,
     /// Random numbers used.
@@ -98,6 +110,8 @@ pub struct Drops {
     cap: Cap,
     solids: Arc<[Solid]>,
     sites: Vec<Site>,
+    /// The sites by place.
+    site_grid: Grid,
     /// Smallest and largest coordinates that a drop can have; beyond it has left.
     room: [[f64; 3]; 2],
     random: ChaCha8Rng,
@@ -112,12 +126,24 @@ impl Drops {
     pub fn new(laws: DropLaws, solids: Arc<[Solid]>, sites: Vec<Site>, room: [[f64; 3]; 2], seed: u64) -> Self {
         let state = DropState { film: vec![0.0; sites.len()], ..DropState::default() };
         let (cap, random) = (Cap::new(laws.contact_angle), ChaCha8Rng::seed_from_u64(seed));
-        Self { laws, cap, solids, sites, room, random, state, grid: Grid::default(), reach: Vec::new() }
+        let reach: Vec<f64> = sites.iter().map(Site::reach).collect();
+        let site_grid = Grid::new(sites.iter().map(|site| site.position), &reach);
+        Self { laws, cap, solids, sites, site_grid, room, random, state, grid: Grid::default(), reach: Vec::new() }
     }
 
     /// The drops.
     pub fn drops(&self) -> &[Drop] {
         &self.state.drops
+    }
+
+    /// The solids that they are on.
+    pub fn solids(&self) -> &[Solid] {
+        &self.solids
+    }
+
+    /// The patches on which water condenses.
+    pub fn sites(&self) -> &[Site] {
+        &self.sites
     }
 
     /// Adds a drop of this mass (kg) on a solid, with its middle at the point of the surface nearest to `position`.
@@ -166,6 +192,11 @@ impl Drops {
         self.state.dripped.value()
     }
 
+    /// Number of drops that became part of others.
+    pub fn merged(&self) -> u64 {
+        self.state.merged
+    }
+
     /// What changes, between two calls of [`Drops::advance`] and before anything condenses or evaporates.
     pub fn state(&self) -> DropState {
         DropState { drawn: self.random.get_word_pos() as u64, ..self.state.clone() }
@@ -211,12 +242,35 @@ impl Drops {
         self.laws.density * self.cap.volume(self.laws.smallest_radius)
     }
 
-    /// Any place of a site.
+    /// Any place of a site: nearer to it than to others, and in the room.
     fn place_in(&mut self, site: usize) -> [f64; 3] {
         let Site { position, normal, half_width, .. } = self.sites[site];
         let [one, other] = across(normal);
-        let steps = [(); 2].map(|()| half_width * self.random.random_range(-1.0..1.0));
-        std::array::from_fn(|axis| position[axis] + steps[0] * one[axis] + steps[1] * other[axis])
+        for _ in 0..TRIES {
+            let steps = [(); 2].map(|()| half_width * self.random.random_range(-1.0..1.0));
+            let place = std::array::from_fn(|axis| position[axis] + steps[0] * one[axis] + steps[1] * other[axis]);
+            if self.is_in_room(place) && self.is_nearest(site, place) {
+                return place;
+            }
+        }
+        position
+    }
+
+    fn is_in_room(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&place[axis]))
+    }
+
+    /// Whether no other site that faces alike is nearer to a place: where patches overlap, no more begins than elsewhere.
+    fn is_nearest(&self, site: usize, place: [f64; 3]) -> bool {
+        let Site { solid, normal, position, .. } = self.sites[site];
+        let away = distance2(position, place);
+        let mut nearest = true;
+        self.site_grid.near(place, 0.0, 0.0, |at| {
+            let other = &self.sites[at];
+            nearest &=
+                other.solid != solid || dot(other.normal, normal) < 0.5 || distance2(other.position, place) >= away;
+        });
+        nearest
     }
 
     /// The largest of the drops that cover a place of a site.

@@ -89,8 +89,7 @@ impl Drops {
         let solid = in_the_way.unwrap_or(drop.solid);
         let (position, normal) = self.foot(solid, ahead);
         let bends_away = dot(drop.normal, normal) < SHARPEST_BEND && dot(velocity, normal) > 0.0;
-        let is_out = (0..3).any(|axis| !(self.room[0][axis]..=self.room[1][axis]).contains(&position[axis]));
-        if bends_away || is_out {
+        if bends_away || !self.is_in_room(position) {
             return None;
         }
         Some(Drop { solid, position, normal, velocity: without(velocity, normal), ..drop })

@@ -2,7 +2,7 @@
 
 use super::{Searched, Solids};
 use crate::air::Scale;
-use crate::room::Room;
+use crate::room::{Face, Room};
 use rayon::prelude::*;
 
 /// A gradient of the colour larger than this over the spacing is a boundary's; on a plane it is about 0.5.
@@ -23,7 +23,9 @@ impl Solids {
                 }
             }
             let steepness = gradient.iter().map(|along| along * along).sum::<f64>().sqrt();
-            (steepness * scale.spacing > threshold).then(|| gradient.map(|along| -along / steepness))
+            let is_steep = steepness * scale.spacing > threshold;
+            let normal = is_steep.then(|| gradient.map(|along| -along / steepness))?;
+            within_open_faces(normal, position, room, scale.spacing)
         };
         let normals: Vec<_> = self.particles.par_iter().map(|particle| normal(particle.position)).collect();
         self.particles.iter_mut().zip(normals).for_each(|(particle, normal)| particle.normal = normal);
@@ -34,10 +36,25 @@ impl Solids {
     }
 }
 
+/// A solid's end in a face that air passes is no surface: no air is beyond it. Gives the normal without what points out there; none
+/// where little is left.
+fn within_open_faces(mut normal: [f64; 3], position: [f64; 3], room: &Room, spacing: f64) -> Option<[f64; 3]> {
+    for axis in 0..3 {
+        let outside = position[axis] + spacing * normal[axis].signum();
+        let side = usize::from(normal[axis] > 0.0);
+        let is_beyond = outside < room.low[axis] || outside >= room.high[axis];
+        let is_inside = (room.low[axis]..room.high[axis]).contains(&position[axis]);
+        if is_beyond && is_inside && matches!(room.faces[axis][side], Face::Inlet(_) | Face::Outlet) {
+            normal[axis] = 0.0;
+        }
+    }
+    let length = normal.iter().map(|along| along * along).sum::<f64>().sqrt();
+    (length > 0.5).then(|| normal.map(|along| along / length))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::room::Face;
     use crate::testing::block;
 
     #[test]
@@ -59,5 +76,19 @@ mod tests {
         let edge = solids.particles.iter().find(|particle| particle.position == [9.5, 5.5, 5.5]).unwrap();
         let normal = edge.normal.unwrap();
         assert!((normal[0] - 0.5_f64.sqrt()).abs() < 1e-9 && normal[1].abs() < 1e-9, "{normal:?}");
+    }
+
+    #[test]
+    fn the_end_of_a_block_in_an_open_face_is_no_surface() {
+        let mut faces = [[Face::Wall; 2]; 3];
+        faces[2][0] = Face::Outlet;
+        let room = Room { low: [-20.0, -20.0, 0.0], high: [20.0; 3], faces };
+        let solids = Solids::new(&[block([0.0; 3], [10, 10, 6], 1.0)], &room, &Scale::new(1.0), THRESHOLD);
+        for particle in solids.particles.iter().filter(|particle| particle.position[2] < 1.0) {
+            let [x, y, _] = particle.position;
+            let on_side = [x, 10.0 - x, y, 10.0 - y].iter().any(|&depth| depth < 1.0);
+            assert_eq!(particle.normal.is_some(), on_side, "{particle:?}");
+            assert!(particle.normal.is_none_or(|normal| normal[2].abs() < 1e-9), "{particle:?}");
+        }
     }
 }

@@ -1,7 +1,10 @@
 //! Particle files: one for each frame, and the collection that ParaView opens.
 
 mod csv;
+mod patches;
 mod vtp;
+
+pub(crate) use patches::write as write_surface;
 
 use crate::RecordError;
 use crate::number::Shortest;

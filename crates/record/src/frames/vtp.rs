@@ -39,9 +39,7 @@ pub(super) fn write(file: &mut impl Write, frame: &Frame) -> io::Result<()> {
     arrays.add(file, "Int64", "connectivity", 1, (0..particles as i64).flat_map(i64::to_le_bytes))?;
     arrays.add(file, "Int64", "offsets", 1, (1..=particles as i64).flat_map(i64::to_le_bytes))?;
     writeln!(file, "      </Verts>\n    </Piece>\n  </PolyData>")?;
-    write!(file, "  <AppendedData encoding=\"base64\">\n   _")?;
-    file.write_all(arrays.encoded.as_bytes())?;
-    writeln!(file, "\n  </AppendedData>\n</VTKFile>")
+    arrays.finish(file)
 }
 
 fn write_field_data(file: &mut impl Write, frame: &Frame) -> io::Result<()> {
@@ -99,13 +97,13 @@ fn own_values(set: &ParticleSet, name: &str, components: usize) -> Vec<f64> {
 
 /// The appended section as it grows.
 #[derive(Default)]
-struct Appended {
+pub(super) struct Appended {
     encoded: String,
 }
 
 impl Appended {
     /// Writes the element of an array and keeps its little-endian `bytes` for the appended section.
-    fn add(
+    pub(super) fn add(
         &mut self,
         file: &mut impl Write,
         kind: &str,
@@ -120,6 +118,13 @@ impl Appended {
              format=\"appended\" offset=\"{offset}\"/>"
         )?;
         self.encode(&bytes.collect::<Vec<u8>>())
+    }
+
+    /// Writes the section and the end of the file.
+    pub(super) fn finish(self, file: &mut impl Write) -> io::Result<()> {
+        write!(file, "  <AppendedData encoding=\"base64\">\n   _")?;
+        file.write_all(self.encoded.as_bytes())?;
+        writeln!(file, "\n  </AppendedData>\n</VTKFile>")
     }
 
     /// Block header (count, block size, size of a short last block, compressed sizes) and blocks, each its own base64.

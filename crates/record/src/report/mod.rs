@@ -5,6 +5,7 @@ mod facts;
 mod figures;
 mod gas;
 mod gauges;
+mod moments;
 mod page;
 mod parts;
 mod snapshots;

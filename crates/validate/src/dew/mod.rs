@@ -1,9 +1,13 @@
 //! Cases of the dew model.
 
 pub(crate) mod bench;
+mod boundaries;
 mod dew_point;
 mod fick;
 mod film;
+mod ledger;
+mod low_utility;
+mod pane;
 mod slide;
 mod two_slabs;
 
@@ -13,7 +17,17 @@ use corpuscle_dew::{Dew, Face, Room};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-pub(crate) const CASES: &[Case] = &[dew_point::DEW_POINT, two_slabs::TWO_SLABS, fick::FICK, film::FILM, slide::SLIDE];
+pub(crate) const CASES: &[Case] = &[
+    dew_point::DEW_POINT,
+    two_slabs::TWO_SLABS,
+    fick::FICK,
+    film::FILM,
+    ledger::LEDGER,
+    boundaries::BOUNDARIES,
+    slide::SLIDE,
+    low_utility::CASE,
+    pane::PANE,
+];
 
 /// Moves air on to a time.
 fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {

@@ -22,7 +22,7 @@ impl Balls {
             Key::Speed { most, unit } => draw_speeds(svg, *most, unit, [left, top]),
         };
         if let Some(scale) = scale {
-            draw_scale_bar(svg, scale, self.unit, [width - 8.0, top]);
+            scale_bar(svg, scale, self.unit, [width - 8.0, top]);
         }
         self.draw_marks(svg, [left, end + 12.0])
     }
@@ -66,7 +66,12 @@ fn draw_kinds(svg: &mut Svg, kinds: &[(String, super::Colour)], [left, top]: [f6
 fn draw_speeds(svg: &mut Svg, most: f64, unit: &str, [left, top]: [f64; 2]) -> f64 {
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     svg.text([left, top + 12.0], Anchor::Start, "text", &format!("Speed{unit}"));
-    let (from, width) = (left + 40.0 + unit.chars().count() as f64 * SPACE_OF_LETTER + 12.0, 300.0);
+    let from = left + 40.0 + unit.chars().count() as f64 * SPACE_OF_LETTER + 12.0;
+    value_bar(svg, most, [from, top], 300.0)
+}
+
+/// A bar of the colours from 0 to `most`, `width` wide from a place on; gives its lower end.
+pub(crate) fn value_bar(svg: &mut Svg, most: f64, [from, top]: [f64; 2], width: f64) -> f64 {
     let part = width / SHADES as f64;
     for shade in 0..SHADES {
         let colour = hex(of_speed((shade as f64 + 0.5) / SHADES as f64));
@@ -90,8 +95,8 @@ fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [[f64; 2]; 4] {
     [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 }
 
-/// A bar of a round length, ending at `[right, top]`.
-fn draw_scale_bar(svg: &mut Svg, scale: f64, unit: &str, [right, top]: [f64; 2]) {
+/// A bar of a round length, ending at `[right, top]`; `scale` is in CSS pixels for a unit of length.
+pub(crate) fn scale_bar(svg: &mut Svg, scale: f64, unit: &str, [right, top]: [f64; 2]) {
     let length = ticks::step(70.0 / scale, 1);
     let width = length * scale;
     let y = top + 6.0;

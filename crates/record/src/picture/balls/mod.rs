@@ -7,6 +7,7 @@ mod paint;
 mod space;
 
 pub(crate) use colour::{from_hex, of_speed};
+pub(crate) use key::{scale_bar, value_bar};
 
 use super::classes::Colour;
 use super::svg::{Anchor, Figure, Svg};

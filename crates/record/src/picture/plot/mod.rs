@@ -43,7 +43,7 @@ pub(crate) fn plot(chart: &Chart, size: [f64; 2]) -> Figure {
     svg.text([0.0, legend + 10.0], Anchor::Start, "small", &plot.y.label(&chart.y));
     draw_axes(&mut svg, &plot, chart);
     for (number, series) in chart.series.iter().enumerate() {
-        draw_series(&mut svg, &plot, series, number);
+        draw_series(&mut svg, &plot, series, number, chart.x.logarithmic);
     }
     svg.finish(size, &format!("Chart: {} {}", chart.title, chart.note))
 }
@@ -91,8 +91,10 @@ fn corners([left, top]: [f64; 2], [right, bottom]: [f64; 2]) -> [[f64; 2]; 4] {
 fn lay_out(chart: &Chart, top: f64, [width, height]: [f64; 2]) -> Plot {
     let bars = chart.series.iter().any(|series| series.style == ChartStyle::Bars);
     let xs = |series: &ChartSeries| {
-        let half = if series.style == ChartStyle::Bars { 0.5 * bar_width(series) } else { 0.0 };
-        let of = move |point: &[f64; 2]| [point[0] - half, point[0] + half];
+        let is_bars = series.style == ChartStyle::Bars;
+        let of = move |point: &[f64; 2]| {
+            if is_bars { bar(series, point[0], chart.x.logarithmic) } else { [point[0]; 2] }
+        };
         series.points.iter().flat_map(of).collect::<Vec<_>>()
     };
     let shown = |value: &f64, logarithmic: bool| value.is_finite() && (!logarithmic || *value > 0.0);
@@ -116,10 +118,19 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
-fn bar_width(series: &ChartSeries) -> f64 {
-    match series.points[..] {
-        [first, second, ..] => second[0] - first[0],
-        _ => 1.0,
+/// Where a bar begins and ends; on a logarithmic axis all are of one ratio.
+fn bar(series: &ChartSeries, middle: f64, logarithmic: bool) -> [f64; 2] {
+    let [first, second] = match series.points[..] {
+        [first, second, ..] => [first[0], second[0]],
+        _ if logarithmic => [1.0, 2.0],
+        _ => [0.0, 1.0],
+    };
+    if logarithmic {
+        let half = (second / first).sqrt();
+        [middle / half, middle * half]
+    } else {
+        let half = 0.5 * (second - first);
+        [middle - half, middle + half]
     }
 }
 
@@ -140,7 +151,7 @@ fn draw_axes(svg: &mut Svg, plot: &Plot, chart: &Chart) {
     svg.text([right, bottom + 35.0], Anchor::End, "small", &plot.x.label(&chart.x));
 }
 
-fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize) {
+fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize, logarithmic: bool) {
     let (class, style) = look(series, number);
     match series.style {
         ChartStyle::Line | ChartStyle::Dashes => {
@@ -151,7 +162,7 @@ fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize) 
                 svg.styled_circle(place, if series.points.len() > 60 { 2.0 } else { 3.2 }, &class, &style);
             }
         }
-        ChartStyle::Bars => draw_bars(svg, plot, series, (&class, &style)),
+        ChartStyle::Bars => draw_bars(svg, plot, series, logarithmic, (&class, &style)),
     }
     for (point, error) in series.points.iter().zip(&series.errors).filter(|(_, error)| **error > 0.0) {
         let [high, low] = [point[1] + error, point[1] - error].map(|y| plot.place([point[0], y]));
@@ -163,11 +174,14 @@ fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize) 
     }
 }
 
-fn draw_bars(svg: &mut Svg, plot: &Plot, series: &ChartSeries, (class, style): (&str, &str)) {
-    let half = 0.5 * bar_width(series);
+fn draw_bars(svg: &mut Svg, plot: &Plot, series: &ChartSeries, logarithmic: bool, (class, style): (&str, &str)) {
     for point in series.points.iter().filter(|point| point[1].is_finite() && point[1] != 0.0) {
-        let [left, top] = plot.place([point[0] - half, point[1]]);
-        let [right, _] = plot.place([point[0] + half, point[1]]);
+        let [from, to] = bar(series, point[0], logarithmic);
+        let [left, top] = plot.place([from, point[1]]);
+        let [right, _] = plot.place([to, point[1]]);
+        if !(left.is_finite() && right.is_finite() && top.is_finite()) {
+            continue;
+        }
         // A hair of space between bars.
         let gap = if right - left > 4.0 { 0.5 } else { 0.0 };
         svg.styled_path(corners([left + gap, top], [right - gap, plot.base()]), true, class, style);

@@ -13,11 +13,12 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
     let of_solids = |quantity: &str| -> Vec<(String, &str)> {
         dew.solid.iter().map(|solid| (format!("{}.{quantity}", solid.name), solid.name.as_str())).collect()
     };
-    let kinds: [Kind<'_>; 7] = [
-        ("covered_area", "Area that drops cover", "mm²", 1e6, one("solids.covered_area_m2")),
+    let kinds: [Kind<'_>; 8] = [
+        ("covered", "Part of the surface that drops cover", "%", 1e2, of_solids("covered_part")),
+        ("water_per_area", "Water on the solids", "g/m²", 1e3, of_solids("water_per_area_kg_per_m2")),
         ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
         ("largest_drop", "Radius of the largest drop", "mm", 1e3, one("drops.largest_radius_m")),
-        ("water_on_solids", "Water on the solids", "mg", 1e6, of_solids("water_kg")),
+        ("heat_flow", "Heat that the solids take from the air", "W", 1.0, of_solids("heat_flow_W")),
         ("water_left", "Water that ran off", "mg", 1e6, one("drops.left_kg")),
         ("heat_given", "Heat that held solids gave", "J", 1.0, of_solids("heat_given_J")),
         ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_solids("mean_temperature_K")),
@@ -58,9 +59,9 @@ mod tests {
         let text = "run.until_s = 1\n[dew]\nsize_m = [1, 1, 1]\nspacing_m = 0.1\nair = { temperature_c = 20, dew_point_c = 9 }";
         let scene = Scene::parse(text, "test", &[]).unwrap();
         let table = GaugeTable {
-            columns: ["solids.covered_area_m2", "drops.number"].map(String::from).to_vec(),
+            columns: ["drops.number", "drops.left_kg"].map(String::from).to_vec(),
             times: vec![0.0, 1.0],
-            rows: vec![vec![0.0, 3.0], vec![2e-6, 3.0]],
+            rows: vec![vec![3.0, 0.0], vec![3.0, 2e-6]],
         };
         let charts = over_time(&table, scene.dew().unwrap());
         assert_eq!(charts.len(), 1);

@@ -11,7 +11,7 @@ pub(super) fn time(value: f64) -> String {
 }
 
 /// The handful of numbers that come first.
-pub(super) fn key_figures(table: &GaugeTable, summary: &Summary) -> Vec<KeyFigure> {
+pub(super) fn key_figures(table: &GaugeTable, summary: &Summary, dew: &Dew) -> Vec<KeyFigure> {
     let last = |header: &str| table.column(header).and_then(|values| values.last().copied()).unwrap_or(f64::NAN);
     let first = last("drops.first_at_s");
     let figure = |label, value: String, remark: &str| KeyFigure { label, value, remark: remark.into() };
@@ -23,6 +23,12 @@ pub(super) fn key_figures(table: &GaugeTable, summary: &Summary) -> Vec<KeyFigur
         figure("Covered", format!("{} mm²", number(1e6 * last("solids.covered_area_m2"))), "by drops, at the end"),
         figure("On the solids", format!("{} mg", number(1e6 * last("water.on_solids_kg"))), "water, at the end"),
     ];
+    // Of the solid that was clear again last.
+    let cleared = dew.solid.iter().map(|solid| (solid, last(&format!("{}.clear_at_s", solid.name))));
+    if let Some((solid, at)) = cleared.filter(|(_, at)| at.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1)) {
+        let took = last(&format!("{}.time_to_clear_s", solid.name));
+        figures.push(figure("Clear again", time(at), &format!("{}, {} after it was wettest", solid.name, time(took))));
+    }
     if let Some(water) = summary.ledger.get("water_kg") {
         figures.push(figure("Water error", number(water.relative_error.abs()), "relative"));
     }

@@ -4,8 +4,8 @@ mod charts;
 mod facts;
 mod picture;
 
-use super::{folder_name, parts, title_or_folder};
-use crate::picture::{Figure, plot, svg_to_png};
+use super::{folder_name, moments, parts, title_or_folder};
+use crate::picture::{Figure, plot, svg_to_png, svg_url};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
 use corpuscle_model::Model;
@@ -24,6 +24,18 @@ pub struct DewReport<'a> {
     model: &'a dyn Model,
 }
 
+/// Figures with the names of their files.
+type Figures = Vec<(String, Figure)>;
+
+/// What is drawn for the report.
+struct Drawn {
+    drops: Option<Figure>,
+    maps: Figures,
+    charts: Figures,
+    /// Pictures of moments, as SVG files.
+    moments: Vec<Vec<u8>>,
+}
+
 impl<'a> DewReport<'a> {
     /// The report of a run into `folder`. `model` shows the time of the picture.
     ///
@@ -32,6 +44,23 @@ impl<'a> DewReport<'a> {
     pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, RecordError> {
         let no_dew = || RecordError::content(&folder.join("scene.toml"), "it is not the scene of dew");
         Ok(Self { folder, scene, dew: scene.dew().ok_or_else(no_dew)?, model })
+    }
+
+    /// Draws the solids and drops at the time shown, if this is one of the moments that the report will show:
+    /// `pictures/frame_NNNNNN.svg`, with the number of the particle file.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
+    pub fn write_moment(&self) -> Result<(), RecordError> {
+        let number = moments::frame_number(self.model.time(), self.scene.run.frame_period_s());
+        if !moments::numbers(&self.scene.run).contains(&number) {
+            return Ok(());
+        }
+        let caption = format!("t = {}", facts::time(self.model.time()));
+        let figure = picture::moment(self.model, &caption).map_err(|what| self.drawing(what))?;
+        let Some(figure) = figure else { return Ok(()) };
+        self.make_folder()?;
+        write_bytes(&moments::path(self.folder, number), figure.standalone().as_bytes())
     }
 
     /// Writes `pictures/*.png` and `report.html`.
@@ -43,47 +72,79 @@ impl<'a> DewReport<'a> {
         let scene_path = self.folder.join("scene.toml");
         let scene = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
-        let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
-        let drawing = |what: String| RecordError::content(&pictures, what);
-        let mut figures: Vec<(String, Figure)> =
-            charts::over_time(&table, self.dew).iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect();
-        if let Some(drops) = picture::drops(self.dew, self.model) {
-            figures.insert(0, ("drops".into(), drops.figure(None).map_err(drawing)?));
-        }
-        for (name, figure) in &figures {
-            let png = svg_to_png(&figure.with_margin(16.0)).map_err(drawing)?;
-            write_bytes(&pictures.join(format!("{name}.png")), &png)?;
-        }
-        let page = self.page(&summary, &table, &figures, &scene);
+        let drawn = self.draw(&table)?;
+        let page = self.page(&summary, &table, &drawn, &scene);
         write_bytes(&self.folder.join("report.html"), page.as_bytes())
     }
 
-    fn page(&self, summary: &Summary, table: &GaugeTable, figures: &[(String, Figure)], scene: &str) -> String {
+    fn draw(&self, table: &GaugeTable) -> Result<Drawn, RecordError> {
+        self.make_folder()?;
+        let mut charts = charts::over_time(table, self.dew);
+        charts.extend(self.model.charts());
+        let drawn = Drawn {
+            drops: picture::drops(self.model).map_err(|what| self.drawing(what))?,
+            maps: picture::maps(self.model).map_err(|what| self.drawing(what))?,
+            charts: charts.iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect(),
+            moments: moments::read(self.folder, &self.scene.run),
+        };
+        let drops = drawn.drops.iter().map(|figure| ("drops", figure));
+        let others = drawn.maps.iter().chain(&drawn.charts).map(|(name, figure)| (name.as_str(), figure));
+        for (name, figure) in drops.chain(others) {
+            let png = svg_to_png(&figure.with_margin(16.0)).map_err(|what| self.drawing(what))?;
+            write_bytes(&self.folder.join("pictures").join(format!("{name}.png")), &png)?;
+        }
+        Ok(drawn)
+    }
+
+    fn make_folder(&self) -> Result<(), RecordError> {
+        let pictures = self.folder.join("pictures");
+        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))
+    }
+
+    fn drawing(&self, what: String) -> RecordError {
+        RecordError::content(&self.folder.join("pictures"), what)
+    }
+
+    fn page(&self, summary: &Summary, table: &GaugeTable, drawn: &Drawn, scene: &str) -> String {
         let title = title_or_folder(self.scene, self.folder);
-        let (charts, drops): (Vec<_>, Vec<_>) = figures.iter().partition(|(name, _)| name != "drops");
-        let inline = |figures: &[&(String, Figure)]| -> String {
-            figures.iter().map(|(_, figure)| format!("<figure>{}</figure>\n", figure.inline())).collect()
-        };
-        let drops = if drops.is_empty() {
-            String::new()
-        } else {
-            let time = facts::time(self.model.time());
-            format!("<section>\n<h2>The drops at t = {time}, to scale</h2>\n{}</section>\n", inline(&drops))
-        };
-        let charts =
-            format!("<section>\n<h2>Measured</h2>\n<div class=\"pair\">\n{}</div>\n</section>\n", inline(&charts));
-        let beside = "Particles and drops over time, gauges and pictures stand beside this page.";
+        let beside = "Particles and drops over time, gauges, maps of the solids for ParaView and pictures stand beside this page.";
         let sections = [
             parts::header("Condensation report", &title, &self.scene.description),
-            parts::key_figures(&facts::key_figures(table, summary)),
+            parts::key_figures(&facts::key_figures(table, summary, self.dew)),
             parts::warnings(summary),
-            drops,
-            charts,
+            self.drops(drawn),
+            pairs("Where it is wet", &drawn.maps),
+            pairs("Measured", &drawn.charts),
             parts::balance(summary),
             parts::run(&facts::run_facts(self.dew, summary), &folder_name(self.folder), scene),
             parts::footer(summary, &facts::time(summary.simulated_time_s), beside),
         ];
         parts::document(&format!("{title} – condensation report"), "", &sections.concat())
     }
+
+    fn drops(&self, drawn: &Drawn) -> String {
+        let Some(drops) = &drawn.drops else { return String::new() };
+        let image =
+            |svg: &Vec<u8>| format!("<figure><img alt=\"The solids at a moment\" src=\"{}\"></figure>\n", svg_url(svg));
+        let moments: String = drawn.moments.iter().map(image).collect();
+        let moments = if drawn.moments.len() > 1 {
+            format!("<h3>From the start to the end</h3>\n<div class=\"strip\">\n{moments}</div>\n")
+        } else {
+            String::new()
+        };
+        let time = facts::time(self.model.time());
+        format!(
+            "<section>\n<h2>The drops at t = {time}</h2>\n<figure>{}</figure>\n{moments}</section>\n",
+            drops.inline()
+        )
+    }
+}
+
+/// Figures, two in a row; nothing where there are none.
+fn pairs(heading: &str, figures: &Figures) -> String {
+    if figures.is_empty() {
+        return String::new();
+    }
+    let inline: String = figures.iter().map(|(_, figure)| format!("<figure>{}</figure>\n", figure.inline())).collect();
+    format!("<section>\n<h2>{heading}</h2>\n<div class=\"pair\">\n{inline}</div>\n</section>\n")
 }

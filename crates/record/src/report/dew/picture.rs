@@ -1,38 +1,105 @@
-//! The drops as seen from the side to which most of them face, to scale.
+//! Pictures of the solids: the drops on them true to scale, and maps of where they are wet.
 
-use crate::picture::{Balls, Colour, Disc, Key, Side, number};
-use corpuscle_model::{Model, Values};
-use corpuscle_scene::{Axis, Dew, dew::Face};
+use crate::picture::{Cap, Figure, SolidsPicture, Vector, View, number};
+use corpuscle_model::{Model, ParticleSet, Surface, Values};
 
-const WATER: Colour = [0x2f, 0x7e, 0xb8];
+/// Largest width and height of the picture of all solids, of a moment, and of a map, CSS pixels.
+const WHOLE: [f64; 2] = [940.0, 640.0];
+const MOMENT: [f64; 2] = [314.0, 260.0];
+const MAP: [f64; 2] = [470.0, 380.0];
 
-/// The picture; none without drops.
-pub(super) fn drops(dew: &Dew, model: &dyn Model) -> Option<Balls> {
+/// Maps are drawn of no more solids than this, the wettest.
+const MOST_MAPS: usize = 4;
+
+/// Drops at the time that the model shows, on all solids.
+///
+/// # Errors
+/// What cannot be encoded.
+pub(super) fn drops(model: &dyn Model) -> Result<Option<Figure>, String> {
+    let caps = caps(model);
+    let count = number(caps.len() as f64).replace(".00", "").replace(".0", "");
+    let words = format!("{count} drops, true to scale; mist: drops too small to be seen one by one");
+    draw(model, &caps, WHOLE, &words)
+}
+
+/// The same, small, with a caption.
+///
+/// # Errors
+/// What cannot be encoded.
+pub(super) fn moment(model: &dyn Model, caption: &str) -> Result<Option<Figure>, String> {
+    draw(model, &caps(model), MOMENT, caption)
+}
+
+fn draw(model: &dyn Model, caps: &[Cap], most: [f64; 2], caption: &str) -> Result<Option<Figure>, String> {
+    let surfaces = model.surfaces();
+    if surfaces.is_empty() {
+        return Ok(None);
+    }
+    // From where most water ever was seen, so that it stays the same while drops come and go.
+    let view = View::of(&surfaces, |surface| vec![1.0; surface.position.len()]);
+    let picture = SolidsPicture { surfaces: &surfaces, room: room(model), view, most };
+    picture.drops(caps, caption).map(Some)
+}
+
+/// Maps of the solids that were ever wet: name of the file and figure.
+///
+/// # Errors
+/// What cannot be encoded.
+pub(super) fn maps(model: &dyn Model) -> Result<Vec<(String, Figure)>, String> {
+    let mut wet: Vec<(f64, Surface)> =
+        model.surfaces().into_iter().map(|surface| (most_water(&surface), surface)).collect();
+    wet.retain(|(most, _)| *most > 0.0);
+    wet.sort_by(|a, b| b.0.total_cmp(&a.0));
+    wet.truncate(MOST_MAPS);
+    let maps = wet.iter().map(|(_, surface)| maps_of(surface, room(model)));
+    Ok(maps.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
+}
+
+fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<[(String, Figure); 2], String> {
+    let column = |name: &str| surface.scalar(name).unwrap_or_default().to_vec();
+    let most = column("most_water_kg_per_m2");
+    let view = View::square_on(surface, &most);
+    let picture = SolidsPicture { surfaces: std::slice::from_ref(surface), room, view, most: MAP };
+    let name = &surface.name;
+    // Where a solid is clear again the maps tell how wet it was.
+    let water = column("water_kg_per_m2");
+    let is_wet = water.iter().any(|&water| water > 1e-3 * most.iter().copied().fold(0.0, f64::max));
+    let grams = |values: Vec<f64>| values.into_iter().map(|value| 1e3 * value).collect::<Vec<_>>();
+    let [first, second] = if is_wet {
+        [
+            picture.field(&grams(water), &format!("{name}: water, g/m²"))?,
+            picture.field(&column("covered_part"), &format!("{name}: part that drops cover"))?,
+        ]
+    } else {
+        [
+            picture.field(&grams(most), &format!("{name}: the most water that there was, g/m²"))?,
+            picture.field(&column("wet_for_s"), &format!("{name}: for how long it was wet, s"))?,
+        ]
+    };
+    let file = name.replace(' ', "_");
+    Ok([(format!("{file}_water"), first), (format!("{file}_covered"), second)])
+}
+
+fn most_water(surface: &Surface) -> f64 {
+    let most = surface.scalar("most_water_kg_per_m2").unwrap_or_default();
+    most.iter().zip(&surface.half_width).map(|(water, half)| 4.0 * half * half * water).sum()
+}
+
+fn room(model: &dyn Model) -> [Vector; 2] {
+    model.container().map_or([[f64::NEG_INFINITY; 3], [f64::INFINITY; 3]], |room| [room.from, room.to])
+}
+
+fn caps(model: &dyn Model) -> Vec<Cap> {
     let frame = model.frame();
-    let set = frame.sets.iter().find(|set| set.name == "drops" && !set.is_empty())?;
-    let normals = set.columns.iter().find_map(|column| match &column.values {
-        Values::Vector(normals) if column.name == "normal" => Some(normals),
-        _ => None,
-    })?;
-    let facing = |axis: usize| normals.iter().zip(&set.mass).map(|(n, mass)| mass * n[axis].abs()).sum::<f64>();
-    let along = (0..3).max_by(|&a, &b| facing(a).total_cmp(&facing(b)))?;
-    let [right, up] = [[1, 2], [0, 2], [0, 1]][along];
-    let flat = |place: [f64; 3]| [place[right], place[up], 0.0];
-    let corners = [[0.0; 3], flat(dew.size_m)];
-    let disc = |at: usize| Disc { position: flat(set.position[at]), radius: set.radius[at], colour: WATER };
-    let side = |face: &Face| if *face == Face::Wall { Side::Wall } else { Side::Open };
-    let sides = [right, up].map(|axis| dew.faces.along(Axis::ALL[axis]).map(side));
-    Some(Balls {
-        dimensions: 2,
-        from: corners[0],
-        to: corners[1],
-        view: corners,
-        sides: [sides[0], sides[1], [Side::Open; 2]],
-        partition: None,
-        discs: (0..set.len()).map(disc).collect(),
-        way: Vec::new(),
-        followed: None,
-        key: Key::Kinds(vec![(format!("drops: {}", number(set.len() as f64).replace(".0", "")), WATER)]),
-        unit: "m",
-    })
+    frame.sets.iter().find(|set| set.name == "drops").map(caps_of).unwrap_or_default()
+}
+
+fn caps_of(set: &ParticleSet) -> Vec<Cap> {
+    let column = |name: &str| set.columns.iter().find(|column| column.name == name).map(|column| &column.values);
+    let (Some(Values::Scalar(height)), Some(Values::Vector(normal))) = (column("height"), column("normal")) else {
+        return Vec::new();
+    };
+    let cap =
+        |at: usize| Cap { position: set.position[at], normal: normal[at], radius: set.radius[at], height: height[at] };
+    (0..set.len()).map(cap).collect()
 }

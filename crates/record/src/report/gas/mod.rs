@@ -5,7 +5,7 @@ mod facts;
 mod page;
 mod picture;
 
-use super::title_or_folder;
+use super::{moments, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
@@ -14,9 +14,6 @@ use corpuscle_scene::{Gas, Scene};
 use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Moments that the report shows.
-const MOMENTS: usize = 6;
 
 /// Width and height of a chart, CSS pixels.
 const CHART: [f64; 2] = [482.0, 310.0];
@@ -53,14 +50,14 @@ impl<'a> GasReport<'a> {
     /// # Errors
     /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
     pub fn write_moment(&self) -> Result<(), RecordError> {
-        let number = frame_number(self.model.time(), self.scene.run.frame_period_s());
-        if !self.moments().contains(&number) {
+        let number = moments::frame_number(self.model.time(), self.scene.run.frame_period_s());
+        if !moments::numbers(&self.scene.run).contains(&number) {
             return Ok(());
         }
         let caption = format!("t = {}", facts::time(self.gas, self.model.time()));
         let figure = picture::balls(self.gas, self.model).moment(&caption).map_err(|what| self.drawing(what))?;
         self.make_folder()?;
-        write_bytes(&self.moment_path(number), figure.standalone().as_bytes())
+        write_bytes(&moments::path(self.folder, number), figure.standalone().as_bytes())
     }
 
     /// Writes `pictures/*.png`, `pictures/balls.svg` and `report.html`.
@@ -95,21 +92,7 @@ impl<'a> GasReport<'a> {
         for (name, png) in pngs.collect::<Result<Vec<_>, String>>().map_err(|what| self.drawing(what))? {
             write_bytes(&self.picture_path(&format!("{name}.png")), &png)?;
         }
-        // Moments that were not reached, as in a run that broke down, have no file.
-        let moments = self.moments().into_iter().filter_map(|number| fs::read(self.moment_path(number)).ok()).collect();
-        Ok(Drawn { balls: on_page, charts, moments })
-    }
-
-    /// Numbers of the frames that are shown, evenly spread from the first to the last.
-    fn moments(&self) -> Vec<usize> {
-        let last = frame_number(self.scene.run.until_s, self.scene.run.frame_period_s());
-        let mut numbers: Vec<usize> = (0..MOMENTS).map(|k| (k * last + (MOMENTS - 1) / 2) / (MOMENTS - 1)).collect();
-        numbers.dedup();
-        numbers
-    }
-
-    fn moment_path(&self, number: usize) -> PathBuf {
-        self.picture_path(&format!("frame_{number:06}.svg"))
+        Ok(Drawn { balls: on_page, charts, moments: moments::read(self.folder, &self.scene.run) })
     }
 
     fn picture_path(&self, name: &str) -> PathBuf {
@@ -124,9 +107,4 @@ impl<'a> GasReport<'a> {
     fn drawing(&self, what: String) -> RecordError {
         RecordError::content(&self.folder.join("pictures"), what)
     }
-}
-
-/// Number of the frame at a time: they come at multiples of the period and at the end.
-fn frame_number(time: f64, period: f64) -> usize {
-    (time / period - 1e-6).ceil().max(0.0) as usize
 }

@@ -1,0 +1,136 @@
+//! What is measured: the columns of the gauge table, and how large the drops are.
+
+use crate::air::Particle;
+use crate::dew::Dew;
+use crate::drops::Drops;
+use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
+use std::f64::consts::SQRT_2;
+
+impl Dew {
+    pub(crate) fn measured_columns(&self) -> Vec<GaugeColumn> {
+        let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };
+        let mut columns = vec![
+            column("water", "vapour", "kg"),
+            column("water", "fog", "kg"),
+            column("water", "on_solids", "kg"),
+            column("air", "particles", ""),
+            column("air", "mean_temperature", "K"),
+            column("air", "largest_speed", "m_per_s"),
+            column("solids", "covered_area", "m2"),
+            column("solids", "heat_from_held", "J"),
+        ];
+        if self.wetting.is_some() {
+            columns.extend([
+                column("drops", "number", ""),
+                column("drops", "largest_radius", "m"),
+                column("drops", "mean_radius", "m"),
+                column("drops", "first_at", "s"),
+                column("drops", "merged", ""),
+                column("drops", "left", "kg"),
+            ]);
+        }
+        for name in &self.names {
+            columns.extend([
+                column(name, "water", "kg"),
+                column(name, "mean_temperature", "K"),
+                column(name, "heat_given", "J"),
+                column(name, "heat_flow", "W"),
+            ]);
+            if self.wetting.is_some() {
+                columns.extend([
+                    column(name, "water_per_area", "kg_per_m2"),
+                    column(name, "covered_part", ""),
+                    column(name, "drops", ""),
+                    column(name, "first_drop_at", "s"),
+                    column(name, "clear_at", "s"),
+                    column(name, "time_to_clear", "s"),
+                ]);
+            }
+        }
+        columns
+    }
+
+    pub(crate) fn measured(&self) -> Vec<f64> {
+        let mass = self.particle_mass();
+        let count = self.inside().count() as f64;
+        let sum = |of: fn(&Particle) -> f64| self.inside().map(of).sum::<f64>();
+        let speed = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
+        let particles = self.solids().particles.iter().zip(&self.state.water_on);
+        let wet = || particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
+        let drops = self.wetting.as_ref().map(|wetting| wetting.drops());
+        let mut row = vec![
+            mass * sum(|particle| particle.vapour),
+            mass * sum(|particle| particle.fog),
+            self.water_on_all(),
+            count,
+            sum(|particle| particle.temperature) / count,
+            speed,
+            drops.map_or_else(wet, Drops::covered_area),
+            self.state.held_heat.iter().map(ExactSum::value).sum(),
+        ];
+        row.extend(self.measured_drops());
+        (0..self.names.len()).for_each(|body| row.extend(self.measured_of(body)));
+        row
+    }
+
+    fn measured_drops(&self) -> Vec<f64> {
+        let Some(wetting) = &self.wetting else { return Vec::new() };
+        let drops = wetting.drops();
+        let radii = drops.drops().iter().map(|drop| drops.covered_radius(drop));
+        let number = drops.drops().len() as f64;
+        let firsts = wetting.stories().iter().filter_map(|story| story.first);
+        let first = firsts.min_by(f64::total_cmp).unwrap_or(f64::NAN);
+        vec![
+            number,
+            radii.clone().fold(0.0, f64::max),
+            radii.sum::<f64>() / number,
+            first,
+            drops.merged() as f64,
+            drops.dripped(),
+        ]
+    }
+
+    fn measured_of(&self, body: usize) -> Vec<f64> {
+        let [water, temperature] = self.totals_of(body);
+        let mut row = vec![water, temperature, self.heat_from(body), self.state.heat_flow[body]];
+        if let Some(wetting) = &self.wetting {
+            let (story, area) = (wetting.stories()[body], wetting.open_area(body));
+            row.extend([water / area, story.covered / area, story.drops as f64]);
+            row.extend([story.first, story.clear, story.time_to_clear()].map(|time| time.unwrap_or(f64::NAN)));
+        }
+        row
+    }
+
+    /// Water on a body, kg, and its mean temperature, K.
+    fn totals_of(&self, body: usize) -> [f64; 2] {
+        let of_body = |at: &usize| self.solids.particles[*at].body as usize == body;
+        let (mut water, mut heat, mut volume) = (0.0, 0.0, 0.0);
+        for at in (0..self.solids.particles.len()).filter(of_body) {
+            water += self.state.water_on[at];
+            heat += self.solids.particles[at].volume * self.state.temperatures[at];
+            volume += self.solids.particles[at].volume;
+        }
+        [water, heat / volume]
+    }
+}
+
+/// How many drops there are of each size, in classes half an octave wide; none where there are no drops.
+pub(crate) fn drop_sizes(drops: &Drops) -> Option<Chart> {
+    let radii: Vec<f64> = drops.drops().iter().map(|drop| drops.covered_radius(drop)).collect();
+    let class = |radius: f64| (radius.ln() / SQRT_2.ln()).floor() as i32;
+    let first = radii.iter().map(|&radius| class(radius)).min()?;
+    let last = radii.iter().map(|&radius| class(radius)).max()?;
+    let mut counts = vec![0_u32; (last - first) as usize + 1];
+    radii.iter().for_each(|&radius| counts[(class(radius) - first) as usize] += 1);
+    // The middle of a class, mm.
+    let middle = |index: usize| 1e3 * SQRT_2.powf(f64::from(first) + index as f64 + 0.5);
+    let points = counts.iter().enumerate().map(|(index, &count)| [middle(index), f64::from(count)]).collect();
+    Some(Chart {
+        name: "drop_sizes".into(),
+        title: "Sizes of the drops at the end".into(),
+        x: ChartAxis { label: "Radius of the covered disk".into(), unit: "mm".into(), logarithmic: true },
+        y: ChartAxis { label: "Drops in a class, each √2 wide".into(), unit: String::new(), logarithmic: true },
+        series: vec![ChartSeries { name: "drops".into(), style: ChartStyle::Bars, points, ..ChartSeries::default() }],
+        note: String::new(),
+    })
+}
