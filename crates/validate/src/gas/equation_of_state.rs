@@ -28,9 +28,8 @@ fn equation_of_state(_: &Options) -> Vec<Row> {
         for packing in DISKS {
             rows.extend(walled::<2>(packing)?);
         }
-        // At 0.49 walls order the balls beside them, layer by layer: that takes longer than a run.
-        for packing in &BALLS[..2] {
-            rows.extend(walled::<3>(*packing)?);
+        for packing in BALLS {
+            rows.extend(walled::<3>(packing)?);
         }
         Ok(rows)
     };
