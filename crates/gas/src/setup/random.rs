@@ -31,12 +31,12 @@ const SEEDS: [[f64; 2]; 2] = [[0.25, 0.15], [0.05, 0.05]];
 const SEED_RADIUS: f64 = 0.9;
 
 /// Speed at which radii grow over the thermal speed: in fluids, and beyond the packings below, slower, to end near jamming.
-const GROWTH: [f64; 2] = [1.2, 0.01];
+const GROWTH: [f64; 2] = [0.6, 0.01];
 const FLUID: [f64; 2] = [0.68, 0.53];
 
 /// Collisions of each ball at its final radius, in which most of the excess of balls in contact that growing leaves is lost. To grow fast
 /// and settle then is nearer to equilibrium than to grow slowly for as many collisions.
-const SETTLED: u64 = 6;
+const SETTLED: u64 = 3;
 
 /// What is left to grow, over the mean path between two collisions, at which growing is given up. Near jamming the gap that is left is
 /// about two such paths.
