@@ -125,12 +125,14 @@ impl Block {
         self.pairs.clear();
         self.start.push(0);
         for site in sites {
-            for place in arrangement.cells.ranges(site.position, reach).flatten() {
-                let r_squared = distance_squared(arrangement.at(place), site.position);
-                if r_squared < reach * reach {
-                    self.pairs.push(Pair { other: place as u32, r: r_squared.sqrt() });
+            arrangement.cells.each_range(site.position, reach, |range| {
+                for place in range {
+                    let r_squared = distance_squared(arrangement.at(place), site.position);
+                    if r_squared < reach * reach {
+                        self.pairs.push(Pair { other: place as u32, r: r_squared.sqrt() });
+                    }
                 }
-            }
+            });
             self.start.push(self.pairs.len() as u32);
         }
     }

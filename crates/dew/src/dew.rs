@@ -79,6 +79,34 @@ pub(crate) struct State {
     pub energy: Account,
 }
 
+/// The largest of what limits the time step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Extremes {
+    speed_squared: f64,
+    acceleration_squared: f64,
+    weights: f64,
+}
+
+impl Extremes {
+    fn of(particle: &Particle, rates: &Rates) -> Self {
+        Self {
+            speed_squared: particle.speed_squared(),
+            acceleration_squared: particle.acceleration.iter().map(|along| along * along).sum(),
+            weights: rates.weights,
+        }
+    }
+
+    /// The larger of both; what is not a number stays none.
+    fn or(self, other: Self) -> Self {
+        let larger = |a: f64, b: f64| if a > b || a.is_nan() { a } else { b };
+        Self {
+            speed_squared: larger(self.speed_squared, other.speed_squared),
+            acceleration_squared: larger(self.acceleration_squared, other.acceleration_squared),
+            weights: larger(self.weights, other.weights),
+        }
+    }
+}
+
 /// Zero of the energy's temperature, K.
 const COLD: f64 = humid_air::ZERO_CELSIUS;
 
@@ -181,7 +209,7 @@ impl Dew {
         };
         dew.fill(bodies, start);
         dew.settle();
-        dew.state.time_step = dew.next_step(&[]);
+        dew.state.time_step = dew.next_step(&[], dew.extremes());
         dew.state.water.initial = dew.water();
         dew.state.energy.initial = dew.energy();
         Ok(dew)
@@ -229,16 +257,16 @@ impl Dew {
         self.tend_utility();
         self.evaluate(0.5 * step);
         let stiff = self.exchange(step);
-        self.kick(step);
+        let extremes = self.kick(step);
         self.saturate(step);
         self.state.time += step;
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
         self.hold();
         self.tend_drops();
-        let next = self.next_step(&stiff);
+        let next = self.next_step(&stiff, extremes);
         self.state.time_step = next;
-        self.refuse_what_is_faster_than_sound()?;
+        self.refuse_what_is_faster_than_sound(extremes.speed_squared.sqrt())?;
         if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
             return Ok(());
         }
@@ -274,8 +302,7 @@ impl Dew {
     }
 
     /// Air faster than the artificial sound is no flow any more. Where no drops are laid, air may be driven as hard as is asked for.
-    fn refuse_what_is_faster_than_sound(&self) -> Result<(), ModelError> {
-        let fastest = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
+    fn refuse_what_is_faster_than_sound(&self, fastest: f64) -> Result<(), ModelError> {
         if fastest <= self.air.sound_speed || self.wetting.is_none() {
             return Ok(());
         }
@@ -441,12 +468,12 @@ impl Dew {
     }
 
     /// The second half of the kick; heat and vapour of the whole step.
-    fn kick(&mut self, step: f64) {
+    fn kick(&mut self, step: f64) -> Extremes {
         let Self { settings, state, rates, air, .. } = self;
         let spreading = air.spreading * air.sound_speed * air.sound_speed;
-        state.air.par_iter_mut().zip(rates).with_min_len(1024).for_each(|(particle, rates)| {
+        let kicked = state.air.par_iter_mut().zip(rates).with_min_len(1024).map(|(particle, rates)| {
             if particle.role != Role::Inside {
-                return;
+                return Extremes::of(particle, rates);
             }
             // Boussinesq: air lighter than the ambient air by its temperature and vapour rises.
             let lightness = virtual_temperature(particle.temperature, particle.vapour)
@@ -460,7 +487,14 @@ impl Dew {
             particle.spreading = rates.spread.map(|along| spreading * along);
             particle.temperature += step * rates.warming;
             particle.vapour += step * rates.moistening;
+            Extremes::of(particle, rates)
         });
+        kicked.reduce(Extremes::default, Extremes::or)
+    }
+
+    fn extremes(&self) -> Extremes {
+        let air = self.state.air.par_iter().zip(&self.rates).with_min_len(4096);
+        air.map(|(particle, rates)| Extremes::of(particle, rates)).reduce(Extremes::default, Extremes::or)
     }
 
     /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
@@ -522,16 +556,11 @@ impl Dew {
     }
 
     /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
-    fn next_step(&self, stiff: &[f64]) -> f64 {
+    fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
         let Properties { sound_speed, viscosity, vapour_diffusivity, .. } = self.air;
         let diffusivity = viscosity.max(self.settings.faster * vapour_diffusivity.max(self.air.heat_diffusivity()));
-        let largest =
-            |of: fn(&Particle) -> f64| self.state.air.par_iter().with_min_len(4096).map(of).reduce(|| 0.0, f64::max);
-        let speed = largest(Particle::speed_squared).sqrt();
-        let acceleration =
-            largest(|particle| particle.acceleration.iter().map(|along| along * along).sum::<f64>()).sqrt();
-        let weights = self.rates.par_iter().with_min_len(4096).map(|rates| rates.weights).reduce(|| 0.0, f64::max);
-        let stiffest = stiff.iter().copied().fold(diffusivity * weights, f64::max);
+        let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
+        let stiffest = stiff.iter().copied().fold(diffusivity * extremes.weights, f64::max);
         let by_sound = self.settings.cfl * self.scale.h() / (sound_speed + speed);
         let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();
         let by_diffusion = DIFFUSION_LIMIT / stiffest.max(1e-30);
@@ -590,7 +619,7 @@ impl Dew {
             }
         }
         self.evaluate(0.0);
-        self.state.time_step = self.next_step(&[]);
+        self.state.time_step = self.next_step(&[], self.extremes());
     }
 
     /// Lays water on the boundary particles of a body, in kg/m2, as there from the start.

@@ -63,21 +63,33 @@ impl Room {
         if !(0..3).any(near) {
             return;
         }
-        // Along each axis: the place itself, its image beyond the low face, and that beyond the high one.
-        let along = [0, 1, 2].map(|axis| {
+        // Along each axis the place itself comes first, then its images.
+        let mut along = [[(0.0, false); 3]; 3];
+        let mut count = [1; 3];
+        for axis in 0..3 {
             let (low, high, at) = (self.low[axis], self.high[axis], place[axis]);
-            let image = |side: usize| match self.faces[axis][side] {
-                Face::Periodic => Some((at + [low - high, high - low][side], false)),
-                Face::Wall => Some((2.0 * [low, high][side] - at, true)),
-                Face::Inlet(_) | Face::Outlet => None,
-            };
-            let seen = |&(at, _): &(f64, bool)| at > low - reach && at < high + reach;
-            [Some((at, false)), image(0).filter(seen), image(1).filter(seen)]
-        });
-        for which in 1..27 {
-            let choice = [which % 3, which / 3 % 3, which / 9];
-            let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(|axis: usize| along[axis][choice[axis]]) else { continue };
-            found(Image { position: [x.0, y.0, z.0], mirrored: [x.1, y.1, z.1] });
+            along[axis][0] = (at, false);
+            for side in 0..2 {
+                let image = match self.faces[axis][side] {
+                    Face::Periodic => (at + [low - high, high - low][side], false),
+                    Face::Wall => (2.0 * [low, high][side] - at, true),
+                    Face::Inlet(_) | Face::Outlet => continue,
+                };
+                if image.0 > low - reach && image.0 < high + reach {
+                    along[axis][count[axis]] = image;
+                    count[axis] += 1;
+                }
+            }
+        }
+        let mut itself = true;
+        for &z in &along[2][..count[2]] {
+            for &y in &along[1][..count[1]] {
+                for &x in &along[0][..count[0]] {
+                    if !std::mem::take(&mut itself) {
+                        found(Image { position: [x.0, y.0, z.0], mirrored: [x.1, y.1, z.1] });
+                    }
+                }
+            }
         }
     }
 

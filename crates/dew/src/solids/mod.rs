@@ -179,9 +179,14 @@ impl Searched {
 
     /// The sites within `reach` of a place, and the squares of their distances.
     pub fn near(&self, place: [f64; 3], reach: f64) -> impl Iterator<Item = (&Site, f64)> {
-        let ranges = if self.sites.is_empty() { None } else { Some(self.cells.ranges(place, reach)) };
-        let sites = ranges.into_iter().flatten().flat_map(|range| &self.sites[range]);
-        sites.map(move |site| (site, distance_squared(site.position, place))).filter(move |(_, r)| *r < reach * reach)
+        let mut near = Vec::new();
+        if !self.sites.is_empty() {
+            self.cells.each_range(place, reach, |range| {
+                let sites = self.sites[range].iter().map(|site| (site, distance_squared(site.position, place)));
+                near.extend(sites.filter(|(_, r_squared)| *r_squared < reach * reach));
+            });
+        }
+        near.into_iter()
     }
 }
 

@@ -61,27 +61,27 @@ impl Cells {
         (((value - self.low[axis]) * self.inverse[axis]) as usize).min(self.count[axis] - 1)
     }
 
-    /// Ranges of the sorted order that cover all particles within `reach` of a place, one a row of boxes.
+    /// Calls `found` with ranges of the sorted order that cover all particles within `reach` of a place, one a row of boxes.
     #[inline(always)]
-    pub fn ranges(&self, [x, y, z]: [f64; 3], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
+    pub fn each_range(&self, [x, y, z]: [f64; 3], reach: f64, mut found: impl FnMut(Range<usize>)) {
         let (first_y, last_y) = (self.along(1, y - reach), self.along(1, y + reach));
         let (first_z, last_z) = (self.along(2, z - reach), self.along(2, z + reach));
-        (first_z..=last_z).flat_map(move |layer| {
+        for layer in first_z..=last_z {
             let off_z = self.distance_along(2, layer, z);
             let left = reach * reach - off_z * off_z;
-            (first_y..=last_y).filter_map(move |row| {
+            for row in first_y..=last_y {
                 let off_y = self.distance_along(1, row, y);
                 // Half of the chord that the row's nearest line cuts from the ball, with room for rounding.
                 let half_squared = left - off_y * off_y;
                 if half_squared < -1e-9 * reach * reach {
-                    return None;
+                    continue;
                 }
                 let half = half_squared.max(0.0).sqrt() + 1e-9 * reach;
                 let line = (layer * self.count[1] + row) * self.count[0];
                 let (first, last) = (self.along(0, x - half), self.along(0, x + half));
-                Some(self.start[line + first] as usize..self.start[line + last + 1] as usize)
-            })
-        })
+                found(self.start[line + first] as usize..self.start[line + last + 1] as usize);
+            }
+        }
     }
 
     /// Distance of a coordinate from the slab of boxes `cell`. The outermost slabs hold all that lies beyond, too.
@@ -118,8 +118,8 @@ mod tests {
             all.sort_unstable();
             prop_assert!(all.iter().enumerate().all(|(k, &p)| k == p as usize));
             for look in looks {
-                let found: Vec<u32> =
-                    cells.ranges(look.into(), reach).flat_map(|range| order[range].to_vec()).collect();
+                let mut found = Vec::new();
+                cells.each_range(look.into(), reach, |range| found.extend_from_slice(&order[range]));
                 for (j, other) in places.iter().enumerate() {
                     let squared = (look.0 - other.0).powi(2) + (look.1 - other.1).powi(2) + (look.2 - other.2).powi(2);
                     if squared < reach * reach {

@@ -98,7 +98,7 @@ fn search_block<S: Simd, T>(
         }
         let place = [places.x[i], places.y[i], places.z[i]];
         let mut found = 0;
-        for range in cells.ranges(place, reach) {
+        cells.each_range(place, reach, |range| {
             // Room for every candidate and for the lanes written beyond the last.
             let room = found + range.len() + 2 * LANES;
             if index.len() < begin + room {
@@ -108,7 +108,7 @@ fn search_block<S: Simd, T>(
                 r_squared.resize(room, 0.0);
             }
             found += keep_near(simd, &mut index[begin + found..], &mut r_squared[found..], places, i, reach, range);
-        }
+        });
         let filled = found.next_multiple_of(LANES);
         if index.len() < begin + filled {
             index.resize(begin + filled, 0);
