@@ -4,11 +4,13 @@ use corpuscle::Simulation;
 use corpuscle::scene::{BUILTIN, FloodScene, Scene, Terrain, builtin};
 use corpuscle::terrain::valley_centre;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
-/// A thousandth of the million balls: the same in a blink.
+/// A thousandth of the million balls, glasses of coarser particles: the same in a blink.
 fn smaller(name: &str) -> Vec<(String, String)> {
     let changes: &[(&str, &str)] = match name {
         "gas/million" => &[("gas.species.0.count", "1000"), ("gas.size", "[12.04, 12.04, 12.04]")],
+        "dew/glassware" => &[("dew.spacing_m", "0.008")],
         _ => &[],
     };
     changes.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
@@ -23,8 +25,29 @@ fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
         let again = Simulation::open(Scene::parse(&written, "scene.toml", &[]).unwrap(), Path::new("/")).unwrap();
         assert_eq!(again.scene(), simulation.scene());
         assert_eq!(again.model().frame(), simulation.model().frame());
-        let default = if simulation.scene().gas().is_some() { "pair_distance" } else { "spacing_depth_m" };
+        let default = match simulation.model().name() {
+            "gas" => "pair_distance",
+            "dew" => "colour_threshold",
+            _ => "spacing_depth_m",
+        };
         assert!(written.contains(default), "{written}");
+    }
+}
+
+#[test]
+fn every_dew_scene_fogs_and_keeps_its_water_and_energy() {
+    for builtin in BUILTIN.iter().filter(|scene| scene.name.starts_with("dew/")) {
+        let scene = Scene::parse(builtin.text, builtin.name, &smaller(builtin.name)).unwrap();
+        let mut simulation = Simulation::open(scene, Path::new("")).unwrap();
+        let until = 0.01 * simulation.scene().run.until_s;
+        let model = simulation.model_mut();
+        model.advance_to(until, &AtomicBool::new(false)).unwrap();
+        let columns = model.gauge_columns();
+        let at = columns.iter().position(|column| column.header() == "water.on_solids_kg").unwrap();
+        assert!(model.gauge_row()[at] > 0.0, "{}", builtin.name);
+        for balance in model.ledger().balances {
+            assert!(balance.relative_error().abs() < 1e-10, "{}: {balance:?}", builtin.name);
+        }
     }
 }
 

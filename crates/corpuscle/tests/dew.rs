@@ -28,7 +28,7 @@ fn a_run_leaves_its_files_and_is_the_same_when_interrupted() {
         assert!(summary.ledger[quantity].relative_error.abs() < 1e-10, "{:?}", summary.ledger);
     }
     let report = fs::read_to_string(whole.join("report.html")).unwrap();
-    assert!(report.contains("First drop") && report.contains("Area that drops cover") && report.contains("to scale"));
+    assert!(report.contains("First drop") && report.contains("drops cover") && report.contains("true to scale"));
 
     let mut simulation = Simulation::open(scene(), Path::new("")).unwrap();
     let mut recorder = Recorder::create(&parted, &simulation, FrameFormat::Csv).unwrap();

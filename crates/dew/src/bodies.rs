@@ -22,6 +22,8 @@ pub struct Body {
     pub temperature: Table,
     /// Whether its temperature is held.
     pub held: bool,
+    /// How it keeps air out, where not as all do.
+    pub treatment: Option<dew::Treatment>,
     /// The particles that stand for it.
     pub samples: Samples,
     /// What was put right in its mesh, and where it is too thin for its particles, in sentences.
@@ -145,7 +147,8 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
     if celsius < -ZERO_CELSIUS {
         return Err(BodyError::TooCold { name, row, celsius });
     }
-    Ok(Body { material: material(row, written)?, temperature, held: written.held, name, solid, samples, notes })
+    let (material, held, treatment) = (material(row, written)?, written.held, written.treatment);
+    Ok(Body { material, temperature, held, treatment, name, solid, samples, notes })
 }
 
 /// What to know of a solid many of whose particles fill less than half a cell.

@@ -1,6 +1,7 @@
 //! Which air is within reach of which sites of solids.
 
 use crate::air::{Arrangement, Scale};
+use crate::settings::WallTreatment;
 use crate::solids::{Searched, Site, distance_squared};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -15,6 +16,8 @@ pub struct Contact {
     pub sites: Vec<Site>,
     /// Volume of each, m3.
     pub volumes: Vec<f64>,
+    /// How each keeps air out.
+    pub walls: Vec<WallTreatment>,
     blocks: Vec<Block>,
     /// Air particles that have a site near, in order.
     pub near: Vec<Near>,
@@ -47,10 +50,16 @@ pub struct Near {
 
 impl Contact {
     /// Between air and these sites.
-    pub fn new(sites: &[Site], volume: impl Fn(&Site) -> f64, reach: f64) -> Self {
+    pub fn new(
+        sites: &[Site],
+        volume: impl Fn(&Site) -> f64,
+        walls: impl Fn(&Site) -> WallTreatment,
+        reach: f64,
+    ) -> Self {
         let sites = Searched::new(sites, reach).sites;
         let volumes = sites.iter().map(volume).collect();
-        Self { sites, volumes, ..Self::default() }
+        let walls = sites.iter().map(walls).collect();
+        Self { sites, volumes, walls, ..Self::default() }
     }
 
     /// Finds who is near whom.

@@ -1,11 +1,12 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums, sum_pairs};
-use crate::contact::Contact;
-use crate::exchange::{Exchange, ToAir, excess};
-use crate::humid_air;
+use crate::contact::{Contact, Pair};
+use crate::exchange::{Exchange, ToAir, Work, excess};
+use crate::humid_air::{self, HumidAir};
+use crate::layer::Layer;
 use crate::room::Room;
-use crate::settings::{Condensation, Settings, WallTreatment};
+use crate::settings::{Condensation, Humidity, Settings, WallTreatment};
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls::{self, Push};
 use crate::wetting::Wetting;
@@ -31,16 +32,19 @@ pub struct Dew {
     rest_density: f64,
     pub(crate) state: State,
     arrangement: Arrangement,
-    contact: Contact,
-    ghosts: Contact,
+    pub(crate) contact: Contact,
+    pub(crate) ghosts: Contact,
     sums: Vec<Sums>,
     columns: Vec<Column>,
     rates: Vec<Rates>,
+    work: Work,
     /// The time shown, s; up to one step after the state's.
     pub(crate) shown: f64,
     pub(crate) warnings: Vec<String>,
     /// Names of the bodies; none where they do not come from a scene.
     pub(crate) names: Vec<String>,
+    /// The air before the bodies that say how they keep it out.
+    pub(crate) layers: Vec<Option<Layer>>,
     /// Temperature over time, °C, of the bodies that are held at one told by a scene.
     pub(crate) held_to: Vec<Option<Table>>,
     /// What frames show.
@@ -158,11 +162,10 @@ impl Dew {
         let conductances = (0..solids.particles.len()).map(|i| conduction.sum(i)).collect();
         let sites = solids.sites(room, scale.h(), |particle| particle.near_surface);
         let volume = |site: &crate::solids::Site| solids.particles[site.particle as usize].volume;
-        let contact = Contact::new(&sites, volume, scale.h());
-        let ghosts = match settings.walls {
-            WallTreatment::Ghosts => crate::solids::ghost_contact(bodies, &solids, room, &scale, *seed)?,
-            _ => Contact::default(),
-        };
+        let walls: Vec<_> = bodies.iter().map(|body| body.walls.unwrap_or(settings.walls)).collect();
+        let wall_of = |site: &crate::solids::Site| walls[solids.particles[site.particle as usize].body as usize];
+        let contact = Contact::new(&sites, volume, wall_of, scale.h());
+        let ghosts = crate::solids::ghost_contact(bodies, &walls, &solids, room, &scale, *seed)?;
         let temperatures =
             bodies.iter().flat_map(|body| std::iter::repeat_n(body.temperature, body.positions.len())).collect();
         let state = State {
@@ -199,9 +202,11 @@ impl Dew {
             sums: Vec::new(),
             columns: Vec::new(),
             rates: Vec::new(),
+            work: Work::default(),
             shown: 0.0,
             warnings: Vec::new(),
             names: Vec::new(),
+            layers: Vec::new(),
             held_to: Vec::new(),
             shows: Output::default(),
             surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
@@ -218,7 +223,19 @@ impl Dew {
     /// Spreads the air evenly between the solids before anything happens.
     fn settle(&mut self) {
         let (room, spacing) = (self.room, self.scale.spacing);
-        let completed = matches!(self.settings.walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        let completes =
+            |walls: &WallTreatment| matches!(walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
+        let completed = self.contact.walls.is_empty() || self.contact.walls.iter().any(completes);
+        let walls = self.contact.walls.clone();
+        if completed {
+            // Solids that leave the air's density incomplete would draw the air in that spreads between the others.
+            let completing = |walls: &&mut WallTreatment| !completes(walls);
+            self.contact
+                .walls
+                .iter_mut()
+                .filter(completing)
+                .for_each(|walls| *walls = WallTreatment::DensityCorrection);
+        }
         for _ in 0..if completed { SETTLING } else { 0 } {
             self.evaluate(0.0);
             let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
@@ -241,6 +258,23 @@ impl Dew {
             let sum: f64 = self.inside().map(|particle| particle.density).sum();
             self.rest_density = sum / (self.inside().count() as f64).max(1.0);
         }
+        self.contact.walls = walls;
+        self.evaluate(0.0);
+        self.take_out_repelled();
+    }
+
+    /// Takes out air that a virtual force would throw off at the start: where it acts there is a vacuum.
+    fn take_out_repelled(&mut self) {
+        let Self { contact, state, scale, .. } = self;
+        let is_repelled = |pair: &Pair| {
+            contact.walls[pair.other as usize] == WallTreatment::VirtualForce && pair.r < walls::CALM * scale.spacing
+        };
+        let mut stays = vec![true; state.air.len()];
+        for near in contact.near.iter().filter(|near| contact.of_air(near).iter().any(is_repelled)) {
+            stays[near.particle as usize] = false;
+        }
+        let mut stays = stays.into_iter();
+        state.air.retain(|_| stays.next() == Some(true));
         self.evaluate(0.0);
     }
 
@@ -256,7 +290,7 @@ impl Dew {
         self.cross_faces(step);
         self.tend_utility();
         self.evaluate(0.5 * step);
-        let stiff = self.exchange(step);
+        self.exchange(step);
         let extremes = self.kick(step);
         self.saturate(step);
         self.state.time += step;
@@ -264,7 +298,7 @@ impl Dew {
         self.state.particle_steps += self.state.air.len() as u64;
         self.hold();
         self.tend_drops();
-        let next = self.next_step(&stiff, extremes);
+        let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
         self.refuse_what_is_faster_than_sound(extremes.speed_squared.sqrt())?;
         if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
@@ -357,11 +391,8 @@ impl Dew {
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
         ghosts.update(arrangement, scale);
-        match settings.walls {
-            WallTreatment::DensityCorrection => walls::add_density(contact, arrangement, scale, settings.kappa, sums),
-            WallTreatment::Ghosts => walls::add_density(ghosts, arrangement, scale, 1.0, sums),
-            WallTreatment::VirtualForce | WallTreatment::None => {}
-        }
+        walls::add_density(contact, arrangement, scale, settings.kappa, sums);
+        walls::add_density(ghosts, arrangement, scale, 1.0, sums);
         walls::add_moment(contact, arrangement, scale, sums);
         fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead);
         rates.resize(state.air.len(), Rates::default());
@@ -370,12 +401,22 @@ impl Dew {
             vapour_diffusivity: settings.faster * air.vapour_diffusivity,
             ..*air
         };
+        let relative = settings.humidity == Humidity::Relative;
+        let saturated = humid_air::saturation_pressure(settings.ambient_temperature);
+        let parcel =
+            |particle: &Particle| HumidAir::with_mass_fraction(particle.temperature, air.pressure, particle.vapour);
+        if relative {
+            for (column, entry) in columns.iter_mut().zip(&arrangement.entries) {
+                column.vapour = parcel(&state.air[entry.particle as usize]).vapour_pressure / saturated;
+            }
+        }
         sum_pairs(arrangement, columns, scale, &at_work, rates);
-        let ghostly = settings.walls == WallTreatment::Ghosts;
-        let pushing = if ghostly { &*ghosts } else { &*contact };
-        let kappa = if ghostly { 1.0 } else { settings.kappa };
-        let sticking = &*contact;
-        let push = Push { treatment: settings.walls, pushing, sticking, arrangement, columns, scale, air, kappa };
+        if relative {
+            for (rates, particle) in rates.iter_mut().zip(&state.air) {
+                rates.moistening *= saturated * parcel(particle).mass_fraction_slope();
+            }
+        }
+        let push = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
         push.add(rates);
     }
 
@@ -395,27 +436,29 @@ impl Dew {
         }
     }
 
-    /// Heat and vapour between air and solids, and through solids, in a step; how stiff it was for air near solids.
-    fn exchange(&mut self, step: f64) -> Vec<f64> {
+    /// Heat and vapour between air and solids, and through solids, in a step.
+    fn exchange(&mut self, step: f64) {
+        let mut work = std::mem::take(&mut self.work);
+        let Work { to_solids, to_air, share_of, heat, stiff, .. } = &mut work;
         let exchange = self.at_surfaces();
-        let to_solids = exchange.to_solids(step);
-        let mut share_of = vec![1.0; self.solids.particles.len()];
-        let mut heat: Vec<f64> = (0..self.solids.particles.len())
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|i| self.conduction.heat(i, &self.state.temperatures))
-            .collect();
-        let mut stiff = vec![0.0; self.contact.near.len() + self.solids.particles.len()];
+        exchange.to_solids(step, to_solids);
+        let particles = self.solids.particles.len();
+        share_of.clear();
+        share_of.resize(particles, 1.0);
+        let conducted = |i| self.conduction.heat(i, &self.state.temperatures);
+        (0..particles).into_par_iter().with_min_len(1024).map(conducted).collect_into_vec(heat);
+        stiff.clear();
+        stiff.resize(self.contact.near.len(), 0.0);
+        stiff.extend_from_slice(&self.conductances);
         let (of_air, of_solids) = stiff.split_at_mut(self.contact.near.len());
-        of_solids.copy_from_slice(&self.conductances);
-        let real = self.contact.sites.iter().zip(&to_solids).filter(|(site, _)| !site.image);
+        let real = self.contact.sites.iter().zip(&*to_solids).filter(|(site, _)| !site.image);
         for (site, given) in real.clone() {
             let particle = site.particle as usize;
             share_of[particle] = given.share;
             heat[particle] += given.heat;
             of_solids[particle] += given.conductance;
         }
-        let to_air = exchange.to_air(&share_of);
+        exchange.to_air(share_of, to_air);
         self.state.heat_flow.fill(0.0);
         for (site, given) in real {
             self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
@@ -423,7 +466,7 @@ impl Dew {
             let water = &mut self.state.water_on[site.particle as usize];
             *water = (*water + step * given.water).max(0.0);
         }
-        for (i, heat) in heat.into_iter().enumerate() {
+        for (i, &heat) in heat.iter().enumerate() {
             of_solids[i] /= self.solids.heat_capacity(i);
             if self.solids.is_held(i) {
                 self.state.held_heat[self.solids.particles[i].body as usize].add(-step * heat);
@@ -433,14 +476,14 @@ impl Dew {
                 self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
             }
         }
-        self.book_open_faces(step, &to_air);
-        for ((near, given), stiff) in self.contact.near.iter().zip(to_air).zip(of_air) {
+        self.book_open_faces(step, to_air);
+        for ((near, given), stiff) in self.contact.near.iter().zip(&*to_air).zip(of_air) {
             let rates = &mut self.rates[near.particle as usize];
             rates.warming += given.warming;
             rates.moistening += given.moistening;
             *stiff = given.stiffness;
         }
-        stiff
+        self.work = work;
     }
 
     /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
@@ -500,24 +543,29 @@ impl Dew {
     /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
     /// again in drier air.
     fn saturate(&mut self, step: f64) {
-        let Self { settings, air, state, latent_heat, .. } = self;
-        let mut excesses: Vec<f64> = if settings.fog || settings.condensation == Condensation::Parcel {
-            let find = |particle: &Particle| {
-                let near_saturation = particle.role == Role::Inside
-                    && (particle.fog > 0.0 || particle.vapour > crate::exchange::saturation(particle.temperature, air));
-                if near_saturation { excess(particle, air, *latent_heat).max(-particle.fog) } else { 0.0 }
-            };
-            state.air.par_iter().with_min_len(1024).map(find).collect()
-        } else {
-            return;
-        };
-        self.deposit(&mut excesses, step);
-        if !self.settings.fog {
+        if !self.settings.fog && self.settings.condensation != Condensation::Parcel {
             return;
         }
+        let mut excesses = std::mem::take(&mut self.work.excesses);
+        let Self { air, state, latent_heat, .. } = &*self;
+        let find = |particle: &Particle| {
+            let near_saturation = particle.role == Role::Inside
+                && (particle.fog > 0.0 || particle.vapour > crate::exchange::saturation(particle.temperature, air));
+            if near_saturation { excess(particle, air, *latent_heat).max(-particle.fog) } else { 0.0 }
+        };
+        state.air.par_iter().with_min_len(1024).map(find).collect_into_vec(&mut excesses);
+        self.deposit(&mut excesses, step);
+        if self.settings.fog {
+            self.turn_to_fog(&excesses);
+        }
+        self.work.excesses = excesses;
+    }
+
+    /// What parcels have too much becomes fog, or fog becomes what they lack.
+    fn turn_to_fog(&mut self, excesses: &[f64]) {
         let mass = self.particle_mass();
         let warming = self.latent_heat / self.air.heat_capacity;
-        for (particle, excess) in self.state.air.iter_mut().zip(excesses).filter(|(_, excess)| *excess != 0.0) {
+        for (particle, &excess) in self.state.air.iter_mut().zip(excesses).filter(|(_, excess)| **excess != 0.0) {
             particle.vapour -= excess;
             particle.fog += excess;
             particle.temperature += warming * excess;

@@ -6,7 +6,7 @@ use crate::air::{Arrangement, Column, Particle, Properties, Scale};
 use crate::contact::{Contact, Near, Pair};
 use crate::humid_air::HumidAir;
 use crate::settings::{Condensation, Settings};
-use crate::solids::Solids;
+use crate::solids::{Site, Solids};
 use rayon::prelude::*;
 
 /// What air and solids exchange, with everything that it depends on.
@@ -57,6 +57,23 @@ pub struct ToAir {
     pub stiffness: f64,
 }
 
+/// Room for what is found in a step, kept from step to step.
+#[derive(Debug, Default)]
+pub struct Work {
+    /// What each site gets.
+    pub to_solids: Vec<ToSolid>,
+    /// What each air particle near a site gets.
+    pub to_air: Vec<ToAir>,
+    /// Share of evaporation of each particle of the solids.
+    pub share_of: Vec<f64>,
+    /// Heat that each particle of the solids gets, W.
+    pub heat: Vec<f64>,
+    /// How stiff diffusion was, 1/s, for the air near sites, then for the particles of the solids.
+    pub stiff: Vec<f64>,
+    /// What each parcel of air has beyond saturation, part of the mass.
+    pub excesses: Vec<f64>,
+}
+
 /// A pair of site and air.
 struct Flux {
     /// Conductance with which the air is warmed, W/K, and with which the solid is.
@@ -103,10 +120,13 @@ impl Exchange<'_> {
         Flux { conductance, difference, water, to_solid }
     }
 
-    /// What every site gets in a step of `step` s. Images of sites get nothing.
-    pub fn to_solids(&self, step: f64) -> Vec<ToSolid> {
+    /// What every site gets in a step of `step` s, into `given`. Images of sites get nothing.
+    pub fn to_solids(&self, step: f64, given: &mut Vec<ToSolid>) {
         let sites = self.contact.sites.par_iter().enumerate();
-        sites.map(|(number, site)| if site.image { ToSolid::default() } else { self.to_solid(number, step) }).collect()
+        let of = |(number, site): (usize, &Site)| {
+            if site.image { ToSolid::default() } else { self.to_solid(number, step) }
+        };
+        sites.map(of).collect_into_vec(given);
     }
 
     fn to_solid(&self, site: usize, step: f64) -> ToSolid {
@@ -122,9 +142,9 @@ impl Exchange<'_> {
         })
     }
 
-    /// What every air particle near a site gets; `share_of` tells the share of evaporation of a solid's particle.
-    pub fn to_air(&self, share_of: &[f64]) -> Vec<ToAir> {
-        self.contact.near.par_iter().map(|near| self.to_one(near, share_of)).collect()
+    /// What every air particle near a site gets, into `given`; `share_of` tells the share of evaporation of a solid's particle.
+    pub fn to_air(&self, share_of: &[f64], given: &mut Vec<ToAir>) {
+        self.contact.near.par_iter().map(|near| self.to_one(near, share_of)).collect_into_vec(given);
     }
 
     fn to_one(&self, near: &Near, share_of: &[f64]) -> ToAir {

@@ -130,6 +130,12 @@ impl HumidAir {
         MASS_RATIO * self.vapour_pressure / (self.pressure - (1.0 - MASS_RATIO) * self.vapour_pressure)
     }
 
+    /// How fast the mass fraction grows with the vapour pressure, 1/Pa.
+    pub fn mass_fraction_slope(&self) -> f64 {
+        let rest = self.pressure - (1.0 - MASS_RATIO) * self.vapour_pressure;
+        MASS_RATIO * self.pressure / (rest * rest)
+    }
+
     /// Mass of vapour in a cubic metre, kg/m³.
     pub fn vapour_density(&self) -> f64 {
         self.vapour_pressure / (VAPOUR_GAS_CONSTANT * self.temperature)
@@ -198,6 +204,14 @@ mod tests {
                 prop_assert!((same.relative_humidity() / humidity - 1.0).abs() < 1e-10);
             }
             prop_assert!((air.vapour_density() / air.density() / air.mass_fraction() - 1.0).abs() < 1e-12);
+        }
+
+        #[test]
+        fn the_slope_of_the_mass_fraction_is_its_derivative(vapour_pressure in 10.0..5e3) {
+            let air = HumidAir { temperature: 300.0, pressure: PRESSURE, vapour_pressure };
+            let beside = HumidAir { vapour_pressure: vapour_pressure + 0.01, ..air };
+            let difference = (beside.mass_fraction() - air.mass_fraction()) / 0.01;
+            prop_assert!((difference / air.mass_fraction_slope() - 1.0).abs() < 1e-5);
         }
 
         #[test]

@@ -29,7 +29,7 @@ impl Dew {
                 column("drops", "left", "kg"),
             ]);
         }
-        for name in &self.names {
+        for (body, name) in self.names.iter().enumerate() {
             columns.extend([
                 column(name, "water", "kg"),
                 column(name, "mean_temperature", "K"),
@@ -44,6 +44,13 @@ impl Dew {
                     column(name, "first_drop_at", "s"),
                     column(name, "clear_at", "s"),
                     column(name, "time_to_clear", "s"),
+                ]);
+            }
+            if self.layers[body].is_some() {
+                columns.extend([
+                    column(name, "nearest_air", "m"),
+                    column(name, "gap", "m"),
+                    column(name, "wall_pairs", ""),
                 ]);
             }
         }
@@ -97,6 +104,10 @@ impl Dew {
             let (story, area) = (wetting.stories()[body], wetting.open_area(body));
             row.extend([water / area, story.covered / area, story.drops as f64]);
             row.extend([story.first, story.clear, story.time_to_clear()].map(|time| time.unwrap_or(f64::NAN)));
+        }
+        if let Some(layer) = &self.layers[body] {
+            let found = layer.find(self);
+            row.extend([found.nearest, found.gap, found.pairs]);
         }
         row
     }

@@ -5,8 +5,9 @@ use crate::bodies;
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, WATER_DENSITY};
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
+use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
-use crate::settings::{Condensation, LowUtility, Mean, Settings, WallTreatment};
+use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::{Body, Material, Surface};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Axis;
@@ -42,6 +43,8 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     if scene.air.velocity_m_per_s != [0.0; 3] {
         dew.stir(|_| scene.air.velocity_m_per_s);
     }
+    let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
+    dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
     dew.shows = scene.output.clone();
@@ -54,10 +57,10 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
 /// What scenes can say and this version cannot do, by the name of the key.
 fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
     let refuse = |what: &str| Err(ModelError::Setup(what.into()));
-    if humidity_transport(scene) == HumidityTransport::RelativeHumidity {
+    if humidity_transport(scene) == HumidityTransport::RelativeHumidity && scene.scheme == Scheme::Physical {
         return refuse(
-            "dew.transport.humidity: this version cannot diffuse relative humidity; give dew.transport.humidity = \
-             \"mass-fraction\" (in the scheme \"paper\" it must be said, everything else there is as patented)",
+            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"paper\" only, where parcels of air condense: give \
+             scheme = \"paper\", or \"mass-fraction\"",
         );
     }
     let mut faces = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis).map(|face| (axis, face)));
@@ -168,20 +171,28 @@ fn face(face: &written::Face, axis: Axis, scene: &written::Dew, start: &HumidAir
     }
 }
 
+fn walls(treatment: Treatment) -> WallTreatment {
+    match treatment {
+        Treatment::DensityCorrection => WallTreatment::DensityCorrection,
+        Treatment::VirtualForce => WallTreatment::VirtualForce,
+        Treatment::Ghost => WallTreatment::Ghosts,
+        Treatment::None => WallTreatment::None,
+    }
+}
+
 fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
     let paper = scene.scheme == Scheme::Paper;
     let of_scheme = if paper { written::Mean::Arithmetic } else { written::Mean::Harmonic };
     Settings {
-        walls: match scene.boundary.treatment {
-            Treatment::DensityCorrection => WallTreatment::DensityCorrection,
-            Treatment::VirtualForce => WallTreatment::VirtualForce,
-            Treatment::Ghost => WallTreatment::Ghosts,
-            Treatment::None => WallTreatment::None,
-        },
+        walls: walls(scene.boundary.treatment),
         mean: match scene.transport.conductivity_mean.unwrap_or(of_scheme) {
             written::Mean::Harmonic => Mean::Harmonic,
             written::Mean::Arithmetic if paper => Mean::Diffusivity,
             written::Mean::Arithmetic => Mean::Arithmetic,
+        },
+        humidity: match humidity_transport(scene) {
+            HumidityTransport::MassFraction => Humidity::MassFraction,
+            HumidityTransport::RelativeHumidity => Humidity::Relative,
         },
         condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
         gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
@@ -245,6 +256,7 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
         temperature: body.temperature.at(0.0) + ZERO_CELSIUS,
         held: body.held,
         surface: Some(surface),
+        walls: body.treatment.map(walls),
     }
 }
 
@@ -269,6 +281,12 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
              water",
             body.name,
             coldest(body)
+        ));
+    }
+    if is_frost(scene.air.temperature_c + ZERO_CELSIUS) {
+        warnings.push(format!(
+            "the air is at {} °C: below 0 °C there would be frost and ice, which are out of scope; fog there is taken as water",
+            scene.air.temperature_c
         ));
     }
     if scene.time_factor != 1.0 {

@@ -61,6 +61,17 @@ pub enum Condensation {
     Parcel,
 }
 
+/// What of the vapour diffuses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Humidity {
+    /// Its part of the mass: vapour is conserved.
+    #[default]
+    MassFraction,
+    /// As published: relative humidity, referred to the ambient temperature. Vapour is conserved but for the bend of the mass fraction
+    /// over the vapour pressure, which is below a percent.
+    Relative,
+}
+
 /// Air that no longer matters (patent CN106650064B): it only moves, and after a while it is taken out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LowUtility {
@@ -79,6 +90,8 @@ pub struct Settings {
     pub walls: WallTreatment,
     /// How heat passes between unlike neighbours.
     pub mean: Mean,
+    /// What of the vapour diffuses; relative humidity only where parcels condense.
+    pub humidity: Humidity,
     /// How vapour becomes water on a surface.
     pub condensation: Condensation,
     /// Whether supersaturated air away from solids turns to fog.
@@ -110,6 +123,7 @@ impl Settings {
             spacing,
             walls: WallTreatment::default(),
             mean: Mean::default(),
+            humidity: Humidity::default(),
             condensation: Condensation::default(),
             fog: true,
             gravity: [0.0, 0.0, -9.81],

@@ -18,5 +18,5 @@ pub fn block(corner: [f64; 3], counts: [usize; 3], spacing: f64) -> Body {
     }
     let volumes = vec![spacing.powi(3); positions.len()];
     let areas = vec![spacing.powi(2); positions.len()];
-    Body { positions, volumes, areas, material: GLASS, temperature: 280.0, held: true, surface: None }
+    Body { positions, volumes, areas, material: GLASS, temperature: 280.0, held: true, surface: None, walls: None }
 }

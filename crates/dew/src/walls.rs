@@ -1,7 +1,7 @@
 //! What solids do to the motion of the air.
 
 use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
-use crate::contact::{Contact, Near};
+use crate::contact::{Contact, Near, Pair};
 use crate::settings::WallTreatment;
 use rayon::prelude::*;
 
@@ -9,9 +9,9 @@ use rayon::prelude::*;
 /// wall's part fade smoothly with its distance.
 pub fn add_density(contact: &Contact, arrangement: &Arrangement, scale: &Scale, kappa: f64, sums: &mut [Sums]) {
     let of_one = |near: &Near| {
-        let part =
-            |pair: &crate::contact::Pair| contact.volumes[pair.other as usize] * scale.kernels.poly6(pair.r * pair.r);
-        contact.of_air(near).iter().map(part).sum::<f64>()
+        let joins = |pair: &&Pair| contact.walls[pair.other as usize] == WallTreatment::DensityCorrection;
+        let part = |pair: &Pair| contact.volumes[pair.other as usize] * scale.kernels.poly6(pair.r * pair.r);
+        contact.of_air(near).iter().filter(joins).map(part).sum::<f64>()
     };
     let parts: Vec<f64> = contact.near.par_iter().map(of_one).collect();
     for (near, part) in contact.near.iter().zip(parts) {
@@ -22,7 +22,7 @@ pub fn add_density(contact: &Contact, arrangement: &Arrangement, scale: &Scale, 
 /// Solids join the second moment of the Laplacian, by which diffusion is made exact.
 pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums]) {
     let of_one = |near: &Near| {
-        let part = |pair: &crate::contact::Pair| {
+        let part = |pair: &Pair| {
             contact.volumes[pair.other as usize] * pair.r * pair.r * scale.kernels.viscosity_laplacian(pair.r)
         };
         contact.of_air(near).iter().map(part).sum::<f64>()
@@ -33,14 +33,12 @@ pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, s
     }
 }
 
-/// What a treatment and the wall's friction add to the acceleration of the air near solids.
+/// What walls add to the acceleration of the air near solids.
 pub struct Push<'a> {
-    /// How air is kept out.
-    pub treatment: WallTreatment,
-    /// Sites that push: those of the solids, or ghosts.
-    pub pushing: &'a Contact,
-    /// Sites of the solids, on which air sticks.
-    pub sticking: &'a Contact,
+    /// Particles of the solids.
+    pub contact: &'a Contact,
+    /// Ghost samples in them.
+    pub ghosts: &'a Contact,
     /// As arranged.
     pub arrangement: &'a Arrangement,
     /// Columns of the air.
@@ -60,16 +58,21 @@ const STRENGTH: f64 = 0.3;
 /// Distance from a solid's particle at which repulsion begins, over the spacing.
 const RANGE: f64 = 1.5;
 
+/// Distance, over the spacing, at which the repulsion is so weak that air at rest stays slow.
+pub const CALM: f64 = 1.3;
+
 impl Push<'_> {
     /// Adds to the rates.
     pub fn add(&self, rates: &mut [Rates]) {
-        if self.treatment != WallTreatment::None {
-            self.add_of(self.pushing, rates, |near, rates| match self.treatment {
-                WallTreatment::VirtualForce => self.repel(near, rates),
-                _ => self.press(near, rates),
-            });
+        let some = |treatment| self.contact.walls.contains(&treatment);
+        if some(WallTreatment::DensityCorrection) {
+            self.add_of(self.contact, rates, |near, rates| self.press(self.contact, self.kappa, near, rates));
         }
-        self.add_of(self.sticking, rates, |near, rates| self.stick(near, rates));
+        if some(WallTreatment::VirtualForce) {
+            self.add_of(self.contact, rates, |near, rates| self.repel(near, rates));
+        }
+        self.add_of(self.ghosts, rates, |near, rates| self.press(self.ghosts, 1.0, near, rates));
+        self.add_of(self.contact, rates, |near, rates| self.stick(near, rates));
     }
 
     fn add_of(&self, contact: &Contact, rates: &mut [Rates], add: impl Fn(&Near, &mut Rates) + Sync) {
@@ -93,11 +96,17 @@ impl Push<'_> {
         &self.columns[self.arrangement.place_of[near.particle as usize] as usize]
     }
 
-    /// Sum of `strength`, of distance and volume, along the way from each site near to the air.
-    fn along(&self, contact: &Contact, near: &Near, strength: impl Fn(f64, f64) -> f64) -> [f64; 3] {
+    /// Sum of `strength`, of distance and volume, along the way from each site near that keeps air out by `walls` to the air.
+    fn along(
+        &self,
+        contact: &Contact,
+        near: &Near,
+        walls: WallTreatment,
+        strength: impl Fn(f64, f64) -> f64,
+    ) -> [f64; 3] {
         let own = self.column(near);
         let mut sum = [0.0; 3];
-        for pair in contact.of_air(near) {
+        for pair in contact.of_air(near).iter().filter(|pair| contact.walls[pair.other as usize] == walls) {
             let site = contact.sites[pair.other as usize].position;
             let r = pair.r.max(1e-9 * self.scale.spacing);
             let push = strength(r, contact.volumes[pair.other as usize]) / r;
@@ -109,10 +118,10 @@ impl Push<'_> {
     /// The wall has the air's own pressure (Akinci et al. 2012 with the wall's part of the symmetric form): a
     /// pressure that is the same everywhere moves nothing. Air that comes against the wall at u is held up by rho c u (Joukowsky
     /// 1898: the pressure with which a rigid wall stops it). Particles spread from it as from each other.
-    fn press(&self, near: &Near, rates: &mut Rates) {
+    fn press(&self, contact: &Contact, kappa: f64, near: &Near, rates: &mut Rates) {
         let Scale { kernels, to_gradient, .. } = *self.scale;
-        let slope = 2.0 * self.kappa * to_gradient;
-        let spread = self.along(self.pushing, near, |r, volume| slope * volume * kernels.spiky_slope(r));
+        let slope = |r, volume| 2.0 * kappa * to_gradient * volume * kernels.spiky_slope(r);
+        let spread = self.along(contact, near, WallTreatment::DensityCorrection, slope);
         let own = self.column(near);
         let crowding = spread.iter().map(|along| along * along).sum::<f64>().sqrt();
         let inward = -(0..3).map(|axis| own.velocity[axis] * spread[axis]).sum::<f64>() / crowding.max(1e-30);
@@ -125,7 +134,7 @@ impl Push<'_> {
     fn repel(&self, near: &Near, rates: &mut Rates) {
         let range = RANGE * self.scale.spacing;
         let strength = STRENGTH * self.air.sound_speed * self.air.sound_speed;
-        rates.acceleration = self.along(self.pushing, near, |r, _| {
+        rates.acceleration = self.along(self.contact, near, WallTreatment::VirtualForce, |r, _| {
             let ratio = (range / r).powi(2);
             if r < range { strength * (ratio * ratio - ratio) / r } else { 0.0 }
         });
@@ -135,10 +144,8 @@ impl Push<'_> {
     fn stick(&self, near: &Near, rates: &mut Rates) {
         let own = self.column(near);
         let Scale { kernels, moment, .. } = *self.scale;
-        let weight = |pair: &crate::contact::Pair| {
-            self.sticking.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r)
-        };
-        let weight = self.sticking.of_air(near).iter().map(weight).sum::<f64>() * own.evenness / moment;
+        let weight = |pair: &Pair| self.contact.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r);
+        let weight = self.contact.of_air(near).iter().map(weight).sum::<f64>() * own.evenness / moment;
         (0..3).for_each(|axis| rates.acceleration[axis] -= 2.0 * self.air.viscosity * weight * own.velocity[axis]);
         rates.weights += 2.0 * weight;
     }

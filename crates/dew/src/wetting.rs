@@ -11,8 +11,11 @@ use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Drops take over what condensed once in so many steps: they hardly move in one, and finding them costs.
+/// Drops take over what condensed once in so many steps: they hardly grow in one, and finding them costs.
 const STEPS: u64 = 10;
+
+/// Times as many steps for each time that there are so many drops as air particles: drops must not cost more than the air.
+const DROPS_TOGETHER: usize = 2;
 
 /// Drops, and where the boundary particles have their water from.
 pub(crate) struct Wetting {
@@ -22,8 +25,9 @@ pub(crate) struct Wetting {
     /// What each site had of the drops when they last moved.
     shares: Vec<Share>,
     portions: Vec<Portion>,
-    /// When they last moved, s.
+    /// When they last moved, s, and in which step.
     since: f64,
+    step: u64,
     /// What was seen so far.
     fogging: Fogging,
     /// Area of each solid on which water can condense, m2.
@@ -35,6 +39,7 @@ pub(crate) struct Wetting {
 pub(crate) struct WettingState {
     drops: DropState,
     since: f64,
+    step: u64,
     fogging: Fogging,
 }
 
@@ -49,6 +54,7 @@ impl Wetting {
             shares: Vec::new(),
             portions: Vec::new(),
             since: 0.0,
+            step: 0,
         };
         wetting.share();
         wetting
@@ -61,6 +67,12 @@ impl Wetting {
 
     pub fn drops(&self) -> &Drops {
         &self.drops
+    }
+
+    /// Whether it is their turn in a step.
+    fn is_due(&self, step: u64, air: usize) -> bool {
+        let many = DROPS_TOGETHER * self.drops.drops().len() / air.max(1);
+        step - self.step >= STEPS * (1 + many as u64)
     }
 
     /// What was seen of each solid.
@@ -101,7 +113,7 @@ impl Wetting {
     }
 
     pub fn state(&self) -> WettingState {
-        WettingState { drops: self.drops.state(), since: self.since, fogging: self.fogging.clone() }
+        WettingState { drops: self.drops.state(), since: self.since, step: self.step, fogging: self.fogging.clone() }
     }
 
     /// Takes back a state; false where it belongs to other solids.
@@ -113,7 +125,7 @@ impl Wetting {
             return false;
         }
         self.drops.restore(state.drops);
-        (self.since, self.fogging) = (state.since, state.fogging);
+        (self.since, self.step, self.fogging) = (state.since, state.step, state.fogging);
         self.share();
         true
     }
@@ -139,6 +151,7 @@ impl Wetting {
                 column("water_kg_per_m2", "kg/m2", &|site| self.shares[site].water / area(site)),
                 // Where a drop ends within a patch the patch may seem more than covered.
                 column("covered_part", "", &|site| (self.shares[site].covered / area(site)).min(1.0)),
+                column("film_kg_per_m2", "kg/m2", &|site| self.drops.films()[site] / area(site)),
                 column("most_water_kg_per_m2", "kg/m2", &|site| spot(site).most_water / area(site)),
                 column("first_drop_at_s", "s", &|site| spot(site).first.unwrap_or(f64::NAN)),
                 column("wet_for_s", "s", &|site| spot(site).wet_for),
@@ -180,8 +193,7 @@ impl Wetting {
     }
 }
 
-/// Area of a plane for each particle of the layer below it, m2. At an edge a particle stands for more; the sides of a solid that the
-/// room cuts would count too.
+/// Area of a plane for each particle of the layer below it, m2. The samples' own areas know nothing of where the room cuts a solid.
 fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
     spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
 }
@@ -201,7 +213,7 @@ impl Dew {
                 solid: particle.body,
                 position: [0, 1, 2].map(foot),
                 normal: nearest.normal,
-                half_width: 0.5 * particle.area.min(area_in_cell(nearest.normal, self.scale.spacing)).sqrt(),
+                half_width: 0.5 * area_in_cell(nearest.normal, self.scale.spacing).sqrt(),
             });
         }
         let drops = Drops::new(laws, solids, sites, [self.room.low, self.room.high], seed);
@@ -210,7 +222,9 @@ impl Dew {
 
     /// Drops take over what condensed, where it is their turn.
     pub(crate) fn tend_drops(&mut self) {
-        let Some(wetting) = self.wetting.as_mut().filter(|_| self.state.steps.is_multiple_of(STEPS)) else { return };
+        let (step, air) = (self.state.steps, self.state.air.len());
+        let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
+        wetting.step = step;
         let left = wetting.take_over(&mut self.state.water_on, self.state.time);
         self.state.water.book(-left);
     }

@@ -32,6 +32,10 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "gas/atmosphere",
     "gas/argon",
     "gas/million",
+    "dew/pane",
+    "dew/lens",
+    "dew/glassware",
+    "dew/three-boundaries",
 ];
 
 /// The built-in scene called `name`.

@@ -205,6 +205,7 @@ fn full_dew() -> Scene {
         temperature_c: Series::Constant(1.0),
         held: true,
         layers: Some(1),
+        treatment: Some(dew::Treatment::VirtualForce),
     };
     let dew = Dew {
         size_m: [1.0; 3],

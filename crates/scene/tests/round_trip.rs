@@ -17,9 +17,10 @@ fn every_built_in_scene_reads_and_round_trips() {
         scene.resolve_defaults();
         let written = scene.to_toml().unwrap();
         assert_eq!(parse(&written), scene);
-        let own = match scene.gas() {
-            Some(_) => ["contact_time_s", "pair_distance"],
-            None => ["map_every_s", "gravity_m_per_s2"],
+        let own = match (scene.gas(), scene.dew()) {
+            (Some(_), _) => ["contact_time_s", "pair_distance"],
+            (_, Some(_)) => ["colour_threshold", "pressure_pa"],
+            _ => ["map_every_s", "gravity_m_per_s2"],
         };
         for key in ["frame_every_s", "gauge_every_s", "checkpoint_every_wall_s"].into_iter().chain(own) {
             assert!(written.contains(&format!("{key} = ")), "{key} is not in\n{written}");

@@ -5,6 +5,7 @@ mod crossing;
 mod gltf;
 mod obj;
 mod ply;
+mod quiet;
 mod read;
 mod stl;
 

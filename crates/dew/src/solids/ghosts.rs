@@ -4,6 +4,7 @@ use super::{Body, Searched, Site, Solids, distance_squared};
 use crate::air::Scale;
 use crate::contact::Contact;
 use crate::room::Room;
+use crate::settings::WallTreatment;
 use corpuscle_model::ModelError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -22,12 +23,13 @@ const SWEEPS: u32 = 5;
 /// Times that the volumes of samples are corrected.
 const CORRECTIONS: u32 = 8;
 
-/// Ghost samples of all bodies, to be in contact with air.
+/// Ghost samples of the bodies that keep air out by them, to be in contact with air.
 ///
 /// # Errors
-/// Where a body does not tell its surface.
+/// Where such a body does not tell its surface.
 pub(crate) fn ghost_contact(
     bodies: &[Body],
+    walls: &[WallTreatment],
     solids: &Solids,
     room: &Room,
     scale: &Scale,
@@ -35,7 +37,8 @@ pub(crate) fn ghost_contact(
 ) -> Result<Contact, ModelError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut places = Vec::new();
-    for (number, body) in bodies.iter().enumerate() {
+    let ghostly = |number: &usize| walls[*number] == WallTreatment::Ghosts;
+    for (number, body) in bodies.iter().enumerate().filter(|(number, _)| ghostly(number)) {
         let Some(surface) = &body.surface else {
             return Err(ModelError::Setup(format!(
                 "ghost samples need the surface of solid {number}, which is not known"
@@ -56,21 +59,25 @@ pub(crate) fn ghost_contact(
             sites.push(Site { position: image.position, image: true, ..site });
         });
     }
-    let volumes = volumes(&places, &sites, solids, room, scale);
-    Ok(Contact::new(&sites, |site| volumes[site.particle as usize], scale.h()))
+    let particles = solids.sites(room, scale.h(), |particle| ghostly(&(particle.body as usize)));
+    let volumes = volumes(&places, &sites, solids, &particles, scale);
+    let volume = |site: &Site| volumes[site.particle as usize];
+    // They join the air's density as they are.
+    Ok(Contact::new(&sites, volume, |_| WallTreatment::DensityCorrection, scale.h()))
 }
 
 /// Volumes of samples with which they fill the room as the solids' own particles do.
-fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, room: &Room, scale: &Scale) -> Vec<f64> {
+fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, particles: &[Site], scale: &Scale) -> Vec<f64> {
     let h = scale.h();
     let samples = Searched::new(sites, h);
-    let particles = Searched::new(&solids.sites(room, h, |_| true), h);
+    let of_bodies = particles.iter().filter(|site| !site.image);
+    let total: f64 = of_bodies.map(|site| solids.particles[site.particle as usize].volume).sum();
+    let particles = Searched::new(particles, h);
     let filling = |of: &Searched, place: [f64; 3], volume: &(dyn Fn(&Site) -> f64 + Sync)| {
         of.near(place, h).map(|(site, r_squared)| volume(site) * scale.kernels.poly6(r_squared)).sum::<f64>()
     };
     let of_particle = |site: &Site| solids.particles[site.particle as usize].volume;
     let wanted: Vec<f64> = places.par_iter().map(|&place| filling(&particles, place, &of_particle)).collect();
-    let total: f64 = solids.particles.iter().map(|particle| particle.volume).sum();
     let mut volumes = vec![total / places.len() as f64; places.len()];
     for _ in 0..CORRECTIONS {
         let before = &volumes;

@@ -10,7 +10,7 @@ pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
 use crate::room::Room;
-use crate::settings::Conductor;
+use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
 use corpuscle_sph::space::Cells;
@@ -54,6 +54,8 @@ pub struct Body {
     pub held: bool,
     /// Where its surface is, if known: ghost samples need it, and air starts outside it.
     pub surface: Option<Surface>,
+    /// How it keeps air out, where not as all do.
+    pub walls: Option<WallTreatment>,
 }
 
 /// A particle of a solid.
@@ -108,7 +110,7 @@ impl Body {
         let samples = solid.sample(spacing, Depth::Full).map_err(|error| ModelError::Setup(error.to_string()))?;
         let Samples { positions, volumes, areas } = samples;
         let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
-        Ok(Self { positions, volumes, areas, material, temperature, held, surface: Some(surface) })
+        Ok(Self { positions, volumes, areas, material, temperature, held, surface: Some(surface), walls: None })
     }
 }
 

@@ -29,6 +29,9 @@ pub struct Solid {
     /// Layers of particles below its surface. Left out: it is filled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<u32>,
+    /// How air is kept out of it. Left out: as of all, by `boundary.treatment`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub treatment: Option<super::Treatment>,
 }
 
 /// The form of a solid, in its own coordinates.

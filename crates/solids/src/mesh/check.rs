@@ -27,7 +27,10 @@ pub(super) fn solid(read: Triangles) -> Result<(Triangles, Vec<String>), String>
     }
     let (volume, area) = volume_and_area(&mesh.corners, &mesh.triangles);
     if volume.abs() <= 1e-9 * area.powf(1.5) {
-        return Err(format!("it encloses no volume ({volume:.3e} of its unit cubed, with a surface of {area:.3e})"));
+        return Err(format!(
+            "it encloses no volume ({volume:.3e} m³, with a surface of {area:.3e} m²): a solid needs an inside. Give it a thickness in a \
+             program for meshes"
+        ));
     }
     Ok((mesh, notes))
 }

@@ -1,13 +1,13 @@
 //! glTF and GLB.
 
 use super::Triangles;
+use super::quiet::caught;
 use super::read::refuse_too_many;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
-use std::panic::catch_unwind;
 use std::path::Path;
 
 /// Columns of a matrix that moves points.
@@ -16,8 +16,8 @@ type Matrix = [[f64; 4]; 4];
 /// Reads all meshes of the scene. `folder` is where files that it names are.
 pub(super) fn read(content: &[u8], folder: &Path) -> Result<Triangles, String> {
     // The reader's own checks panic where a part names one that there is not.
-    catch_unwind(|| read_sound(content, folder))
-        .unwrap_or_else(|_| Err("this is not a glTF that can be read: parts that it names are missing".into()))
+    caught(|| read_sound(content, folder))
+        .unwrap_or_else(|| Err("this is not a glTF that can be read: parts that it names are missing".into()))
 }
 
 fn read_sound(content: &[u8], folder: &Path) -> Result<Triangles, String> {

@@ -55,5 +55,5 @@ fn slab(from: usize, layers: usize, spacing: f64, material: Material, temperatur
     let across = |x: usize| (0..ACROSS * ACROSS).map(move |k| [at(x), at(k % ACROSS), at(k / ACROSS)]);
     let positions: Vec<_> = (from..from + layers).flat_map(across).collect();
     let (volumes, areas) = (vec![spacing.powi(3); positions.len()], vec![spacing.powi(2); positions.len()]);
-    Body { positions, volumes, areas, material, temperature, held, surface: None }
+    Body { positions, volumes, areas, material, temperature, held, surface: None, walls: None }
 }

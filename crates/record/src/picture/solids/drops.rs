@@ -16,12 +16,14 @@ pub(crate) struct Cap {
     pub height: f64,
 }
 
-/// A drop smaller than this is a part of its pixel, pixels.
-const SMALLEST: f64 = 0.8;
+/// A drop smaller than this scatters light as mist, pixels.
+const SMALLEST: f64 = 1.8;
 
-/// Colour of the mist of drops too small to be seen, and the most of it that is seen.
-const MIST: Vector = [222.0, 230.0, 235.0];
-const THICKEST: f64 = 0.85;
+/// Colour of the mist of drops too small to be seen one by one, the most of it that is seen, and how much whiter than the area that
+/// they cover.
+const MIST: Vector = [226.0, 233.0, 238.0];
+const THICKEST: f64 = 0.9;
+const WHITER: f64 = 2.0;
 
 /// Where the light comes from: above the left shoulder.
 pub(super) fn light(screen: &Screen) -> Vector {
@@ -29,9 +31,8 @@ pub(super) fn light(screen: &Screen) -> Vector {
     normalised(std::array::from_fn(|axis| 0.7 * view.up[axis] - 0.45 * view.right[axis] - 0.9 * view.ahead[axis]))
 }
 
-/// Draws drops over the picture of the solids.
-pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], colours: &mut [Vector]) {
-    let mut mist = vec![0.0; colours.len()];
+/// Draws drops over the picture of the solids. `mist` tells what part of each pixel is covered by a film of drops too small to be known.
+pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], mut mist: Vec<f64>, colours: &mut [Vector]) {
     let mut order: Vec<&Cap> = caps.iter().filter(|cap| dot(cap.normal, screen.view.ahead) < 0.0).collect();
     // The farthest first.
     order.sort_by(|a, b| screen.view.place(b.position)[2].total_cmp(&screen.view.place(a.position)[2]));
@@ -42,7 +43,7 @@ pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], colours: &mut [V
         }
     }
     for (colour, mist) in colours.iter_mut().zip(&mist) {
-        let thick = THICKEST * (1.0 - f64::exp(-mist));
+        let thick = THICKEST * (1.0 - f64::exp(-WHITER * mist));
         *colour = mix(*colour, MIST, thick);
     }
     for cap in order.into_iter().filter(|cap| cap.radius >= SMALLEST * screen.pixel) {
@@ -50,17 +51,24 @@ pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], colours: &mut [V
     }
 }
 
-/// What a drop covers of its pixel.
+/// What a drop covers, over the pixels round its middle.
 fn add_mist(screen: &Screen, cap: &Cap, hits: &[Hit], mist: &mut [f64]) {
     let place = screen.view.place(cap.position);
-    let [x, y] = screen.pixel_of(place);
-    if x < 0.0 || y < 0.0 || x as usize >= screen.width || y as usize >= screen.height {
-        return;
-    }
-    let pixel = y as usize * screen.width + x as usize;
-    if place[2] < hits[pixel].depth + 3.0 * screen.pixel {
-        let across = -dot(cap.normal, screen.view.ahead);
-        mist[pixel] += std::f64::consts::PI * (cap.radius / screen.pixel).powi(2) * across;
+    let [x, y] = screen.pixel_of(place).map(f64::floor);
+    let across = -dot(cap.normal, screen.view.ahead);
+    let covered = std::f64::consts::PI * (cap.radius / screen.pixel).powi(2) * across;
+    // Three by three pixels, the middle most.
+    for (dx, dy, share) in
+        (0..9).map(|k| (k % 3 - 1, k / 3 - 1, [1.0, 2.0, 1.0][k as usize % 3] * [1.0, 2.0, 1.0][k as usize / 3]))
+    {
+        let (column, row) = (x + f64::from(dx), y + f64::from(dy));
+        if column < 0.0 || row < 0.0 || column as usize >= screen.width || row as usize >= screen.height {
+            continue;
+        }
+        let pixel = row as usize * screen.width + column as usize;
+        if hits[pixel].solid.is_some() && place[2] < hits[pixel].depth + 3.0 * screen.pixel {
+            mist[pixel] += covered * share / 16.0;
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use super::svg::{Anchor, Figure, Svg};
 use corpuscle_model::{SolidShape, Surface};
 use drops::{light, mix};
 use field::Field;
+use rayon::prelude::*;
 use trace::{Hit, Screen};
 use view::dot;
 
@@ -31,6 +32,9 @@ pub(crate) struct SolidsPicture<'a> {
 const SOLID: Vector = [116.0, 139.0, 152.0];
 const BEHIND: Vector = [240.0, 243.0, 246.0];
 
+/// A film of so much water, kg/m2, covers everything: half balls of 10 µm radius, as breath on glass has, are 2/3 r of water high.
+const FILM_THAT_COVERS: f64 = 998.0 * 2.0 / 3.0 * 1e-5;
+
 /// Pixels for a CSS pixel.
 const FINENESS: f64 = 1.7;
 
@@ -38,18 +42,19 @@ const FINENESS: f64 = 1.7;
 const MARGIN: f64 = 0.03;
 
 impl SolidsPicture<'_> {
-    /// Drops on the solids, with a scale bar and `caption` below.
+    /// Drops on the solids, with a scale bar, `caption` and a smaller `note` below.
     ///
     /// # Errors
     /// What cannot be encoded.
-    pub(crate) fn drops(&self, caps: &[Cap], caption: &str) -> Result<Figure, String> {
+    pub(crate) fn drops(&self, caps: &[Cap], caption: &str, note: &str) -> Result<Figure, String> {
         let (screen, hits) = self.seen();
         let mut colours = plain(&screen, &hits);
-        drops::draw(&screen, caps, &hits, &mut colours);
+        drops::draw(&screen, caps, &hits, self.mist(&hits), &mut colours);
         self.compose(&screen, &colours, |svg, top, width| {
             svg.text([0.0, top + 16.0], Anchor::Start, "text", caption);
+            svg.text([0.0, top + 33.0], Anchor::Start, "small", note);
             scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", [width - 8.0, top + 6.0]);
-            top + 32.0
+            top + if note.is_empty() { 32.0 } else { 42.0 }
         })
     }
 
@@ -75,6 +80,20 @@ impl SolidsPicture<'_> {
             scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", [width - 8.0, top + 6.0]);
             value_bar(svg, most, [0.0, top + 24.0], (0.7 * width).min(300.0))
         })
+    }
+
+    /// The part of each pixel that films cover.
+    fn mist(&self, hits: &[Hit]) -> Vec<f64> {
+        let films = self.surfaces.iter().map(|surface| {
+            let film = surface.scalar("film_kg_per_m2").filter(|film| film.iter().any(|&film| film > 0.0))?;
+            Some(Field::new(surface, film))
+        });
+        let films: Vec<Option<Field<'_>>> = films.collect();
+        let of = |hit: &Hit| {
+            let film = films[hit.solid?].as_ref()?;
+            film.at(hit.place, hit.normal).map(|film| film / FILM_THAT_COVERS)
+        };
+        hits.par_iter().with_min_len(256).map(|hit| of(hit).unwrap_or(0.0)).collect()
     }
 
     fn seen(&self) -> (Screen, Vec<Hit>) {

@@ -18,8 +18,9 @@ const MOST_MAPS: usize = 4;
 pub(super) fn drops(model: &dyn Model) -> Result<Option<Figure>, String> {
     let caps = caps(model);
     let count = number(caps.len() as f64).replace(".00", "").replace(".0", "");
-    let words = format!("{count} drops, true to scale; mist: drops too small to be seen one by one");
-    draw(model, &caps, WHOLE, &words)
+    let words = if caps.is_empty() { "No drops".into() } else { format!("{count} drops, true to scale") };
+    let note = if caps.is_empty() { "" } else { "White mist: drops too small to be seen one by one" };
+    draw(model, &caps, WHOLE, [&words, note])
 }
 
 /// The same, small, with a caption.
@@ -27,18 +28,18 @@ pub(super) fn drops(model: &dyn Model) -> Result<Option<Figure>, String> {
 /// # Errors
 /// What cannot be encoded.
 pub(super) fn moment(model: &dyn Model, caption: &str) -> Result<Option<Figure>, String> {
-    draw(model, &caps(model), MOMENT, caption)
+    draw(model, &caps(model), MOMENT, [caption, ""])
 }
 
-fn draw(model: &dyn Model, caps: &[Cap], most: [f64; 2], caption: &str) -> Result<Option<Figure>, String> {
+fn draw(model: &dyn Model, caps: &[Cap], most: [f64; 2], [caption, note]: [&str; 2]) -> Result<Option<Figure>, String> {
     let surfaces = model.surfaces();
     if surfaces.is_empty() {
         return Ok(None);
     }
-    // From where most water ever was seen, so that it stays the same while drops come and go.
+    // The view does not depend on where drops are, so that it stays the same while they come and go.
     let view = View::of(&surfaces, |surface| vec![1.0; surface.position.len()]);
     let picture = SolidsPicture { surfaces: &surfaces, room: room(model), view, most };
-    picture.drops(caps, caption).map(Some)
+    picture.drops(caps, caption, note).map(Some)
 }
 
 /// Maps of the solids that were ever wet: name of the file and figure.

@@ -1,0 +1,93 @@
+//! How near the air comes to a solid, and what keeping it out costs: to compare ways of doing so.
+
+use crate::air::{Particle, Role};
+use crate::contact::Contact;
+use crate::dew::Dew;
+use crate::solids::{Body, Surface};
+
+/// Width of the layer of air before a surface that is looked at, in spacings; that behind it is as wide.
+const WIDTH: f64 = 2.0;
+
+/// Places in a spacing at which the room that the layer has is found.
+const PLACES: f64 = 5.0;
+
+/// The air before the surface of a solid.
+pub(crate) struct Layer {
+    surface: Surface,
+    width: f64,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Volumes of the layer and of that behind it, m3.
+    volumes: [f64; 2],
+    /// Sites in the solid: its own particles, and ghosts.
+    sites: [Vec<usize>; 2],
+}
+
+/// What is found there.
+pub(crate) struct Found {
+    /// Signed distance of the nearest parcel, m; negative where air is inside.
+    pub nearest: f64,
+    /// Width of the vacuum before the surface if the air began at once beyond it, m.
+    pub gap: f64,
+    /// Pairs of air and samples of the wall in a step.
+    pub pairs: f64,
+}
+
+impl Layer {
+    /// Of a body whose surface is known.
+    pub fn new(body: &Body, dew: &Dew) -> Option<Self> {
+        let (room, spacing) = (&dew.room, dew.scale.spacing);
+        let surface = body.surface.clone()?;
+        let width = WIDTH * spacing;
+        let along = |axis: usize| body.positions.iter().map(move |place| place[axis]);
+        let reach = 2.0 * width + spacing;
+        let low = [0, 1, 2].map(|axis| (along(axis).fold(f64::INFINITY, f64::min) - reach).max(room.low[axis]));
+        let high = [0, 1, 2].map(|axis| (along(axis).fold(f64::NEG_INFINITY, f64::max) + reach).min(room.high[axis]));
+        let inside =
+            |place: [f64; 3]| (0..3).all(|axis| (low[axis]..high[axis]).contains(&place[axis])) && surface(place) < 0.0;
+        let within = |contact: &Contact| {
+            let sites = contact.sites.iter().enumerate();
+            sites.filter(|(_, site)| inside(site.position)).map(|(number, _)| number).collect()
+        };
+        let sites = [within(&dew.contact), within(&dew.ghosts)];
+        let mut layer = Self { surface, width, low, high, volumes: [0.0; 2], sites };
+        let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) * PLACES / spacing).ceil().max(1.0));
+        let apart = [0, 1, 2].map(|axis| (high[axis] - low[axis]) / counts[axis]);
+        let places = (0..counts.iter().product::<f64>() as u64).map(|number| {
+            let [x, y] = [counts[0] as u64, counts[1] as u64];
+            let index = [number % x, number / x % y, number / (x * y)];
+            [0, 1, 2].map(|axis| low[axis] + (index[axis] as f64 + 0.5) * apart[axis])
+        });
+        let volume: f64 = apart.iter().product();
+        layer.volumes = layer.count(places).1.map(|count| volume * f64::from(count));
+        Some(layer)
+    }
+
+    /// Signed distance of the nearest place, and how many are in the layer and in that behind it.
+    fn count(&self, places: impl Iterator<Item = [f64; 3]>) -> (f64, [u32; 2]) {
+        let (mut nearest, mut counts) = (f64::INFINITY, [0; 2]);
+        for place in places {
+            let distance = (self.surface)(place);
+            nearest = nearest.min(distance);
+            match distance / self.width {
+                part if !(0.0..2.0).contains(&part) => {}
+                part => counts[usize::from(part >= 1.0)] += 1,
+            }
+        }
+        (nearest, counts)
+    }
+
+    /// What is found in the air as it stands.
+    pub fn find(&self, dew: &Dew) -> Found {
+        let is_near = |place: &[f64; 3]| (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&place[axis]));
+        let inside = |particle: &&Particle| particle.role == Role::Inside;
+        let places = dew.air().iter().filter(inside).map(|particle| particle.position).filter(is_near);
+        let (nearest, counts) = self.count(places);
+        let [before, behind] = [0, 1].map(|layer| f64::from(counts[layer]) / self.volumes[layer]);
+        let pairs_of = |(sites, contact): (&Vec<usize>, &Contact)| {
+            sites.iter().map(|&site| contact.of_site(site).len()).sum::<usize>()
+        };
+        let pairs: usize = self.sites.iter().zip([&dew.contact, &dew.ghosts]).map(pairs_of).sum();
+        Found { nearest, gap: self.width * (1.0 - before / behind), pairs: pairs as f64 }
+    }
+}
