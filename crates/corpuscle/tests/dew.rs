@@ -29,6 +29,7 @@ fn a_run_leaves_its_files_and_is_the_same_when_interrupted() {
     }
     let report = fs::read_to_string(whole.join("report.html")).unwrap();
     assert!(report.contains("First drop") && report.contains("drops cover") && report.contains("true to scale"));
+    assert!(report.contains("A slice through the middle of the box"));
 
     let mut simulation = Simulation::open(scene(), Path::new("")).unwrap();
     let mut recorder = Recorder::create(&parted, &simulation, FrameFormat::Csv).unwrap();

@@ -8,10 +8,10 @@ use corpuscle_model::Model;
 fn pressure_and_collision_rate_of_a_fluid_are_those_known() {
     // Kolafa's equation and Enskog's rate at packing 0.3: Z = 3.98426, 10.102 collisions.
     let mut gas = Setup::<3>::fluid(2000, 0.3).measured(2.0, 0.1).build().unwrap();
-    advance(&mut gas, 12.0);
+    advance(&mut gas, 62.0);
     let (z, rate) = (gas.compressibility(), gas.collision_rate());
-    assert!((z.mean - 3.98426).abs() < 4.0 * z.error + 0.01, "{z:?}");
-    assert!(z.error < 0.02);
+    // Some systematic error is left to a box of this size.
+    assert!((z.mean - 3.98426).abs() < 3.0 * z.error + 0.01 && z.error < 0.01, "{z:?}");
     assert!((rate.mean / 10.102 - 1.0).abs() < 0.01, "{rate:?}");
     // Mean free path: mean speed over rate.
     let mean_speed = (8.0 / std::f64::consts::PI).sqrt();

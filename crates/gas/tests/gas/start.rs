@@ -1,7 +1,7 @@
 //! Where balls are at the start.
 
-use crate::common::deepest;
-use corpuscle_gas::{Amount, Gas, Partition, Setup, Species, Speeds, Start};
+use crate::common::{advance, deepest};
+use corpuscle_gas::{Amount, Gas, Partition, Setup, Species, Speeds, Start, theory};
 
 fn started<const D: usize>(packing: f64, count: usize, start: Start, walls: bool) -> (Setup<D>, Gas<D>) {
     let mut setup = Setup::<D>::fluid(count, packing);
@@ -26,6 +26,21 @@ fn every_packing_is_reached_without_overlap() {
         assert!(deepest(&setup, &gas, [true; 3]) < 1e-12);
         assert!((gas.packing() / packing - 1.0).abs() < 1e-9);
     }
+}
+
+/// Collisions over those known of equilibrium, while each ball has its first two, about.
+fn first_collisions<const D: usize>(packing: f64) -> f64 {
+    let count = 10_000;
+    let known = theory::collision_rate::<D>(packing, 0.5, 1.0);
+    let mut gas = Setup::<D>::fluid(count, packing).build().unwrap();
+    advance(&mut gas, 2.0 / known);
+    gas.collisions() as f64 / count as f64
+}
+
+#[test]
+fn grown_fluids_are_near_equilibrium() {
+    let rates = [first_collisions::<3>(0.3), first_collisions::<2>(0.6)];
+    assert!(rates.iter().all(|rate| (rate - 1.0).abs() < 0.05), "{rates:?}");
 }
 
 #[test]

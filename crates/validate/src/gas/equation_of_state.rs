@@ -28,7 +28,7 @@ fn equation_of_state(_: &Options) -> Vec<Row> {
         for packing in DISKS {
             rows.extend(walled::<2>(packing)?);
         }
-        // At 0.49 walls order the balls beside them, layer by layer: that takes longer than a run.
+        // At 0.49 the balls beside walls freeze, layer by layer: pressures drift, and their standard errors mean nothing.
         for packing in &BALLS[..2] {
             rows.extend(walled::<3>(*packing)?);
         }

@@ -116,6 +116,7 @@ fn draw_walls(svg: &mut Svg, balls: &Balls, [left, top]: [f64; 2], [right, botto
             Side::Wall => svg.line(ends[0], ends[1], "wall"),
             Side::Hot => svg.line(ends[0], ends[1], "wall-hot"),
             Side::Open => svg.line(ends[0], ends[1], "wall-open"),
+            Side::Passage => {}
             Side::Piston => {
                 let moved = |end: [f64; 2]| [end[0] + 12.0 * outwards[0], end[1] + 12.0 * outwards[1]];
                 svg.path([ends[0], ends[1], moved(ends[1]), moved(ends[0])], true, "piston");

@@ -31,6 +31,8 @@ pub(crate) enum Side {
     Open,
     /// A wall that moves.
     Piston,
+    /// No wall: what is in the box comes in or leaves there.
+    Passage,
 }
 
 /// A thin wall across the box.

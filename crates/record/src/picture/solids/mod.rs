@@ -38,6 +38,9 @@ const FILM_THAT_COVERS: f64 = 998.0 * 2.0 / 3.0 * 1e-5;
 /// Pixels for a CSS pixel.
 const FINENESS: f64 = 1.7;
 
+/// A picture narrower than this has no room for words and a scale bar side by side, CSS pixels.
+const BESIDE: f64 = 420.0;
+
 /// Room round the solids, over their size.
 const MARGIN: f64 = 0.03;
 
@@ -53,8 +56,10 @@ impl SolidsPicture<'_> {
         self.compose(&screen, &colours, |svg, top, width| {
             svg.text([0.0, top + 16.0], Anchor::Start, "text", caption);
             svg.text([0.0, top + 33.0], Anchor::Start, "small", note);
-            scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", [width - 8.0, top + 6.0]);
-            top + if note.is_empty() { 32.0 } else { 42.0 }
+            let words = if note.is_empty() { 22.0 } else { 40.0 };
+            let bar = bar_below(width, top, words);
+            scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", bar);
+            (top + words).max(bar[1] + 26.0)
         })
     }
 
@@ -77,8 +82,9 @@ impl SolidsPicture<'_> {
         }
         self.compose(&screen, &colours, |svg, top, width| {
             svg.text([0.0, top + 16.0], Anchor::Start, "text", title);
-            scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", [width - 8.0, top + 6.0]);
-            value_bar(svg, most, [8.0, top + 24.0], (0.7 * width).min(300.0))
+            let bar = bar_below(width, top, 24.0);
+            scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", bar);
+            value_bar(svg, most, [14.0, (top + 24.0).max(bar[1] + 30.0)], (0.7 * width).min(300.0))
         })
     }
 
@@ -141,10 +147,15 @@ impl SolidsPicture<'_> {
         let size = [screen.width, screen.height].map(|pixels| pixels as f64 / FINENESS);
         let mut svg = Svg::default();
         svg.image([0.0, 0.0], size, &url, 1.0);
-        let width = size[0].max(260.0);
+        let width = size[0].max(330.0);
         let end = below(&mut svg, size[1] + 6.0, size[0]);
         Ok(svg.finish([width, end + 6.0], "Solids and the drops on them"))
     }
+}
+
+/// Where the scale bar ends, right and top: beside the words under a picture, or below them where it is narrow.
+fn bar_below(width: f64, top: f64, words: f64) -> [f64; 2] {
+    if width < BESIDE { [width.max(110.0) - 8.0, top + words + 4.0] } else { [width - 8.0, top + 6.0] }
 }
 
 /// Solids without anything on them.

@@ -13,7 +13,7 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
     let of_solids = |quantity: &str| -> Vec<(String, &str)> {
         dew.solid.iter().map(|solid| (format!("{}.{quantity}", solid.name), solid.name.as_str())).collect()
     };
-    let kinds: [Kind<'_>; 8] = [
+    let kinds: [Kind<'_>; 11] = [
         ("covered", "Part of the surface that drops cover", "%", 1e2, of_solids("covered_part")),
         ("water_per_area", "Water on the solids", "g/m²", 1e3, of_solids("water_per_area_kg_per_m2")),
         ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
@@ -22,6 +22,9 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
         ("water_left", "Water that ran off", "mg", 1e6, one("drops.left_kg")),
         ("heat_given", "Heat that held solids gave", "J", 1.0, of_solids("heat_given_J")),
         ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_solids("mean_temperature_K")),
+        ("nearest_air", "Nearest air (below 0 it is inside)", "mm", 1e3, of_solids("nearest_air_m")),
+        ("gap", "Vacuum before the surface", "mm", 1e3, of_solids("gap_m")),
+        ("wall_pairs", "Pairs of air and wall in a step: the cost", "", 1.0, of_solids("wall_pairs")),
     ];
     kinds.into_iter().filter_map(|kind| chart(table, kind)).collect()
 }

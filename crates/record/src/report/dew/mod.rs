@@ -1,5 +1,6 @@
 //! The report of dew: how much water is where, in what drops, and since when.
 
+mod air;
 mod charts;
 mod facts;
 mod picture;
@@ -30,6 +31,7 @@ type Figures = Vec<(String, Figure)>;
 /// What is drawn for the report.
 struct Drawn {
     drops: Option<Figure>,
+    air: Option<Figure>,
     maps: Figures,
     charts: Figures,
     /// Pictures of moments, as SVG files.
@@ -83,11 +85,13 @@ impl<'a> DewReport<'a> {
         charts.extend(self.model.charts());
         let drawn = Drawn {
             drops: picture::drops(self.model).map_err(|what| self.drawing(what))?,
+            air: air::slice(self.dew, self.model).map_err(|what| self.drawing(what))?,
             maps: picture::maps(self.model).map_err(|what| self.drawing(what))?,
             charts: charts.iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect(),
             moments: moments::read(self.folder, &self.scene.run),
         };
         let drops = drawn.drops.iter().map(|figure| ("drops", figure));
+        let drops = drops.chain(drawn.air.iter().map(|figure| ("air", figure)));
         let others = drawn.maps.iter().chain(&drawn.charts).map(|(name, figure)| (name.as_str(), figure));
         for (name, figure) in drops.chain(others) {
             let png = svg_to_png(&figure.with_margin(16.0)).map_err(|what| self.drawing(what))?;
@@ -113,6 +117,7 @@ impl<'a> DewReport<'a> {
             parts::key_figures(&facts::key_figures(table, summary, self.dew)),
             parts::warnings(summary),
             self.drops(drawn),
+            self.air(drawn),
             pairs("Where it is wet", &drawn.maps),
             pairs("Measured", &drawn.charts),
             parts::balance(summary),
@@ -120,6 +125,15 @@ impl<'a> DewReport<'a> {
             parts::footer(summary, &facts::time(summary.simulated_time_s), beside),
         ];
         parts::document(&format!("{title} – condensation report"), "", &sections.concat())
+    }
+
+    fn air(&self, drawn: &Drawn) -> String {
+        let Some(air) = &drawn.air else { return String::new() };
+        let time = facts::time(self.model.time());
+        format!(
+            "<section>\n<h2>The air at t = {time}</h2>\n<p>A slice through the middle of the box.</p>\n<figure>{}</figure>\n</section>\n",
+            air.inline()
+        )
     }
 
     fn drops(&self, drawn: &Drawn) -> String {
