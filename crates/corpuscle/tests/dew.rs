@@ -1,7 +1,7 @@
 //! Dew from a scene file to a run's folder: files, ledger and report; interrupted or not, the same.
 
 use corpuscle::record::{FrameFormat, Status};
-use corpuscle::scene::Scene;
+use corpuscle::scene::{Scene, builtin};
 use corpuscle::{Recorder, Simulation};
 use std::fs;
 use std::path::Path;
@@ -29,7 +29,6 @@ fn a_run_leaves_its_files_and_is_the_same_when_interrupted() {
     }
     let report = fs::read_to_string(whole.join("report.html")).unwrap();
     assert!(report.contains("First drop") && report.contains("drops cover") && report.contains("true to scale"));
-    assert!(report.contains("A slice through the middle of the box"));
 
     let mut simulation = Simulation::open(scene(), Path::new("")).unwrap();
     let mut recorder = Recorder::create(&parted, &simulation, FrameFormat::Csv).unwrap();
@@ -44,4 +43,20 @@ fn a_run_leaves_its_files_and_is_the_same_when_interrupted() {
         assert_eq!(whole, parted, "{file}");
         assert!(!whole.is_empty());
     }
+}
+
+#[test]
+fn the_report_of_much_air_in_motion_shows_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = builtin("dew/three-boundaries").unwrap().text;
+    let changes =
+        ["run.until_s", "run.frame_every_s", "run.gauge_every_s"].map(|key| (key.to_owned(), "5e-4".to_owned()));
+    let mut simulation =
+        Simulation::open(Scene::parse(text, "three-boundaries", &changes).unwrap(), Path::new("")).unwrap();
+    let run = folder.path().join("run");
+    let mut recorder = Recorder::create(&run, &simulation, FrameFormat::Csv).unwrap();
+    simulation.run(&mut [&mut recorder], &AtomicBool::new(false), &mut |_| {}).unwrap();
+    let report = fs::read_to_string(run.join("report.html")).unwrap();
+    assert!(report.contains("A slice through the middle of the box") && report.contains("Vacuum before the surface"));
+    assert!(run.join("pictures/air.png").exists());
 }

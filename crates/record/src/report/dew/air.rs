@@ -11,7 +11,10 @@ const SOLID: Colour = [0x6b, 0x78, 0x85];
 /// The key ends at the speed that all but this part of the air stays below: few parcels do not darken the others.
 const FASTEST_PART: f64 = 0.005;
 
-/// The slice across the shortest side of the box; none where particle files show no air, or it is at rest.
+/// Fewer parcels in the slice are no picture of a flow.
+const FEWEST: usize = 300;
+
+/// The slice across the shortest side of the box; none where particle files show no air, or little of it, or it is at rest.
 ///
 /// # Errors
 /// What cannot be encoded.
@@ -27,7 +30,8 @@ pub(super) fn slice(dew: &Dew, model: &dyn Model) -> Result<Option<Figure>, Stri
     let mut speeds: Vec<f64> = (0..air.len()).map(speed).collect();
     speeds.sort_by(f64::total_cmp);
     let Some(&most) = speeds.get(((1.0 - FASTEST_PART) * speeds.len() as f64) as usize) else { return Ok(None) };
-    if most == 0.0 {
+    let sliced: Vec<usize> = (0..air.len()).filter(|at| middle(air, at)).collect();
+    if most == 0.0 || sliced.len() < FEWEST {
         return Ok(None);
     }
     let disc = |set: &ParticleSet, at: usize, colour: Colour| {
@@ -39,7 +43,7 @@ pub(super) fn slice(dew: &Dew, model: &dyn Model) -> Result<Option<Figure>, Stri
     let solid = solids
         .iter()
         .flat_map(|set| (0..set.len()).filter(|at| middle(set, at)).map(|at| disc(set, at, SOLID)).collect::<Vec<_>>());
-    let discs = solid.chain((0..air.len()).filter(|at| middle(air, at)).map(coloured)).collect();
+    let discs = solid.chain(sliced.into_iter().map(coloured)).collect();
     let [from, to] = [[0.0; 3], [dew.size_m[right], dew.size_m[up], 0.0]];
     let sides = [right, up, across].map(|axis| dew.faces.along(Axis::ALL[axis]).map(side));
     let balls = Balls {
@@ -67,5 +71,18 @@ fn side(face: &Face) -> Side {
         Face::Wall => Side::Wall,
         Face::Periodic => Side::Open,
         Face::Open | Face::Outflow | Face::Inflow(_) => Side::Passage,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_faces_without_a_wall_are_passages() {
+        assert_eq!(
+            [Face::Wall, Face::Periodic, Face::Outflow].map(|face| side(&face)),
+            [Side::Wall, Side::Open, Side::Passage]
+        );
     }
 }
