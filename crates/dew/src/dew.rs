@@ -394,7 +394,7 @@ impl Dew {
         walls::add_density(contact, arrangement, scale, settings.kappa, sums);
         walls::add_density(ghosts, arrangement, scale, 1.0, sums);
         walls::add_moment(contact, arrangement, scale, sums);
-        fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead);
+        fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
         rates.resize(state.air.len(), Rates::default());
         let at_work = Properties {
             conductivity: settings.faster * air.conductivity,
@@ -744,12 +744,17 @@ fn fill_columns(
     air: &Properties,
     rest_density: f64,
     ahead: f64,
+    room: &Room,
+    reach: f64,
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
         if matches!(particle.role, Role::Leaving(..) | Role::Idle) {
             // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
+        } else if room.is_before_outlet(particle.position, reach) {
+            // Where air would flow back in there is none beyond: that must not suck.
+            particle.density = particle.density.max(rest_density);
         }
     });
     let particles = &*particles;
