@@ -68,6 +68,9 @@ impl Dew {
         for near in contact.near.iter().filter(|near| contact.of_air(near).iter().any(is_repelled)) {
             stays[near.particle as usize] = false;
         }
+        if !stays.contains(&false) {
+            return;
+        }
         let mut stays = stays.into_iter();
         state.air.retain(|_| stays.next() == Some(true));
         self.evaluate(0.0);
