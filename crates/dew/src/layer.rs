@@ -1,6 +1,5 @@
 //! How near the air comes to a solid, and what keeping it out costs: to compare ways of doing so.
 
-use crate::air::{Particle, Role};
 use crate::contact::Contact;
 use crate::dew::Dew;
 use crate::solids::{Body, Surface};
@@ -43,14 +42,12 @@ impl Layer {
         let reach = 2.0 * width + spacing;
         let low = [0, 1, 2].map(|axis| (along(axis).fold(f64::INFINITY, f64::min) - reach).max(room.low[axis]));
         let high = [0, 1, 2].map(|axis| (along(axis).fold(f64::NEG_INFINITY, f64::max) + reach).min(room.high[axis]));
-        let inside =
-            |place: [f64; 3]| (0..3).all(|axis| (low[axis]..high[axis]).contains(&place[axis])) && surface(place) < 0.0;
-        let within = |contact: &Contact| {
+        let mut layer = Self { surface, width, low, high, volumes: [0.0; 2], sites: [Vec::new(), Vec::new()] };
+        layer.sites = [&dew.contact, &dew.ghosts].map(|contact| {
             let sites = contact.sites.iter().enumerate();
-            sites.filter(|(_, site)| inside(site.position)).map(|(number, _)| number).collect()
-        };
-        let sites = [within(&dew.contact), within(&dew.ghosts)];
-        let mut layer = Self { surface, width, low, high, volumes: [0.0; 2], sites };
+            let inside = sites.filter(|(_, site)| layer.is_near(site.position) && (layer.surface)(site.position) < 0.0);
+            inside.map(|(number, _)| number).collect()
+        });
         let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) * PLACES / spacing).ceil().max(1.0));
         let apart = [0, 1, 2].map(|axis| (high[axis] - low[axis]) / counts[axis]);
         let places = (0..counts.iter().product::<f64>() as u64).map(|number| {
@@ -77,11 +74,13 @@ impl Layer {
         (nearest, counts)
     }
 
+    fn is_near(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&place[axis]))
+    }
+
     /// What is found in the air as it stands.
     pub fn find(&self, dew: &Dew) -> Found {
-        let is_near = |place: &[f64; 3]| (0..3).all(|axis| (self.low[axis]..self.high[axis]).contains(&place[axis]));
-        let inside = |particle: &&Particle| particle.role == Role::Inside;
-        let places = dew.air().iter().filter(inside).map(|particle| particle.position).filter(is_near);
+        let places = dew.inside().map(|particle| particle.position).filter(|&place| self.is_near(place));
         let (nearest, counts) = self.count(places);
         let [before, behind] = [0, 1].map(|layer| f64::from(counts[layer]) / self.volumes[layer]);
         let pairs_of = |(sites, contact): (&Vec<usize>, &Contact)| {

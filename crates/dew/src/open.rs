@@ -299,8 +299,10 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
     if !scene.buoyancy && scene.gravity_m_per_s2 != [0.0; 3] {
         warnings.push("buoyancy = false: air neither rises nor sinks, only drops feel gravity".into());
     }
-    if scene.boundary.treatment == Treatment::None {
-        warnings.push("dew.boundary.treatment = \"none\": nothing keeps the air out of the solids".into());
+    for solid in
+        scene.solid.iter().filter(|solid| solid.treatment.unwrap_or(scene.boundary.treatment) == Treatment::None)
+    {
+        warnings.push(format!("treatment = \"none\": nothing keeps the air out of the solid \"{}\"", solid.name));
     }
     warnings
 }

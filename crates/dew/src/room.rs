@@ -115,6 +115,14 @@ impl Room {
         }
     }
 
+    /// Whether a place in the room is nearer than `reach` to an outlet.
+    pub fn is_before_outlet(&self, place: [f64; 3], reach: f64) -> bool {
+        (0..3).any(|axis| {
+            let to = [place[axis] - self.low[axis], self.high[axis] - place[axis]];
+            (0..2).any(|side| to[side] < reach && self.faces[axis][side] == Face::Outlet)
+        })
+    }
+
     /// The inlet or outlet beyond which a place lies: axis and side.
     pub fn beyond(&self, place: [f64; 3]) -> Option<(usize, usize)> {
         (0..3).find_map(|axis| {

@@ -170,3 +170,11 @@ fn frost_and_accelerated_time_are_said() {
     assert!(cold.iter().any(|warning| warning.contains("the air is at -3 °C")), "{cold:?}");
     assert!(warnings.iter().any(|warning| warning.contains("100 times faster")), "{warnings:?}");
 }
+
+#[test]
+fn a_solid_that_nothing_keeps_air_out_of_is_named() {
+    let open = dew(&PANE.replace("held = true", "held = true\ntreatment = \"none\"")).warnings();
+    assert!(open.iter().any(|warning| warning.contains("keeps the air out of the solid \"pane\"")), "{open:?}");
+    let kept = dew(PANE).warnings();
+    assert!(!kept.iter().any(|warning| warning.contains("keeps the air out")), "{kept:?}");
+}

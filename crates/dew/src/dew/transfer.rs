@@ -1,0 +1,163 @@
+//! Heat, vapour and water between air and solids in a step.
+
+use super::{Dew, State};
+use crate::air::{Particle, Role};
+use crate::exchange::{Exchange, ToAir, Work, excess};
+use crate::settings::Condensation;
+use corpuscle_model::ExactSum;
+use rayon::prelude::*;
+
+impl Dew {
+    /// What air and solids exchange as they stand.
+    fn at_surfaces(&self) -> Exchange<'_> {
+        Exchange {
+            contact: &self.contact,
+            arrangement: &self.arrangement,
+            columns: &self.columns,
+            solids: &self.solids,
+            temperatures: &self.state.temperatures,
+            water: &self.state.water_on,
+            scale: &self.scale,
+            air: &self.air,
+            settings: &self.settings,
+            latent_heat: self.latent_heat,
+        }
+    }
+
+    /// Heat and vapour between air and solids, and through solids, in a step.
+    pub(super) fn exchange(&mut self, step: f64) {
+        let mut work = std::mem::take(&mut self.work);
+        let Work { to_solids, to_air, share_of, heat, stiff, .. } = &mut work;
+        let exchange = self.at_surfaces();
+        exchange.to_solids(step, to_solids);
+        let particles = self.solids.particles.len();
+        share_of.clear();
+        share_of.resize(particles, 1.0);
+        let conducted = |i| self.conduction.heat(i, &self.state.temperatures);
+        (0..particles).into_par_iter().with_min_len(1024).map(conducted).collect_into_vec(heat);
+        stiff.clear();
+        stiff.resize(self.contact.near.len(), 0.0);
+        stiff.extend_from_slice(&self.conductances);
+        let (of_air, of_solids) = stiff.split_at_mut(self.contact.near.len());
+        let real = self.contact.sites.iter().zip(&*to_solids).filter(|(site, _)| !site.image);
+        for (site, given) in real.clone() {
+            let particle = site.particle as usize;
+            share_of[particle] = given.share;
+            heat[particle] += given.heat;
+            of_solids[particle] += given.conductance;
+        }
+        exchange.to_air(share_of, to_air);
+        self.state.heat_flow.fill(0.0);
+        for (site, given) in real {
+            self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
+            // What rounding leaves of the last of the water is nothing.
+            let water = &mut self.state.water_on[site.particle as usize];
+            *water = (*water + step * given.water).max(0.0);
+        }
+        for (i, &heat) in heat.iter().enumerate() {
+            of_solids[i] /= self.solids.heat_capacity(i);
+            if self.solids.is_held(i) {
+                self.state.held_heat[self.solids.particles[i].body as usize].add(-step * heat);
+                self.state.energy.book(-step * heat);
+                of_solids[i] = 0.0;
+            } else {
+                self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
+            }
+        }
+        self.book_open_faces(step, to_air);
+        for ((near, given), stiff) in self.contact.near.iter().zip(&*to_air).zip(of_air) {
+            let rates = &mut self.rates[near.particle as usize];
+            rates.warming += given.warming;
+            rates.moistening += given.moistening;
+            *stiff = given.stiffness;
+        }
+        self.work = work;
+    }
+
+    /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
+    /// from beyond; and what solids give to air beyond has left.
+    fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
+        let State { air, water, energy, .. } = &mut self.state;
+        if air.iter().all(|particle| particle.role == Role::Inside) {
+            return;
+        }
+        let mass = self.air.density * self.scale.volume;
+        let energy_of = |warming: f64, moistening: f64| {
+            mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
+        };
+        let inside = || air.iter().zip(&self.rates).filter(|(particle, _)| particle.role == Role::Inside);
+        let gained: ExactSum = inside().map(|(_, rates)| mass * step * rates.moistening).collect();
+        water.book(gained.value());
+        let gained: ExactSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
+        energy.book(gained.value());
+        for (near, given) in self.contact.near.iter().zip(to_air) {
+            if air[near.particle as usize].role != Role::Inside {
+                water.book(-mass * step * given.moistening);
+                energy.book(-energy_of(given.warming, given.moistening));
+            }
+        }
+    }
+
+    /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
+    /// again in drier air.
+    pub(super) fn saturate(&mut self, step: f64) {
+        if !self.settings.fog && self.settings.condensation != Condensation::Parcel {
+            return;
+        }
+        let mut excesses = std::mem::take(&mut self.work.excesses);
+        let Self { air, state, latent_heat, .. } = &*self;
+        let find = |particle: &Particle| {
+            let near_saturation = particle.role == Role::Inside
+                && (particle.fog > 0.0 || particle.vapour > crate::exchange::saturation(particle.temperature, air));
+            if near_saturation { excess(particle, air, *latent_heat).max(-particle.fog) } else { 0.0 }
+        };
+        state.air.par_iter().with_min_len(1024).map(find).collect_into_vec(&mut excesses);
+        self.deposit(&mut excesses, step);
+        if self.settings.fog {
+            self.turn_to_fog(&excesses);
+        }
+        self.work.excesses = excesses;
+    }
+
+    /// What parcels have too much becomes fog, or fog becomes what they lack.
+    fn turn_to_fog(&mut self, excesses: &[f64]) {
+        let mass = self.particle_mass();
+        let warming = self.latent_heat / self.air.heat_capacity;
+        for (particle, &excess) in self.state.air.iter_mut().zip(excesses).filter(|(_, excess)| **excess != 0.0) {
+            particle.vapour -= excess;
+            particle.fog += excess;
+            particle.temperature += warming * excess;
+            self.state.fogged.add(mass * excess);
+        }
+    }
+
+    /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
+    fn deposit(&mut self, excesses: &mut [f64], step: f64) {
+        let mass = self.particle_mass();
+        let exchange = self.at_surfaces();
+        let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
+        let deposits: Vec<_> =
+            near.map(|near| (near.particle as usize, exchange.shares(near))).filter(|(_, to)| !to.is_empty()).collect();
+        for (particle, shares) in deposits {
+            let air = &mut self.state.air[particle];
+            let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
+            air.vapour -= water / mass;
+            for (site, share) in shares {
+                let site = site as usize;
+                let heat = self.latent_heat * water * share;
+                self.state.water_on[site] += water * share;
+                // The heat is set free at the surface, from where the better conductor takes the most of it.
+                let conductivity = self.solids.material(site).conductivity;
+                let to_solid = conductivity / (conductivity + self.air.conductivity);
+                air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+                self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
+                if self.solids.is_held(site) {
+                    self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
+                    self.state.energy.book(-to_solid * heat);
+                } else {
+                    self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
+                }
+            }
+        }
+    }
+}
