@@ -12,10 +12,11 @@ use crate::inflow::Source;
 use crate::maps::Maps;
 use crate::particle::Particle;
 use crate::sampling::{Sample, Sampler};
-use crate::scheme::{Scheme, Surroundings};
+use crate::scheme::{Scheme, Sizes, Surroundings};
 use corpuscle_model::{Account, ExactSum};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use serde::{Deserialize, Serialize};
+use step::Renewal;
 
 /// Density of water, kg/m3.
 const DENSITY: f64 = 1000.0;
@@ -39,7 +40,7 @@ pub struct Flood {
     state: State,
     /// Working memory.
     of_blocks: Vec<f64>,
-    renewals: Vec<(f64, bool)>,
+    renewals: Vec<Renewal>,
     /// The time shown, s; up to one step after the state's.
     shown: f64,
 }
@@ -62,7 +63,7 @@ struct State {
     next_look: u64,
     /// Next time step, s.
     time_step: f64,
-    cell_size: f64,
+    sizes: Sizes,
     /// Force of ground and edges at the last evaluation, m4/s2.
     external: [f64; 2],
 }

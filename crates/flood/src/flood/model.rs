@@ -123,7 +123,7 @@ impl Model for Flood {
         }
         (self.shown, self.state) = (shown, state);
         self.surroundings.time = self.state.time;
-        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.cell_size);
+        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
         Ok(())
     }
 }

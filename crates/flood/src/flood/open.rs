@@ -6,7 +6,7 @@ use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
 use crate::paper::Paper;
-use crate::scheme::{Scheme, Surroundings};
+use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
 use corpuscle_model::{Account, ExactSum, ModelError};
@@ -90,7 +90,7 @@ impl Flood {
             maps: Maps::new(&terrain, flood.wet_depth_m),
             next_look: 0,
             time_step: 0.0,
-            cell_size: h,
+            sizes: Sizes { cell: h, even: true },
             external: [0.0; 2],
         };
         let mut model = Self {

@@ -15,6 +15,15 @@ const CELL_OVER_H_BALANCED: f64 = 1.2;
 /// The same for scheme paper, whose particles look as far as they reach themselves.
 const CELL_OVER_H_PAPER: f64 = 1.4;
 
+/// What a look at a block of particles gives.
+pub(super) struct Renewal {
+    sum_of_h: f64,
+    /// Whether they are all inside.
+    inside: bool,
+    /// Whether they all have the weight of the first particle of all.
+    even: bool,
+}
+
 impl Flood {
     /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
     pub(super) fn limited(&self, step: f64) -> f64 {
@@ -26,15 +35,17 @@ impl Flood {
     /// particles are still inside.
     pub(super) fn renew(&mut self) -> bool {
         let edges = &self.surroundings.edges;
-        let State { particles, cell_size, .. } = &mut self.state;
+        let State { particles, sizes, .. } = &mut self.state;
+        let weight = particles.first().map(|particle| particle.weight);
         let renew_block = |particles: &mut [Particle]| {
-            let (mut sum, mut all_inside) = (0.0, true);
+            let mut block = Renewal { sum_of_h: 0.0, inside: true, even: true };
             for particle in particles {
                 particle.h = particle.next_h;
-                sum += particle.h;
-                all_inside &= particle.outside.is_none() && edges.bounds.contains(particle.x, particle.y);
+                block.sum_of_h += particle.h;
+                block.inside &= particle.outside.is_none() && edges.bounds.contains(particle.x, particle.y);
+                block.even &= Some(particle.weight) == weight;
             }
-            (sum, all_inside)
+            block
         };
         particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.renewals);
         if !particles.is_empty() {
@@ -42,14 +53,16 @@ impl Flood {
                 SchemeName::Balanced => CELL_OVER_H_BALANCED,
                 SchemeName::Paper => CELL_OVER_H_PAPER,
             };
-            *cell_size = cell_over_h * self.renewals.iter().map(|(sum, _)| sum).sum::<f64>() / particles.len() as f64;
+            let sum_of_h: f64 = self.renewals.iter().map(|block| block.sum_of_h).sum();
+            sizes.cell = cell_over_h * sum_of_h / particles.len() as f64;
         }
-        self.renewals.iter().all(|(_, all_inside)| *all_inside)
+        sizes.even = self.renewals.iter().all(|block| block.even);
+        self.renewals.iter().all(|block| block.inside)
     }
 
     /// Sorts the particles into cells.
     pub(super) fn arrange(&mut self) {
-        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.cell_size);
+        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
     }
 
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
