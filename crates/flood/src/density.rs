@@ -78,7 +78,7 @@ impl Density {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use corpuscle_sph::{Cells, Near, NeighbourLists, PairSum};
+    use corpuscle_sph::{Cells, Near, NeighbourLists};
     use corpuscle_sph::{FAR_AWAY, LANES, Level, dispatch};
 
     #[test]
