@@ -154,11 +154,12 @@ impl Zone {
         (count > 0).then(|| sum / f64::from(count))
     }
 
-    /// Water that it holds up to a level, m3.
-    pub fn volume_to(&self, level: f64, water: &Sampler) -> f64 {
+    /// Water that it lacks for a level, m3; negative where it has too much.
+    pub fn missing(&self, level: f64, water: &Sampler) -> f64 {
         let looks = self.looks();
-        let depths = looks.iter().map(|&[x, y]| (level - water.terrain.height(x, y)).max(0.0));
-        depths.sum::<f64>() / looks.len().max(1) as f64 * self.area()
+        let depth = |[x, y]: [f64; 2]| (level - water.terrain.height(x, y)).max(0.0) - water.at(x, y).depth;
+        let missing: f64 = looks.iter().map(|&place| depth(place)).sum();
+        missing / looks.len().max(1) as f64 * self.area()
     }
 
     /// The particles in it that have not left, by number.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Two pools of 30 m by 30 m with a bank between them, and what `keys` add.
-fn pools(depths: [f64; 2], keys: &str) -> Flood {
+fn pools(depths: [f64; 2], spacing: f64, keys: &str) -> Flood {
     let water = |x: [f64; 2], depth: f64| {
         format!("{{ depth_m = {depth}, polygon = [[{0}, 0], [{1}, 0], [{1}, 30], [{0}, 30]] }}", x[0], x[1])
     };
@@ -19,7 +19,7 @@ fn pools(depths: [f64; 2], keys: &str) -> Flood {
         .map(|(x, depth)| water(x, depth))
         .collect();
     let text = format!(
-        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nspacing_m = 2.5\n\
+        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nspacing_m = {spacing}\n\
          spacing_depth_m = 1\nwater = [{}]\nedges = {{ west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }}\n{keys}",
         standing.join(", ")
     );
@@ -55,7 +55,7 @@ fn emptied(volumes: [f64; 2], time: f64, discharge: impl Fn(f64, f64) -> f64) ->
 #[test]
 fn a_weir_leads_what_its_formula_says() {
     let keys = "link = [{ name = \"weir\", from = [15, 15], to = [50, 15], law = { weir = { crest_m = 1.0, width_m = 2.0 } } }]";
-    let mut flood = pools([1.6, 0.8], keys);
+    let mut flood = pools([1.6, 0.8], 2.5, keys);
     let start = volumes(&flood);
     go(&mut flood, 120.0);
     let exact = emptied(start, 120.0, |upper, lower| {
@@ -73,7 +73,7 @@ fn a_culvert_levels_two_pools_whichever_is_higher() {
     for (depths, sign) in [([2.0, 1.5], 1.0), ([1.5, 2.0], -1.0)] {
         let keys =
             "link = [{ name = \"pipe\", from = [15, 15], to = [50, 15], law = { culvert = { diameter_m = 1.0 } } }]";
-        let mut flood = pools(depths, keys);
+        let mut flood = pools(depths, 2.5, keys);
         let column = flood.gauge_columns().iter().position(|column| column.gauge == "pipe").unwrap();
         go(&mut flood, 5.0);
         // Drowned: a full pipe of 35 m.
@@ -87,7 +87,7 @@ fn a_culvert_levels_two_pools_whichever_is_higher() {
     }
     let one_way =
         "link = [{ name = \"flap\", from = [15, 15], to = [50, 15], both_ways = false, law = { rating = [[0, 1]] } }]";
-    let mut flood = pools([1.0, 1.5], one_way);
+    let mut flood = pools([1.0, 1.5], 2.5, one_way);
     let before = volumes(&flood);
     go(&mut flood, 60.0);
     assert!(volumes(&flood).iter().zip(before).all(|(now, before)| (now - before).abs() < 1e-9));
@@ -96,7 +96,7 @@ fn a_culvert_levels_two_pools_whichever_is_higher() {
 #[test]
 fn an_outflow_takes_what_its_rating_says() {
     let keys = "outflow = [{ name = \"sluice\", line = [[26, 2], [26, 28]], rating = [[0.0, 0.0], [2.0, 4.0]] }]";
-    let mut flood = pools([1.5, 0.0], keys);
+    let mut flood = pools([1.5, 0.0], 1.5, keys);
     let start = volumes(&flood)[0];
     go(&mut flood, 200.0);
     // dV/dt = -2 V / 900.
@@ -109,11 +109,13 @@ fn an_outflow_takes_what_its_rating_says() {
 #[test]
 fn a_held_polygon_keeps_a_pool_at_its_level() {
     let keys = "manning = 0.05\nstage = [{ name = \"tide\", polygon = [[1, 1], [14, 1], [14, 29], [1, 29]], \
-                level_m = [[0, 0], [0, 1.5], [200, 1.5], [400, 1.0]] }]";
-    let mut flood = pools([1.0, 0.0], keys);
-    for (time, level) in [(200.0, 1.5), (600.0, 1.0)] {
+                level_m = [[0, 1], [100, 1.5], [200, 1.5], [300, 1.0]] }]";
+    let mut flood = pools([1.0, 0.0], 2.5, keys);
+    for (time, level) in [(200.0, 1.5), (400.0, 1.0)] {
         go(&mut flood, time);
-        let mean = volumes(&flood)[0] / 900.0;
+        // Outside the polygon, and not so near the bank that particles have too few neighbours there.
+        let places = (0..20).map(|k| [16.0 + f64::from(k % 4) * 1.5, 3.0 + f64::from(k / 4) * 6.0]);
+        let mean = places.map(|[x, y]| flood.sample(x, y).depth).sum::<f64>() / 20.0;
         assert!((mean - level).abs() < 0.03, "at {time} s {mean} for {level}");
     }
 }

@@ -57,9 +57,7 @@ impl Flood {
     fn hold(&self, orders: &mut Orders, nursery: &mut Nursery) {
         let water = self.sampler(0.0);
         for held in &self.structures.held {
-            let wanted = held.zone.volume_to(held.level.at(self.state.time), &water);
-            let here: f64 = held.zone.particles(&water).iter().map(|&number| water.particles[number].volume).sum();
-            let missing = wanted - here;
+            let missing = held.zone.missing(held.level.at(self.state.time), &water);
             for _ in 0..((missing / self.volume + 1.0 - HELD_TO).floor().max(0.0) as usize) {
                 nursery.bear_in_flow(&held.zone);
             }
