@@ -5,6 +5,7 @@ mod channel;
 mod dam_break;
 mod lake;
 mod malpasset;
+mod swashes;
 mod thacker;
 
 use crate::{Case, Row};
@@ -28,6 +29,7 @@ pub(crate) const CASES: &[Case] = &[
     channel::BUMP,
     channel::MACDONALD,
     malpasset::MALPASSET,
+    swashes::SWASHES,
 ];
 
 /// Seed of where particles stand at the start.
