@@ -102,12 +102,23 @@ pub(super) fn undulating(path: &Path, spacing: f64) -> Result<f64, ModelError> {
     Ok(profile.error(&flood, width(spacing)))
 }
 
+/// One wave of rain and the dry stretch before the next, m: the water comes round in a shorter channel than that of the solution.
+const ROUND: f64 = 4500.0;
+
 /// Rain that moves along with water 0.25 m deep at 8 m/s: the friction slope is 0.01125 s/m times the velocity, the ground falls by
 /// 0.09. The rain swells and fades as sin(pi t / 1000 s).
 pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> {
     let both = Profile::read(path, [0, 1, 1, 2])?;
+    // The file has two times, 500 s and 1000 s; at the latter the rain is between 10250 m and 13850 m.
     let half = both.x.len() / 2;
-    let last = |values: &[f64]| values[half..].to_vec();
+    let here = (half..both.x.len()).filter(|&k| (9900.0..9900.0 + ROUND).contains(&both.x[k]));
+    let (x, depth): (Vec<f64>, Vec<f64>) = here.map(|k| (both.x[k].rem_euclid(ROUND), both.depth[k])).unzip();
+    let exact = Profile { velocity: vec![8.0; x.len()], ground: vec![0.0; x.len()], x, depth };
+    let places = 500;
+    let step = ROUND / f64::from(places);
+    let x: Vec<f64> = (0..places).map(|k| (f64::from(k) + 0.5) * step).collect();
+    let [depth, velocity] = [0.25, 8.0].map(|value| vec![value; x.len()]);
+    let start = Profile { ground: x.iter().map(|x| -0.09 * x).collect(), depth, velocity, x };
     let exact =
         Profile { x: last(&both.x), depth: last(&both.depth), velocity: vec![8.0; half], ground: last(&both.ground) };
     let start = Profile { depth: vec![0.25; half], ..exact.clone() };
@@ -117,10 +128,10 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> 
     };
     let rain = |flood: &mut Flood| {
         flood.rain(Box::new(|x, _, t| {
-            let along = x - 8.0 * t - 2250.0;
+            let along = (x - 8.0 * t - 2250.0).rem_euclid(ROUND);
             let shape = ((along - 900.0) * std::f64::consts::TAU / 3600.0).sin() + 1.0;
             let swell = (std::f64::consts::PI * t / 1000.0).sin();
-            if (0.0..=3600.0).contains(&along) { 0.5 * 5e-5 * shape * swell } else { 0.0 }
+            if along <= 3600.0 { 0.5 * 5e-5 * shape * swell } else { 0.0 }
         }));
     };
     let flood = joined(&settings, &start, 1000.0, [-0.09; 2], rain)?;
