@@ -26,19 +26,20 @@ pub fn name(latitude: i32, longitude: i32) -> String {
     format!("Copernicus_DSM_COG_10_{ns}{:02}_00_{ew}{:03}_00_DEM", latitude.abs(), longitude.abs())
 }
 
-/// A tile as the bucket has it: cloud-optimised, Deflate, tiepoint at the centre of a cell. Made once for all tests.
-pub fn tile(latitude: i32, longitude: i32) -> Vec<u8> {
+/// A tile of the made-up ground, made once for all tests.
+fn tile(latitude: i32, longitude: i32) -> Vec<u8> {
     static MADE: LazyLock<Mutex<HashMap<[i32; 2], Vec<u8>>>> = LazyLock::new(Mutex::default);
     let mut made = MADE.lock().unwrap();
-    made.entry([latitude, longitude]).or_insert_with(|| make_tile(latitude, longitude)).clone()
+    made.entry([latitude, longitude]).or_insert_with(|| tile_of(latitude, longitude, COLUMNS, ground)).clone()
 }
 
-fn make_tile(latitude: i32, longitude: i32) -> Vec<u8> {
-    let (dx, dy) = (1.0 / COLUMNS as f64, 1.0 / ROWS as f64);
-    let samples = Array2::from_shape_fn((ROWS, COLUMNS), |(row, column)| {
+/// A tile as the bucket has it: cloud-optimised, Deflate, tiepoint at the centre of a cell.
+pub fn tile_of(latitude: i32, longitude: i32, columns: usize, ground: impl Fn(f64, f64) -> f64) -> Vec<u8> {
+    let (dx, dy) = (1.0 / columns as f64, 1.0 / ROWS as f64);
+    let samples = Array2::from_shape_fn((ROWS, columns), |(row, column)| {
         ground(f64::from(longitude) + column as f64 * dx, f64::from(latitude + 1) - row as f64 * dy) as f32
     });
-    let builder = GeoTiffBuilder::new(COLUMNS as u32, ROWS as u32)
+    let builder = GeoTiffBuilder::new(columns as u32, ROWS as u32)
         .geographic_epsg(4326)
         .raster_type(RasterType::PixelIsPoint)
         .pixel_scale(dx, dy)
@@ -90,13 +91,20 @@ impl Bucket {
     /// A server with the tiles of these south-west corners.
     pub fn with(tiles: &[[i32; 2]]) -> Self {
         let bucket = Self::empty();
-        let list: String = tiles.iter().map(|[latitude, longitude]| name(*latitude, *longitude) + "\n").collect();
-        bucket.put("tileList.txt", list.into_bytes(), "list");
-        for [latitude, longitude] in tiles {
-            let name = name(*latitude, *longitude);
-            bucket.put(&format!("{name}/{name}.tif"), tile(*latitude, *longitude), "1");
-        }
+        let all = tiles.iter();
+        bucket.put_tiles(all.map(|&[latitude, longitude]| ([latitude, longitude], tile(latitude, longitude))));
         bucket
+    }
+
+    /// Puts tiles and their list on the server.
+    pub fn put_tiles(&self, tiles: impl IntoIterator<Item = ([i32; 2], Vec<u8>)>) {
+        let mut list = String::new();
+        for ([latitude, longitude], bytes) in tiles {
+            let name = name(latitude, longitude);
+            self.put(&format!("{name}/{name}.tif"), bytes, "1");
+            list += &(name + "\n");
+        }
+        self.put("tileList.txt", list.into_bytes(), "list");
     }
 
     /// A server without any file.
