@@ -7,6 +7,8 @@ mod transfer;
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
 use crate::exchange::Work;
+use crate::faces::OpenSide;
+use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
 use crate::room::Room;
@@ -31,7 +33,7 @@ pub struct Dew {
     /// Heat of condensation, J/kg.
     pub(crate) latent_heat: f64,
     /// Density at which the pressure is that at rest, kg/m3: the air's, but for how evenly its particles can stand.
-    rest_density: f64,
+    pub(crate) rest_density: f64,
     pub(crate) state: State,
     arrangement: Arrangement,
     pub(crate) contact: Contact,
@@ -53,6 +55,9 @@ pub struct Dew {
     pub(crate) shows: Output,
     /// The surfaces of the bodies; none where one does not tell its own.
     pub(crate) surfaces: Vec<Surface>,
+    pub(crate) fans: Vec<Fan>,
+    /// The sides of the room by which air comes and goes.
+    pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
 }
@@ -98,6 +103,8 @@ pub struct Setup {
     pub room: Room,
     /// The solids.
     pub bodies: Vec<Body>,
+    /// The fans.
+    pub fans: Vec<Fan>,
     /// Seed of everything random.
     pub seed: u64,
 }
@@ -109,7 +116,7 @@ impl Dew {
     /// # Errors
     /// Where ghost samples or air of low utility are asked for and a body does not tell its surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
-        let Setup { settings, air, room, bodies, seed } = setup;
+        let Setup { settings, air, room, bodies, fans, seed } = setup;
         if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
             return Err(ModelError::Setup(
                 "how far air is from solids must be known to tell which of it matters".into(),
@@ -169,6 +176,8 @@ impl Dew {
             held_to: Vec::new(),
             shows: Output::default(),
             surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
+            open_sides: Vec::new(),
+            fans: fans.clone(),
             wetting: None,
         };
         dew.fill(bodies, start);
@@ -295,9 +304,10 @@ impl Dew {
                     let (axis, side) = (usize::from(axis), usize::from(side));
                     particle.leave(axis, side, velocity[axis], slowest);
                 }
-                Role::Coming(..) | Role::Idle => {}
+                _ => {}
             }
         }
+        self.move_outside();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());
     }

@@ -61,6 +61,9 @@ impl Dew {
             };
             let moved = [along(0), along(1), along(2)];
             (0..3).for_each(|axis| particle.position[axis] += moved[axis]);
+            if let Role::Coming(axis, _) = particle.role {
+                room.wrap_along(usize::from(axis), &mut particle.position);
+            }
             room.keep(&mut particle.position, &mut particle.velocity);
         });
     }
@@ -117,7 +120,7 @@ impl Dew {
 
     /// The second half of the kick; heat and vapour of the whole step.
     pub(super) fn kick(&mut self, step: f64) -> Extremes {
-        let Self { settings, state, rates, air, .. } = self;
+        let Self { settings, state, rates, air, fans, .. } = self;
         let spreading = air.spreading * air.sound_speed * air.sound_speed;
         let kicked = state.air.par_iter_mut().zip(rates).with_min_len(1024).map(|(particle, rates)| {
             if particle.role != Role::Inside {
@@ -127,8 +130,13 @@ impl Dew {
             let lightness = virtual_temperature(particle.temperature, particle.vapour)
                 / virtual_temperature(settings.ambient_temperature, settings.ambient_vapour)
                 - 1.0;
+            let mut driven = settings.body_acceleration;
+            for fan in &*fans {
+                let drive = fan.acceleration(particle.position, particle.velocity);
+                (0..3).for_each(|axis| driven[axis] += drive[axis]);
+            }
             for axis in 0..3 {
-                let external = settings.body_acceleration[axis] - lightness * settings.gravity[axis];
+                let external = driven[axis] - lightness * settings.gravity[axis];
                 particle.acceleration[axis] = rates.acceleration[axis] + external;
                 particle.velocity[axis] += 0.5 * step * particle.acceleration[axis];
             }
@@ -182,9 +190,12 @@ fn fill_columns(
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
-        if matches!(particle.role, Role::Leaving(..) | Role::Idle) {
+        if matches!(particle.role, Role::Leaving(..) | Role::Still | Role::Idle) {
             // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
+        } else if let Role::Outside(axis, side) = particle.role {
+            let inward = [1.0, -1.0][usize::from(side)] * particle.velocity[usize::from(axis)];
+            particle.density = rest_density * (1.0 - 0.5 * (inward.max(0.0) / air.sound_speed).powi(2));
         } else if room.is_before_outlet(particle.position, reach) {
             // Where air would flow back in there is none beyond: that must not suck.
             particle.density = particle.density.max(rest_density);
