@@ -14,6 +14,7 @@ use crate::layer::Layer;
 use crate::room::Room;
 use crate::settings::Settings;
 use crate::solids::{Body, Conduction, Solids, Surface};
+use crate::walls;
 use crate::wetting::Wetting;
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::Table;
@@ -42,6 +43,7 @@ pub struct Dew {
     columns: Vec<Column>,
     rates: Vec<Rates>,
     work: Work,
+    push: walls::Work,
     /// The time shown, s; up to one step after the state's.
     pub(crate) shown: f64,
     pub(crate) warnings: Vec<String>,
@@ -169,6 +171,7 @@ impl Dew {
             columns: Vec::new(),
             rates: Vec::new(),
             work: Work::default(),
+            push: walls::Work::default(),
             shown: 0.0,
             warnings: Vec::new(),
             names: Vec::new(),

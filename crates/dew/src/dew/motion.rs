@@ -83,15 +83,16 @@ impl Dew {
             rates,
             state,
             rest_density,
+            push,
             ..
         } = self;
         arrangement.arrange(&mut state.air, room, scale.h());
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
         ghosts.update(arrangement, scale);
-        walls::add_density(contact, arrangement, scale, settings.kappa, sums);
-        walls::add_density(ghosts, arrangement, scale, 1.0, sums);
-        walls::add_moment(contact, arrangement, scale, sums);
+        walls::add_density(contact, arrangement, scale, settings.kappa, sums, push);
+        walls::add_density(ghosts, arrangement, scale, 1.0, sums, push);
+        walls::add_moment(contact, arrangement, scale, sums, push);
         fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
         rates.resize(state.air.len(), Rates::default());
         let at_work = Properties {
@@ -114,8 +115,8 @@ impl Dew {
                 rates.moistening *= saturated * parcel(particle).mass_fraction_slope();
             }
         }
-        let push = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
-        push.add(rates);
+        let walls = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
+        walls.add(rates, push);
     }
 
     /// The second half of the kick; heat and vapour of the whole step.
