@@ -10,7 +10,7 @@
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::edges::EdgeRule;
 use crate::particle::Particle;
-use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
+use crate::scheme::{Evaluation, Scheme, Sizes, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::Paper as Parameters;
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
@@ -272,8 +272,8 @@ impl Scheme for Paper {
         });
     }
 
-    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64) {
-        self.arrangement.arrange(particles, |p| (p.x, p.y, p.h), &surroundings.edges, cell_size);
+    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
+        self.arrangement.arrange(particles, |p| (p.x, p.y, p.h), &surroundings.edges, sizes.cell);
         self.arrangement.sort(particles, &mut self.spare);
     }
 

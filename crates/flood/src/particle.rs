@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A particle: a column of water of constant volume that moves with the flow.
+/// A particle: a column of water that moves with the flow. Its volume is its own; rain and infiltration change it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
     /// Place, m.
@@ -19,6 +19,9 @@ pub struct Particle {
     pub ay: f64,
     /// Volume, m3.
     pub volume: f64,
+    /// Volume by which it counts in the depth of the water round it, m3. That of a particle of its size as the scene asks for
+    /// it; `volume / weight` makes the depth exact where its neighbours stand unevenly. Parts of a particle share both.
+    pub weight: f64,
     /// Smoothing length, m.
     pub h: f64,
     /// Smoothing length for the next step, m.
@@ -49,6 +52,7 @@ impl Particle {
             ax: 0.0,
             ay: 0.0,
             volume,
+            weight: volume,
             h,
             next_h: h,
             depth: 0.0,

@@ -4,6 +4,7 @@ use crate::arrangement::Arrangement;
 use crate::edges::{EdgeRule, EdgeRules};
 use crate::particle::Particle;
 use corpuscle_terrain::Terrain;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What the water moves in.
@@ -45,6 +46,15 @@ impl Surroundings {
     }
 }
 
+/// What is known of all particles together, for sorting them.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(crate) struct Sizes {
+    /// Size of a cell, m.
+    pub cell: f64,
+    /// Whether all particles have the same weight.
+    pub even: bool,
+}
+
 /// What an evaluation of the forces tells beside the particles' accelerations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Evaluation {
@@ -59,8 +69,8 @@ pub(crate) trait Scheme: Send {
     /// Moves the particles on by `step` s.
     fn drift(&self, particles: &mut [Particle], step: f64);
 
-    /// Sorts the particles into cells of about `cell_size` m.
-    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64);
+    /// Sorts the particles into cells.
+    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes);
 
     /// Finds depth, next smoothing length and acceleration of the particles as arranged, `step` s after the last time.
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation;

@@ -174,6 +174,7 @@ impl Body<'_> {
                 particle.next_h = particle.h;
                 particle.depth = (self.depth)(particle.x, particle.y);
                 particle.volume = (particle.depth / density.number).min(LARGEST_VOLUME * self.volume);
+                particle.weight = self.volume;
             }
         }
     }

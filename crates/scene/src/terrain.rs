@@ -3,13 +3,15 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The `[terrain]` table: exactly one of `[terrain.file]`, `[terrain.valley]`, `[terrain.rough-hills]`,
-/// `[terrain.plane]`, `[terrain.bump]`, `[terrain.bowl]`.
+/// The `[terrain]` table: exactly one of `[terrain.file]`, `[terrain.tiles]`, `[terrain.valley]`,
+/// `[terrain.rough-hills]`, `[terrain.plane]`, `[terrain.bump]`, `[terrain.bowl]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Terrain {
     /// A raster file: GeoTIFF or ESRI ASCII grid (also .gz).
     File(TerrainFile),
+    /// Several raster files as one.
+    Tiles(TerrainTiles),
     /// A generated meandering valley.
     Valley(Valley),
     /// Generated random rough hills.
@@ -33,6 +35,20 @@ pub struct TerrainFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
     /// What cells without data are.
+    #[serde(default)]
+    pub no_data: NoData,
+}
+
+/// Several raster files as one, on the grid of the finest of those in the first one's reference system.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TerrainTiles {
+    /// The files, relative to the scene's folder. Where they overlap the one named first counts.
+    pub paths: Vec<PathBuf>,
+    /// The reference system of those that name none, as in [`TerrainFile::crs`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// What cells without data, and gaps between the files, are.
     #[serde(default)]
     pub no_data: NoData,
 }

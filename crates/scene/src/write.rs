@@ -31,8 +31,10 @@ impl Scene {
 fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
     let FloodScene { terrain, flood } = scene;
     let mut paths = Vec::new();
-    if let Terrain::File(file) = terrain {
-        paths.push(&mut file.path);
+    match terrain {
+        Terrain::File(file) => paths.push(&mut file.path),
+        Terrain::Tiles(tiles) => paths.extend(&mut tiles.paths),
+        _ => {}
     }
     if let Manning::Raster { raster } = &mut flood.manning {
         paths.push(raster);

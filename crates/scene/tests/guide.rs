@@ -58,9 +58,10 @@ fn keys_of_value(name: &str, value: &Value) -> BTreeMap<Key, Value> {
     keys
 }
 
-fn all_terrains() -> [Terrain; 6] {
+fn all_terrains() -> [Terrain; 7] {
     [
         Terrain::File(TerrainFile { path: "a".into(), crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
+        Terrain::Tiles(TerrainTiles { paths: vec!["a".into()], crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
         Terrain::Valley(Valley::default()),
         Terrain::RoughHills(RoughHills::default()),
         Terrain::Plane(Plane::default()),
@@ -266,7 +267,8 @@ fn the_guide_tells_every_key_and_no_other() {
 fn the_guide_tells_the_defaults() {
     let told = told();
     let mut compared = 0;
-    for kind in ["file = { path = \"a\" }", "valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"] {
+    let files = ["file = { path = \"a\" }", "tiles = { paths = [\"a\"] }"];
+    for kind in files.into_iter().chain(["valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"]) {
         let text = format!("run.until_s = 1\nflood = {{ water = [{{ level_m = 1 }}] }}\nterrain.{kind}");
         let scene = Scene::parse(&text, "smallest", &[]).unwrap();
         compared += compare_defaults(&scene, &told);

@@ -68,6 +68,19 @@ fn paths_become_absolute_and_round_trip() {
 }
 
 #[test]
+fn the_paths_of_tiles_become_absolute() {
+    let mut scene =
+        parse(&FILES.replace("[terrain.file]\npath = \"dem.tif\"", "[terrain.tiles]\npaths = [\"a.tif\", \"/b.tif\"]"));
+    scene.resolve_paths(Path::new("/data"));
+    let Terrain::Tiles(tiles) = &scene.flood().unwrap().terrain else { panic!() };
+    assert_eq!(tiles.paths, [Path::new("/data/a.tif"), Path::new("/b.tif")]);
+    assert_eq!(parse(&scene.to_toml().unwrap()), scene);
+    let text = "run.until_s = 1\nterrain.tiles.paths = []\nflood.water = [{ level_m = 1 }]";
+    let text = Scene::parse(text, "test.toml", &[]).unwrap_err().to_string();
+    assert!(text.contains("terrain.tiles.paths") && text.contains("must name"), "{text}");
+}
+
+#[test]
 fn overrides_change_numbers_words_rows_and_kinds() {
     let set = |overrides: &[(&str, &str)]| {
         let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();

@@ -94,7 +94,7 @@ fn wgs_84() -> Proj {
 }
 
 /// From one system to another; geographic coordinates are degrees (the library's are radians).
-fn convert(from: &Proj, to: &Proj, place: [f64; 2]) -> Result<[f64; 2], String> {
+pub(crate) fn convert(from: &Proj, to: &Proj, place: [f64; 2]) -> Result<[f64; 2], String> {
     let [x, y] = if from.is_latlong() { place.map(f64::to_radians) } else { place };
     let mut point = (x, y, 0.0);
     transform(from, to, &mut point).map_err(|error| error.to_string())?;

@@ -22,6 +22,11 @@ impl Georeference {
         Self { corner, cell, system: None, keys: GeoKeyDirectory::new() }
     }
 
+    /// Longitude and latitude on WGS 84 (EPSG:4326), degrees.
+    pub fn degrees(corner: [f64; 2], cell: [f64; 2]) -> Self {
+        Self::plain(corner, cell).with_system(ReferenceSystem::from_epsg(4326, true, 1.0))
+    }
+
     /// The same place in the given reference system.
     pub(crate) fn with_system(mut self, system: ReferenceSystem) -> Self {
         system.write_keys(&mut self.keys);

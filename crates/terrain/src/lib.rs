@@ -4,13 +4,16 @@
 //! validity, and the grid on which maps are given back (the terrain's own).
 
 mod bounds;
+mod conversion;
 mod error;
-mod file;
+mod files;
 mod frame;
 mod generated;
 mod georeference;
 mod grid;
+mod ground;
 mod holes;
+mod mosaic;
 mod raster;
 mod surface;
 mod system;
@@ -18,9 +21,13 @@ mod terrain;
 
 pub use bounds::Bounds;
 pub use error::TerrainError;
+pub use files::read_rasters;
 pub use generated::valley_centre;
 pub use georeference::Georeference;
 pub use grid::MapGrid;
-pub use raster::{Raster, RasterField, read_raster, write_geotiff};
+pub use mosaic::merge;
+pub use raster::{
+    MapBox, Raster, RasterField, Survey, Window, read_raster, read_raster_part, survey, write_geotiff, write_raster,
+};
 pub use system::ReferenceSystem;
 pub use terrain::Terrain;

@@ -2,9 +2,9 @@
 
 use crate::frame::Frame;
 use crate::surface::Surface;
-use crate::{Bounds, MapGrid, TerrainError, file, generated};
+use crate::{Bounds, MapGrid, Raster, TerrainError, generated, ground, read_rasters};
 use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
-use corpuscle_scene::Terrain as Scene;
+use corpuscle_scene::{NoData, Terrain as Scene};
 use rayon::prelude::*;
 use std::fmt;
 use std::path::Path;
@@ -85,13 +85,30 @@ impl Terrain {
     /// A text that says what is wrong with the file or with the numbers of a generated terrain.
     pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
         match scene {
-            Scene::File(scene) => file::open(scene, folder),
+            Scene::File(scene) => {
+                let path = folder.join(&scene.path);
+                let raster = read_rasters(std::slice::from_ref(&path), scene.crs.as_deref(), None)?;
+                Self::from_raster(raster, &path, scene.no_data)
+            }
+            Scene::Tiles(scene) => {
+                let paths: Vec<_> = scene.paths.iter().map(|path| folder.join(path)).collect();
+                let raster = read_rasters(&paths, scene.crs.as_deref(), None)?;
+                Self::from_raster(raster, &paths[0], scene.no_data)
+            }
             Scene::Valley(scene) => generated::valley(scene, seed),
             Scene::RoughHills(scene) => generated::rough_hills(scene, seed),
             Scene::Plane(scene) => generated::plane(scene),
             Scene::Bump(scene) => generated::bump(scene),
             Scene::Bowl(scene) => generated::bowl(scene),
         }
+    }
+
+    /// Smooth ground through the heights of a raster; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// A text that names it, where its heights are no ground or it spans too much of the Earth.
+    pub fn from_raster(raster: Raster, name: &Path, no_data: NoData) -> Result<Self, TerrainError> {
+        ground::from_raster(raster, name, no_data)
     }
 
     /// Smooth ground through heights on a grid: `height` gives them, m, at the centres of cells about `cell` wide

@@ -12,9 +12,9 @@ mod gradients;
 mod images;
 
 use crate::arrangement::{Arrangement, IMAGE};
-use crate::density::{Densities, Density};
+use crate::density::{Densities, Density, WeightedDensities};
 use crate::particle::Particle;
-use crate::scheme::{Evaluation, Scheme, Surroundings, TOGETHER};
+use crate::scheme::{Evaluation, Scheme, Sizes, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_sph::{BLOCK, Near};
 use forces::Force;
@@ -31,7 +31,7 @@ struct Column {
     /// Height of the water's surface, m.
     surface: f64,
     depth: f64,
-    /// Area that the particle stands for, 1/n, m2.
+    /// Area that the particle stands for, m2.
     area: f64,
     /// 1 / h, 1/m.
     inverse_h: f64,
@@ -87,6 +87,8 @@ pub(crate) struct Balanced {
     slopes: Vec<Slopes>,
     forces: Vec<Force>,
     evaluations: Vec<Evaluation>,
+    /// The weights, in sorted order; empty where all are the same.
+    weights: Vec<f64>,
     spare: Vec<Particle>,
 }
 
@@ -100,6 +102,7 @@ impl Balanced {
             slopes: Vec::new(),
             forces: Vec::new(),
             evaluations: Vec::new(),
+            weights: Vec::new(),
             spare: Vec::new(),
         }
     }
@@ -107,7 +110,27 @@ impl Balanced {
     fn find_densities(&mut self) {
         let Arrangement { cells, lists, x, y, reach_squared, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), Density::default());
-        lists.search(Near::Either, cells, x, y, reach_squared, &mut self.densities, &Densities { reach_squared });
+        let (out, weights) = (&mut self.densities, &self.weights);
+        if weights.is_empty() {
+            lists.search(Near::Either, cells, x, y, reach_squared, out, &Densities { reach_squared });
+        } else {
+            let sum = WeightedDensities { reach_squared, weights };
+            lists.search(Near::Either, cells, x, y, reach_squared, out, &sum);
+        }
+    }
+
+    /// Gives every place the weight of its particle, where they are not all the same.
+    fn fill_weights(&mut self, particles: &[Particle], even: bool) {
+        self.weights.clear();
+        if even {
+            return;
+        }
+        let Arrangement { particle, images, .. } = &self.arrangement;
+        let weight = |&k: &u32| if k == IMAGE { 0.0 } else { particles[k as usize].weight };
+        particle.par_iter().map(weight).collect_into_vec(&mut self.weights);
+        for &(place, shown) in images {
+            self.weights[place as usize] = self.weights[shown as usize];
+        }
     }
 
     /// Hands depth, ground and next smoothing length to the particles.
@@ -115,7 +138,7 @@ impl Balanced {
         let Parameters { eta, largest_h, .. } = self.parameters;
         let find = |particle: &mut Particle, place: u32| {
             let density = &self.densities[place as usize];
-            particle.depth = particle.volume * density.number;
+            particle.depth = particle.volume * density.alike;
             particle.next_h = density.next_h(particle.h, eta).min(largest_h);
             if let Some(level) = surroundings.stage(particle.outside) {
                 particle.depth = (level - particle.ground).max(SHALLOWEST_STAGE * particle.depth);
@@ -145,7 +168,7 @@ impl Balanced {
                 v: particle.v + ahead * particle.ay,
                 surface: particle.surface(),
                 depth: particle.depth,
-                area: 1.0 / density.number,
+                area: 1.0 / density.alike,
                 inverse_h: 1.0 / particle.h,
             };
             slopes.ground = particle.ground_slope;
@@ -201,9 +224,10 @@ impl Scheme for Balanced {
         });
     }
 
-    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, cell_size: f64) {
-        self.arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), &surroundings.edges, cell_size);
+    fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
+        self.arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), &surroundings.edges, sizes.cell);
         self.arrangement.sort(particles, &mut self.spare);
+        self.fill_weights(particles, sizes.even);
     }
 
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
@@ -232,6 +256,9 @@ impl Scheme for Balanced {
     fn bytes(&self) -> usize {
         let places = self.arrangement.len();
         let each = size_of::<Column>() + size_of::<Density>() + size_of::<Slopes>() + size_of::<Force>();
-        self.arrangement.bytes() + places * each + self.spare.capacity() * size_of::<Particle>()
+        self.arrangement.bytes()
+            + places * each
+            + 8 * self.weights.capacity()
+            + self.spare.capacity() * size_of::<Particle>()
     }
 }

@@ -4,6 +4,7 @@ use super::parts::{KeyFigure, Table, how_it_ended};
 use super::{Report, figures::FieldFigure, gauges};
 use crate::picture::{area, number, short_number, time, volume};
 use corpuscle_scene::{Scheme, Terrain};
+use std::path::Path;
 
 /// The handful of numbers that come first.
 pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
@@ -117,10 +118,14 @@ fn shown_words(report: &Report) -> String {
 }
 
 fn terrain_words(terrain: &Terrain) -> String {
+    let name = |path: &Path| path.file_name().map_or_else(|| "file".into(), |name| name.to_string_lossy().into_owned());
     match terrain {
-        Terrain::File(file) => {
-            file.path.file_name().map_or_else(|| "file".into(), |name| name.to_string_lossy().into_owned())
-        }
+        Terrain::File(file) => name(&file.path),
+        Terrain::Tiles(tiles) => match tiles.paths.as_slice() {
+            [only] => name(only),
+            [first, others @ ..] => format!("{} and {} more files", name(first), others.len()),
+            [] => "no file".into(),
+        },
         Terrain::Valley(_) => "generated valley".into(),
         Terrain::RoughHills(_) => "generated rough hills".into(),
         Terrain::Plane(_) => "plane".into(),

@@ -12,6 +12,10 @@ impl Check {
             Terrain::File(file) => self.require("terrain.file.path", !file.path.as_os_str().is_empty(), || {
                 "must name a GeoTIFF or ESRI ASCII file".into()
             }),
+            Terrain::Tiles(tiles) => {
+                let named = !tiles.paths.is_empty() && tiles.paths.iter().all(|path| !path.as_os_str().is_empty());
+                self.require("terrain.tiles.paths", named, || "must name GeoTIFF or ESRI ASCII files".into())
+            }
             Terrain::Valley(valley) => self.valley(valley),
             Terrain::RoughHills(hills) => self.rough_hills(hills),
             Terrain::Plane(plane) => self.extent("terrain.plane.extent", &plane.extent),

@@ -1,14 +1,16 @@
 //! ESRI ASCII grids.
 
-use super::{Raster, check_size};
+use super::{MapBox, Raster, Survey, check_size, outside};
 use crate::{Georeference, TerrainError};
+use std::io::Read;
+use std::iter::Peekable;
 use std::path::Path;
 
 /// What the header says; keys are case-insensitive.
 #[derive(Debug, Default)]
 struct Header {
-    columns: Option<u64>,
-    rows: Option<u64>,
+    columns: Option<usize>,
+    rows: Option<usize>,
     /// West side and south side, or the centre of the south-west cell.
     corner: [Option<f64>; 2],
     centre: [Option<f64>; 2],
@@ -22,26 +24,61 @@ pub(super) fn looks_like(start: &[u8]) -> bool {
     [&b"ncols"[..], b"nrows"].iter().any(|key| start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(key)))
 }
 
-/// Reads the text of an ESRI ASCII grid.
-pub(super) fn read(path: &Path, text: &[u8]) -> Result<Raster, TerrainError> {
+/// Reads the text of an ESRI ASCII grid: all of it, or the cells in `part`.
+pub(super) fn read(path: &Path, text: &[u8], part: Option<&MapBox>) -> Result<Raster, TerrainError> {
+    let raster = read_whole(path, text)?;
+    let Some(part) = part else { return Ok(raster) };
+    let cut = raster.cropped(part).ok_or_else(|| outside(path, part))?;
+    check_size(path, [cut.columns, cut.rows])?;
+    Ok(cut)
+}
+
+/// The most text that a header takes.
+const LONGEST_HEADER: u64 = 4096;
+
+/// What the header says.
+pub(super) fn survey(path: &Path, source: impl Read) -> Result<Survey, TerrainError> {
+    let mut start = Vec::new();
+    source.take(LONGEST_HEADER).read_to_end(&mut start).map_err(|error| TerrainError::read(path, error))?;
+    // The last word may be cut through.
+    let whole_words = start.iter().rposition(u8::is_ascii_whitespace).unwrap_or(start.len());
+    let mut words = words(path, &start[..whole_words])?;
+    let header = header(path, &mut words)?;
+    let (columns, rows, georeference) = header.grid().map_err(|what| TerrainError::damaged(path, what))?;
+    let (format, samples) = ("ESRI ASCII grid", "text".to_owned());
+    Ok(Survey { columns, rows, georeference, format, samples, height_unit_m: 1.0 })
+}
+
+/// The words of a text, with their lines.
+fn words<'a>(path: &Path, text: &'a [u8]) -> Result<Peekable<impl Iterator<Item = (usize, &'a str)>>, TerrainError> {
     if !looks_like(text) {
         return Err(TerrainError::wrong_type(path, "unpacked, it is a text that does not begin with `ncols`"));
     }
     let text = std::str::from_utf8(text)
         .map_err(|error| TerrainError::damaged(path, format!("byte {} is not text", error.valid_up_to())))?;
-    let mut words = text
-        .lines()
-        .enumerate()
-        .flat_map(|(line, words)| words.split_ascii_whitespace().map(move |word| (line + 1, word)))
-        .peekable();
+    let lines = text.lines().enumerate();
+    Ok(lines.flat_map(|(line, words)| words.split_ascii_whitespace().map(move |word| (line + 1, word))).peekable())
+}
+
+/// Reads the header.
+fn header<'a>(
+    path: &Path,
+    words: &mut Peekable<impl Iterator<Item = (usize, &'a str)>>,
+) -> Result<Header, TerrainError> {
     let mut header = Header::default();
     while let Some((line, key)) = words.next_if(|(_, word)| is_key(word)) {
         let (_, value) = words.next().ok_or_else(|| damaged(path, line, &format!("`{key}` has no value")))?;
         header.set(key, value).map_err(|what| damaged(path, line, &what))?;
     }
+    Ok(header)
+}
+
+fn read_whole(path: &Path, text: &[u8]) -> Result<Raster, TerrainError> {
+    let mut words = words(path, text)?;
+    let header = header(path, &mut words)?;
     let (columns, rows, georeference) = header.grid().map_err(|what| TerrainError::damaged(path, what))?;
-    check_size(path, columns, rows)?;
-    let cells = (columns * rows) as usize;
+    check_size(path, [columns, rows])?;
+    let cells = columns * rows;
     // A value and its separator take two bytes at least.
     if cells > text.len() / 2 + 1 {
         let what = format!("its header says {columns} x {rows} cells, which its {} bytes cannot hold", text.len());
@@ -57,7 +94,7 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<Raster, TerrainError> {
         return Err(TerrainError::damaged(path, what));
     }
     let warnings = projection_file(path).into_iter().collect();
-    Ok(Raster { columns: columns as usize, rows: rows as usize, values, georeference, warnings })
+    Ok(Raster { columns, rows, values, georeference, warnings })
 }
 
 fn damaged(path: &Path, line: usize, what: &str) -> TerrainError {
@@ -83,7 +120,7 @@ fn projection_file(path: &Path) -> Option<String> {
 impl Header {
     fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
         let number = || value.parse::<f64>().map_err(|_| format!("`{key}` is `{value}`, not a number"));
-        let count = || value.parse::<u64>().map_err(|_| format!("`{key}` is `{value}`, not a whole number"));
+        let count = || value.parse::<usize>().map_err(|_| format!("`{key}` is `{value}`, not a whole number"));
         match key.to_ascii_lowercase().as_str() {
             "ncols" => self.columns = Some(count()?),
             "nrows" => self.rows = Some(count()?),
@@ -101,7 +138,7 @@ impl Header {
     }
 
     /// Columns, rows and place.
-    fn grid(&self) -> Result<(u64, u64, Georeference), String> {
+    fn grid(&self) -> Result<(usize, usize, Georeference), String> {
         let missing = |key: &str| format!("its header has no `{key}`");
         let columns = self.columns.ok_or_else(|| missing("ncols"))?;
         let rows = self.rows.ok_or_else(|| missing("nrows"))?;

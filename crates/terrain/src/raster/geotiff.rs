@@ -1,54 +1,97 @@
 //! GeoTIFF, read with the `geotiff-reader` library.
 
-use super::{Raster, check_size};
+use super::{MapBox, Raster, Survey, Window, check_size, outside};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
 use geotiff_reader::transform::GeoTransform;
 use geotiff_reader::{Error as ReaderError, GeoTiffFile, Result as ReaderResult};
-use ndarray::ArrayD;
 use std::path::Path;
+use tiff_reader::TiffSample;
 
 /// No compression in use makes terrain this many times smaller (Deflate reaches 1032 and LZW 2700 on a constant; a
 /// block left out of a sparse file takes 16 bytes): a header that claims more is broken.
 const LARGEST_COMPRESSION: u64 = 20_000;
 
-/// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian.
-pub(super) fn read(path: &Path, big_endian: bool) -> Result<Raster, TerrainError> {
+/// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian: all of it, or the cells in `part`.
+pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
     let bytes = std::fs::metadata(path).map_err(|error| TerrainError::read(path, error))?.len();
-    let nowhere =
-        || TerrainError::unusable(path, "it says nowhere where it lies; add its corners with `gdal_edit.py -a_ullr`");
-    let damaged = |error| match error {
-        ReaderError::NotGeoTiff => nowhere(),
-        error => refused(path, &error),
-    };
-    let file = GeoTiffFile::open(path).map_err(damaged)?;
-    let (columns, rows) = (u64::from(file.width()), u64::from(file.height()));
-    check_size(path, columns, rows)?;
+    let file = open(path)?;
+    let size = [file.width() as usize, file.height() as usize];
+    if part.is_none() {
+        check_size(path, size)?;
+    }
     check_compression(path, &file, big_endian)?;
-    let format = SampleFormat::of(&file).map_err(damaged)?;
-    if columns * rows * u64::from(format.bits) / 8 > bytes.saturating_mul(LARGEST_COMPRESSION) {
+    let format = SampleFormat::of(&file).map_err(|error| refused(path, &error))?;
+    let [columns, rows] = size.map(|count| count as u64);
+    if (columns * rows).saturating_mul(u64::from(format.bits)) / 8 > bytes.saturating_mul(LARGEST_COMPRESSION) {
         let what = format!("its header says {columns} x {rows} cells, which its {bytes} bytes cannot hold");
         return Err(TerrainError::damaged(path, what));
     }
+    let whole = place(path, &file)?;
+    let window = match part {
+        Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part))?,
+        None => Window::whole(size),
+    };
+    check_size(path, window.size)?;
     let mut warnings = Vec::new();
     if file.band_count() > 1 {
         warnings.push(format!("{} has {} bands; the first is used.", path.display(), file.band_count()));
     }
-    let mut values = values(path, &file, &format)?;
+    let mut values = values(path, &file, &format, &window)?;
     let unit = height_unit(file.geokeys());
     if unit != 1.0 {
         values.iter_mut().for_each(|value| *value *= unit);
         warnings.push(format!("{} gives its values in units of {unit} m; they were converted.", path.display()));
     }
-    let transform = *file.transform().ok_or_else(nowhere)?;
-    let corner = north_up(path, &transform, [file.width() as usize, file.height() as usize], &mut values)?;
-    let georeference = Georeference {
-        corner,
-        cell: [transform.pixel_width, transform.pixel_height.abs()],
+    let [columns, rows] = window.size;
+    Ok(Raster { columns, rows, values, georeference: whole.from_cell(window.first), warnings })
+}
+
+/// What a file says of itself.
+pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
+    let file = open(path)?;
+    let samples = SampleFormat::of(&file).map_err(|error| refused(path, &error))?.in_words();
+    Ok(Survey {
+        columns: file.width() as usize,
+        rows: file.height() as usize,
+        georeference: place(path, &file)?,
+        format: "GeoTIFF",
+        samples,
+        height_unit_m: height_unit(file.geokeys()),
+    })
+}
+
+fn open(path: &Path) -> Result<GeoTiffFile, TerrainError> {
+    GeoTiffFile::open(path).map_err(|error| match error {
+        ReaderError::NotGeoTiff => nowhere(path),
+        error => refused(path, &error),
+    })
+}
+
+fn nowhere(path: &Path) -> TerrainError {
+    TerrainError::unusable(path, "it says nowhere where it lies; add its corners with `gdal_edit.py -a_ullr`")
+}
+
+/// Where the whole of a file lies; refuses turned and mirrored rasters.
+fn place(path: &Path, file: &GeoTiffFile) -> Result<Georeference, TerrainError> {
+    let transform: &GeoTransform = file.transform().ok_or_else(|| nowhere(path))?;
+    if transform.skew_x != 0.0 || transform.skew_y != 0.0 || transform.pixel_width < 0.0 {
+        let what = "it is turned or mirrored against north; straighten it with `gdalwarp`";
+        return Err(TerrainError::unusable(path, what));
+    }
+    let height = transform.pixel_height;
+    let north = if south_first(file) { f64::from(file.height()) * height } else { 0.0 };
+    Ok(Georeference {
+        corner: [transform.origin_x, transform.origin_y + north],
+        cell: [transform.pixel_width, height.abs()],
         system: ReferenceSystem::from_keys(file.geokeys()).map_err(|what| TerrainError::unusable(path, what))?,
         keys: file.geokeys().clone(),
-    };
-    Ok(Raster { columns: columns as usize, rows: rows as usize, values, georeference, warnings })
+    })
+}
+
+/// True for a file whose first row is the south row.
+fn south_first(file: &GeoTiffFile) -> bool {
+    file.transform().is_some_and(|transform| transform.pixel_height > 0.0)
 }
 
 /// What is wrong with a file that the library does not read.
@@ -85,29 +128,35 @@ impl SampleFormat {
         let first = |values: Vec<u16>| values.first().copied().unwrap_or(1);
         Ok(Self { code: first(image.sample_format()?), bits: first(image.bits_per_sample()?) })
     }
+
+    fn in_words(&self) -> String {
+        let kind = match self.code {
+            1 => "unsigned integers",
+            2 => "signed integers",
+            3 => "floating point",
+            _ => "of an unknown kind",
+        };
+        format!("{}-bit {kind}", self.bits)
+    }
 }
 
-/// All values of the first band, not-a-number where there are none.
-fn values(path: &Path, file: &GeoTiffFile, format: &SampleFormat) -> Result<Vec<f64>, TerrainError> {
+/// The values of the first band in a window, from the north row on, not-a-number where there are none.
+fn values(path: &Path, file: &GeoTiffFile, format: &SampleFormat, window: &Window) -> Result<Vec<f64>, TerrainError> {
     let no_data: Option<f64> = file.nodata().and_then(|text| text.trim().parse().ok());
     // A mark that the sample type cannot hold marks no cell; one in single precision is compared as such.
     let exact = |value: f64| Some(value) == no_data;
+    let band = Band { path, file, window };
     match (format.code, format.bits) {
-        (1, 1..=8) => band(path, file.read_band(0), |v: u8| f64::from(v), exact),
-        (1, 9..=16) => band(path, file.read_band(0), |v: u16| f64::from(v), exact),
-        (1, 32) => band(path, file.read_band(0), |v: u32| f64::from(v), exact),
-        (1, 64) => band(path, file.read_band(0), |v: u64| v as f64, exact),
-        (2, 8) => band(path, file.read_band(0), |v: i8| f64::from(v), exact),
-        (2, 16) => band(path, file.read_band(0), |v: i16| f64::from(v), exact),
-        (2, 32) => band(path, file.read_band(0), |v: i32| f64::from(v), exact),
-        (2, 64) => band(path, file.read_band(0), |v: i64| v as f64, exact),
-        (3, 32) => band(
-            path,
-            file.read_band(0),
-            |v: f32| f64::from(v),
-            |value| Some(value as f32) == no_data.map(|v| v as f32),
-        ),
-        (3, 64) => band(path, file.read_band(0), |v: f64| v, exact),
+        (1, 1..=8) => band.read(|v: u8| f64::from(v), exact),
+        (1, 9..=16) => band.read(|v: u16| f64::from(v), exact),
+        (1, 32) => band.read(|v: u32| f64::from(v), exact),
+        (1, 64) => band.read(|v: u64| v as f64, exact),
+        (2, 8) => band.read(|v: i8| f64::from(v), exact),
+        (2, 16) => band.read(|v: i16| f64::from(v), exact),
+        (2, 32) => band.read(|v: i32| f64::from(v), exact),
+        (2, 64) => band.read(|v: i64| v as f64, exact),
+        (3, 32) => band.read(|v: f32| f64::from(v), |value| Some(value as f32) == no_data.map(|v| v as f32)),
+        (3, 64) => band.read(|v: f64| v, exact),
         (code, bits) => Err(TerrainError::unusable(
             path,
             format!(
@@ -118,35 +167,39 @@ fn values(path: &Path, file: &GeoTiffFile, format: &SampleFormat) -> Result<Vec<
     }
 }
 
-/// The values of the first band, converted by `number`, without those that `is_no_data` tells.
-fn band<T: Copy>(
-    path: &Path,
-    samples: ReaderResult<ArrayD<T>>,
-    number: impl Fn(T) -> f64,
-    is_no_data: impl Fn(f64) -> bool,
-) -> Result<Vec<f64>, TerrainError> {
-    let samples = samples.map_err(|error| refused(path, &error))?;
-    let with_holes = |value: f64| if is_no_data(value) { f64::NAN } else { value };
-    Ok(samples.iter().map(|sample| with_holes(number(*sample))).collect())
+/// A window of the first band.
+struct Band<'a> {
+    path: &'a Path,
+    file: &'a GeoTiffFile,
+    window: &'a Window,
 }
 
-/// Puts the north row first and gives the north-west corner; refuses turned and mirrored rasters.
-fn north_up(
-    path: &Path,
-    transform: &GeoTransform,
-    [columns, rows]: [usize; 2],
-    values: &mut [f64],
-) -> Result<[f64; 2], TerrainError> {
-    if transform.skew_x != 0.0 || transform.skew_y != 0.0 || transform.pixel_width < 0.0 {
-        let what = "it is turned or mirrored against north; straighten it with `gdalwarp`";
-        return Err(TerrainError::unusable(path, what));
+impl Band<'_> {
+    /// Its samples, converted by `number`, without those that `is_no_data` tells, from the north row on.
+    fn read<T: TiffSample + Copy>(
+        &self,
+        number: impl Fn(T) -> f64,
+        is_no_data: impl Fn(f64) -> bool,
+    ) -> Result<Vec<f64>, TerrainError> {
+        let Window { first: [column, row], size: [columns, rows] } = *self.window;
+        let south_first = south_first(self.file);
+        let row = if south_first { self.file.height() as usize - row - rows } else { row };
+        let samples = self.file.read_band_window::<T>(0, row, column, rows, columns);
+        let samples = samples.map_err(|error| refused(self.path, &error))?;
+        let with_holes = |value: f64| if is_no_data(value) { f64::NAN } else { value };
+        let mut values: Vec<f64> = samples.iter().map(|sample| with_holes(number(*sample))).collect();
+        if south_first {
+            turn_over(&mut values, columns);
+        }
+        Ok(values)
     }
-    if transform.pixel_height <= 0.0 {
-        return Ok([transform.origin_x, transform.origin_y]);
-    }
+}
+
+/// Puts the last row first.
+fn turn_over(values: &mut [f64], columns: usize) {
+    let rows = values.len() / columns;
     for row in 0..rows / 2 {
         let (above, below) = values.split_at_mut((rows - 1 - row) * columns);
         above[row * columns..][..columns].swap_with_slice(&mut below[..columns]);
     }
-    Ok([transform.origin_x, transform.origin_y + rows as f64 * transform.pixel_height])
 }

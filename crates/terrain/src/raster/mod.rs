@@ -3,10 +3,14 @@
 mod ascii;
 mod field;
 mod geotiff;
+mod survey;
+mod window;
 mod write;
 
 pub use field::RasterField;
-pub use write::write_geotiff;
+pub use survey::{Survey, survey};
+pub use window::{MapBox, Window};
+pub use write::{write_geotiff, write_raster};
 
 use crate::{Georeference, TerrainError};
 use flate2::read::GzDecoder;
@@ -42,19 +46,54 @@ pub struct Raster {
 /// A text that names the file, for one that is no such raster, damaged, too large (more than 100 million cells, or
 /// more than its bytes can hold), less than 2 cells wide or high, or without any data.
 pub fn read_raster(path: impl AsRef<Path>) -> Result<Raster, TerrainError> {
-    let path = path.as_ref();
+    read(path.as_ref(), None)
+}
+
+/// Reads the cells of a raster that share area with `part`, as [`read_raster`] does; of a GeoTIFF in blocks only those
+/// blocks, so that it may be of any size.
+///
+/// # Errors
+/// As [`read_raster`], and where no cell lies in `part`; a part without any data is no error.
+pub fn read_raster_part(path: impl AsRef<Path>, part: &MapBox) -> Result<Raster, TerrainError> {
+    read(path.as_ref(), Some(part))
+}
+
+fn read(path: &Path, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
+    let raster = match content(path)? {
+        Content::GeoTiff { big_endian } => geotiff::read(path, big_endian, part)?,
+        Content::Text(source) => ascii::read(path, &text(path, source)?, part)?,
+    };
+    let raster = checked(path, raster)?;
+    if part.is_none() {
+        refuse_empty(path, &raster)?;
+    }
+    Ok(raster)
+}
+
+/// What a file holds.
+enum Content {
+    GeoTiff {
+        big_endian: bool,
+    },
+    /// The text of an ESRI ASCII grid, unpacked.
+    Text(Box<dyn Read>),
+}
+
+/// What a file holds, by its first bytes.
+fn content(path: &Path) -> Result<Content, TerrainError> {
     let mut file = File::open(path).map_err(|error| TerrainError::read(path, error))?;
     let mut start = Vec::new();
     (&mut file).take(64).read_to_end(&mut start).map_err(|error| TerrainError::read(path, error))?;
     file.rewind().map_err(|error| TerrainError::read(path, error))?;
-    let raster = match start.as_slice() {
-        [] => return Err(TerrainError::wrong_type(path, "the file is empty")),
-        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => geotiff::read(path, start[0] == b'M')?,
-        [0x1f, 0x8b, ..] => ascii::read(path, &text(path, GzDecoder::new(BufReader::new(file)))?)?,
-        _ if ascii::looks_like(&start) => ascii::read(path, &text(path, file)?)?,
-        _ => return Err(TerrainError::wrong_type(path, kind(&start))),
-    };
-    checked(path, raster)
+    match start.as_slice() {
+        [] => Err(TerrainError::wrong_type(path, "the file is empty")),
+        [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => {
+            Ok(Content::GeoTiff { big_endian: start[0] == b'M' })
+        }
+        [0x1f, 0x8b, ..] => Ok(Content::Text(Box::new(GzDecoder::new(BufReader::new(file))))),
+        _ if ascii::looks_like(&start) => Ok(Content::Text(Box::new(file))),
+        _ => Err(TerrainError::wrong_type(path, kind(&start))),
+    }
 }
 
 /// What a file that is no raster seems to be.
@@ -89,7 +128,8 @@ fn text(path: &Path, source: impl Read) -> Result<Vec<u8>, TerrainError> {
 }
 
 /// Refuses a size that cannot be meant, before anything is reserved for it.
-fn check_size(path: &Path, columns: u64, rows: u64) -> Result<(), TerrainError> {
+pub(crate) fn check_size(path: &Path, size: [usize; 2]) -> Result<(), TerrainError> {
+    let [columns, rows] = size.map(|count| count as u64);
     if columns < 2 || rows < 2 {
         let what = format!("it has {columns} x {rows} cells; at least 2 x 2 are needed");
         return Err(TerrainError::unusable(path, what));
@@ -97,12 +137,21 @@ fn check_size(path: &Path, columns: u64, rows: u64) -> Result<(), TerrainError> 
     if columns.checked_mul(rows).is_none_or(|cells| cells > MOST_CELLS) {
         let what = format!(
             "it says that it has {columns} x {rows} cells, more than the {} million that can be used; cut out the part \
-             that matters (`gdal_translate -projwin`) or make it coarser (`gdalwarp -tr`)",
+             that matters (`corpuscle terrain clip`) or make it coarser (`gdalwarp -tr`)",
             MOST_CELLS / 1_000_000
         );
         return Err(TerrainError::unusable(path, what));
     }
     Ok(())
+}
+
+/// The error for a raster of which nothing lies in a box.
+pub(crate) fn outside(path: &Path, part: &MapBox) -> TerrainError {
+    let MapBox { west, south, east, north } = part;
+    TerrainError::unusable(
+        path,
+        format!("none of it lies in the box {west},{south},{east},{north} (west,south,east,north)"),
+    )
 }
 
 /// Refuses values and places that no model can use.
@@ -120,8 +169,13 @@ fn checked(path: &Path, raster: Raster) -> Result<Raster, TerrainError> {
         );
         return Err(TerrainError::unusable(path, what));
     }
+    Ok(raster)
+}
+
+/// Refuses a raster without any data.
+pub(crate) fn refuse_empty(path: &Path, raster: &Raster) -> Result<(), TerrainError> {
     if raster.values.iter().all(|value| value.is_nan()) {
         return Err(TerrainError::unusable(path, "none of its cells has data; check its no-data value"));
     }
-    Ok(raster)
+    Ok(())
 }

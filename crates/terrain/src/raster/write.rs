@@ -1,6 +1,7 @@
 //! GeoTIFF, written with the `geotiff-writer` library.
 
-use crate::{MapGrid, TerrainError};
+use super::Raster;
+use crate::{Georeference, MapGrid, TerrainError};
 use geotiff_reader::transform::GeoTransform;
 use geotiff_writer::{Compression, GeoTiffBuilder, Predictor, RasterType};
 use ndarray::ArrayView2;
@@ -17,11 +18,28 @@ const TILE: u32 = 256;
 /// # Errors
 /// [`TerrainError::Write`] where the folder, the disk or the number of values does not allow it.
 pub fn write_geotiff(path: impl AsRef<Path>, grid: &MapGrid, values: &[f32], no_data: f32) -> Result<(), TerrainError> {
-    let path = path.as_ref();
+    write(path.as_ref(), &grid.georeference, [grid.columns, grid.rows], values, no_data)
+}
+
+/// Writes a raster as [`write_geotiff`] does.
+///
+/// # Errors
+/// As [`write_geotiff`].
+pub fn write_raster(path: impl AsRef<Path>, raster: &Raster, no_data: f32) -> Result<(), TerrainError> {
+    let values: Vec<f32> = raster.values.iter().map(|value| *value as f32).collect();
+    write(path.as_ref(), &raster.georeference, [raster.columns, raster.rows], &values, no_data)
+}
+
+fn write(
+    path: &Path,
+    place: &Georeference,
+    [columns, rows]: [usize; 2],
+    values: &[f32],
+    no_data: f32,
+) -> Result<(), TerrainError> {
     let filled: Vec<f32> = values.iter().map(|value| if value.is_nan() { no_data } else { *value }).collect();
-    let array =
-        ArrayView2::from_shape((grid.rows, grid.columns), &filled).map_err(|error| TerrainError::write(path, error))?;
-    let builder = builder(grid, no_data);
+    let array = ArrayView2::from_shape((rows, columns), &filled).map_err(|error| TerrainError::write(path, error))?;
+    let builder = builder(place, [columns, rows], no_data);
     let mut file = temporary_beside(path).map_err(|error| TerrainError::write(path, error))?;
     let mut buffer = BufWriter::new(file.as_file_mut());
     builder.write_2d_to(&mut buffer, array).map_err(|error| TerrainError::write(path, error))?;
@@ -32,11 +50,10 @@ pub fn write_geotiff(path: impl AsRef<Path>, grid: &MapGrid, values: &[f32], no_
 }
 
 /// What the file says about itself.
-fn builder(grid: &MapGrid, no_data: f32) -> GeoTiffBuilder {
-    let place = &grid.georeference;
+fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: f32) -> GeoTiffBuilder {
     let transform =
         GeoTransform::from_origin_and_pixel_size(place.corner[0], place.corner[1], place.cell[0], -place.cell[1]);
-    let start = GeoTiffBuilder::new(grid.columns as u32, grid.rows as u32);
+    let start = GeoTiffBuilder::new(columns as u32, rows as u32);
     let keys = place.keys.keys.iter().fold(start, |builder, key| builder.geokey(key.id, key.value.clone()));
     // Without a reference system no key at all is written: a lone raster type reads as an unnamed system.
     let keys = if place.keys.keys.is_empty() { keys } else { keys.raster_type(RasterType::PixelIsArea) };

@@ -1,13 +1,12 @@
-//! Terrain from a raster file.
+//! Ground from a raster.
 
 use crate::frame::Frame;
 use crate::holes;
 use crate::raster::MOST_CELLS;
 use crate::surface::Surface;
-use crate::system::ReferenceSystem;
 use crate::terrain::{Ground, Terrain};
-use crate::{Bounds, Georeference, MapGrid, Raster, TerrainError, read_raster};
-use corpuscle_scene::TerrainFile;
+use crate::{Bounds, Georeference, MapGrid, Raster, TerrainError};
+use corpuscle_scene::NoData;
 use rayon::prelude::*;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,23 +24,20 @@ const FAR_FROM_CENTRE: f64 = 285e3;
 /// A projection is told of when its scale is wrong by more than this (UTM and national grids keep within 0.002).
 const DISTORTED: f64 = 0.005;
 
-/// Opens the terrain of a scene's `[terrain.file]`.
-pub(crate) fn open(scene: &TerrainFile, folder: &Path) -> Result<Terrain, TerrainError> {
-    let path = folder.join(&scene.path);
-    let mut raster = read_raster(&path)?;
+/// The ground from a raster; `path` is for messages.
+pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> Result<Terrain, TerrainError> {
     let mut warnings = std::mem::take(&mut raster.warnings);
-    choose_system(&mut raster, scene.crs.as_deref(), &path, &mut warnings)?;
-    check_heights(&raster, &path, &mut warnings)?;
+    check_heights(&raster, path, &mut warnings)?;
     let size = [raster.columns, raster.rows];
     let holes: Vec<bool> = raster.values.iter().map(|height| height.is_nan()).collect();
     let valid = holes.contains(&true).then(|| holes.iter().map(|hole| !hole).collect());
-    holes::close(&mut raster.values, size, scene.no_data);
-    let frame = frame(&raster).map_err(|what| TerrainError::unusable(&path, what))?;
+    holes::close(&mut raster.values, size, no_data);
+    let frame = frame(&raster).map_err(|what| TerrainError::unusable(path, what))?;
     let map_grid =
         MapGrid { columns: size[0], rows: size[1], georeference: raster.georeference.clone(), frame: Arc::new(frame) };
     let geographic = raster.georeference.system.as_ref().is_some_and(|system| system.geographic);
     let (bounds, surface) = if geographic {
-        let bounds = inside(&map_grid).map_err(|what| TerrainError::unusable(&path, what))?;
+        let bounds = inside(&map_grid).map_err(|what| TerrainError::unusable(path, what))?;
         if bounds.x_min < -FAR_FROM_CENTRE || bounds.x_max > FAR_FROM_CENTRE {
             let what = "The terrain is so wide that distances near its sides are wrong by more than 0.1 %; cut it out \
                         smaller if that matters.";
@@ -59,31 +55,6 @@ pub(crate) fn open(scene: &TerrainFile, folder: &Path) -> Result<Terrain, Terrai
         (bounds, metric(&raster, &map_grid))
     };
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
-}
-
-/// Settles the reference system from what the file and the scene say.
-fn choose_system(
-    raster: &mut Raster,
-    crs: Option<&str>,
-    path: &Path,
-    warnings: &mut Vec<String>,
-) -> Result<(), TerrainError> {
-    let named = crs.map(ReferenceSystem::parse).transpose()?;
-    let file = path.display();
-    match (&raster.georeference.system, named) {
-        (Some(own), Some(named)) if own.name != named.name => warnings.push(format!(
-            "{file} is in {}; the scene's crs = \"{}\" is for files that name none, and is not used.",
-            own.name, named.name
-        )),
-        (None, Some(named)) => raster.georeference = raster.georeference.clone().with_system(named),
-        (None, None) => warnings.push(format!(
-            "{file} names no reference system: its coordinates are taken as metres without a place on Earth. Name it \
-             with `crs` in [terrain.file] if you know it."
-        )),
-        (Some(_), _) => {}
-    }
-    warnings.extend(raster.georeference.system.as_ref().and_then(ReferenceSystem::warning));
-    Ok(())
 }
 
 /// Refuses heights that are none, and tells of doubtful ones.

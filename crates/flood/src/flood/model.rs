@@ -1,0 +1,129 @@
+//! What a flood shows of itself.
+
+use super::{DENSITY, Flood, State};
+use crate::gauges::{LineGauge, PointGauge};
+use crate::particle::Particle;
+use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_scene::Scheme as SchemeName;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+impl Model for Flood {
+    fn name(&self) -> &'static str {
+        "flood"
+    }
+
+    fn time(&self) -> f64 {
+        self.shown
+    }
+
+    fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    fn particle_steps(&self) -> u64 {
+        self.state.particle_steps
+    }
+
+    fn particles(&self) -> usize {
+        self.inside().count() + self.state.falling.len()
+    }
+
+    fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        while self.state.time + self.state.time_step <= time {
+            if stop.load(Ordering::Relaxed) {
+                self.shown = self.shown.max(self.state.time);
+                return Ok(());
+            }
+            self.step()?;
+        }
+        self.shown = time;
+        Ok(())
+    }
+
+    fn frame(&self) -> Frame {
+        let since = self.since();
+        let mut order: Vec<&Particle> = self.inside().collect();
+        order.sort_unstable_by_key(|particle| particle.id);
+        let count = order.len() + self.state.falling.len();
+        let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
+        let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
+        let radius = |particle: &Particle| match self.settings.scheme {
+            SchemeName::Balanced => 0.5 * particle.area().sqrt(),
+            SchemeName::Paper => self.settings.paper.radius_m.unwrap_or(0.5 * self.spacing),
+        };
+        let terrain = &self.surroundings.terrain;
+        let on_ground = order.into_iter().map(|particle| {
+            let (x, y) = (particle.x + since * particle.u, particle.y + since * particle.v);
+            let height = terrain.height(x, y);
+            (particle, [x, y, height + particle.depth], 0.0, height, particle.depth, radius(particle))
+        });
+        let in_air = self.state.falling.iter().map(|drop| {
+            let particle = &drop.particle;
+            let height = terrain.height(particle.x, particle.y);
+            (particle, [particle.x, particle.y, drop.z], drop.w, height, 0.0, 0.5 * self.spacing)
+        });
+        for (particle, position, w, height, deep, radius) in on_ground.chain(in_air) {
+            set.id.push(particle.id);
+            set.position.push(position);
+            set.velocity.push([particle.u, particle.v, w]);
+            set.radius.push(radius);
+            set.mass.push(DENSITY * particle.volume);
+            depth.push(deep);
+            ground.push(height);
+            speed.push(particle.speed());
+        }
+        set.columns = vec![
+            Column { name: "depth", unit: "m", values: Values::Scalar(depth) },
+            Column { name: "ground", unit: "m", values: Values::Scalar(ground) },
+            Column { name: "speed", unit: "m/s", values: Values::Scalar(speed) },
+        ];
+        Frame { time: self.shown, sets: vec![set] }
+    }
+
+    fn gauge_columns(&self) -> Vec<GaugeColumn> {
+        let total = |quantity| GaugeColumn { gauge: "water".into(), quantity, unit: "m3" };
+        let points = self.points.iter().flat_map(PointGauge::columns);
+        let lines = self.lines.iter().map(LineGauge::column);
+        points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).collect()
+    }
+
+    fn gauge_row(&self) -> Vec<f64> {
+        let water = self.sampler(self.since());
+        let points = self.points.iter().flat_map(|point| point.row(&water));
+        let lines = self.lines.iter().map(|line| line.discharge(&water));
+        let account = &self.state.water;
+        let totals = [self.stored(), account.inflow.value(), account.outflow.value()];
+        points.chain(lines).chain(totals).collect()
+    }
+
+    fn maps(&self) -> Vec<Map> {
+        self.state.maps.maps(&self.sampler(self.since()))
+    }
+
+    fn ledger(&self) -> Ledger {
+        let water = self.state.water.balance("water_m3", self.stored());
+        let momentum = self.state.momentum.balance("momentum", self.momentum());
+        Ledger { balances: vec![water, momentum] }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(self.shown, &self.state)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
+        let refused = |what: String| ModelError::Checkpoint(what);
+        let (shown, state): (f64, State) =
+            postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
+        if state.owed.len() != self.sources.len() || !state.maps.fit(&self.state.maps) {
+            return Err(refused("it belongs to another scene".into()));
+        }
+        (self.shown, self.state) = (shown, state);
+        self.surroundings.time = self.state.time;
+        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+        Ok(())
+    }
+}

@@ -1,0 +1,183 @@
+//! How a flood is set up.
+
+use super::{Flood, State};
+use crate::balanced::{self, Balanced};
+use crate::friction::Roughness;
+use crate::limits;
+use crate::maps::Maps;
+use crate::paper::Paper;
+use crate::scheme::{Scheme, Sizes, Surroundings};
+use crate::seeding::Body;
+use crate::setup::{self, InitialWater};
+use corpuscle_model::{Account, ExactSum, ModelError};
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The depth over `spacing_depth_m` whose wave speed sets the time step where there is no water.
+const DRY_DEPTH: f64 = 0.05;
+
+/// Smoothing length in Table 1 of scheme paper, over the root of the volume of its particles, m^(-1/2).
+const TABLE_1_SMOOTHING: f64 = 2.66;
+
+impl Flood {
+    /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what
+    /// relative paths refer to.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
+    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+        let ground = Arc::clone(&terrain);
+        let bodies = setup::initial_water(settings, &ground, folder)?;
+        Self::with_water(settings, seed, folder, terrain, &bodies)
+    }
+
+    /// As [`Flood::new`], with the water at the start given as functions instead of by the scene.
+    ///
+    /// # Errors
+    /// As [`Flood::new`].
+    pub fn with_water(
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+        bodies: &[InitialWater],
+    ) -> Result<Self, ModelError> {
+        let mut settings = settings.clone();
+        let flood = &mut settings;
+        let map_period = flood
+            .map_every_s
+            .ok_or_else(|| ModelError::Setup("flood.map_every_s is open; resolve the scene's defaults first".into()))?;
+        let spacing = flood.spacing_m;
+        let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
+        let volume = spacing * spacing * depth;
+        let (scheme, h): (Box<dyn Scheme>, f64) = match flood.scheme {
+            SchemeName::Balanced => {
+                let h = flood.balanced.smoothing * spacing;
+                let shallow = (flood.gravity_m_per_s2 * DRY_DEPTH * depth).sqrt();
+                let parameters = balanced::Parameters {
+                    gravity: flood.gravity_m_per_s2,
+                    eta: flood.balanced.smoothing,
+                    largest_h: flood.balanced.largest_smoothing * h,
+                    viscosity: flood.balanced.viscosity,
+                    cfl: flood.balanced.cfl,
+                    longest_step: flood.balanced.cfl * h / shallow,
+                };
+                (Box::new(Balanced::new(parameters)), h)
+            }
+            SchemeName::Paper => {
+                // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
+                let h = *flood.paper.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
+                flood.paper.radius_m.get_or_insert(0.5 * spacing);
+                (Box::new(Paper::new(flood.paper.clone(), h, flood.gravity_m_per_s2)), h)
+            }
+        };
+        limits::check_blocks(flood, &terrain)?;
+        limits::check_count(flood, bodies, &terrain, spacing, volume)?;
+        let edges = setup::edge_rules(flood, &terrain, folder)?;
+        let sources = setup::sources(flood, &terrain, folder, spacing)?;
+        let state = State {
+            time: 0.0,
+            steps: 0,
+            particle_steps: 0,
+            particles: Vec::new(),
+            falling: Vec::new(),
+            owed: vec![ExactSum::default(); sources.len()],
+            next_id: 0,
+            water: Account::default(),
+            momentum: Account::default(),
+            maps: Maps::new(&terrain, flood.wet_depth_m),
+            next_look: 0,
+            time_step: 0.0,
+            sizes: Sizes { cell: h, even: true },
+            external: [0.0; 2],
+        };
+        let mut model = Self {
+            roughness: Roughness::open(&flood.manning, &terrain, folder)?,
+            points: setup::point_gauges(flood, &terrain)?,
+            lines: setup::line_gauges(flood, &terrain, spacing)?,
+            map_period,
+            warnings: terrain.warnings().to_vec(),
+            surroundings: Surroundings { terrain, edges, time: 0.0 },
+            settings,
+            seed,
+            scheme,
+            sources,
+            spacing,
+            volume,
+            h,
+            state,
+            of_blocks: Vec::new(),
+            renewals: Vec::new(),
+            shown: 0.0,
+        };
+        model.fill(bodies);
+        model.begin();
+        Ok(model)
+    }
+
+    /// Fills in the water at the start.
+    fn fill(&mut self, bodies: &[InitialWater]) {
+        let flood = &self.settings;
+        let eta = flood.balanced.smoothing;
+        for (number, body) in bodies.iter().enumerate() {
+            let seed = self.seed.wrapping_add(number as u64);
+            let mut particles = Body {
+                depth: &*body.depth,
+                inside: &*body.inside,
+                within: body.within,
+                volume: self.volume,
+                eta,
+                largest_h: flood.balanced.largest_smoothing * eta * self.spacing,
+                shallowest: flood.wet_depth_m,
+            }
+            .fill(&self.surroundings.edges, seed);
+            if particles.is_empty() {
+                self.warnings.push(format!(
+                    "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
+                     the ground, or its depth below wet_depth_m."
+                ));
+            }
+            for particle in &mut particles {
+                [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
+                if flood.scheme == SchemeName::Paper {
+                    (particle.h, particle.next_h) = (self.h, self.h);
+                }
+            }
+            self.state.particles.append(&mut particles);
+        }
+        let mut random = setup::random(self.seed, u64::MAX);
+        for water in &flood.water {
+            if let Some(block) = &water.block {
+                let terrain = &self.surroundings.terrain;
+                let velocity = water.velocity_m_per_s;
+                let falling = setup::block(block, velocity, terrain, self.spacing, self.volume, self.h, &mut random);
+                self.state.falling.extend(falling);
+            }
+        }
+        let State { particles, falling, .. } = &mut self.state;
+        let all = particles.iter_mut().chain(falling.iter_mut().map(|drop| &mut drop.particle));
+        self.state.next_id = all.enumerate().map(|(number, particle)| particle.id = number as u64).count() as u64;
+        if self.state.next_id == 0 && self.sources.is_empty() && !self.surroundings.edges.holds_level() {
+            let what = "There is no water: give [[flood.water]], [[flood.inflow]], or an edge with a stage.";
+            self.warnings.push(what.into());
+        }
+    }
+
+    fn begin(&mut self) {
+        self.state.water.initial = self.stored();
+        self.state.momentum.initial = self.momentum();
+        self.renew();
+        self.arrange();
+        if self.surroundings.edges.holds_level() {
+            self.gain(0.0);
+            self.renew();
+            self.arrange();
+        }
+        let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
+        self.state.time_step = self.limited(evaluation.time_step);
+        self.state.external = evaluation.external;
+        self.look();
+    }
+}

@@ -1,0 +1,129 @@
+//! A step of the flood.
+
+use super::{DENSITY, Flood, State};
+use crate::particle::Particle;
+use crate::sampling::Sampler;
+use corpuscle_model::ModelError;
+use corpuscle_scene::Scheme as SchemeName;
+use corpuscle_sph::BLOCK;
+use rayon::prelude::*;
+
+/// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in
+/// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
+const CELL_OVER_H_BALANCED: f64 = 1.2;
+
+/// The same for scheme paper, whose particles look as far as they reach themselves.
+const CELL_OVER_H_PAPER: f64 = 1.4;
+
+/// What a look at a block of particles gives.
+pub(super) struct Renewal {
+    sum_of_h: f64,
+    /// Whether they are all inside.
+    inside: bool,
+    /// Whether they all have the weight of the first particle of all.
+    even: bool,
+}
+
+impl Flood {
+    /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
+    pub(super) fn limited(&self, step: f64) -> f64 {
+        let fall = 0.1 * (self.spacing / self.settings.gravity_m_per_s2).sqrt();
+        if self.state.falling.is_empty() { step } else { step.min(fall) }
+    }
+
+    /// Gives the particles the smoothing lengths that they have come to need, and the cells their size; whether all the
+    /// particles are still inside.
+    pub(super) fn renew(&mut self) -> bool {
+        let edges = &self.surroundings.edges;
+        let State { particles, sizes, .. } = &mut self.state;
+        let weight = particles.first().map(|particle| particle.weight);
+        let renew_block = |particles: &mut [Particle]| {
+            let mut block = Renewal { sum_of_h: 0.0, inside: true, even: true };
+            for particle in particles {
+                particle.h = particle.next_h;
+                block.sum_of_h += particle.h;
+                block.inside &= particle.outside.is_none() && edges.bounds.contains(particle.x, particle.y);
+                block.even &= Some(particle.weight) == weight;
+            }
+            block
+        };
+        particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.renewals);
+        if !particles.is_empty() {
+            let cell_over_h = match self.settings.scheme {
+                SchemeName::Balanced => CELL_OVER_H_BALANCED,
+                SchemeName::Paper => CELL_OVER_H_PAPER,
+            };
+            let sum_of_h: f64 = self.renewals.iter().map(|block| block.sum_of_h).sum();
+            sizes.cell = cell_over_h * sum_of_h / particles.len() as f64;
+        }
+        sizes.even = self.renewals.iter().all(|block| block.even);
+        self.renewals.iter().all(|block| block.inside)
+    }
+
+    /// Sorts the particles into cells.
+    pub(super) fn arrange(&mut self) {
+        self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+    }
+
+    pub(super) fn step(&mut self) -> Result<(), ModelError> {
+        let step = self.state.time_step;
+        self.carry_beyond();
+        self.scheme.drift(&mut self.state.particles, step);
+        self.gain(step);
+        if !self.renew() {
+            self.lose();
+        }
+        self.state.time += step;
+        self.surroundings.time = self.state.time;
+        self.arrange();
+        let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, step);
+        self.scheme.kick(&mut self.state.particles, step);
+        let impulse = match self.settings.scheme {
+            SchemeName::Balanced => [0, 1].map(|k| 0.5 * step * (self.state.external[k] + evaluation.external[k])),
+            SchemeName::Paper => evaluation.external.map(|force| step * force),
+        };
+        impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
+        let gravity = self.settings.gravity_m_per_s2;
+        let slowed = self.roughness.slow(&mut self.state.particles, gravity, step, &mut self.of_blocks);
+        self.state.momentum.book(DENSITY * slowed);
+        self.state.external = evaluation.external;
+        self.state.time_step = self.limited(evaluation.time_step);
+        self.state.steps += 1;
+        self.state.particle_steps += self.state.particles.len() as u64;
+        self.look();
+        self.check(step)
+    }
+
+    /// Looks at the maps when it is time to.
+    pub(super) fn look(&mut self) {
+        if self.state.time < self.state.next_look as f64 * self.map_period {
+            return;
+        }
+        self.state.next_look = (self.state.time / self.map_period).floor() as u64 + 1;
+        let smoothing = self.smoothing();
+        let State { particles, maps, time, .. } = &mut self.state;
+        let water = Sampler {
+            particles,
+            arrangement: self.scheme.arrangement(),
+            terrain: &self.surroundings.terrain,
+            since: 0.0,
+            smoothing,
+        };
+        maps.look(&water, *time);
+    }
+
+    fn check(&self, step: f64) -> Result<(), ModelError> {
+        let next = self.state.time_step;
+        if next.is_finite() && next > 1e-9 * self.spacing {
+            return Ok(());
+        }
+        Err(ModelError::Breakdown {
+            time: self.state.time,
+            step: self.state.steps,
+            what: format!(
+                "the time step fell from {step:.3e} s to {next:.3e} s. Try a smaller flood.balanced.cfl (scheme balanced) \
+                 or flood.paper.time_step_s (scheme paper), or look in the last frame for the place where the water is fast"
+            ),
+        })
+    }
+}
