@@ -271,6 +271,7 @@ fn full_dew() -> Scene {
         time_factor: 1.0,
         air,
         faces: Faces { x_min: inflow, ..Faces::default() },
+        fan: vec![dew::Fan { position_m: [1.0; 3], size_m: [1.0; 3], velocity_m_per_s: [1.0; 3] }],
         boundary: dew::Boundary { treatment: dew::Treatment::Ghost, colour_threshold: 1.0 },
         transport: dew::Transport {
             conductivity_mean: Some(dew::Mean::Harmonic),
