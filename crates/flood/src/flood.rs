@@ -3,7 +3,9 @@
 mod exchange;
 mod model;
 mod open;
+mod regulate;
 mod step;
+mod weather;
 
 use crate::falling::Falling;
 use crate::friction::Roughness;
@@ -11,8 +13,10 @@ use crate::gauges::{LineGauge, PointGauge};
 use crate::inflow::Source;
 use crate::maps::Maps;
 use crate::particle::Particle;
+use crate::rain::{Ground, Wetness};
 use crate::sampling::{Sample, Sampler};
 use crate::scheme::{Scheme, Sizes, Surroundings};
+use crate::structures::{Flows, Structures};
 use corpuscle_model::{Account, ExactSum};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use serde::{Deserialize, Serialize};
@@ -28,7 +32,10 @@ pub struct Flood {
     surroundings: Surroundings,
     scheme: Box<dyn Scheme>,
     roughness: Roughness,
+    /// The ground, where it rains or water soaks in.
+    ground: Option<Ground>,
     sources: Vec<Source>,
+    structures: Structures,
     points: Vec<PointGauge>,
     lines: Vec<LineGauge>,
     /// Distance of particles in water of depth `spacing_depth_m`, m, and what goes with it.
@@ -56,6 +63,8 @@ struct State {
     /// Water that each source owes, less than a particle, m3.
     owed: Vec<ExactSum>,
     next_id: u64,
+    wetness: Wetness,
+    flows: Flows,
     water: Account,
     momentum: Account,
     maps: Maps,
@@ -100,7 +109,16 @@ impl Flood {
     /// Water in the model, m3.
     fn stored(&self) -> f64 {
         let airborne = self.state.falling.iter().map(|drop| drop.particle.volume);
-        self.inside().map(|particle| particle.volume).chain(airborne).collect::<ExactSum>().value()
+        let particles = self.inside().map(|particle| particle.volume).chain(airborne);
+        particles.chain([self.state.wetness.on_the_ground()]).collect::<ExactSum>().value()
+    }
+
+    /// The account of the water, rain and infiltration included, m3.
+    fn water(&self) -> Account {
+        let mut water = self.state.water;
+        water.inflow.add(self.state.wetness.rained.value());
+        water.outflow.add(self.state.wetness.infiltrated.value());
+        water
     }
 
     /// Momentum of the water, sum of its two components, kg m/s.

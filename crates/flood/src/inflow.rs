@@ -3,74 +3,15 @@
 use crate::edges::{EdgeRule, EdgeRules};
 use crate::particle::Particle;
 use crate::sampling::Sampler;
+use crate::zone::Zone;
 use corpuscle_model::ExactSum;
 use corpuscle_scene::Table;
 use corpuscle_sph::kernel::cubic_spline;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
-
-/// Inflowing water raises the surface where it comes in no faster than this, m/s: the area it is spread over follows.
-const FASTEST_RISE: f64 = 0.5;
 
 /// Places tried for each new particle; the lowest surface is taken.
 const TRIES: usize = 12;
-
-/// Where new particles may stand.
-#[derive(Debug, Clone)]
-pub(crate) enum Zone {
-    /// A disc.
-    Disc { centre: [f64; 2], radius: f64 },
-    /// A band on both sides of a line.
-    Band { line: Vec<[f64; 2]>, half_width: f64 },
-}
-
-impl Zone {
-    /// A disc wide enough for `discharge` m3/s.
-    pub fn at(centre: [f64; 2], discharge: f64, spacing: f64) -> Self {
-        let needed = (discharge / FASTEST_RISE / std::f64::consts::PI).sqrt();
-        Self::Disc { centre, radius: needed.max(2.0 * spacing) }
-    }
-
-    /// A band wide enough for `discharge` m3/s.
-    pub fn along(line: Vec<[f64; 2]>, discharge: f64, spacing: f64) -> Self {
-        let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-        let needed = 0.5 * discharge / FASTEST_RISE / length;
-        Self::Band { line, half_width: needed.max(spacing) }
-    }
-
-    fn any(&self, random: &mut ChaCha8Rng) -> [f64; 2] {
-        match self {
-            Self::Disc { centre, radius } => {
-                let r = radius * random.random_range(0.0..1.0_f64).sqrt();
-                let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
-                [centre[0] + r * cos, centre[1] + r * sin]
-            }
-            Self::Band { line, half_width } => {
-                let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-                let mut along = random.random_range(0.0..length);
-                let beside = random.random_range(-half_width..*half_width);
-                let pair = line
-                    .windows(2)
-                    .find(|pair| {
-                        let here = along <= distance(pair[0], pair[1]);
-                        along -= if here { 0.0 } else { distance(pair[0], pair[1]) };
-                        here
-                    })
-                    .unwrap_or(&line[line.len() - 2..]);
-                let part = along / distance(pair[0], pair[1]);
-                let direction = [0, 1].map(|axis| (pair[1][axis] - pair[0][axis]) / distance(pair[0], pair[1]));
-                [
-                    pair[0][0] + part * (pair[1][0] - pair[0][0]) - beside * direction[1],
-                    pair[0][1] + part * (pair[1][1] - pair[0][1]) + beside * direction[0],
-                ]
-            }
-        }
-    }
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
 
 /// A discharge into the water.
 #[derive(Debug, Clone)]
@@ -158,23 +99,40 @@ impl Nursery<'_> {
     fn bear(&mut self, zone: &Zone, velocity: [f64; 2], outside: Option<u8>) {
         let id = self.next_id;
         self.next_id += 1;
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        random.set_stream(id);
-        let bounds = self.edges.bounds;
-        let places = (0..TRIES).map(|_| {
-            let [x, y] = zone.any(&mut random);
-            if outside.is_some() {
-                return [x, y];
-            }
-            [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max)]
-        });
-        let (_, [x, y]) = places
-            .map(|[x, y]| (self.surface(x, y), [x, y]))
-            .fold((f64::INFINITY, [0.0; 2]), |best, tried| if tried.0 < best.0 { tried } else { best });
+        let [x, y] = self.lowest(zone, id, outside.is_some());
         let mut particle = Particle::new(id, x, y, self.volume, self.h);
         [particle.u, particle.v] = velocity;
         particle.outside = outside;
         self.born.push(particle);
+    }
+
+    /// One new particle in `zone`, where the surface stands lowest, as fast as the water there.
+    pub fn bear_in_flow(&mut self, zone: &Zone) {
+        self.bear(zone, [0.0; 2], None);
+        if let Some(particle) = self.born.last_mut() {
+            [particle.u, particle.v] = self.water.at(particle.x, particle.y).velocity;
+        }
+    }
+
+    /// A place in `zone` for a particle that comes from elsewhere, told by its number.
+    pub fn place(&self, zone: &Zone, number: u64) -> [f64; 2] {
+        self.lowest(zone, self.next_id.wrapping_add(number), false)
+    }
+
+    /// Of some places in `zone` the one where the surface stands lowest.
+    fn lowest(&self, zone: &Zone, stream: u64, may_be_outside: bool) -> [f64; 2] {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(stream);
+        let bounds = self.edges.bounds;
+        let places = (0..TRIES).map(|_| {
+            let [x, y] = zone.any(&mut random);
+            if may_be_outside {
+                return [x, y];
+            }
+            [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max)]
+        });
+        let tried = places.map(|[x, y]| (self.surface(x, y), [x, y]));
+        tried.fold((f64::INFINITY, [0.0; 2]), |best, tried| if tried.0 < best.0 { tried } else { best }).1
     }
 
     /// Height of the water's surface by the plain kernel sum: low where particles leave a gap.
@@ -185,27 +143,5 @@ impl Nursery<'_> {
         let there: f64 = self.water.near(x, y, 2.0 * self.h).map(deep).sum();
         let born: f64 = self.born.iter().map(deep).sum();
         self.water.terrain.height(x, y) + there + born
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_lie_in_their_zone() {
-        let mut random = ChaCha8Rng::seed_from_u64(5);
-        let disc = Zone::at([3.0, 4.0], 2.0, 0.1);
-        let band = Zone::along(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 20.0]], 3.0, 0.5);
-        let (mut first, mut second) = (0, 0);
-        for _ in 0..2000 {
-            let p = disc.any(&mut random);
-            assert!(distance(p, [3.0, 4.0]) <= (4.0 / std::f64::consts::PI).sqrt());
-            let [x, y] = band.any(&mut random);
-            assert!((-0.5..=10.5).contains(&x) && (-0.5..=20.0).contains(&y), "{x} {y}");
-            if y.abs() <= 0.5 && x < 9.5 { first += 1 } else { second += 1 }
-        }
-        // A third of the line is its first part.
-        assert!((550..750).contains(&first), "{first} {second}");
     }
 }

@@ -1,7 +1,7 @@
 //! Shallow water as particles over terrain.
 //!
 //! [`Flood`] is the model. Two formulations move the water, chosen in the scene: `balanced` (the default: right as well
-//! as stable) and `paper` (the published one). Both move [`Particle`]s, columns of water of constant volume.
+//! as stable) and `paper` (the published one). Both move [`Particle`]s, columns of water.
 
 #![warn(missing_docs)]
 
@@ -13,17 +13,23 @@ mod falling;
 mod flood;
 mod friction;
 mod gauges;
+mod hydraulics;
+mod infiltration;
 mod inflow;
 mod limits;
 mod maps;
 mod paper;
 mod particle;
+mod rain;
 mod sampling;
 mod scheme;
 mod seeding;
 mod setup;
+mod structures;
+mod zone;
 
 pub use flood::Flood;
 pub use particle::Particle;
+pub use rain::RainFunction;
 pub use sampling::Sample;
 pub use setup::InitialWater;

@@ -46,9 +46,14 @@ impl Sampler<'_> {
 
     /// The particles whose cells come within `reach` of (x, y), and some more.
     pub fn near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = &Particle> {
+        self.numbers_near(x, y, reach).map(|number| &self.particles[number])
+    }
+
+    /// The same by number.
+    pub fn numbers_near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = usize> {
         let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges(x, y, reach));
         let places = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
-        places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
+        places.filter(|&&k| k != IMAGE).map(|&k| k as usize)
     }
 
     /// The share of the surroundings of (x, y) that images beyond walls and periodic sides cover.

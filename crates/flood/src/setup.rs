@@ -3,9 +3,10 @@
 use crate::edges::{EdgeRule, EdgeRules};
 use crate::falling::Falling;
 use crate::gauges::{LineGauge, PointGauge};
-use crate::inflow::{Source, Zone};
+use crate::inflow::Source;
 use crate::limits::{check_inside, span};
 use crate::particle::Particle;
+use crate::zone::Zone;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Block, Edge, Flood as FloodScene, Gauge, Section, Series, Table, Water};
 use corpuscle_terrain::{Bounds, RasterField, Terrain};

@@ -1,6 +1,12 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
+mod rain;
+mod structures;
+
+pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
+pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
+
 use crate::Series;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -11,8 +17,8 @@ use std::path::PathBuf;
 pub struct Flood {
     /// Which formulation moves the water.
     pub scheme: Scheme,
-    /// Distance between particles, m, in water of depth `spacing_depth_m`. All particles hold the same volume,
-    /// `spacing_m^2 * spacing_depth_m`, so they stand closer in deeper water and wider in shallower.
+    /// Distance between particles, m, in water of depth `spacing_depth_m`. At the start particles hold
+    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower.
     pub spacing_m: f64,
     /// The depth at which particles are `spacing_m` apart, m. Left out: the mean depth of the initial water, or 1 m
     /// where there is none.
@@ -22,6 +28,18 @@ pub struct Flood {
     pub gravity_m_per_s2: f64,
     /// Manning's roughness n, s/m^(1/3): a number or a raster.
     pub manning: Manning,
+    /// Friction after another law than Manning's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Friction>,
+    /// Kinds of ground by a raster.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub land_use: Option<LandUse>,
+    /// How water soaks into the ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub infiltration: Option<Infiltration>,
+    /// Rain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rain: Option<Rain>,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
@@ -37,6 +55,12 @@ pub struct Flood {
     pub water: Vec<Water>,
     /// Water that comes in.
     pub inflow: Vec<Inflow>,
+    /// Water that goes out by a rating.
+    pub outflow: Vec<Outflow>,
+    /// Water that is held at a level.
+    pub stage: Vec<Stage>,
+    /// Culverts, weirs and other ways from one point to another.
+    pub link: Vec<Link>,
     /// Points where depth, level and velocity are recorded.
     pub gauge: Vec<Gauge>,
     /// Lines through which the discharge is recorded.
@@ -54,6 +78,10 @@ impl Default for Flood {
             spacing_depth_m: None,
             gravity_m_per_s2: 9.81,
             manning: Manning::Number(0.03),
+            friction: None,
+            land_use: None,
+            infiltration: None,
+            rain: None,
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),
@@ -61,6 +89,9 @@ impl Default for Flood {
             edges: Edges::default(),
             water: Vec::new(),
             inflow: Vec::new(),
+            outflow: Vec::new(),
+            stage: Vec::new(),
+            link: Vec::new(),
             gauge: Vec::new(),
             section: Vec::new(),
             observed_extent: None,

@@ -51,6 +51,18 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
         }
     }
     paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
+    for stage in &mut flood.stage {
+        if let Series::File { csv } = &mut stage.level_m {
+            paths.push(csv);
+        }
+    }
+    if let Some(rain) = &mut flood.rain {
+        if let Series::File { csv } = &mut rain.intensity_mm_per_h {
+            paths.push(csv);
+        }
+        paths.extend(rain.raster.as_mut());
+    }
+    paths.extend(flood.land_use.as_mut().map(|land_use| &mut land_use.raster));
     paths.extend(flood.observed_extent.as_mut());
     paths
 }

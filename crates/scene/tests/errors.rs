@@ -246,3 +246,45 @@ fn a_missing_file_is_named() {
     let message = Scene::read("no/such/scene.toml".as_ref(), &[]).unwrap_err().to_string();
     assert!(message.contains("no/such/scene.toml"), "{message}");
 }
+
+#[test]
+fn rain_and_ground() {
+    let line = "manning = 0.03";
+    let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
+    spoil("rain.intensity_mm_per_h = -1", &["flood.rain.intensity_mm_per_h = -1", "must not be negative"]);
+    spoil("rain = { intensity_mm_per_h = [[9, 1], [1, 2]] }", &["flood.rain.intensity_mm_per_h.1", "sort the rows"]);
+    spoil("rain = { intensity_mm_per_h = 1, film_m = 0 }", &["flood.rain.film_m = 0", "larger than 0"]);
+    spoil("rain = { raster = \"r.tif\" }", &["flood.rain.intensity_mm_per_h is missing"]);
+    spoil("infiltration = { constant = { rate_mm_per_h = -1 } }", &["flood.infiltration.constant.rate_mm_per_h"]);
+    let horton = "infiltration.horton = { first_mm_per_h = 1, last_mm_per_h = 2, decay_per_h = 1 }";
+    spoil(horton, &["flood.infiltration.horton.first_mm_per_h = 1", "at least last_mm_per_h = 2"]);
+    let green_ampt = "infiltration.green-ampt = { conductivity_mm_per_h = 1, suction_m = 0.1, deficit = 30 }";
+    spoil(green_ampt, &["flood.infiltration.green-ampt.deficit = 30", "from 0 to 1"]);
+    spoil("infiltration.hortn = {}", &["did you mean `horton`"]);
+    let twice = "land_use = { raster = \"l.tif\", class = [{ code = 1 }, { code = 1 }] }";
+    spoil(twice, &["flood.land_use.class.1.code = 1", "taken by flood.land_use.class.0"]);
+    let rough = "land_use = { raster = \"l.tif\", class = [{ code = 1, manning = 33 }] }";
+    spoil(rough, &["flood.land_use.class.0.manning = 33", "Strickler"]);
+    spoil("friction.chezy = 0", &["flood.friction.chezy = 0", "larger than 0"]);
+}
+
+#[test]
+fn structures() {
+    let line = "manning = 0.03";
+    let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
+    let sluice = |keys: &str| format!("outflow = [{{ name = \"a\", at = [1, 1], {keys} }}]");
+    spoil(&sluice("rating = []"), &["flood.outflow.0.rating", "no rows"]);
+    spoil(&sluice("rating = [[2, 1], [1, 2]]"), &["flood.outflow.0.rating.1", "must rise"]);
+    spoil(&sluice("rating = [[2, -1]]"), &["flood.outflow.0.rating.0", "must not be negative"]);
+    spoil(&sluice("polygon = [[0, 0], [1, 0], [1, 1]], rating = [[0, 1]]"), &["not at and polygon together"]);
+    spoil("stage = [{ name = \"a\", level_m = 1 }]", &["flood.stage.0", "exactly one of line, polygon; none"]);
+    let link = |law: &str| format!("link = [{{ name = \"a\", from = [0, 0], to = [9, 9], law = {{ {law} }} }}]");
+    spoil(&link("culvert = {}"), &["flood.link.0.law.culvert", "diameter_m, width_m and height_m; none"]);
+    spoil(&link("culvert = { width_m = 1 }"), &["a box needs both"]);
+    spoil(&link("culvert = { diameter_m = -1 }"), &["flood.link.0.law.culvert.diameter_m = -1", "larger than 0"]);
+    spoil(&link("weir = { crest_m = 1 }"), &["width_m is missing"]);
+    spoil(&link("rating = [[0, 1], [0, 2]]"), &["flood.link.0.law.rating.1", "must rise"]);
+    let same = "link = [{ name = \"a\", from = [0, 0], to = [0, 0], law = { weir = { crest_m = 1, width_m = 1 } } }]";
+    spoil(same, &["flood.link.0.to", "another place"]);
+    spoil("outflow = [{ name = \"river\", at = [1, 1], rating = [[0, 1]] }]", &["flood.outflow.0.name", "is taken by"]);
+}

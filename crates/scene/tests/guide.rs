@@ -92,6 +92,13 @@ fn full(terrain: Terrain) -> Scene {
         paper: Paper { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..Paper::default() },
         gravity_m_per_s2: 1.0,
         manning: Manning::Number(0.0),
+        friction: None,
+        land_use: Some(LandUse {
+            raster: "a".into(),
+            class: vec![LandClass { code: 1, name: "a".into(), manning: Some(0.1), infiltration: None }],
+        }),
+        infiltration: None,
+        rain: Some(Rain { intensity_mm_per_h: Series::Constant(1.0), raster: Some("a".into()), film_m: 1.0 }),
         wet_depth_m: 1.0,
         map_every_s: Some(1.0),
         balanced: Balanced::default(),
@@ -104,6 +111,20 @@ fn full(terrain: Terrain) -> Scene {
             discharge_m3_per_s: Series::Constant(1.0),
             velocity_m_per_s: [0.0; 2],
         }],
+        outflow: vec![Outflow {
+            name: "a".into(),
+            at: place,
+            line: Some(vec![[0.0; 2]]),
+            polygon: Some(vec![[0.0; 2]]),
+            rating: vec![[0.0; 2]],
+        }],
+        stage: vec![Stage {
+            name: "a".into(),
+            line: Some(vec![[0.0; 2]]),
+            polygon: Some(vec![[0.0; 2]]),
+            level_m: Series::Constant(1.0),
+        }],
+        link: full_links(),
         gauge: vec![Gauge { name: "a".into(), at: place, lon_lat: place }],
         section: vec![Section { name: "a".into(), line: vec![[0.0; 2]] }],
         observed_extent: Some("a".into()),
@@ -111,6 +132,39 @@ fn full(terrain: Terrain) -> Scene {
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
     let model = ModelScene::Flood(Box::new(FloodScene { terrain, flood }));
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
+}
+
+/// A link of each kind.
+fn full_links() -> Vec<Link> {
+    let culvert = Culvert {
+        diameter_m: Some(1.0),
+        width_m: Some(1.0),
+        height_m: Some(1.0),
+        length_m: Some(1.0),
+        floor_m: Some([0.0; 2]),
+        manning: 0.1,
+        entrance_loss: 1.0,
+        barrels: 1,
+    };
+    let weir = Weir { crest_m: 1.0, width_m: 1.0, coefficient: 1.0 };
+    let laws = [LinkLaw::Culvert(culvert), LinkLaw::Weir(weir), LinkLaw::Rating(vec![[0.0; 2]])];
+    let link = |law| Link { name: "a".into(), from: [0.0; 2], to: [0.0; 2], both_ways: true, law };
+    laws.into_iter().map(link).collect()
+}
+
+/// Floods with each law of infiltration and friction.
+fn soils() -> Vec<Scene> {
+    let constant = Infiltration::Constant(ConstantInfiltration { rate_mm_per_h: 1.0 });
+    let horton = Infiltration::Horton(Horton { first_mm_per_h: 1.0, last_mm_per_h: 1.0, decay_per_h: 1.0 });
+    let green_ampt = Infiltration::GreenAmpt(GreenAmpt { conductivity_mm_per_h: 1.0, suction_m: 1.0, deficit: 1.0 });
+    let with = |(infiltration, friction)| {
+        let mut scene = full(Terrain::Plane(Plane::default()));
+        let ModelScene::Flood(flood) = &mut scene.model else { unreachable!() };
+        (flood.flood.infiltration, flood.flood.friction) = (Some(infiltration), Some(friction));
+        scene
+    };
+    let frictions = [Friction::Chezy(1.0), Friction::Linear(1.0), Friction::Linear(1.0)];
+    [constant, horton, green_ampt].into_iter().zip(frictions).map(with).collect()
 }
 
 /// A gas with every key written, whether or not they go together. No field is left to a default.
@@ -218,6 +272,7 @@ fn full_dew() -> Scene {
         time_factor: 1.0,
         air,
         faces: Faces { x_min: inflow, ..Faces::default() },
+        fan: vec![dew::Fan { position_m: [1.0; 3], size_m: [1.0; 3], velocity_m_per_s: [1.0; 3] }],
         boundary: dew::Boundary { treatment: dew::Treatment::Ghost, colour_threshold: 1.0 },
         transport: dew::Transport {
             conductivity_mean: Some(dew::Mean::Harmonic),
@@ -248,7 +303,8 @@ fn the_guide_tells_every_key_and_no_other() {
     let floods = all_terrains().map(full);
     let gases = [Method::EventDriven, Method::FixedStep { time_step_s: 1.0 }].map(full_gas);
     let dew = [full_dew()];
-    let scenes = floods.iter().chain(&gases).chain(&dew);
+    let soils = soils();
+    let scenes = floods.iter().chain(&soils).chain(&gases).chain(&dew);
     let mut known: BTreeSet<Key> = scenes.flat_map(|scene| keys_of(scene).into_keys()).collect();
     // A side is one of several tables, or a word.
     let fixed = Walls { z_min: Some(Wall::Fixed), z_max: Some(Wall::Fixed), ..Walls::default() };
@@ -273,6 +329,10 @@ fn the_guide_tells_the_defaults() {
         let scene = Scene::parse(&text, "smallest", &[]).unwrap();
         compared += compare_defaults(&scene, &told);
     }
+    let rain = "run.until_s = 1\nterrain.plane = {}\n[flood]\nrain.intensity_mm_per_h = 1\nlink = [{ name = \"a\", from = [0, \
+                0], to = [9, 9], law = { culvert = { diameter_m = 1 } } }, { name = \"b\", from = [0, 0], to = [9, 9], law = \
+                { weir = { crest_m = 1, width_m = 1 } } }]\nland_use = { raster = \"a\", class = [{ code = 1 }] }";
+    compared += compare_defaults(&Scene::parse(rain, "smallest", &[]).unwrap(), &told);
     let gas = "run.until_s = 1\ngas = { size = [9, 9], ball = [{ position = [2, 2], radius = 1, mass = 1 }], species = [\
                { name = \"a\", count = 1, radius = 1, mass = 1, temperature = 1 }], walls = { x_max = { piston = { \
                mass = 1, pressure = 1 } } } }";
@@ -285,7 +345,19 @@ fn the_guide_tells_the_defaults() {
 
 /// Compares the values of keys that the scene does not give with what is told; gives their number.
 fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
-    let given = ["level_m", "water", "inflow", "gauge", "section", "count", "relative_humidity"];
+    let given = [
+        "level_m",
+        "water",
+        "inflow",
+        "outflow",
+        "stage",
+        "link",
+        "diameter_m",
+        "gauge",
+        "section",
+        "count",
+        "relative_humidity",
+    ];
     let is_default = |key: &Key| !given.contains(&key.1.as_str()) && told[key] != "required";
     let mut compared = 0;
     for (key, default) in keys_of(scene).into_iter().filter(|(key, _)| is_default(key)) {
@@ -301,6 +373,11 @@ fn the_guide_tells_the_forms_of_values() {
     let text = std::fs::read_to_string(path).unwrap();
     let forms = [
         "{ raster = ",
+        "{ chezy = ",
+        "{ culvert = ",
+        "{ weir = ",
+        "{ rating = ",
+        "green-ampt = ",
         "{ csv = ",
         "{ stage = ",
         "{ thermal = ",

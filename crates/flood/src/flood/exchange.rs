@@ -76,17 +76,7 @@ impl Flood {
         }
         let mut owed = std::mem::take(&mut self.state.owed);
         let mut falling = std::mem::take(&mut self.state.falling);
-        let mut nursery = Nursery {
-            // Particles have drifted since they were arranged, which matters little to where there is a gap.
-            water: self.sampler(0.0),
-            edges: &self.surroundings.edges,
-            volume: self.volume,
-            spacing: self.spacing,
-            h: self.h,
-            seed: self.seed,
-            next_id: self.state.next_id,
-            born: Vec::new(),
-        };
+        let mut nursery = self.nursery();
         for (source, owed) in self.sources.iter().zip(&mut owed) {
             nursery.pour(source, owed, self.state.time, step);
         }

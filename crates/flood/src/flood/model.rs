@@ -3,6 +3,7 @@
 use super::{DENSITY, Flood, State};
 use crate::gauges::{LineGauge, PointGauge};
 use crate::particle::Particle;
+use crate::rain::Wetness;
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -83,25 +84,32 @@ impl Model for Flood {
     fn gauge_columns(&self) -> Vec<GaugeColumn> {
         let total = |quantity| GaugeColumn { gauge: "water".into(), quantity, unit: "m3" };
         let points = self.points.iter().flat_map(PointGauge::columns);
-        let lines = self.lines.iter().map(LineGauge::column);
-        points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).collect()
+        let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
+        let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
+        points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(weather).collect()
     }
 
     fn gauge_row(&self) -> Vec<f64> {
         let water = self.sampler(self.since());
         let points = self.points.iter().flat_map(|point| point.row(&water));
-        let lines = self.lines.iter().map(|line| line.discharge(&water));
-        let account = &self.state.water;
+        let lines = self.lines.iter().map(|line| line.discharge(&water)).chain(self.state.flows.row());
+        let account = self.water();
         let totals = [self.stored(), account.inflow.value(), account.outflow.value()];
-        points.chain(lines).chain(totals).collect()
+        let Wetness { rained, infiltrated, .. } = &self.state.wetness;
+        let film = self.state.wetness.on_the_ground();
+        let weather = self.ground.iter().flat_map(|_| [rained.value(), infiltrated.value(), film]);
+        points.chain(lines).chain(totals).chain(weather).collect()
     }
 
     fn maps(&self) -> Vec<Map> {
-        self.state.maps.maps(&self.sampler(self.since()))
+        let mut maps = self.state.maps.maps(&self.sampler(self.since()));
+        let terrain = &self.surroundings.terrain;
+        maps.extend(self.ground.as_ref().and_then(|ground| ground.map(&self.state.wetness, terrain)));
+        maps
     }
 
     fn ledger(&self) -> Ledger {
-        let water = self.state.water.balance("water_m3", self.stored());
+        let water = self.water().balance("water_m3", self.stored());
         let momentum = self.state.momentum.balance("momentum", self.momentum());
         Ledger { balances: vec![water, momentum] }
     }
@@ -118,7 +126,11 @@ impl Model for Flood {
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
-        if state.owed.len() != self.sources.len() || !state.maps.fit(&self.state.maps) {
+        if state.owed.len() != self.sources.len()
+            || !self.structures.fit(&state.flows)
+            || self.ground.as_ref().is_some_and(|ground| !ground.fits(&state.wetness))
+            || !state.maps.fit(&self.state.maps)
+        {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);

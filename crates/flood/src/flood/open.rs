@@ -6,9 +6,11 @@ use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
 use crate::paper::Paper;
+use crate::rain::Ground;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
+use crate::structures::Structures;
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use corpuscle_terrain::Terrain;
@@ -77,6 +79,9 @@ impl Flood {
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = setup::edge_rules(flood, &terrain, folder)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
+        let widest = flood.balanced.largest_smoothing * spacing;
+        let ground = Ground::open(flood, &terrain, folder, volume, widest)?;
+        let structures = Structures::open(flood, &terrain, folder, spacing)?;
         let state = State {
             time: 0.0,
             steps: 0,
@@ -85,6 +90,8 @@ impl Flood {
             falling: Vec::new(),
             owed: vec![ExactSum::default(); sources.len()],
             next_id: 0,
+            flows: structures.at_rest(),
+            wetness: ground.as_ref().map(Ground::dry).unwrap_or_default(),
             water: Account::default(),
             momentum: Account::default(),
             maps: Maps::new(&terrain, flood.wet_depth_m),
@@ -94,7 +101,9 @@ impl Flood {
             external: [0.0; 2],
         };
         let mut model = Self {
-            roughness: Roughness::open(&flood.manning, &terrain, folder)?,
+            roughness: Roughness::open(flood, &terrain, folder)?,
+            ground,
+            structures,
             points: setup::point_gauges(flood, &terrain)?,
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
@@ -159,8 +168,13 @@ impl Flood {
         let State { particles, falling, .. } = &mut self.state;
         let all = particles.iter_mut().chain(falling.iter_mut().map(|drop| &mut drop.particle));
         self.state.next_id = all.enumerate().map(|(number, particle)| particle.id = number as u64).count() as u64;
-        if self.state.next_id == 0 && self.sources.is_empty() && !self.surroundings.edges.holds_level() {
-            let what = "There is no water: give [[flood.water]], [[flood.inflow]], or an edge with a stage.";
+        if self.state.next_id == 0
+            && self.ground.is_none()
+            && self.structures.held.is_empty()
+            && self.sources.is_empty()
+            && !self.surroundings.edges.holds_level()
+        {
+            let what = "There is no water: give [[flood.water]], [[flood.inflow]], [flood.rain], [[flood.stage]], or an edge with a stage.";
             self.warnings.push(what.into());
         }
     }

@@ -69,7 +69,11 @@ impl Flood {
         let step = self.state.time_step;
         self.carry_beyond();
         self.scheme.drift(&mut self.state.particles, step);
+        let taken = self.regulate(step);
         self.gain(step);
+        if self.weather() | taken {
+            self.state.particles.retain(|particle| particle.volume > 0.0);
+        }
         if !self.renew() {
             self.lose();
         }

@@ -1,5 +1,7 @@
 //! Checks of `[flood]`.
 
+mod ground;
+
 use super::{Check, Checked};
 use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Paper, Problem, Series, Water};
 use std::collections::HashMap;
@@ -15,6 +17,7 @@ impl Check {
         }
         self.above("flood.gravity_m_per_s2", flood.gravity_m_per_s2, 0.0)?;
         self.manning(&flood.manning)?;
+        self.ground(flood)?;
         self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
         if let Some(period) = flood.map_every_s {
             self.above("flood.map_every_s", period, 0.0)?;
@@ -28,6 +31,15 @@ impl Check {
         for (index, inflow) in flood.inflow.iter().enumerate() {
             self.inflow(&format!("flood.inflow.{index}"), inflow)?;
         }
+        for (index, outflow) in flood.outflow.iter().enumerate() {
+            self.outflow(&format!("flood.outflow.{index}"), outflow)?;
+        }
+        for (index, stage) in flood.stage.iter().enumerate() {
+            self.stage(&format!("flood.stage.{index}"), stage)?;
+        }
+        for (index, link) in flood.link.iter().enumerate() {
+            self.link(&format!("flood.link.{index}"), link)?;
+        }
         for (index, gauge) in flood.gauge.iter().enumerate() {
             self.gauge(&format!("flood.gauge.{index}"), gauge)?;
         }
@@ -39,8 +51,12 @@ impl Check {
 
     fn manning(&self, manning: &Manning) -> Checked {
         let Manning::Number(n) = *manning else { return Ok(()) };
-        self.at_least("flood.manning", n, 0.0)?;
-        self.require("flood.manning", n <= LARGEST_MANNING, || {
+        self.roughness("flood.manning", n)
+    }
+
+    fn roughness(&self, key: &str, n: f64) -> Checked {
+        self.at_least(key, n, 0.0)?;
+        self.require(key, n <= LARGEST_MANNING, || {
             format!("must be Manning's n, 0.01 to 0.2 for most ground; for Strickler's k give 1/k = {:.4}", 1.0 / n)
         })
     }
@@ -183,10 +199,16 @@ impl Check {
         let gauges = flood.gauge.iter().map(|gauge| &gauge.name);
         let sections = flood.section.iter().map(|section| &section.name);
         let inflows = flood.inflow.iter().map(|inflow| &inflow.name);
+        let outflows = flood.outflow.iter().map(|outflow| &outflow.name);
+        let stages = flood.stage.iter().map(|stage| &stage.name);
+        let links = flood.link.iter().map(|link| &link.name);
         let mut seen = HashMap::new();
         let all = (gauges.enumerate().map(|named| ("gauge", named)))
             .chain(sections.enumerate().map(|named| ("section", named)))
-            .chain(inflows.enumerate().map(|named| ("inflow", named)));
+            .chain(inflows.enumerate().map(|named| ("inflow", named)))
+            .chain(outflows.enumerate().map(|named| ("outflow", named)))
+            .chain(stages.enumerate().map(|named| ("stage", named)))
+            .chain(links.enumerate().map(|named| ("link", named)));
         for (kind, (index, name)) in all {
             let key = format!("flood.{kind}.{index}.name");
             self.name(&key, name)?;

@@ -1,0 +1,58 @@
+//! Rain and infiltration in a step.
+
+use super::{DENSITY, Flood, State};
+use crate::particle::Particle;
+use crate::rain::{Drop, Ground, RainFunction};
+use crate::setup;
+use corpuscle_scene::Scheme as SchemeName;
+use rand::RngExt;
+
+/// It rains once in so many steps: seldom enough to cost next to nothing, often enough to be smooth.
+const STEPS: u64 = 8;
+
+/// A new particle stands at random within this share of its cell, along each side.
+const SCATTER: f64 = 0.7;
+
+impl Flood {
+    /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does.
+    pub fn rain(&mut self, rain: RainFunction) {
+        let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, self.widest());
+        self.state.wetness = ground.dry();
+        self.ground = Some(ground);
+    }
+
+    /// The widest distance between particles that see each other, m.
+    pub(super) fn widest(&self) -> f64 {
+        self.settings.balanced.largest_smoothing * self.spacing
+    }
+
+    /// Lets it rain and soak in, where it is time to; whether particles may be left without volume, to be taken out.
+    pub(super) fn weather(&mut self) -> bool {
+        let Some(ground) = self.ground.as_ref().filter(|_| self.state.steps.is_multiple_of(STEPS)) else {
+            return false;
+        };
+        let State { particles, wetness, momentum, time, .. } = &mut self.state;
+        let drops = ground.wet(wetness, particles, *time);
+        momentum.book(-DENSITY * std::mem::take(&mut wetness.momentum));
+        for drop in drops {
+            let particle = self.particle_of(&drop);
+            self.state.particles.push(particle);
+        }
+        true
+    }
+
+    fn particle_of(&mut self, drop: &Drop) -> Particle {
+        let id = self.state.next_id;
+        self.state.next_id += 1;
+        let mut random = setup::random(self.seed, id);
+        let [x, y] = [0, 1].map(|axis| {
+            let part = 0.5 + SCATTER * random.random_range(-0.5..0.5);
+            drop.corner[axis] + part * drop.size[axis]
+        });
+        let h = match self.settings.scheme {
+            SchemeName::Balanced => self.settings.balanced.smoothing * (drop.size[0] * drop.size[1]).sqrt(),
+            SchemeName::Paper => self.h,
+        };
+        Particle::new(id, x, y, drop.volume, h)
+    }
+}

@@ -1,0 +1,233 @@
+//! Places where water comes in, is held, or goes out.
+
+use crate::particle::Particle;
+use crate::sampling::Sampler;
+use crate::setup::is_inside;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+/// Inflowing water raises the surface where it comes in no faster than this, m/s: the area it is spread over follows.
+const FASTEST_RISE: f64 = 0.5;
+
+/// Places along each side at which a polygon is looked at.
+const LOOKS: usize = 9;
+
+/// A part of the plane.
+#[derive(Debug, Clone)]
+pub(crate) enum Zone {
+    /// A disc.
+    Disc { centre: [f64; 2], radius: f64 },
+    /// A band on both sides of a line.
+    Band { line: Vec<[f64; 2]>, half_width: f64 },
+    /// A polygon.
+    Polygon(Vec<[f64; 2]>),
+}
+
+impl Zone {
+    /// A disc wide enough for `discharge` m3/s.
+    pub fn at(centre: [f64; 2], discharge: f64, spacing: f64) -> Self {
+        let needed = (discharge / FASTEST_RISE / std::f64::consts::PI).sqrt();
+        Self::Disc { centre, radius: needed.max(2.0 * spacing) }
+    }
+
+    /// A band wide enough for `discharge` m3/s.
+    pub fn along(line: Vec<[f64; 2]>, discharge: f64, spacing: f64) -> Self {
+        let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+        let needed = 0.5 * discharge / FASTEST_RISE / length;
+        Self::Band { line, half_width: needed.max(spacing) }
+    }
+
+    /// A place in it, at random.
+    pub fn any(&self, random: &mut ChaCha8Rng) -> [f64; 2] {
+        match self {
+            Self::Disc { centre, radius } => {
+                let r = radius * random.random_range(0.0..1.0_f64).sqrt();
+                let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
+                [centre[0] + r * cos, centre[1] + r * sin]
+            }
+            Self::Band { line, half_width } => {
+                let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+                let mut along = random.random_range(0.0..length);
+                let beside = random.random_range(-half_width..*half_width);
+                let pair = line
+                    .windows(2)
+                    .find(|pair| {
+                        let here = along <= distance(pair[0], pair[1]);
+                        along -= if here { 0.0 } else { distance(pair[0], pair[1]) };
+                        here
+                    })
+                    .unwrap_or(&line[line.len() - 2..]);
+                let part = along / distance(pair[0], pair[1]);
+                let direction = [0, 1].map(|axis| (pair[1][axis] - pair[0][axis]) / distance(pair[0], pair[1]));
+                [
+                    pair[0][0] + part * (pair[1][0] - pair[0][0]) - beside * direction[1],
+                    pair[0][1] + part * (pair[1][1] - pair[0][1]) + beside * direction[0],
+                ]
+            }
+            Self::Polygon(corners) => {
+                let [low, high] = rectangle(corners);
+                loop {
+                    let [x, y] =
+                        [0, 1].map(|axis| low[axis] + random.random_range(0.0..1.0) * (high[axis] - low[axis]));
+                    if is_inside(corners, x, y) {
+                        return [x, y];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether it holds a place.
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        match self {
+            Self::Disc { centre, radius } => distance(*centre, [x, y]) <= *radius,
+            Self::Band { line, half_width } => {
+                line.windows(2).any(|pair| from_piece(pair[0], pair[1], [x, y]) <= *half_width)
+            }
+            Self::Polygon(corners) => is_inside(corners, x, y),
+        }
+    }
+
+    /// A disc round all of it: its middle and radius.
+    fn round(&self) -> ([f64; 2], f64) {
+        let (places, margin) = match self {
+            Self::Disc { centre, radius } => return (*centre, *radius),
+            Self::Band { line, half_width } => (line, *half_width),
+            Self::Polygon(corners) => (corners, 0.0),
+        };
+        let [low, high] = rectangle(places);
+        let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
+        (middle, 0.5 * distance(low, high) + margin)
+    }
+
+    /// How far it reaches from its middle, m.
+    pub fn reach(&self) -> f64 {
+        self.round().1
+    }
+
+    /// Places all over it at which the water is looked at, each standing for the same area.
+    fn looks(&self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Disc { centre, .. } => vec![*centre],
+            Self::Band { line, .. } => {
+                let on = |pair: &[[f64; 2]], part: f64| {
+                    [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]))
+                };
+                let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+                let parts = |pair: &[[f64; 2]]| (LOOKS as f64 * distance(pair[0], pair[1]) / length).ceil() as usize;
+                line.windows(2)
+                    .flat_map(|pair| (0..parts(pair)).map(move |k| on(pair, (k as f64 + 0.5) / parts(pair) as f64)))
+                    .collect()
+            }
+            Self::Polygon(corners) => {
+                let [low, high] = rectangle(corners);
+                let at = |axis: usize, k: usize| low[axis] + (k as f64 + 0.5) / LOOKS as f64 * (high[axis] - low[axis]);
+                let places = (0..LOOKS * LOOKS).map(|k| [at(0, k % LOOKS), at(1, k / LOOKS)]);
+                places.filter(|[x, y]| is_inside(corners, *x, *y)).collect()
+            }
+        }
+    }
+
+    /// Its area, m2; that of a band without what bends add.
+    fn area(&self) -> f64 {
+        match self {
+            Self::Disc { radius, .. } => std::f64::consts::PI * radius * radius,
+            Self::Band { line, half_width } => {
+                2.0 * half_width * line.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>()
+            }
+            Self::Polygon(corners) => {
+                let next = corners.iter().cycle().skip(1);
+                let [x, y] = corners[0];
+                let twice = corners.iter().zip(next).map(|(a, b)| (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y));
+                0.5 * twice.sum::<f64>().abs()
+            }
+        }
+    }
+
+    /// Level of the water in it, the mean over where there is some, m; none where it is dry.
+    pub fn level(&self, water: &Sampler) -> Option<f64> {
+        let levels = self.looks().into_iter().filter_map(|[x, y]| {
+            let depth = water.at(x, y).depth;
+            (depth > 0.0).then(|| water.terrain.height(x, y) + depth)
+        });
+        let (sum, count) = levels.fold((0.0, 0), |(sum, count), level| (sum + level, count + 1));
+        (count > 0).then(|| sum / f64::from(count))
+    }
+
+    /// Water that it lacks for a level, m3; negative where it has too much.
+    pub fn missing(&self, level: f64, water: &Sampler) -> f64 {
+        let looks = self.looks();
+        let depth = |[x, y]: [f64; 2]| (level - water.terrain.height(x, y)).max(0.0) - water.at(x, y).depth;
+        let missing: f64 = looks.iter().map(|&place| depth(place)).sum();
+        missing / looks.len().max(1) as f64 * self.area()
+    }
+
+    /// The particles in it that have not left, by number.
+    pub fn particles(&self, water: &Sampler) -> Vec<usize> {
+        let (middle, reach) = self.round();
+        let is_here = |particle: &Particle| {
+            particle.outside.is_none() && particle.volume > 0.0 && self.contains(particle.x, particle.y)
+        };
+        let mut found: Vec<usize> = water.numbers_near(middle[0], middle[1], reach).collect();
+        found.retain(|&number| is_here(&water.particles[number]));
+        found
+    }
+}
+
+fn rectangle(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let low = [0, 1].map(|axis| places.iter().map(|place| place[axis]).fold(f64::INFINITY, f64::min));
+    let high = [0, 1].map(|axis| places.iter().map(|place| place[axis]).fold(f64::NEG_INFINITY, f64::max));
+    [low, high]
+}
+
+/// Distance of a place from the straight piece between two others, m.
+fn from_piece(a: [f64; 2], b: [f64; 2], place: [f64; 2]) -> f64 {
+    let [along, to] = [b, place].map(|end| [end[0] - a[0], end[1] - a[1]]);
+    let part = (to[0] * along[0] + to[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
+    let part = part.clamp(0.0, 1.0);
+    distance(place, [a[0] + part * along[0], a[1] + part * along[1]])
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    #[test]
+    fn places_lie_in_their_zone() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let disc = Zone::at([3.0, 4.0], 2.0, 0.1);
+        let band = Zone::along(vec![[0.0, 0.0], [10.0, 0.0], [10.0, 20.0]], 3.0, 0.5);
+        let (mut first, mut second) = (0, 0);
+        for _ in 0..2000 {
+            let p = disc.any(&mut random);
+            assert!(distance(p, [3.0, 4.0]) <= (4.0 / std::f64::consts::PI).sqrt());
+            let [x, y] = band.any(&mut random);
+            assert!((-0.5..=10.5).contains(&x) && (-0.5..=20.0).contains(&y), "{x} {y}");
+            if y.abs() <= 0.5 && x < 9.5 { first += 1 } else { second += 1 }
+        }
+        // A third of the line is its first part.
+        assert!((550..750).contains(&first), "{first} {second}");
+    }
+    #[test]
+    fn zones_hold_the_places_in_them() {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let bay = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 4.0], [0.0, 10.0]];
+        let zones =
+            [Zone::at([3.0, 4.0], 2.0, 0.1), Zone::along(vec![[0.0, 0.0], [10.0, 0.0]], 3.0, 0.5), Zone::Polygon(bay)];
+        for (zone, area) in zones.iter().zip([4.0, 10.0, 70.0]) {
+            assert!((zone.area() / area - 1.0).abs() < 1e-12, "{}", zone.area());
+            let ([x, y], reach) = zone.round();
+            for _ in 0..500 {
+                let place = zone.any(&mut random);
+                assert!(zone.contains(place[0], place[1]) && distance(place, [x, y]) <= reach);
+            }
+            assert!(zone.looks().iter().all(|[x, y]| zone.contains(*x, *y)));
+            assert!(!zone.contains(5.0, 6.0) || zone.reach() < 5.0);
+        }
+    }
+}
