@@ -7,11 +7,14 @@ mod transfer;
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
 use crate::exchange::Work;
+use crate::faces::OpenSide;
+use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
 use crate::room::Room;
 use crate::settings::Settings;
 use crate::solids::{Body, Conduction, Solids, Surface};
+use crate::walls;
 use crate::wetting::Wetting;
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::Table;
@@ -31,7 +34,7 @@ pub struct Dew {
     /// Heat of condensation, J/kg.
     pub(crate) latent_heat: f64,
     /// Density at which the pressure is that at rest, kg/m3: the air's, but for how evenly its particles can stand.
-    rest_density: f64,
+    pub(crate) rest_density: f64,
     pub(crate) state: State,
     arrangement: Arrangement,
     pub(crate) contact: Contact,
@@ -40,6 +43,7 @@ pub struct Dew {
     columns: Vec<Column>,
     rates: Vec<Rates>,
     work: Work,
+    push: walls::Work,
     /// The time shown, s; up to one step after the state's.
     pub(crate) shown: f64,
     pub(crate) warnings: Vec<String>,
@@ -53,6 +57,9 @@ pub struct Dew {
     pub(crate) shows: Output,
     /// The surfaces of the bodies; none where one does not tell its own.
     pub(crate) surfaces: Vec<Surface>,
+    pub(crate) fans: Vec<Fan>,
+    /// The sides of the room by which air comes and goes.
+    pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
 }
@@ -98,6 +105,8 @@ pub struct Setup {
     pub room: Room,
     /// The solids.
     pub bodies: Vec<Body>,
+    /// The fans.
+    pub fans: Vec<Fan>,
     /// Seed of everything random.
     pub seed: u64,
 }
@@ -109,7 +118,7 @@ impl Dew {
     /// # Errors
     /// Where ghost samples or air of low utility are asked for and a body does not tell its surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
-        let Setup { settings, air, room, bodies, seed } = setup;
+        let Setup { settings, air, room, bodies, fans, seed } = setup;
         if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
             return Err(ModelError::Setup(
                 "how far air is from solids must be known to tell which of it matters".into(),
@@ -162,6 +171,7 @@ impl Dew {
             columns: Vec::new(),
             rates: Vec::new(),
             work: Work::default(),
+            push: walls::Work::default(),
             shown: 0.0,
             warnings: Vec::new(),
             names: Vec::new(),
@@ -169,6 +179,8 @@ impl Dew {
             held_to: Vec::new(),
             shows: Output::default(),
             surfaces: bodies.iter().map(|body| body.surface.clone()).collect::<Option<_>>().unwrap_or_default(),
+            open_sides: Vec::new(),
+            fans: fans.clone(),
             wetting: None,
         };
         dew.fill(bodies, start);
@@ -295,9 +307,10 @@ impl Dew {
                     let (axis, side) = (usize::from(axis), usize::from(side));
                     particle.leave(axis, side, velocity[axis], slowest);
                 }
-                Role::Coming(..) | Role::Idle => {}
+                _ => {}
             }
         }
+        self.move_outside();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());
     }

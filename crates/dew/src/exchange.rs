@@ -72,6 +72,8 @@ pub struct Work {
     pub stiff: Vec<f64>,
     /// What each parcel of air has beyond saturation, part of the mass.
     pub excesses: Vec<f64>,
+    /// How the water of a parcel is divided.
+    pub shares: Vec<(u32, f64)>,
 }
 
 /// A pair of site and air.
@@ -165,17 +167,17 @@ impl Exchange<'_> {
     }
 
     /// How a parcel's water is divided among the boundary particles near it: pairs of the numbers of boundary particles and
-    /// parts. Empty where none is near.
-    pub fn shares(&self, near: &Near) -> Vec<(u32, f64)> {
+    /// parts, in `shares`. Empty where none is near.
+    pub fn shares(&self, near: &Near, shares: &mut Vec<(u32, f64)>) {
         let part = |pair: &Pair| {
             let particle = self.contact.sites[pair.other as usize].particle;
             let weight = self.contact.volumes[pair.other as usize] * self.scale.kernels.poly6(pair.r * pair.r);
             (self.solids.particles[particle as usize].normal.is_some() && weight > 0.0).then_some((particle, weight))
         };
-        let mut shares: Vec<_> = self.contact.of_air(near).iter().filter_map(part).collect();
+        shares.clear();
+        shares.extend(self.contact.of_air(near).iter().filter_map(part));
         let sum: f64 = shares.iter().map(|(_, weight)| weight).sum();
         shares.iter_mut().for_each(|(_, weight)| *weight /= sum);
-        shares
     }
 }
 

@@ -14,6 +14,7 @@ mod dew;
 pub mod drops;
 mod exchange;
 mod faces;
+mod fan;
 mod fogging;
 pub mod humid_air;
 mod layer;
@@ -30,6 +31,7 @@ mod walls;
 mod wetting;
 
 pub use dew::{Dew, Setup};
+pub use fan::Fan;
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};
 pub use settings::{Condensation, Conductor, Humidity, LowUtility, Mean, Settings, WallTreatment};

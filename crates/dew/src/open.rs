@@ -4,6 +4,7 @@ use crate::air::Properties;
 use crate::bodies;
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, WATER_DENSITY};
+use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
@@ -35,7 +36,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let air = properties(scene, &start, &room, &bodies);
     let settings = settings(scene, &start);
     let particles = bodies.iter().map(|body| particles(body, &room)).collect();
-    let setup = Setup { settings, air, room, bodies: particles, seed };
+    let setup = Setup { settings, air, room, bodies: particles, fans: scene.fan.iter().map(fan).collect(), seed };
     let mut dew = Dew::new(&setup, |_| [start.temperature, start.mass_fraction()])?;
     if !releases_heat(scene) {
         dew.without_latent_heat();
@@ -63,33 +64,17 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
              scheme = \"paper\", or \"mass-fraction\"",
         );
     }
-    let mut faces = Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis).map(|face| (axis, face)));
-    if faces.clone().any(|(_, face)| *face == written::Face::Open) {
-        return refuse(
-            "dew.faces: this version cannot let air in by an \"open\" side; give \"outflow\" where air leaves, and { inflow \
-             = { velocity_m_per_s = [...] } } where it comes in",
-        );
-    }
-    let leaves = faces.clone().any(|(_, face)| *face == written::Face::Outflow);
+    let is_any =
+        |wanted: fn(&written::Face) -> bool| Axis::ALL.into_iter().flat_map(|axis| scene.faces.along(axis)).any(wanted);
+    let leaves = is_any(|face| matches!(face, written::Face::Outflow | written::Face::Open));
     if scene.low_utility.is_some() && !leaves {
         return refuse(
-            "dew.low_utility: air can leave nowhere, and what is taken out would leave a hole; make a side \"outflow\", or leave \
-             [dew.low_utility] out",
+            "dew.low_utility: air can leave nowhere, and what is taken out would leave a hole; make a side \"outflow\" or \"open\", or \
+             leave [dew.low_utility] out",
         );
     }
-    let slanting = |(axis, face): (Axis, &written::Face)| match face {
-        written::Face::Inflow(inflow) => {
-            (0..3).any(|across| across != axis.index() && inflow.velocity_m_per_s[across] != 0.0)
-        }
-        _ => false,
-    };
-    if faces.clone().any(slanting) {
-        return refuse(
-            "dew.faces: this version lets air in straight only: of velocity_m_per_s all but the number across the side must be 0",
-        );
-    }
-    if faces.any(|(_, face)| matches!(face, written::Face::Inflow(_))) && !leaves {
-        return refuse("dew.faces: air comes in and can leave nowhere; make a side \"outflow\"");
+    if is_any(|face| matches!(face, written::Face::Inflow(_))) && !leaves {
+        return refuse("dew.faces: air comes in and can leave nowhere; make a side \"outflow\" or \"open\"");
     }
     Ok(())
 }
@@ -149,15 +134,16 @@ fn humid_air(air: &written::Air) -> HumidAir {
 }
 
 fn room(scene: &written::Dew, start: &HumidAir) -> Room {
-    let faces = Axis::ALL.map(|axis| scene.faces.along(axis).map(|face| self::face(face, axis, scene, start)));
+    let faces = Axis::ALL.map(|axis| scene.faces.along(axis).map(|face| self::face(face, scene, start)));
     Room { low: [0.0; 3], high: scene.size_m, faces }
 }
 
-fn face(face: &written::Face, axis: Axis, scene: &written::Dew, start: &HumidAir) -> Face {
+fn face(face: &written::Face, scene: &written::Dew, start: &HumidAir) -> Face {
     match face {
         written::Face::Wall => Face::Wall,
         written::Face::Periodic => Face::Periodic,
-        written::Face::Open | written::Face::Outflow => Face::Outlet,
+        written::Face::Open => Face::Open,
+        written::Face::Outflow => Face::Outlet,
         written::Face::Inflow(inflow) => {
             let celsius = inflow.temperature_c.unwrap_or(scene.air.temperature_c);
             let measures = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio];
@@ -165,10 +151,17 @@ fn face(face: &written::Face, axis: Axis, scene: &written::Dew, start: &HumidAir
             let as_at_start =
                 || HumidAir::with_mass_fraction(celsius + ZERO_CELSIUS, start.pressure, start.mass_fraction());
             let air = air_of(celsius, start.pressure, measures).unwrap_or_else(as_at_start);
-            let speed = inflow.velocity_m_per_s[axis.index()].abs();
-            Face::Inlet(Inflow { speed, temperature: air.temperature, vapour: air.mass_fraction() })
+            Face::Inlet(Inflow {
+                velocity: inflow.velocity_m_per_s,
+                temperature: air.temperature,
+                vapour: air.mass_fraction(),
+            })
         }
     }
+}
+
+fn fan(fan: &written::Fan) -> Fan {
+    Fan::new(fan.position_m, fan.size_m, fan.velocity_m_per_s)
 }
 
 fn walls(treatment: Treatment) -> WallTreatment {
@@ -216,7 +209,7 @@ fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bod
     }
 }
 
-/// The fastest motion to come, m/s: that of the air at the start and at inlets, or the speed sqrt(g H dT/T) with which warm
+/// The fastest motion to come, m/s: that of the air at the start, at inlets and at fans, or the speed sqrt(g H dT/T) with which warm
 /// air would rise through the whole box.
 fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> f64 {
     let length = |vector: [f64; 3]| vector.iter().map(|along| along * along).sum::<f64>().sqrt();
@@ -229,12 +222,16 @@ fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies
     let contrast = temperatures.map(|other| (other / start.temperature - 1.0).abs()).fold(0.0, f64::max);
     let gravity = if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] };
     let fall: f64 = (0..3).map(|axis| gravity[axis].abs() * scene.size_m[axis]).sum();
-    inlets.map(|inflow| inflow.speed).fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
+    let fans = scene.fan.iter().map(|written| fan(written).speed());
+    inlets
+        .map(|inflow| length(inflow.velocity))
+        .chain(fans)
+        .fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
 }
 
 /// The particles of a solid that are in the room, or beyond a face that air passes.
 fn particles(body: &bodies::Body, room: &Room) -> Body {
-    let is_open = |axis: usize, side: usize| matches!(room.faces[axis][side], Face::Inlet(_) | Face::Outlet);
+    let is_open = |axis: usize, side: usize| room.faces[axis][side].is_passed();
     let counts = |place: &[f64; 3]| {
         (0..3).all(|axis| {
             (place[axis] >= room.low[axis] || is_open(axis, 0)) && (place[axis] < room.high[axis] || is_open(axis, 1))

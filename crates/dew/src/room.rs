@@ -13,13 +13,22 @@ pub enum Face {
     Inlet(Inflow),
     /// Air goes out.
     Outlet,
+    /// Air goes out, and ambient air comes in.
+    Open,
+}
+
+impl Face {
+    /// Whether air passes here.
+    pub fn is_passed(&self) -> bool {
+        matches!(self, Self::Inlet(_) | Self::Outlet | Self::Open)
+    }
 }
 
 /// Air as it comes in.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Inflow {
-    /// Speed into the room, m/s, above 0.
-    pub speed: f64,
+    /// Velocity, m/s; it leads into the room.
+    pub velocity: [f64; 3],
     /// Temperature, K.
     pub temperature: f64,
     /// Part of the mass that is vapour.
@@ -52,6 +61,38 @@ impl Room {
         [0, 1, 2].map(|axis| self.high[axis] - self.low[axis])
     }
 
+    /// How many particles a spacing apart stand along each side.
+    pub fn counts(&self, spacing: f64) -> [usize; 3] {
+        self.size().map(|side| (side / spacing).round().max(1.0) as usize)
+    }
+
+    /// How far apart so many particles stand along each side, m.
+    pub fn apart(&self, spacing: f64) -> [f64; 3] {
+        let (size, counts) = (self.size(), self.counts(spacing));
+        [0, 1, 2].map(|axis| size[axis] / counts[axis] as f64)
+    }
+
+    /// How far a place is beyond a face, m; negative before it.
+    pub fn depth_beyond(&self, place: [f64; 3], axis: usize, side: usize) -> f64 {
+        [self.low[axis] - place[axis], place[axis] - self.high[axis]][side]
+    }
+
+    /// Whether air stands at a place at the start: in the room, beyond a face that air passes, and beyond two or more faces only where
+    /// one of them is open.
+    pub fn is_filled(&self, place: [f64; 3]) -> bool {
+        let mut beyond = self.faces_before(place);
+        let faces = || beyond.clone().map(|(axis, side)| &self.faces[axis][side]);
+        faces().all(Face::is_passed) && (faces().any(|face| *face == Face::Open) || beyond.nth(1).is_none())
+    }
+
+    /// The faces that a place is beyond: axis and side.
+    fn faces_before(&self, place: [f64; 3]) -> impl Iterator<Item = (usize, usize)> + Clone {
+        let (low, high) = (self.low, self.high);
+        (0..3)
+            .flat_map(|axis| [(axis, 0), (axis, 1)])
+            .filter(move |&(axis, side)| [place[axis] < low[axis], place[axis] >= high[axis]][side])
+    }
+
     /// Whether a place is inside.
     pub fn contains(&self, place: [f64; 3]) -> bool {
         (0..3).all(|axis| self.low[axis] <= place[axis] && place[axis] < self.high[axis])
@@ -73,7 +114,7 @@ impl Room {
                 let image = match self.faces[axis][side] {
                     Face::Periodic => (at + [low - high, high - low][side], false),
                     Face::Wall => (2.0 * [low, high][side] - at, true),
-                    Face::Inlet(_) | Face::Outlet => continue,
+                    Face::Inlet(_) | Face::Outlet | Face::Open => continue,
                 };
                 if image.0 > low - reach && image.0 < high + reach {
                     along[axis][count[axis]] = image;
@@ -110,7 +151,18 @@ impl Room {
                     place[axis] = (2.0 * [low, high][side] - place[axis]).clamp(low, high.next_down());
                     velocity[axis] = -velocity[axis];
                 }
-                Face::Inlet(_) | Face::Outlet => {}
+                Face::Inlet(_) | Face::Outlet | Face::Open => {}
+            }
+        }
+    }
+
+    /// Brings what has gone beyond the rim of a face back at the opposite rim: air before an inlet is the same everywhere.
+    pub fn wrap_along(&self, face: usize, place: &mut [f64; 3]) {
+        for axis in (0..3).filter(|&axis| axis != face) {
+            let (low, high) = (self.low[axis], self.high[axis]);
+            if place[axis] < low || place[axis] >= high {
+                let shifted = low + (place[axis] - low).rem_euclid(high - low);
+                place[axis] = if shifted < high { shifted } else { low };
             }
         }
     }
@@ -123,18 +175,18 @@ impl Room {
         })
     }
 
-    /// The inlet or outlet beyond which a place lies: axis and side.
+    /// Whether a place is beyond two faces or more, one of them open.
+    pub fn is_beyond_edge(&self, place: [f64; 3]) -> bool {
+        let mut beyond = self.faces_before(place);
+        beyond.clone().any(|(axis, side)| self.faces[axis][side] == Face::Open) && beyond.nth(1).is_some()
+    }
+
+    /// The face that air passes beyond which a place lies, an open one before others: axis and side.
     pub fn beyond(&self, place: [f64; 3]) -> Option<(usize, usize)> {
-        (0..3).find_map(|axis| {
-            let side = if place[axis] < self.low[axis] {
-                0
-            } else if place[axis] >= self.high[axis] {
-                1
-            } else {
-                return None;
-            };
-            matches!(self.faces[axis][side], Face::Inlet(_) | Face::Outlet).then_some((axis, side))
-        })
+        let passed = |&(axis, side): &(usize, usize)| self.faces[axis][side].is_passed();
+        let open = |&(axis, side): &(usize, usize)| self.faces[axis][side] == Face::Open;
+        let mut beyond = self.faces_before(place).filter(passed);
+        beyond.clone().find(open).or_else(|| beyond.next())
     }
 }
 

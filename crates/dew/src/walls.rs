@@ -5,30 +5,44 @@ use crate::contact::{Contact, Near, Pair};
 use crate::settings::WallTreatment;
 use rayon::prelude::*;
 
+/// What walls add to each parcel near solids, kept between steps.
+#[derive(Debug, Default)]
+pub struct Work {
+    parts: Vec<f64>,
+    pushes: Vec<Rates>,
+}
+
 /// Solids join the density of the air near them: rho_i = sum_air m_j W_ij + sum_b V_b kappa rho_0 W_ib. The kernel lets a
 /// wall's part fade smoothly with its distance.
-pub fn add_density(contact: &Contact, arrangement: &Arrangement, scale: &Scale, kappa: f64, sums: &mut [Sums]) {
+pub fn add_density(
+    contact: &Contact,
+    arrangement: &Arrangement,
+    scale: &Scale,
+    kappa: f64,
+    sums: &mut [Sums],
+    work: &mut Work,
+) {
     let of_one = |near: &Near| {
         let joins = |pair: &&Pair| contact.walls[pair.other as usize] == WallTreatment::DensityCorrection;
         let part = |pair: &Pair| contact.volumes[pair.other as usize] * scale.kernels.poly6(pair.r * pair.r);
         contact.of_air(near).iter().filter(joins).map(part).sum::<f64>()
     };
-    let parts: Vec<f64> = contact.near.par_iter().map(of_one).collect();
-    for (near, part) in contact.near.iter().zip(parts) {
+    contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
+    for (near, part) in contact.near.iter().zip(&work.parts) {
         sums[arrangement.place_of[near.particle as usize] as usize].filling += kappa * scale.to_density * part;
     }
 }
 
 /// Solids join the second moment of the Laplacian, by which diffusion is made exact.
-pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums]) {
+pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums], work: &mut Work) {
     let of_one = |near: &Near| {
         let part = |pair: &Pair| {
             contact.volumes[pair.other as usize] * pair.r * pair.r * scale.kernels.viscosity_laplacian(pair.r)
         };
         contact.of_air(near).iter().map(part).sum::<f64>()
     };
-    let parts: Vec<f64> = contact.near.par_iter().map(of_one).collect();
-    for (near, part) in contact.near.iter().zip(parts) {
+    contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
+    for (near, part) in contact.near.iter().zip(&work.parts) {
         sums[arrangement.place_of[near.particle as usize] as usize].moment += part / (6.0 * scale.moment);
     }
 }
@@ -63,26 +77,33 @@ pub const CALM: f64 = 1.3;
 
 impl Push<'_> {
     /// Adds to the rates.
-    pub fn add(&self, rates: &mut [Rates]) {
+    pub fn add(&self, rates: &mut [Rates], work: &mut Work) {
+        let pushes = &mut work.pushes;
         let some = |treatment| self.contact.walls.contains(&treatment);
         if some(WallTreatment::DensityCorrection) {
-            self.add_of(self.contact, rates, |near, rates| self.press(self.contact, self.kappa, near, rates));
+            self.add_of(self.contact, rates, pushes, |near, rates| self.press(self.contact, self.kappa, near, rates));
         }
         if some(WallTreatment::VirtualForce) {
-            self.add_of(self.contact, rates, |near, rates| self.repel(near, rates));
+            self.add_of(self.contact, rates, pushes, |near, rates| self.repel(near, rates));
         }
-        self.add_of(self.ghosts, rates, |near, rates| self.press(self.ghosts, 1.0, near, rates));
-        self.add_of(self.contact, rates, |near, rates| self.stick(near, rates));
+        self.add_of(self.ghosts, rates, pushes, |near, rates| self.press(self.ghosts, 1.0, near, rates));
+        self.add_of(self.contact, rates, pushes, |near, rates| self.stick(near, rates));
     }
 
-    fn add_of(&self, contact: &Contact, rates: &mut [Rates], add: impl Fn(&Near, &mut Rates) + Sync) {
+    fn add_of(
+        &self,
+        contact: &Contact,
+        rates: &mut [Rates],
+        pushes: &mut Vec<Rates>,
+        add: impl Fn(&Near, &mut Rates) + Sync,
+    ) {
         let parts = contact.near.par_iter().map(|near| {
             let mut part = Rates::default();
             add(near, &mut part);
             part
         });
-        let parts: Vec<Rates> = parts.collect();
-        for (near, part) in contact.near.iter().zip(parts) {
+        parts.collect_into_vec(pushes);
+        for (near, part) in contact.near.iter().zip(&*pushes) {
             let rates = &mut rates[near.particle as usize];
             for axis in 0..3 {
                 rates.acceleration[axis] += part.acceleration[axis];

@@ -27,12 +27,13 @@ fn ball(held: bool, faces: [[Face; 2]; 3]) -> Setup {
         air: Properties::at_room_temperature(0.5),
         room: Room { low: [0.0; 3], high: size, faces },
         bodies: vec![Body::sampled(solid, D, GLASS, COLD, held).unwrap()],
+        fans: Vec::new(),
         seed: 1,
     }
 }
 
 fn through_flow() -> [[Face; 2]; 3] {
-    let inflow = Inflow { speed: 0.05, temperature: WARM, vapour: vapour(WARM, 0.9) };
+    let inflow = Inflow { velocity: [0.05, 0.0, 0.0], temperature: WARM, vapour: vapour(WARM, 0.9) };
     [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]]
 }
 
@@ -211,7 +212,7 @@ fn fast_air_behind_a_solid_stays_a_flow() {
         let size = [30.0 * D, 6.0 * D, 16.0 * D];
         let shape = Shape::cylinder(3.0 * D, size[1]).unwrap();
         let solid = Solid::of_shape(shape, Pose::new([10.0 * D, 0.5 * size[1], 0.5 * size[2]], [90.0, 0.0, 0.0]));
-        let inflow = Inflow { speed, temperature: WARM, vapour: 0.0 };
+        let inflow = Inflow { velocity: [speed, 0.0, 0.0], temperature: WARM, vapour: 0.0 };
         let setup = Setup {
             settings: Settings::new(D, WARM, 0.0),
             air: Properties::at_room_temperature(10.0 * speed),
@@ -221,6 +222,7 @@ fn fast_air_behind_a_solid_stays_a_flow() {
                 faces: [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]],
             },
             bodies: vec![Body::sampled(solid.clone(), D, GLASS, WARM, true).unwrap()],
+            fans: Vec::new(),
             seed: 1,
         };
         let mut dew = Dew::new(&setup, |_| [WARM, 0.0]).unwrap();

@@ -22,6 +22,8 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/cloudburst",
     "flood/dam-break",
     "flood/lake-at-rest",
+    "flood/iowa-river",
+    "flood/chishui",
     "gas/maxwell",
     "gas/paper-2000",
     "gas/piston",

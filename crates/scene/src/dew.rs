@@ -3,9 +3,11 @@
 //! Lengths are in m, temperatures in °C; every place, velocity and acceleration has three numbers.
 
 mod faces;
+mod fan;
 mod solids;
 
 pub use faces::*;
+pub use fan::*;
 pub use solids::*;
 
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,9 @@ pub struct Dew {
     /// The sides of the box.
     #[serde(default)]
     pub faces: Faces,
+    /// Fans.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fan: Vec<Fan>,
     /// How air is kept out of solids.
     #[serde(default)]
     pub boundary: Boundary,

@@ -58,10 +58,11 @@ fn keys_of_value(name: &str, value: &Value) -> BTreeMap<Key, Value> {
     keys
 }
 
-fn all_terrains() -> [Terrain; 7] {
+fn all_terrains() -> [Terrain; 8] {
     [
         Terrain::File(TerrainFile { path: "a".into(), crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
         Terrain::Tiles(TerrainTiles { paths: vec!["a".into()], crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
+        Terrain::Fetch(TerrainFetch { bbox: [0.0; 4], no_data: NoData::Fill }),
         Terrain::Valley(Valley::default()),
         Terrain::RoughHills(RoughHills::default()),
         Terrain::Plane(Plane::default()),
@@ -272,6 +273,7 @@ fn full_dew() -> Scene {
         time_factor: 1.0,
         air,
         faces: Faces { x_min: inflow, ..Faces::default() },
+        fan: vec![dew::Fan { position_m: [1.0; 3], size_m: [1.0; 3], velocity_m_per_s: [1.0; 3] }],
         boundary: dew::Boundary { treatment: dew::Treatment::Ghost, colour_threshold: 1.0 },
         transport: dew::Transport {
             conductivity_mean: Some(dew::Mean::Harmonic),
@@ -322,7 +324,7 @@ fn the_guide_tells_every_key_and_no_other() {
 fn the_guide_tells_the_defaults() {
     let told = told();
     let mut compared = 0;
-    let files = ["file = { path = \"a\" }", "tiles = { paths = [\"a\"] }"];
+    let files = ["file = { path = \"a\" }", "tiles = { paths = [\"a\"] }", "fetch = { bbox = [0, 0, 1, 1] }"];
     for kind in files.into_iter().chain(["valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"]) {
         let text = format!("run.until_s = 1\nflood = {{ water = [{{ level_m = 1 }}] }}\nterrain.{kind}");
         let scene = Scene::parse(&text, "smallest", &[]).unwrap();

@@ -38,6 +38,12 @@ pub enum Role {
     Coming(u8, u8),
     /// Beyond an outlet, on its way off: axis and side of the face.
     Leaving(u8, u8),
+    /// Beyond an open side, where it comes and goes as the air before it does: axis and side of the face.
+    Outside(u8, u8),
+    /// Beyond an edge of the room at an open side, where it stays: so that air before the edge has neighbours all round.
+    Still,
+    /// Has left by such an edge, and is about to be taken out.
+    Gone,
     /// In the room, but of low utility: it only moves on. The ledger has it as gone.
     Idle,
 }

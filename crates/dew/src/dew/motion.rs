@@ -61,6 +61,9 @@ impl Dew {
             };
             let moved = [along(0), along(1), along(2)];
             (0..3).for_each(|axis| particle.position[axis] += moved[axis]);
+            if let Role::Coming(axis, _) = particle.role {
+                room.wrap_along(usize::from(axis), &mut particle.position);
+            }
             room.keep(&mut particle.position, &mut particle.velocity);
         });
     }
@@ -80,15 +83,16 @@ impl Dew {
             rates,
             state,
             rest_density,
+            push,
             ..
         } = self;
         arrangement.arrange(&mut state.air, room, scale.h());
         arrangement.search(scale, sums);
         contact.update(arrangement, scale);
         ghosts.update(arrangement, scale);
-        walls::add_density(contact, arrangement, scale, settings.kappa, sums);
-        walls::add_density(ghosts, arrangement, scale, 1.0, sums);
-        walls::add_moment(contact, arrangement, scale, sums);
+        walls::add_density(contact, arrangement, scale, settings.kappa, sums, push);
+        walls::add_density(ghosts, arrangement, scale, 1.0, sums, push);
+        walls::add_moment(contact, arrangement, scale, sums, push);
         fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
         rates.resize(state.air.len(), Rates::default());
         let at_work = Properties {
@@ -111,13 +115,13 @@ impl Dew {
                 rates.moistening *= saturated * parcel(particle).mass_fraction_slope();
             }
         }
-        let push = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
-        push.add(rates);
+        let walls = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };
+        walls.add(rates, push);
     }
 
     /// The second half of the kick; heat and vapour of the whole step.
     pub(super) fn kick(&mut self, step: f64) -> Extremes {
-        let Self { settings, state, rates, air, .. } = self;
+        let Self { settings, state, rates, air, fans, .. } = self;
         let spreading = air.spreading * air.sound_speed * air.sound_speed;
         let kicked = state.air.par_iter_mut().zip(rates).with_min_len(1024).map(|(particle, rates)| {
             if particle.role != Role::Inside {
@@ -127,8 +131,13 @@ impl Dew {
             let lightness = virtual_temperature(particle.temperature, particle.vapour)
                 / virtual_temperature(settings.ambient_temperature, settings.ambient_vapour)
                 - 1.0;
+            let mut driven = settings.body_acceleration;
+            for fan in &*fans {
+                let drive = fan.acceleration(particle.position, particle.velocity);
+                (0..3).for_each(|axis| driven[axis] += drive[axis]);
+            }
             for axis in 0..3 {
-                let external = settings.body_acceleration[axis] - lightness * settings.gravity[axis];
+                let external = driven[axis] - lightness * settings.gravity[axis];
                 particle.acceleration[axis] = rates.acceleration[axis] + external;
                 particle.velocity[axis] += 0.5 * step * particle.acceleration[axis];
             }
@@ -182,9 +191,12 @@ fn fill_columns(
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
-        if matches!(particle.role, Role::Leaving(..) | Role::Idle) {
+        if matches!(particle.role, Role::Leaving(..) | Role::Still | Role::Idle) {
             // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
+        } else if let Role::Outside(axis, side) = particle.role {
+            let inward = [1.0, -1.0][usize::from(side)] * particle.velocity[usize::from(axis)];
+            particle.density = rest_density * (1.0 - 0.5 * (inward.max(0.0) / air.sound_speed).powi(2));
         } else if room.is_before_outlet(particle.position, reach) {
             // Where air would flow back in there is none beyond: that must not suck.
             particle.density = particle.density.max(rest_density);

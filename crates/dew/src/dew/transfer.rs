@@ -134,29 +134,39 @@ impl Dew {
     /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
     fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
-        let exchange = self.at_surfaces();
-        let near = self.contact.near.iter().filter(|near| excesses[near.particle as usize] > 0.0);
-        let deposits: Vec<_> =
-            near.map(|near| (near.particle as usize, exchange.shares(near))).filter(|(_, to)| !to.is_empty()).collect();
-        for (particle, shares) in deposits {
-            let air = &mut self.state.air[particle];
-            let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
-            air.vapour -= water / mass;
-            for (site, share) in shares {
-                let site = site as usize;
-                let heat = self.latent_heat * water * share;
-                self.state.water_on[site] += water * share;
-                // The heat is set free at the surface, from where the better conductor takes the most of it.
-                let conductivity = self.solids.material(site).conductivity;
-                let to_solid = conductivity / (conductivity + self.air.conductivity);
-                air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
-                self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
-                if self.solids.is_held(site) {
-                    self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
-                    self.state.energy.book(-to_solid * heat);
-                } else {
-                    self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
+        let mut shares = std::mem::take(&mut self.work.shares);
+        for at in 0..self.contact.near.len() {
+            let particle = self.contact.near[at].particle as usize;
+            if excesses[particle] > 0.0 {
+                self.at_surfaces().shares(&self.contact.near[at], &mut shares);
+                if !shares.is_empty() {
+                    let water = mass * std::mem::replace(&mut excesses[particle], 0.0);
+                    self.deposit_of(particle, water, &shares, step);
                 }
+            }
+        }
+        self.work.shares = shares;
+    }
+
+    /// Water of a parcel, kg, goes onto the boundary particles near it by their shares.
+    fn deposit_of(&mut self, particle: usize, water: f64, shares: &[(u32, f64)], step: f64) {
+        let mass = self.particle_mass();
+        let air = &mut self.state.air[particle];
+        air.vapour -= water / mass;
+        for &(site, share) in shares {
+            let site = site as usize;
+            let heat = self.latent_heat * water * share;
+            self.state.water_on[site] += water * share;
+            // The heat is set free at the surface, from where the better conductor takes the most of it.
+            let conductivity = self.solids.material(site).conductivity;
+            let to_solid = conductivity / (conductivity + self.air.conductivity);
+            air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
+            self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
+            if self.solids.is_held(site) {
+                self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
+                self.state.energy.book(-to_solid * heat);
+            } else {
+                self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Searched, Solids};
 use crate::air::Scale;
-use crate::room::{Face, Room};
+use crate::room::Room;
 use rayon::prelude::*;
 
 /// A gradient of the colour larger than this over the spacing is a boundary's; on a plane it is about 0.5.
@@ -44,7 +44,7 @@ fn within_open_faces(mut normal: [f64; 3], position: [f64; 3], room: &Room, spac
         let side = usize::from(normal[axis] > 0.0);
         let is_beyond = outside < room.low[axis] || outside >= room.high[axis];
         let is_inside = (room.low[axis]..room.high[axis]).contains(&position[axis]);
-        if is_beyond && is_inside && matches!(room.faces[axis][side], Face::Inlet(_) | Face::Outlet) {
+        if is_beyond && is_inside && room.faces[axis][side].is_passed() {
             normal[axis] = 0.0;
         }
     }
@@ -55,6 +55,7 @@ fn within_open_faces(mut normal: [f64; 3], position: [f64; 3], room: &Room, spac
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::room::Face;
     use crate::testing::block;
 
     #[test]

@@ -4,7 +4,7 @@ mod solids;
 
 use super::{Check, Checked, SIDES};
 use crate::Axis;
-use crate::dew::{Air, AirInflow, Dew, Drops, Face, LowUtility, Transport};
+use crate::dew::{Air, AirInflow, Dew, Drops, Face, Fan, LowUtility, Transport};
 
 /// 0 K in °C.
 const ABSOLUTE_ZERO: f64 = -273.15;
@@ -33,6 +33,7 @@ impl Check {
         self.at_least("dew.time_factor", dew.time_factor, 1.0)?;
         self.air(&dew.air)?;
         self.faces(dew)?;
+        dew.fan.iter().enumerate().try_for_each(|(row, fan)| self.fan(&format!("dew.fan.{row}"), fan, dew))?;
         self.above("dew.boundary.colour_threshold", dew.boundary.colour_threshold, 0.0)?;
         self.transport(&dew.transport)?;
         self.drops(&dew.drops)?;
@@ -123,6 +124,23 @@ impl Check {
         let celsius = inflow.temperature_c.unwrap_or(air.temperature_c);
         self.air_temperature(&format!("{key}.temperature_c"), celsius)?;
         self.humidity(key, celsius, humidity)
+    }
+
+    /// A fan stands in the box, is no thinner than air can be told apart, and blows.
+    fn fan(&self, key: &str, fan: &Fan, dew: &Dew) -> Checked {
+        for axis in 0..3 {
+            let size = fan.size_m[axis];
+            self.require(&format!("{key}.size_m.{axis}"), size >= dew.spacing_m, || {
+                format!("must be at least spacing_m, {}: a thinner fan would miss the air", dew.spacing_m)
+            })?;
+            let middle = fan.position_m[axis];
+            self.require(&format!("{key}.position_m.{axis}"), (0.0..=dew.size_m[axis]).contains(&middle), || {
+                format!("is outside the box, which reaches from 0 to {}", dew.size_m[axis])
+            })?;
+        }
+        self.require(&format!("{key}.velocity_m_per_s"), fan.velocity_m_per_s != [0.0; 3], || {
+            "must not be 0: a fan blows some way".into()
+        })
     }
 
     fn transport(&self, transport: &Transport) -> Checked {

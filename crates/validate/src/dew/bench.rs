@@ -55,6 +55,7 @@ fn measure(name: &str, side: usize, seconds: f64) -> Result<Rate, ModelError> {
             faces: [periodic, periodic, [Face::Wall; 2]],
         },
         bodies: vec![body],
+        fans: Vec::new(),
         seed: 1,
     };
     let mut dew = Dew::new(&setup, |_| [temperature, vapour])?;

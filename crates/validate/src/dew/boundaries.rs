@@ -163,6 +163,7 @@ fn press(case: &Pressed, walls: WallTreatment) -> Result<Found, ModelError> {
         air: Properties { viscosity: 1e-5, ..Properties::at_room_temperature(SOUND) },
         room: Room { low: [0.0; 3], high: case.size, faces },
         bodies: vec![body],
+        fans: Vec::new(),
         seed: 1,
     };
     let mut dew = Dew::new(&setup, |_| [WARM, VAPOUR])?;

@@ -27,7 +27,8 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let (moist, half) = (0.01, 40.0 * SPACING);
     let air = Properties { vapour_diffusivity: 2.5e-5, ..Properties::at_room_temperature(0.05) };
     let settings = Settings { gravity: [0.0; 3], ..Settings::new(SPACING, temperature, 0.0) };
-    let setup = Setup { settings, air, room: column(2.0 * half, SPACING), bodies: Vec::new(), seed: 1 };
+    let setup =
+        Setup { settings, air, room: column(2.0 * half, SPACING), bodies: Vec::new(), fans: Vec::new(), seed: 1 };
     let mut dew = Dew::new(&setup, |[x, ..]| [temperature, if x < half { moist } else { 0.0 }])?;
     advance(&mut dew, 1.0)?;
     let exact = |x: f64| erfc(x / (2.0 * (air.vapour_diffusivity * 1.0).sqrt()));

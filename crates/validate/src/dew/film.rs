@@ -36,7 +36,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
         vec![slab(0, PLATE, SPACING, PERFECT, cold, true), slab(PLATE + LAYERS, PLATE, SPACING, PERFECT, warm, true)];
     let room = column((2 * PLATE + LAYERS) as f64 * SPACING, SPACING);
     let start = 0.5 * (saturated(cold) + saturated(warm));
-    let mut dew = Dew::new(&Setup { settings, air, room, bodies, seed: 1 }, |_| [warm, start])?;
+    let mut dew = Dew::new(&Setup { settings, air, room, bodies, fans: Vec::new(), seed: 1 }, |_| [warm, start])?;
     dew.wet(1, 1.0);
     let length = LAYERS as f64 * SPACING;
     let slowest = length * length / (std::f64::consts::PI.powi(2) * air.vapour_diffusivity);

@@ -81,7 +81,7 @@ fn warming(steel: Option<Material>) -> Result<[f64; 2], ModelError> {
         bodies.push(slab(LAYERS, LAYERS, SPACING, warm, WARM, false));
     }
     let room = column(2.0 * LAYERS as f64 * SPACING, SPACING);
-    let setup = Setup { settings: still(), air, room, bodies, seed: 1 };
+    let setup = Setup { settings: still(), air, room, bodies, fans: Vec::new(), seed: 1 };
     let mut dew = Dew::new(&setup, |_| [WARM, 0.0])?;
     let time = 16.0;
     advance(&mut dew, time)?;
@@ -135,7 +135,7 @@ fn flux_error(ratio: f64, mean: Mean) -> Result<f64, ModelError> {
     ];
     let layers = 2 * PLATE + 2 * THICK;
     let room = column(layers as f64 * SPACING, SPACING);
-    let setup = Setup { settings: Settings { mean, ..still() }, air, room, bodies, seed: 1 };
+    let setup = Setup { settings: Settings { mean, ..still() }, air, room, bodies, fans: Vec::new(), seed: 1 };
     let face = (PLATE + THICK) as f64 * SPACING;
     let mut dew = Dew::new(&setup, |[x, ..]| [contact + (WARM - contact) * (x - face) / length, 0.0])?;
     // Several times the time of the slowest part, L^2 / (pi^2 / 4 kappa).

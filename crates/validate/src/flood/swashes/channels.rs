@@ -119,9 +119,6 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> 
     let x: Vec<f64> = (0..places).map(|k| (f64::from(k) + 0.5) * step).collect();
     let [depth, velocity] = [0.25, 8.0].map(|value| vec![value; x.len()]);
     let start = Profile { ground: x.iter().map(|x| -0.09 * x).collect(), depth, velocity, x };
-    let exact =
-        Profile { x: last(&both.x), depth: last(&both.depth), velocity: vec![8.0; half], ground: last(&both.ground) };
-    let start = Profile { depth: vec![0.25; half], ..exact.clone() };
     let settings = Settings {
         friction: Some(Friction::Linear(0.01125)),
         ..settings(1000.0, spacing, 0.25, strip(&Edge::Periodic))

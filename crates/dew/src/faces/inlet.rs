@@ -1,0 +1,44 @@
+//! Air that comes in by inlets, layer by layer.
+
+use super::{BEYOND, placed};
+use crate::air::Particle;
+use crate::dew::Dew;
+use crate::room::{Face, Inflow};
+
+impl Dew {
+    /// Lets air come in by all inlets.
+    pub(super) fn let_in(&mut self, step: f64) {
+        for axis in 0..3 {
+            for side in 0..2 {
+                if let Face::Inlet(inflow) = self.room.faces[axis][side] {
+                    self.add_layers(axis, side, inflow, step);
+                }
+            }
+        }
+    }
+
+    /// Adds a layer before an inlet as soon as there is room for it.
+    fn add_layers(&mut self, axis: usize, side: usize, inflow: Inflow, step: f64) {
+        let counts = self.room.counts(self.scale.spacing);
+        let apart = self.room.apart(self.scale.spacing);
+        self.state.inlet_phase[axis][side] += inflow.velocity[axis].abs() * step;
+        while self.state.inlet_phase[axis][side] >= apart[axis] {
+            self.state.inlet_phase[axis][side] -= apart[axis];
+            let depth = ((BEYOND * self.scale.h() / apart[axis]).ceil() - 0.5) * apart[axis];
+            let behind = depth - self.state.inlet_phase[axis][side];
+            let others = [(axis + 1) % 3, (axis + 2) % 3];
+            for b in 0..counts[others[1]] {
+                for a in 0..counts[others[0]] {
+                    let mut place = [0.0; 3];
+                    place[axis] = [self.room.low[axis] - behind, self.room.high[axis] + behind][side];
+                    for (other, index) in others.into_iter().zip([a, b]) {
+                        place[other] = self.room.low[other] + (index as f64 + 0.5) * apart[other];
+                    }
+                    let particle = Particle::new(self.state.next_id, place, inflow.temperature, inflow.vapour);
+                    self.state.next_id += 1;
+                    self.state.air.push(placed(particle, &self.room, self.slowest()));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Air that comes and goes: open sides, slanting wind, fans.
+
+use corpuscle_dew::air::{Particle, Properties, Role};
+use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
+use corpuscle_dew::solids::{Body, Material};
+use corpuscle_dew::{Dew, Face, Fan, Inflow, Room, Settings, Setup};
+use corpuscle_model::Model;
+use corpuscle_solids::{Pose, Shape, Solid};
+use std::sync::atomic::AtomicBool;
+
+const D: f64 = 2e-3;
+const WARM: f64 = ZERO_CELSIUS + 25.0;
+
+fn advance(dew: &mut Dew, time: f64) {
+    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+fn inside(dew: &Dew) -> impl Iterator<Item = &Particle> {
+    dew.air().iter().filter(|particle| particle.role == Role::Inside)
+}
+
+/// Mean velocity along an axis, m/s.
+fn mean(dew: &Dew, axis: usize) -> f64 {
+    inside(dew).map(|particle| particle.velocity[axis]).sum::<f64>() / inside(dew).count() as f64
+}
+
+fn setup(size: [f64; 3], faces: [[Face; 2]; 3], sound: f64) -> Setup {
+    Setup {
+        settings: Settings::new(D, WARM, 0.0),
+        air: Properties { conductivity: 0.0, vapour_diffusivity: 0.0, ..Properties::at_room_temperature(sound) },
+        room: Room { low: [0.0; 3], high: size, faces },
+        bodies: Vec::new(),
+        fans: Vec::new(),
+        seed: 1,
+    }
+}
+
+/// Warm air in a chimney: it rises, and ambient air follows from below. With the height H, the way x of the air, its speed u and its
+/// lightness b, H du/dt = g b (H - x) - u^2 / 2: the air that comes in was at rest.
+#[test]
+fn warm_air_leaves_a_chimney_as_fast_as_it_should() {
+    let height = 40.0 * D;
+    let lightness = 0.05;
+    let faces = [[Face::Wall; 2], [Face::Periodic; 2], [Face::Open; 2]];
+    let fastest = (2.0 * 9.81 * lightness * height).sqrt();
+    let setup = setup([6.0 * D, 6.0 * D, height], faces, 10.0 * fastest);
+    let mut dew = Dew::new(&setup, |_| [WARM * (1.0 + lightness), 0.0]).unwrap();
+    let [mut time, mut way, mut speed] = [0.0; 3];
+    for look in 1..=8 {
+        let until = f64::from(look) * 0.25 * height / fastest;
+        advance(&mut dew, until);
+        let step = 1e-5;
+        while time < until {
+            speed += step * (9.81 * lightness * (height - way).max(0.0) / height - 0.5 * speed * speed / height);
+            way += step * speed;
+            time += step;
+        }
+        let rising = mean(&dew, 2);
+        assert!((rising - speed).abs() < 0.08 * 0.155, "{rising} of {speed} m/s at {until} s");
+        let count = inside(&dew).count();
+        assert!((1411..1470).contains(&count), "{count} of 1440 parcels at {until} s");
+    }
+    // Without the drop of pressure of air that comes in it would be 0.2 m/s.
+    assert!((speed - 0.155).abs() < 0.001);
+}
+
+/// Wind along a side behind which the air is at rest: it draws some of it in, and neither bursts nor stops.
+#[test]
+fn a_wind_along_an_open_side_stays_even() {
+    let speed = 0.2;
+    let inflow = Inflow { velocity: [speed, 0.0, 0.0], temperature: WARM, vapour: 0.0 };
+    let faces = [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall, Face::Open]];
+    let setup = setup([20.0 * D, 6.0 * D, 10.0 * D], faces, 10.0 * speed);
+    let mut dew = Dew::new(&setup, |_| [WARM, 0.0]).unwrap();
+    dew.stir(|_| [speed, 0.0, 0.0]);
+    for look in 1..=6 {
+        advance(&mut dew, f64::from(look) * 20.0 * D / speed);
+        let count = inside(&dew).count();
+        assert!((1164..1236).contains(&count), "{count} of 1200 parcels at {look}");
+        let along = mean(&dew, 0);
+        assert!((along / speed - 1.0).abs() < 0.15, "{along} m/s at {look}");
+        for axis in 1..3 {
+            let squares: f64 = inside(&dew).map(|particle| particle.velocity[axis].powi(2)).sum();
+            let across = (squares / count as f64).sqrt();
+            assert!(across < 0.25 * speed, "{across} m/s along axis {axis} at {look}");
+        }
+    }
+}
+
+#[test]
+fn wind_may_come_in_aslant() {
+    let inflow = Inflow { velocity: [0.1, 0.05, 0.0], temperature: WARM, vapour: 0.0 };
+    let faces = [[Face::Inlet(inflow), Face::Outlet], [Face::Periodic; 2], [Face::Wall; 2]];
+    let mut dew = Dew::new(&setup([20.0 * D, 6.0 * D, 6.0 * D], faces, 1.5), |_| [WARM, 0.0]).unwrap();
+    dew.stir(|_| [0.1, 0.0, 0.0]);
+    // Until all air has come from the inlet.
+    advance(&mut dew, 25.0 * D / 0.1);
+    let [along, aside] = [mean(&dew, 0), mean(&dew, 1)];
+    assert!((along / 0.1 - 1.0).abs() < 0.03 && (aside / 0.05 - 1.0).abs() < 0.03, "{along} {aside} m/s");
+    let count = inside(&dew).count();
+    assert!((698..742).contains(&count), "{count} of 720 parcels");
+}
+
+#[test]
+fn a_fan_drives_air_round() {
+    let size = [20.0 * D, 6.0 * D, 6.0 * D];
+    let mut setup = setup(size, [[Face::Periodic; 2], [Face::Wall; 2], [Face::Wall; 2]], 1.0);
+    setup.fans = vec![Fan::new(size.map(|side| 0.5 * side), [4.0 * D, 1.0, 1.0], [0.1, 0.0, 0.0])];
+    let mut dew = Dew::new(&setup, |_| [WARM, 0.0]).unwrap();
+    // A fifth of the air is in the fan: d(mean)/dt = (0.1 - mean) * 4 * 0.1 / (4 D) / 5.
+    let rate = 4.0 * 0.1 / (4.0 * D) / 5.0;
+    for look in 1..=4 {
+        let until = f64::from(look) * 0.5 / rate;
+        advance(&mut dew, until);
+        let expected = 0.1 * (1.0 - (-rate * until).exp());
+        let along = mean(&dew, 0);
+        assert!((along - expected).abs() < 0.005, "{along} of {expected} m/s at {until} s");
+    }
+}
+
+/// A cold ball in warm humid air that all sides but the floor let in.
+fn cold_ball() -> Setup {
+    let size = [12.0 * D, 12.0 * D, 12.0 * D];
+    let shape = Shape::sphere(3.0 * D).unwrap();
+    let solid = Solid::of_shape(shape, Pose::new(size.map(|side| 0.5 * side), [0.0; 3]));
+    let glass = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
+    let humid = HumidAir::with_relative_humidity(WARM, 101_325.0, 0.8).mass_fraction();
+    Setup {
+        settings: Settings::new(D, WARM, humid),
+        air: Properties::at_room_temperature(1.0),
+        bodies: vec![Body::sampled(solid, D, glass, WARM - 20.0, true).unwrap()],
+        ..setup(size, [[Face::Open; 2], [Face::Open; 2], [Face::Wall, Face::Open]], 1.0)
+    }
+}
+
+#[test]
+fn cold_air_that_sinks_off_a_ball_is_replaced_and_nothing_is_lost() {
+    let setup = cold_ball();
+    let [warm, humid] = [WARM, setup.settings.ambient_vapour];
+    let mut dew = Dew::new(&setup, |_| [warm, humid]).unwrap();
+    let start = inside(&dew).count() as f64;
+    for look in 1..=4 {
+        advance(&mut dew, 0.3 * f64::from(look));
+        let count = inside(&dew).count() as f64;
+        assert!((count / start - 1.0).abs() < 0.03, "{count} of {start} parcels at {look}");
+        // sqrt(2 g H dT/T) over the height of the box: all that the fall can give.
+        let fastest = inside(&dew).map(|particle| particle.speed_squared()).fold(0.0, f64::max).sqrt();
+        assert!(fastest < (2.0_f64 * 9.81 * 12.0 * D * 20.0 / WARM).sqrt(), "{fastest} m/s at {look}");
+    }
+    assert!(dew.water_on_body(0) > 0.0);
+    for balance in dew.ledger().balances {
+        assert!(balance.inflow > 0.0 && balance.outflow > 0.0, "{balance:?}");
+        assert!(balance.relative_error().abs() < 1e-10, "{balance:?}: {:e}", balance.relative_error());
+    }
+}
+
+#[test]
+fn what_is_saved_between_open_sides_goes_on_to_the_same_bits() {
+    let setup = cold_ball();
+    let start = |_| [WARM, setup.settings.ambient_vapour];
+    let mut dew = Dew::new(&setup, start).unwrap();
+    advance(&mut dew, 0.1);
+    let saved = dew.save();
+    advance(&mut dew, 0.2);
+    let mut resumed = Dew::new(&setup, start).unwrap();
+    resumed.restore(&saved).unwrap();
+    advance(&mut resumed, 0.2);
+    assert_eq!(dew.save(), resumed.save());
+}
