@@ -84,19 +84,3 @@ impl Solution {
         Ok(vec![error, twice, order])
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    #[test]
-    fn try_one() {
-        let path = Path::new("/work/shared/data/swashes");
-        for name in ["mobile_rain", "thacker_1d_planar", "macdonald_long_subcritical_manning"] {
-            let s = SOLUTIONS.iter().find(|s| s.file == name).unwrap();
-            for k in [4.0, 2.0, 1.0] {
-                let start = std::time::Instant::now();
-                eprintln!("{name} {} {:?} {:?}", k * s.spacing, (s.error)(&path.join(name).with_extension("txt"), k * s.spacing), start.elapsed());
-            }
-        }
-    }
-}
