@@ -5,8 +5,10 @@ mod channel;
 mod dam_break;
 mod lake;
 mod malpasset;
+mod structures;
 mod swashes;
 mod thacker;
+mod weather;
 
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -30,6 +32,11 @@ pub(crate) const CASES: &[Case] = &[
     channel::MACDONALD,
     malpasset::MALPASSET,
     swashes::SWASHES,
+    weather::RAIN_ON_A_PLANE,
+    weather::INFILTRATION,
+    weather::LEDGER,
+    structures::STRUCTURES,
+    structures::TIDE,
 ];
 
 /// Seed of where particles stand at the start.

@@ -18,7 +18,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    /// Reads the columns for place, depth, velocity and ground (numbered from 0) of the last `count` rows.
+    /// Reads the columns for place, depth, velocity and ground (numbered from 0).
     pub fn read(path: &Path, columns: [usize; 4]) -> Result<Self, ModelError> {
         let rows = numbers(path)?;
         let column = |k: usize| rows.iter().map(|row| row.get(k).copied().unwrap_or(f64::NAN)).collect();
