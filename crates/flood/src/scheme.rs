@@ -2,6 +2,7 @@
 
 use crate::arrangement::Arrangement;
 use crate::edges::{EdgeRule, EdgeRules};
+use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_terrain::Terrain;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub(crate) struct Surroundings {
     pub terrain: Arc<Terrain>,
     pub edges: EdgeRules,
+    pub obstacles: Obstacles,
     /// Time, s.
     pub time: f64,
 }
@@ -80,6 +82,9 @@ pub(crate) trait Scheme: Send {
 
     /// The particles in their cells, as last arranged.
     fn arrangement(&self) -> &Arrangement;
+
+    /// Force of the water on each obstacle at the last evaluation, over the density of water, m4/s2.
+    fn on_obstacles(&self) -> &[[f64; 2]];
 
     /// Bytes held.
     fn bytes(&self) -> usize;

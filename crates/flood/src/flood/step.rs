@@ -69,6 +69,7 @@ impl Flood {
         let step = self.state.time_step;
         self.carry_beyond();
         self.scheme.drift(&mut self.state.particles, step);
+        self.keep_out();
         let taken = self.regulate(step);
         self.gain(step);
         if self.weather() | taken {
@@ -91,11 +92,37 @@ impl Flood {
         let slowed = self.roughness.slow(&mut self.state.particles, gravity, step, &mut self.of_blocks);
         self.state.momentum.book(DENSITY * slowed);
         self.state.external = evaluation.external;
+        self.push_obstacles(step);
         self.state.time_step = self.limited(evaluation.time_step);
         self.state.steps += 1;
         self.state.particle_steps += self.state.particles.len() as u64;
         self.look();
         self.check(step)
+    }
+
+    /// Puts back what has come into obstacles.
+    fn keep_out(&mut self) {
+        if self.surroundings.obstacles.any() {
+            let State { particles, impulses, momentum, .. } = &mut self.state;
+            let sum = |impulses: &[[f64; 2]]| impulses.iter().flatten().sum::<f64>();
+            let before = sum(impulses);
+            self.surroundings.obstacles.keep_out(particles, self.spacing, impulses);
+            momentum.book(-DENSITY * (sum(impulses) - before));
+        }
+    }
+
+    /// Sums the forces on obstacles over a step.
+    fn push_obstacles(&mut self, step: f64) {
+        let now = self.scheme.on_obstacles();
+        let State { on_obstacles, impulses, .. } = &mut self.state;
+        for ((impulse, before), now) in impulses.iter_mut().zip(on_obstacles.iter_mut()).zip(now) {
+            let weights = match self.settings.scheme {
+                SchemeName::Balanced => [0.5, 0.5],
+                SchemeName::Paper => [0.0, 1.0],
+            };
+            (0..2).for_each(|k| impulse[k] += step * (weights[0] * before[k] + weights[1] * now[k]));
+            *before = *now;
+        }
     }
 
     /// Looks at the maps when it is time to.
@@ -110,6 +137,7 @@ impl Flood {
             particles,
             arrangement: self.scheme.arrangement(),
             terrain: &self.surroundings.terrain,
+            obstacles: &self.surroundings.obstacles,
             since: 0.0,
             smoothing,
         };

@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 mod channel;
 mod dam_break;
+mod isolated_building;
 mod lake;
 mod malpasset;
 mod thacker;
@@ -28,6 +29,7 @@ pub(crate) const CASES: &[Case] = &[
     channel::BUMP,
     channel::MACDONALD,
     malpasset::MALPASSET,
+    isolated_building::ISOLATED_BUILDING,
 ];
 
 /// Seed of where particles stand at the start.
