@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use corpuscle::record::FrameFormat;
+use corpuscle::terrain::MapBox;
 use std::path::PathBuf;
 
 /// Particle physics from a scene file: flood valleys, look at the result in QGIS and ParaView.
@@ -37,6 +38,67 @@ pub enum Command {
     Validate(ValidateOptions),
     /// Measure rates on this machine
     Bench(BenchOptions),
+    /// Terrain models: fetch one, tell what one holds, cut one out
+    #[command(subcommand)]
+    Terrain(TerrainCommand),
+}
+
+#[derive(Debug, Subcommand)]
+pub enum TerrainCommand {
+    /// Fetch terrain of the Copernicus GLO-30 model, 30 m cells, from its public server
+    Fetch(FetchOptions),
+    /// Tell what terrain files hold: size, cells, reference system, heights
+    Info(InfoOptions),
+    /// Cut a box out of one or several terrain files
+    Clip(ClipOptions),
+}
+
+#[derive(Debug, Args)]
+pub struct FetchOptions {
+    /// The box, longitudes and latitudes in degrees
+    #[arg(long, value_name = "W,S,E,N", value_parser = map_box, allow_hyphen_values = true)]
+    pub bbox: MapBox,
+    /// The GeoTIFF to write; one that exists is left alone
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Base address of another copy of the data [default: CORPUSCLE_GLO30, or the public bucket]
+    #[arg(long, value_name = "URL")]
+    pub from: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoOptions {
+    /// GeoTIFF or ESRI ASCII grids
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// Reference system of files that name none: EPSG:27700 or a PROJ string
+    #[arg(long, value_name = "SYSTEM", allow_hyphen_values = true)]
+    pub crs: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub struct ClipOptions {
+    /// GeoTIFF or ESRI ASCII grids; where they overlap the one named first counts
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    /// The box, in the coordinates of the first file
+    #[arg(long, value_name = "W,S,E,N", value_parser = map_box, allow_hyphen_values = true)]
+    pub bbox: MapBox,
+    /// The GeoTIFF to write; one that exists is left alone
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Reference system of files that name none: EPSG:27700 or a PROJ string
+    #[arg(long, value_name = "SYSTEM", allow_hyphen_values = true)]
+    pub crs: Option<String>,
+}
+
+fn map_box(text: &str) -> Result<MapBox, String> {
+    let sides: Result<Vec<f64>, _> = text.split(',').map(|side| side.trim().parse()).collect();
+    let sides: [f64; 4] = sides
+        .ok()
+        .and_then(|sides| sides.try_into().ok())
+        .ok_or("must be four numbers, west,south,east,north, as in -91.56,41.64,-91.52,41.68")?;
+    MapBox::new(sides)
 }
 
 #[derive(Debug, Args)]

@@ -1,9 +1,11 @@
 //! `corpuscle check`.
 
 use crate::args::CheckOptions;
+use crate::interrupt::stop_on_interrupt;
 use crate::output::{duration, number, print, print_json};
 use crate::refusal::in_words;
 use crate::scene_argument;
+use crate::terrain::fetch_for;
 use corpuscle::Simulation;
 use corpuscle::model::Model;
 use corpuscle::terrain::Terrain;
@@ -108,6 +110,7 @@ fn fault(error: &anyhow::Error) -> Value {
 
 fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
+    fetch_for(&named.scene, &stop_on_interrupt()?)?;
     let mut simulation = Simulation::open(named.scene, &named.folder)?;
     let particles_at_start = simulation.model().particles();
     let particles_to_come = corpuscle::particles_to_come(simulation.scene(), &named.folder)? as usize;

@@ -5,6 +5,7 @@
 mod args;
 mod bench;
 mod check;
+mod interrupt;
 mod output;
 mod progress;
 mod refusal;
@@ -13,6 +14,7 @@ mod scene_argument;
 mod scenes;
 mod select;
 mod suggestion;
+mod terrain;
 mod validate;
 
 use anyhow::Context;
@@ -41,5 +43,6 @@ fn dispatch(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Command::Check(options) => check::check(options, arguments.json),
         Command::Validate(options) => validate::validate(options, arguments.json),
         Command::Bench(options) => bench::bench(options, arguments.json),
+        Command::Terrain(command) => terrain::terrain(command, arguments.json),
     }
 }

@@ -1,17 +1,19 @@
 //! `corpuscle run`.
 
 use crate::args::RunOptions;
+use crate::interrupt::stop_on_interrupt;
 use crate::output::{duration, number, print_json, rate};
 use crate::progress::Bar;
 use crate::refusal::check_backend;
 use crate::scene_argument;
-use anyhow::{Context, anyhow};
+use crate::terrain::fetch_for;
+use anyhow::anyhow;
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
 use corpuscle::{Recorder, Simulation};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Runs a scene, or goes on with an interrupted run.
 pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
@@ -19,7 +21,7 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let stop = stop_on_interrupt()?;
     let (mut simulation, mut recorder) = match &options.resume {
         Some(folder) => Recorder::resume(folder)?,
-        None => start(options)?,
+        None => start(options, &stop)?,
     };
     for warning in simulation.warnings() {
         eprintln!("warning: {warning}");
@@ -36,8 +38,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     Ok(if summary.status == Status::Done { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn start(options: &RunOptions) -> anyhow::Result<(Simulation, Recorder)> {
+fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simulation, Recorder)> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
+    fetch_for(&named.scene, stop)?;
     let simulation = Simulation::open(named.scene, &named.folder)?;
     let folder = match &options.output {
         Some(folder) => folder.clone(),
@@ -58,19 +61,6 @@ fn came_to_grief(error: &corpuscle::Error, simulation: &Simulation, recorder: &R
         }
         error => anyhow!("{ended}; what was written up to there stays readable in {folder}: {error}"),
     }
-}
-
-/// Becomes true on Ctrl-C, and the run ends in order. A second one ends it at once.
-fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let handler_stop = stop.clone();
-    ctrlc::set_handler(move || {
-        if handler_stop.swap(true, Ordering::Relaxed) {
-            std::process::exit(1);
-        }
-    })
-    .context("cannot watch for Ctrl-C")?;
-    Ok(stop)
 }
 
 /// What was done and how fast, in words.

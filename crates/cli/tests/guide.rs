@@ -38,9 +38,12 @@ fn anchor(heading: &str) -> String {
 #[test]
 fn every_option_and_command_is_told() {
     let told = page("command-line.md");
-    for command in ["run", "check", "scenes", "validate", "bench"] {
+    let plain = ["run", "check", "scenes", "validate", "bench"].map(|command| vec![command]);
+    let terrain = ["fetch", "info", "clip"].map(|command| vec!["terrain", command]);
+    for words in plain.into_iter().chain(terrain) {
+        let command = words.join(" ");
         assert!(told.contains(&format!("**{command}**")), "{command}");
-        let help = corpuscle(&[command, "--help"]);
+        let help = corpuscle(&[&words[..], &["--help"]].concat());
         let options: Vec<_> = help.split_whitespace().filter(|word| word.starts_with("--")).collect();
         assert!(options.len() > 2, "{help}");
         for option in options {

@@ -14,6 +14,10 @@ pub enum Error {
     /// The ground.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
+    /// Terrain from a server.
+    #[cfg(feature = "fetch")]
+    #[error(transparent)]
+    Fetch(#[from] corpuscle_fetch::FetchError),
     /// The computation.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -27,6 +31,8 @@ impl Error {
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Scene(_) | Self::Terrain(_) => true,
+            #[cfg(feature = "fetch")]
+            Self::Fetch(error) => error.is_refusal(),
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
             Self::Record(error) => !matches!(
                 error,

@@ -16,6 +16,7 @@
 //! ```
 
 mod error;
+mod ground;
 mod open;
 mod progress;
 mod recorder;
@@ -23,12 +24,16 @@ mod schedule;
 mod simulation;
 mod sink;
 
+#[cfg(feature = "fetch")]
+pub use corpuscle_fetch as fetch;
 pub use corpuscle_model as model;
 pub use corpuscle_record as record;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
 pub use error::Error;
+#[cfg(feature = "fetch")]
+pub use ground::fetch_terrain;
 pub use open::particles_to_come;
 pub use progress::Progress;
 pub use recorder::Recorder;

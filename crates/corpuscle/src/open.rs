@@ -1,5 +1,6 @@
 //! From a scene to a model.
 
+use crate::ground::ground;
 use crate::{Error, Simulation};
 use corpuscle_flood::Flood;
 use corpuscle_model::ModelError;
@@ -20,7 +21,7 @@ impl Simulation {
         scene.resolve_defaults();
         match &mut scene.model {
             ModelScene::Flood(written) => {
-                let terrain = Arc::new(Terrain::open(&written.terrain, scene.seed, folder)?);
+                let terrain = Arc::new(ground(&written.terrain, scene.seed, folder)?);
                 check_observed_extent(&written.flood, &terrain)?;
                 let flood = Flood::new(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();

@@ -16,10 +16,18 @@ fn smaller(name: &str) -> Vec<(String, String)> {
     changes.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
 }
 
+/// False for a scene whose terrain comes over the network: `cli/tests/terrain.rs` runs those, from a stand-in.
+fn is_at_hand(scene: &Scene) -> bool {
+    !matches!(scene.flood(), Some(FloodScene { terrain: Terrain::Fetch(_), .. }))
+}
+
 #[test]
 fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
     for builtin in BUILTIN {
         let scene = Scene::parse(builtin.text, builtin.name, &smaller(builtin.name)).unwrap();
+        if !is_at_hand(&scene) {
+            continue;
+        }
         let simulation = Simulation::open(scene, Path::new("")).unwrap();
         let written = simulation.scene().to_toml().unwrap();
         let again = Simulation::open(Scene::parse(&written, "scene.toml", &[]).unwrap(), Path::new("/")).unwrap();

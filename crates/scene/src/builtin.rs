@@ -21,6 +21,8 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/rough-terrain",
     "flood/dam-break",
     "flood/lake-at-rest",
+    "flood/iowa-river",
+    "flood/chishui",
     "gas/maxwell",
     "gas/paper-2000",
     "gas/piston",

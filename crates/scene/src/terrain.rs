@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// The `[terrain]` table: exactly one of `[terrain.file]`, `[terrain.tiles]`, `[terrain.valley]`,
-/// `[terrain.rough-hills]`, `[terrain.plane]`, `[terrain.bump]`, `[terrain.bowl]`.
+/// The `[terrain]` table: exactly one of `[terrain.file]`, `[terrain.tiles]`, `[terrain.fetch]`,
+/// `[terrain.valley]`, `[terrain.rough-hills]`, `[terrain.plane]`, `[terrain.bump]`, `[terrain.bowl]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Terrain {
@@ -12,6 +12,8 @@ pub enum Terrain {
     File(TerrainFile),
     /// Several raster files as one.
     Tiles(TerrainTiles),
+    /// Copernicus GLO-30, fetched at first use.
+    Fetch(TerrainFetch),
     /// A generated meandering valley.
     Valley(Valley),
     /// Generated random rough hills.
@@ -49,6 +51,17 @@ pub struct TerrainTiles {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crs: Option<String>,
     /// What cells without data, and gaps between the files, are.
+    #[serde(default)]
+    pub no_data: NoData,
+}
+
+/// A box of the Copernicus digital elevation model GLO-30, fetched from the public server at first use.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TerrainFetch {
+    /// The box `[west, south, east, north]`, longitudes and latitudes in degrees.
+    pub bbox: [f64; 4],
+    /// What cells without data are.
     #[serde(default)]
     pub no_data: NoData,
 }

@@ -49,7 +49,7 @@ impl Written {
 }
 
 const GROUND: &str = "give the ground, as in [terrain.file] with path = \"dem.tif\", or one of [terrain.tiles], \
-                      [terrain.valley], [terrain.rough-hills], [terrain.plane], [terrain.bump], [terrain.bowl]";
+                      [terrain.fetch], [terrain.valley], [terrain.rough-hills], [terrain.plane], [terrain.bump], [terrain.bowl]";
 const WATER: &str = "give a table [flood] with spacing_m and the water of the scene";
 const NO_MODEL: &str =
     "the scene has no model: give a table [flood] and the ground, [terrain], or a table [gas], or a table [dew]";

@@ -58,10 +58,11 @@ fn keys_of_value(name: &str, value: &Value) -> BTreeMap<Key, Value> {
     keys
 }
 
-fn all_terrains() -> [Terrain; 7] {
+fn all_terrains() -> [Terrain; 8] {
     [
         Terrain::File(TerrainFile { path: "a".into(), crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
         Terrain::Tiles(TerrainTiles { paths: vec!["a".into()], crs: Some("EPSG:27700".into()), no_data: NoData::Fill }),
+        Terrain::Fetch(TerrainFetch { bbox: [0.0; 4], no_data: NoData::Fill }),
         Terrain::Valley(Valley::default()),
         Terrain::RoughHills(RoughHills::default()),
         Terrain::Plane(Plane::default()),
@@ -322,7 +323,7 @@ fn the_guide_tells_every_key_and_no_other() {
 fn the_guide_tells_the_defaults() {
     let told = told();
     let mut compared = 0;
-    let files = ["file = { path = \"a\" }", "tiles = { paths = [\"a\"] }"];
+    let files = ["file = { path = \"a\" }", "tiles = { paths = [\"a\"] }", "fetch = { bbox = [0, 0, 1, 1] }"];
     for kind in files.into_iter().chain(["valley = {}", "rough-hills = {}", "plane = {}", "bump = {}", "bowl = {}"]) {
         let text = format!("run.until_s = 1\nflood = {{ water = [{{ level_m = 1 }}] }}\nterrain.{kind}");
         let scene = Scene::parse(&text, "smallest", &[]).unwrap();

@@ -81,6 +81,20 @@ fn the_paths_of_tiles_become_absolute() {
 }
 
 #[test]
+fn a_box_to_fetch_is_checked() {
+    let scene = |bbox: &str| {
+        let text = format!("run.until_s = 1\nterrain.fetch.bbox = {bbox}\nflood.water = [{{ level_m = 1 }}]");
+        Scene::parse(&text, "test.toml", &[])
+    };
+    let sound = scene("[-91.56, 41.64, -91.52, 41.68]").unwrap();
+    assert_eq!(parse(&sound.to_toml().unwrap()), sound);
+    for wrong in ["[41.64, -91.56, 41.68, -91.52]", "[1, 2, 0, 3]", "[0, 0, 200, 1]", "[0, 0, nan, 1]", "[0, 0, 1]"] {
+        let text = scene(wrong).unwrap_err().to_string();
+        assert!(text.contains("terrain.fetch.bbox"), "{wrong}: {text}");
+    }
+}
+
+#[test]
 fn overrides_change_numbers_words_rows_and_kinds() {
     let set = |overrides: &[(&str, &str)]| {
         let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();

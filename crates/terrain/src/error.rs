@@ -68,6 +68,12 @@ pub enum TerrainError {
     /// A generated terrain's numbers make no ground.
     #[error("the terrain cannot be made: {0}")]
     Shape(String),
+    /// The scene wants terrain from a server, which is to be fetched first.
+    #[error(
+        "the terrain of [terrain.fetch] comes over a network, which this program was built without; fetch it elsewhere \
+         with `corpuscle terrain fetch`, and name the file in [terrain.file]"
+    )]
+    NotFetched,
     /// A raster cannot be written.
     #[error(
         "the raster {path} cannot be written: {what}; check the folder, its permissions and the space left on the disk"

@@ -76,7 +76,11 @@ fn without_repeats(warnings: Vec<(&Path, String)>) -> Vec<String> {
 }
 
 /// Settles the reference system from what the file and the scene say; gives what a user should know.
-fn choose_system(place: &mut Georeference, crs: Option<&str>, path: &Path) -> Result<Vec<String>, TerrainError> {
+pub(crate) fn choose_system(
+    place: &mut Georeference,
+    crs: Option<&str>,
+    path: &Path,
+) -> Result<Vec<String>, TerrainError> {
     let named = crs.map(ReferenceSystem::parse).transpose()?;
     let file = path.display();
     let mut warnings = Vec::new();

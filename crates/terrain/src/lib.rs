@@ -15,6 +15,7 @@ mod ground;
 mod holes;
 mod mosaic;
 mod raster;
+mod summary;
 mod surface;
 mod system;
 mod terrain;
@@ -29,5 +30,6 @@ pub use mosaic::merge;
 pub use raster::{
     MapBox, Raster, RasterField, Survey, Window, read_raster, read_raster_part, survey, write_geotiff, write_raster,
 };
+pub use summary::{Summary, summarize};
 pub use system::ReferenceSystem;
 pub use terrain::Terrain;

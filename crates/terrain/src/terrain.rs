@@ -82,7 +82,8 @@ impl Terrain {
     /// The ground that a scene asks for. `seed` makes generated ground, `folder` is what a relative path refers to.
     ///
     /// # Errors
-    /// A text that says what is wrong with the file or with the numbers of a generated terrain.
+    /// A text that says what is wrong with the file or with the numbers of a generated terrain;
+    /// [`TerrainError::NotFetched`] for one that comes over a network, of which this crate knows nothing.
     pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
         match scene {
             Scene::File(scene) => {
@@ -95,6 +96,7 @@ impl Terrain {
                 let raster = read_rasters(&paths, scene.crs.as_deref(), None)?;
                 Self::from_raster(raster, &paths[0], scene.no_data)
             }
+            Scene::Fetch(_) => Err(TerrainError::NotFetched),
             Scene::Valley(scene) => generated::valley(scene, seed),
             Scene::RoughHills(scene) => generated::rough_hills(scene, seed),
             Scene::Plane(scene) => generated::plane(scene),

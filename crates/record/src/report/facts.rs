@@ -126,6 +126,7 @@ fn terrain_words(terrain: &Terrain) -> String {
             [first, others @ ..] => format!("{} and {} more files", name(first), others.len()),
             [] => "no file".into(),
         },
+        Terrain::Fetch(_) => "Copernicus GLO-30".into(),
         Terrain::Valley(_) => "generated valley".into(),
         Terrain::RoughHills(_) => "generated rough hills".into(),
         Terrain::Plane(_) => "plane".into(),

@@ -16,12 +16,22 @@ impl Check {
                 let named = !tiles.paths.is_empty() && tiles.paths.iter().all(|path| !path.as_os_str().is_empty());
                 self.require("terrain.tiles.paths", named, || "must name GeoTIFF or ESRI ASCII files".into())
             }
+            Terrain::Fetch(fetch) => self.fetched_box(fetch.bbox),
             Terrain::Valley(valley) => self.valley(valley),
             Terrain::RoughHills(hills) => self.rough_hills(hills),
             Terrain::Plane(plane) => self.extent("terrain.plane.extent", &plane.extent),
             Terrain::Bump(bump) => self.bump(bump),
             Terrain::Bowl(bowl) => self.bowl(bowl),
         }
+    }
+
+    fn fetched_box(&self, [west, south, east, north]: [f64; 4]) -> Checked {
+        let on_earth = -180.0 <= west && east <= 180.0 && -90.0 <= south && north <= 90.0;
+        self.require("terrain.fetch.bbox", on_earth && west < east && south < north, || {
+            "must be [west, south, east, north] in degrees of longitude and latitude, west less than east and south less \
+             than north"
+                .into()
+        })
     }
 
     fn extent(&self, key: &str, extent: &Extent) -> Checked {

@@ -1,0 +1,38 @@
+//! The ground of a flood.
+
+use crate::Error;
+use corpuscle_scene::Terrain as Scene;
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+
+/// The ground that a scene asks for; that of `[terrain.fetch]` from the cache, or over the network at first use.
+pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain, Error> {
+    #[cfg(feature = "fetch")]
+    if let Scene::Fetch(scene) = scene {
+        let fetched = fetched(scene, &corpuscle_fetch::Watch::none())?;
+        return Ok(Terrain::from_raster(fetched.raster, Path::new("Copernicus GLO-30"), scene.no_data)?);
+    }
+    Ok(Terrain::open(scene, seed, folder)?)
+}
+
+/// Fetches the terrain of a scene that has `[terrain.fetch]` into the cache, so that opening it needs no network; gives
+/// the bytes that came over the network. Nothing happens for other scenes.
+///
+/// # Errors
+/// [`Error::Fetch`], for which see there.
+#[cfg(feature = "fetch")]
+pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::Watch) -> Result<u64, Error> {
+    match scene.flood().map(|scene| &scene.terrain) {
+        Some(Scene::Fetch(scene)) => Ok(fetched(scene, watch)?.bytes),
+        _ => Ok(0),
+    }
+}
+
+#[cfg(feature = "fetch")]
+fn fetched(
+    scene: &corpuscle_scene::TerrainFetch,
+    watch: &corpuscle_fetch::Watch,
+) -> Result<corpuscle_fetch::Fetched, Error> {
+    let part = corpuscle_terrain::MapBox::new(scene.bbox).map_err(corpuscle_fetch::FetchError::Box)?;
+    Ok(corpuscle_fetch::fetch(&corpuscle_fetch::Source::from_environment()?, &part, watch)?)
+}

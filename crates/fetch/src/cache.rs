@@ -1,0 +1,85 @@
+//! What has come over the network, kept in files with checksums.
+
+use crate::FetchError;
+use crate::seal::{self, Sealed};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What is known of a remote file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum About {
+    /// It is there.
+    File {
+        /// Bytes.
+        length: u64,
+        /// The server's mark of this version of it.
+        etag: Option<String>,
+    },
+    /// There is none: sea.
+    Sea,
+}
+
+/// The cache of one remote file, or of files beside each other.
+#[derive(Debug)]
+pub(crate) struct Cache {
+    folder: PathBuf,
+    /// Files that were found broken.
+    broken: AtomicUsize,
+}
+
+impl Cache {
+    /// The cache of the file `tile` below a base address.
+    pub fn of(cache: &Path, base: &str, tile: &str) -> Self {
+        Self { folder: cache.join("glo-30").join(seal::short_name(base)).join(tile), broken: AtomicUsize::new(0) }
+    }
+
+    pub fn about(&self) -> Option<About> {
+        serde_json::from_slice(&self.read("about")?).ok()
+    }
+
+    pub fn set_about(&self, about: &About) -> Result<(), FetchError> {
+        let path = self.folder.join("about");
+        let text = serde_json::to_vec(about).map_err(|error| FetchError::cache(&path, error))?;
+        seal::write(&path, &text)
+    }
+
+    /// A piece, if it is there as it was written and has the length that it must have.
+    pub fn piece(&self, number: u64, length: u64) -> Option<Vec<u8>> {
+        self.read(&piece_name(number)).filter(|piece| piece.len() as u64 == length)
+    }
+
+    pub fn set_piece(&self, number: u64, bytes: &[u8]) -> Result<(), FetchError> {
+        seal::write(&self.folder.join(piece_name(number)), bytes)
+    }
+
+    /// Forgets everything.
+    pub fn clear(&self) -> Result<(), FetchError> {
+        match fs::remove_dir_all(&self.folder) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FetchError::cache(&self.folder, error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Files that were found broken.
+    pub fn broken(&self) -> usize {
+        self.broken.load(Ordering::Relaxed)
+    }
+
+    fn read(&self, name: &str) -> Option<Vec<u8>> {
+        match seal::read(&self.folder.join(name)) {
+            Sealed::Whole(content) => Some(content),
+            Sealed::Broken => {
+                self.broken.fetch_add(1, Ordering::Relaxed);
+                None
+            }
+            Sealed::Absent => None,
+        }
+    }
+}
+
+fn piece_name(number: u64) -> String {
+    format!("{number:06}")
+}

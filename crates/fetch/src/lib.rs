@@ -1,0 +1,23 @@
+//! Terrain from public servers: the Copernicus digital elevation model GLO-30.
+//!
+//! Only the blocks of its files that a box needs are read, by HTTP range requests, and kept in a cache with their
+//! checksums: what was fetched once needs no network again. This is the only crate that knows a network.
+
+mod attribution;
+mod cache;
+mod client;
+mod error;
+mod fetch;
+mod glo30;
+mod piece;
+mod remote;
+mod seal;
+mod source;
+mod tile;
+mod watch;
+
+pub use attribution::ATTRIBUTION;
+pub use error::FetchError;
+pub use fetch::{Fetched, fetch};
+pub use source::{BASE, BASE_VARIABLE, CACHE_VARIABLE, Source};
+pub use watch::{Progress, Watch};
