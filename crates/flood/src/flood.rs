@@ -78,6 +78,8 @@ struct State {
     /// Force on each obstacle at the last evaluation, m4/s2, and its sum over time, m4/s.
     on_obstacles: Vec<[f64; 2]>,
     impulses: Vec<[f64; 2]>,
+    /// When water was first seen to stand higher than each obstacle, s.
+    overtopped: Vec<Option<f64>>,
 }
 
 impl Flood {

@@ -69,12 +69,10 @@ impl Balanced {
             let place = place as usize;
             let volume = columns[place].depth * columns[place].area;
             let force = &mut self.forces[place];
-            for axis in 0..2 {
-                force.acceleration[axis] -= push.all[axis] / volume;
-                force.external[axis] -= push.all[axis];
-                if slopes[place].outside == 0.0 {
-                    on_obstacles[obstacle][axis] += push.of_walls[axis];
-                }
+            (0..2).for_each(|axis| force.acceleration[axis] -= push.all[axis] / volume);
+            (0..2).for_each(|axis| force.external[axis] -= push.all[axis]);
+            if slopes[place].outside == 0.0 {
+                (0..2).for_each(|axis| on_obstacles[obstacle][axis] += push.of_walls[axis]);
             }
         }
     }
@@ -108,10 +106,8 @@ fn push(parameters: &Parameters, own: &Column, slopes: &Slopes, obstacles: &Obst
         let pressure = (0.5 * gravity * depth * depth + impact).max(0.0);
         let own_depth = (own.surface - middle).max(0.0);
         let ground_push = own_pressure - 0.5 * gravity * own_depth * own_depth;
-        for axis in 0..2 {
-            push.all[axis] += area[axis] * (pressure + ground_push);
-            push.of_walls[axis] += area[axis] * pressure;
-        }
+        (0..2).for_each(|axis| push.all[axis] += area[axis] * (pressure + ground_push));
+        (0..2).for_each(|axis| push.of_walls[axis] += area[axis] * pressure);
         if r < nearest {
             (nearest, push.obstacle) = (r, Some(site.obstacle));
         }

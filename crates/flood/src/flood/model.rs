@@ -9,8 +9,8 @@ use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Columns of an obstacle: the force on it, and its sum over time.
-fn obstacle_columns(name: &String) -> [GaugeColumn; 4] {
-    let column = |quantity, unit| GaugeColumn { gauge: name.clone(), quantity, unit };
+fn obstacle_columns(name: &str) -> [GaugeColumn; 4] {
+    let column = |quantity, unit| GaugeColumn { gauge: name.into(), quantity, unit };
     [
         column("force_east", "N"),
         column("force_north", "N"),
@@ -97,7 +97,7 @@ impl Model for Flood {
         let points = self.points.iter().flat_map(PointGauge::columns);
         let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
         let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
-        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(obstacle_columns));
+        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
         points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(weather).collect()
     }
 
@@ -130,7 +130,15 @@ impl Model for Flood {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        let names = self.surroundings.obstacles.names.iter().zip(&self.state.overtopped);
+        let told = |(name, time): (&String, &Option<f64>)| {
+            let time = (*time)?;
+            Some(format!(
+                "from t = {time:.0} s the water at the obstacle '{name}' stood higher than its height_m: it would have flowed over it, \
+                 and was held back"
+            ))
+        };
+        self.warnings.iter().cloned().chain(names.filter_map(told)).collect()
     }
 
     fn save(&self) -> Vec<u8> {

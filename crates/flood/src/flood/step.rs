@@ -142,6 +142,11 @@ impl Flood {
             smoothing,
         };
         maps.look(&water, *time);
+        if self.settings.obstacle.iter().any(|obstacle| obstacle.height_m.is_some()) {
+            let State { particles, overtopped, time, .. } = &mut self.state;
+            let note = |number: usize| overtopped[number] = overtopped[number].or(Some(*time));
+            self.surroundings.obstacles.each_overtopped(particles, note);
+        }
     }
 
     fn check(&self, step: f64) -> Result<(), ModelError> {

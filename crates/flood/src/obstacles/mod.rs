@@ -111,8 +111,23 @@ impl Obstacles {
         }
     }
 
-    /// The boundary particles.
-    pub fn sites(&self) -> &[Site] {
-        self.sites.all()
+    /// Gives the obstacles tops: their heights, m, above the ground below them; none where they are high enough.
+    pub fn set_tops(&mut self, heights: &[Option<f64>], ground: impl Fn(f64, f64) -> f64) {
+        for site in self.sites.all_mut() {
+            if let Some(height) = heights[site.obstacle] {
+                site.top = ground(site.x, site.y) + height;
+            }
+        }
+    }
+
+    /// Calls `found` with the number of each obstacle that water before it stands higher than.
+    pub fn each_overtopped(&self, particles: &[Particle], mut found: impl FnMut(usize)) {
+        for particle in particles {
+            self.each([particle.x, particle.y], particle.h, |site, _, _| {
+                if particle.surface() > site.top {
+                    found(site.obstacle);
+                }
+            });
+        }
     }
 }

@@ -40,7 +40,10 @@ pub(crate) fn open(
         }
     }
     let names = flood.obstacle.iter().map(|obstacle| obstacle.name.clone()).collect();
-    Ok(Obstacles::new(names, outlines, spacing, reach, h0))
+    let mut obstacles = Obstacles::new(names, outlines, spacing, reach, h0);
+    let heights: Vec<_> = flood.obstacle.iter().map(|obstacle| obstacle.height_m).collect();
+    obstacles.set_tops(&heights, |x, y| terrain.height(x, y));
+    Ok(obstacles)
 }
 
 /// The polygons of an obstacle, in model coordinates.

@@ -22,6 +22,8 @@ pub(crate) struct Site {
     pub normal: [f64; 2],
     /// The obstacle.
     pub obstacle: usize,
+    /// Height of its top, m.
+    pub top: f64,
 }
 
 /// The boundary particles, in cells.
@@ -77,8 +79,8 @@ impl Sites {
     }
 
     /// All of them.
-    pub fn all(&self) -> &[Site] {
-        &self.all
+    pub fn all_mut(&mut self) -> &mut [Site] {
+        &mut self.all
     }
 
     /// Calls `found` with each site nearer than `reach` to a place, its distance, and the way to it, m.
@@ -113,6 +115,7 @@ fn site(outlines: &Outlines, number: usize, corner: [f64; 2], pitch: f64) -> Opt
         volume: 0.0,
         normal: outlines.nearest_of(number, [x, y]).normal,
         obstacle: outline.obstacle,
+        top: f64::INFINITY,
     })
 }
 
@@ -133,9 +136,9 @@ mod tests {
     fn sites_cover_the_area_with_normals_outwards() {
         let outlines = block();
         let sites = Sites::new(&outlines, 0.25, 100.0, 1.0);
-        let area: f64 = sites.all().iter().map(|site| site.area).sum();
+        let area: f64 = sites.all.iter().map(|site| site.area).sum();
         assert!((area / 48.0 - 1.0).abs() < 1e-3, "{area} m2");
-        for site in sites.all() {
+        for site in &sites.all {
             let out = [site.x + 3.1 * site.normal[0], site.y + 3.1 * site.normal[1]];
             assert!(outlines.around(out).is_none(), "{site:?}");
             // Amid others, V_k is the area of a lattice's cell.
@@ -143,7 +146,7 @@ mod tests {
             assert!(nearest.distance > -1.0 || (site.volume / 0.0625 - 1.0).abs() < 0.01, "{site:?}");
         }
         let band = Sites::new(&outlines, 0.25, 1.0, 1.0);
-        let area: f64 = band.all().iter().map(|site| site.area).sum();
+        let area: f64 = band.all.iter().map(|site| site.area).sum();
         // 48 m2 less the 6 x 4 m2 that lie deeper than 1 m.
         assert!((area - 24.0).abs() < 1.0, "{area} m2");
     }

@@ -86,6 +86,8 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
             velocities.iter().filter_map(move |row| Some([at(row[0]?, 4 * gauge + 2 + axis), (*row.get(column)?)?]))
         };
         let both = root_mean_square(of(0)).hypot(root_mean_square(of(1)));
+        let measured = |axis: usize| root_mean_square(of(axis).map(|[_, measured]| [measured, 0.0]));
+        let fast = measured(0).hypot(measured(1));
         let name =
             ["velocity_rmse_G1", "velocity_rmse_G2", "velocity_rmse_G3", "velocity_rmse_G4", "velocity_rmse_G5"][gauge];
         out.push(Row::beside(
