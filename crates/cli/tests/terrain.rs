@@ -8,7 +8,9 @@ mod bucket;
 use bucket::{Bucket, Fault, tile_of};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// Runs the binary with the stand-in as its server, or with none.
@@ -31,8 +33,11 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// A valley that falls to the south, with a level channel along a meridian.
+/// A valley that falls to the south, with a level channel along a meridian; far from it plain ground, quickly packed.
 fn valley(longitude: f64, latitude: f64, channel: f64) -> f64 {
+    if (longitude - channel).abs() > 0.04 {
+        return 260.0;
+    }
     let aside = ((longitude - channel).abs() * 83_000.0 - 40.0).max(0.0);
     200.0 + 2000.0 * (latitude - latitude.floor()) + 60.0 * (1.0 - (-(aside / 400.0).powi(2)).exp())
 }
@@ -97,6 +102,30 @@ fn what_cannot_be_is_refused_and_nothing_written() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupted_fetch_writes_nothing_and_goes_on_later() {
+    let (bucket, folder) = (Bucket::with(&[[85, 6]]), TempDir::new().unwrap());
+    bucket.fail(Fault::Trickle, usize::MAX);
+    let fetch = ["terrain", "fetch", "--bbox", "6.40,85.50,6.50,85.52", "-o", "dem.tif"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_corpuscle"));
+    command.current_dir(folder.path()).args(fetch).stderr(Stdio::piped());
+    command.env("CORPUSCLE_GLO30", &bucket.base).env("CORPUSCLE_CACHE", bucket.cache.path());
+    let child = command.spawn().unwrap();
+    let start = Instant::now();
+    while bucket.requests().is_empty() {
+        assert!(start.elapsed() < Duration::from_secs(60), "nothing was asked for");
+        sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let ended = child.wait_with_output().unwrap();
+    assert!(ended.status.code() == Some(1) && told(&ended).contains("interrupted"), "{}", told(&ended));
+    assert!(start.elapsed() < Duration::from_secs(60) && fs::read_dir(folder.path()).unwrap().count() == 0);
+    bucket.fail(Fault::Trickle, 0);
+    let output = corpuscle(folder.path(), &bucket, &fetch);
+    assert!(output.status.success() && folder.path().join("dem.tif").exists(), "{}", told(&output));
+}
+
 /// A stand-in for the tile of a scene, whose channel runs along a meridian.
 fn stand_in(corner: [i32; 2], channel: f64) -> Bucket {
     let bucket = Bucket::empty();
@@ -125,7 +154,7 @@ fn the_scenes_on_fetched_terrain_run() {
         assert_eq!(offline.status.code(), Some(1));
         assert!(told(&offline).contains("check the network"), "{}", told(&offline));
         bucket.fail(Fault::Silent, 0);
-        let (out, summary) = run_scene(folder.path(), &bucket, name, "4");
+        let (out, summary) = run_scene(folder.path(), &bucket, name, "3");
         assert_eq!(summary["particles"], 12_000, "{name}");
         assert_eq!(summary["ledger"]["water_m3"]["relative_error"], 0.0);
         assert!(summary["warnings"].to_string().contains("WorldDEM-30"), "{summary}");
@@ -134,7 +163,7 @@ fn the_scenes_on_fetched_terrain_run() {
         bucket.fail(Fault::Status(503), usize::MAX);
         let scene = out.join("scene.toml").to_string_lossy().into_owned();
         let again = TempDir::new().unwrap();
-        let (second, _) = run_scene(again.path(), &bucket, &scene, "4");
+        let (second, _) = run_scene(again.path(), &bucket, &scene, "3");
         let gauges = |folder: &Path| fs::read(folder.join("gauges.csv")).unwrap();
         assert_eq!(gauges(&second), gauges(&out));
     }

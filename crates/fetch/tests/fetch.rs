@@ -2,9 +2,10 @@
 
 mod common;
 
-use common::{Bucket, COLUMNS, Fault, ROWS, ground, name};
+use common::{Bucket, COLUMNS, Fault, ROWS, ground, name, tile_of};
 use corpuscle_fetch::{ATTRIBUTION, FetchError, Fetched, Progress, Source, Watch, fetch};
 use corpuscle_terrain::MapBox;
+use proptest::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -69,6 +70,24 @@ fn a_box_across_four_tiles_is_seamless() {
     let fetched = get(&bucket.source(), sides).unwrap();
     assert_ground(&fetched, sides);
     assert_eq!(fetched.tiles, [name(86, 6), name(85, 6)]);
+}
+
+#[test]
+fn tiles_with_cells_of_different_width_join_without_a_seam() {
+    let bucket = Bucket::empty();
+    let (wide, narrow) = (tile_of(85, 6, COLUMNS, ground), tile_of(84, 6, 2 * COLUMNS, ground));
+    bucket.put_tiles([([85, 6], wide), ([84, 6], narrow)]);
+    let raster = get(&bucket.source(), [6.3, 84.99, 6.5, 85.01]).unwrap().raster;
+    assert!((raster.georeference.cell[0] * 720.0 - 1.0).abs() < 1e-9, "{:?}", raster.georeference.cell);
+    for row in 0..raster.rows {
+        // Between the centres of wide cells linear interpolation is off by less than 2 cm on this ground.
+        let near = if raster.georeference.centre(0, row)[1] > 85.0001 { 0.02 } else { 1e-3 };
+        for column in 0..raster.columns {
+            let [longitude, latitude] = raster.georeference.centre(column, row);
+            let error = raster.values[row * raster.columns + column] - ground(longitude, latitude);
+            assert!(error.abs() < near, "{column} {row}: {error}");
+        }
+    }
 }
 
 #[test]
@@ -271,6 +290,29 @@ fn what_was_stopped_goes_on_from_the_cache() {
     let all = Bucket::with(&[[85, 6], [86, 6]]);
     let at_once = fetch(&all.source(), &part, &Watch::none()).unwrap();
     assert_eq!(rest.bytes + came.load(Ordering::Relaxed), at_once.bytes);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Whatever the server has under the name of a tile: heights or an error, no panic.
+    #[test]
+    fn any_file_is_heights_or_an_error(
+        changes in prop::collection::vec((4usize..3000, any::<u8>()), 1..20), cut in 0.0..2.0f64
+    ) {
+        let bucket = Bucket::with(&[[85, 6]]);
+        let path = format!("{0}/{0}.tif", name(85, 6));
+        let mut bytes = bucket.file(&path);
+        for (at, byte) in changes {
+            bytes[at] = byte;
+        }
+        bytes.truncate((cut * bytes.len() as f64) as usize + 10);
+        bucket.put(&path, bytes, "1");
+        if let Err(error) = get(&bucket.source(), SMALL) {
+            let text = error.to_string();
+            prop_assert!(text.contains(&bucket.base) && !text.contains('\n'), "{}", text);
+        }
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! How many particles stand on a square metre.
 
+use crate::obstacles::Coverage;
 use corpuscle_sph::kernel::cubic_spline;
 use corpuscle_sph::{Lanes, LanesExt, Neighbours, PairSum, Simd, SimdBase};
 
@@ -63,6 +64,16 @@ impl Density {
         }
         let number = number.sum() + cubic_spline::value_of_one(0.0, h);
         Density { alike: number, number, slope_in_h: (r_slope.sum() - 2.0 * number) / h }
+    }
+
+    /// As it is where obstacles cover a part of the kernel: the water that is seen stands for what is not.
+    pub fn beside(self, covered: Coverage) -> Self {
+        let seen = 1.0 - covered.part;
+        Self {
+            alike: self.alike / seen,
+            number: self.number / seen,
+            slope_in_h: self.slope_in_h / seen + self.number * covered.slope_in_h / (seen * seen),
+        }
     }
 
     /// The smoothing length for which n = (eta / h)^2, by one Newton step from `h`, kept within a fifth of it.

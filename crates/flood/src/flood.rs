@@ -73,8 +73,13 @@ struct State {
     /// Next time step, s.
     time_step: f64,
     sizes: Sizes,
-    /// Force of ground and edges at the last evaluation, m4/s2.
+    /// Force of ground, edges and obstacles at the last evaluation, m4/s2.
     external: [f64; 2],
+    /// Force on each obstacle at the last evaluation, m4/s2, and its sum over time, m4/s.
+    on_obstacles: Vec<[f64; 2]>,
+    impulses: Vec<[f64; 2]>,
+    /// When water was first seen to stand higher than each obstacle, s.
+    overtopped: Vec<Option<f64>>,
 }
 
 impl Flood {
@@ -91,6 +96,7 @@ impl Flood {
             particles: &self.state.particles,
             arrangement: self.scheme.arrangement(),
             terrain: &self.surroundings.terrain,
+            obstacles: &self.surroundings.obstacles,
             since,
             smoothing: self.smoothing(),
         }

@@ -18,6 +18,7 @@ mod infiltration;
 mod inflow;
 mod limits;
 mod maps;
+mod obstacles;
 mod paper;
 mod particle;
 mod rain;

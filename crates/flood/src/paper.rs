@@ -9,6 +9,7 @@
 
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::edges::EdgeRule;
+use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use crate::scheme::{Evaluation, Scheme, Sizes, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
@@ -47,6 +48,10 @@ pub(crate) struct Paper {
     accelerations: Vec<[f64; 2]>,
     of_groups: Vec<[f64; 2]>,
     spare: Vec<Particle>,
+    /// Places of the particles near obstacles.
+    near_walls: Vec<u32>,
+    of_walls: Vec<([f64; 2], Option<usize>)>,
+    on_obstacles: Vec<[f64; 2]>,
 }
 
 impl Paper {
@@ -61,6 +66,38 @@ impl Paper {
             accelerations: Vec::new(),
             of_groups: Vec::new(),
             spare: Vec::new(),
+            near_walls: Vec::new(),
+            of_walls: Vec::new(),
+            on_obstacles: Vec::new(),
+        }
+    }
+
+    /// Adds the push of obstacles to that of the water.
+    fn add_walls(&mut self, particles: &[Particle], obstacles: &Obstacles) {
+        self.on_obstacles.clear();
+        self.on_obstacles.resize(obstacles.names.len(), [0.0; 2]);
+        if !obstacles.any() {
+            return;
+        }
+        let Self { parameters, arrangement, near_walls, of_walls, accelerations, on_obstacles, .. } = self;
+        let near = particles
+            .iter()
+            .zip(&arrangement.real)
+            .filter(|(particle, _)| obstacles.may_reach([particle.x, particle.y]));
+        near_walls.clear();
+        near_walls.extend(near.map(|(_, &place)| place));
+        let particle = |place: u32| &particles[arrangement.particle[place as usize] as usize];
+        let push = |&place: &u32| push_of_walls(parameters, obstacles, particle(place));
+        near_walls.par_iter().map(push).collect_into_vec(of_walls);
+        for (&place, &(push, obstacle)) in near_walls.iter().zip(&*of_walls) {
+            let Some(obstacle) = obstacle else { continue };
+            let particle = particle(place);
+            for axis in 0..2 {
+                accelerations[place as usize][axis] += push[axis];
+                if particle.outside.is_none() {
+                    on_obstacles[obstacle][axis] -= particle.volume * push[axis];
+                }
+            }
         }
     }
 
@@ -80,7 +117,8 @@ impl Paper {
         groups.for_each(|(particles, places)| {
             surroundings.find_ground(particles);
             for (particle, &place) in particles.iter_mut().zip(places) {
-                let density = rho0 * particle.volume * self.densities[place as usize];
+                let walls = covered(&surroundings.obstacles, particle);
+                let density = rho0 * (particle.volume * self.densities[place as usize] + walls);
                 particle.depth = density / rho0;
                 particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
             }
@@ -150,6 +188,32 @@ impl Paper {
         groups.map(of_group).collect_into_vec(of_groups);
         of_groups.iter().fold([0.0; 2], |all, group| [0, 1].map(|k| all[k] + group[k]))
     }
+}
+
+/// What boundary particles add to the density of a particle, over rho0: sum_k V_k W_ik (Akinci et al. 2012, equation 6).
+fn covered(obstacles: &Obstacles, particle: &Particle) -> f64 {
+    let mut sum = 0.0;
+    obstacles.each([particle.x, particle.y], particle.h, |site, r, _| sum += site.volume * poly6(r * r, particle.h));
+    sum
+}
+
+/// The push of boundary particles, m/s2, and the number of the nearest one's obstacle:
+/// a = -sum_k rho0 V_k (p_i / rho_i^2) grad W_ik (Akinci et al. 2012, equation 9).
+fn push_of_walls(parameters: &Parameters, obstacles: &Obstacles, particle: &Particle) -> ([f64; 2], Option<usize>) {
+    let Parameters { density_kg_per_m3: rho0, gas_constant, clip_negative_pressure, .. } = *parameters;
+    let density = rho0 * particle.depth;
+    let pressure = gas_constant * (density - rho0);
+    let pressure = if clip_negative_pressure { pressure.max(0.0) } else { pressure };
+    let strength = rho0 * pressure / (density * density);
+    let (mut push, mut nearest, mut obstacle) = ([0.0; 2], f64::INFINITY, None);
+    obstacles.each([particle.x, particle.y], particle.h, |site, r, way| {
+        let slope = site.volume * spiky_slope(r, particle.h) / r.max(1e-9 * particle.h);
+        (0..2).for_each(|axis| push[axis] -= strength * slope * way[axis]);
+        if r < nearest {
+            (nearest, obstacle) = (r, Some(site.obstacle));
+        }
+    });
+    (push, obstacle)
 }
 
 /// Particles whose control forces are found together: each looks at four places of the ground.
@@ -265,11 +329,8 @@ fn pair_forces<S: Simd>(
 }
 
 impl Scheme for Paper {
-    fn drift(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.x += step * particle.u;
-            particle.y += step * particle.v;
-        });
+    fn before(&self) -> f64 {
+        0.0
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
@@ -285,19 +346,17 @@ impl Scheme for Paper {
             let (viscosity, first) = (self.parameters.viscosity, block * BLOCK);
             dispatch!(Level::new(), simd => pair_forces(simd, viscosity, &self.arrangement, &self.parcels, first, out));
         });
+        self.add_walls(particles, &surroundings.obstacles);
         let external = self.take_over(particles, surroundings, step);
         Evaluation { time_step: self.parameters.time_step_s, external }
     }
 
-    fn kick(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += step * particle.ax;
-            particle.v += step * particle.ay;
-        });
-    }
-
     fn arrangement(&self) -> &Arrangement {
         &self.arrangement
+    }
+
+    fn on_obstacles(&self) -> &[[f64; 2]] {
+        &self.on_obstacles
     }
 
     fn bytes(&self) -> usize {

@@ -1,6 +1,7 @@
 //! The water at any place, from the particles round it.
 
 use crate::arrangement::{Arrangement, IMAGE};
+use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_sph::kernel::cubic_spline;
 use corpuscle_terrain::Terrain;
@@ -32,6 +33,7 @@ pub(crate) struct Sampler<'a> {
     pub particles: &'a [Particle],
     pub arrangement: &'a Arrangement,
     pub terrain: &'a Terrain,
+    pub obstacles: &'a Obstacles,
     /// Time since the particles were arranged, s; they are taken where they are by then.
     pub since: f64,
     /// Support of the kernel used here, over the smoothing length (which the scheme's own kernel reaches otherwise).
@@ -86,10 +88,19 @@ impl Sampler<'_> {
         [x - since * u, y - since * v]
     }
 
+    /// The share that obstacles cover, seen as far as the particles here see.
+    fn covered_by_obstacles(&self, x: f64, y: f64) -> f64 {
+        let mean_h = |(sum, count): (f64, f64)| sum / f64::max(count, 1.0);
+        let near = self.near(x, y, 1.1 * self.arrangement.cells.reach_at(x, y));
+        let h =
+            self.smoothing * mean_h(near.fold((0.0, 0.0), |(sum, count), particle| (sum + particle.h, count + 1.0)));
+        if h > 0.0 { self.obstacles.coverage([x, y], h).part } else { 0.0 }
+    }
+
     /// The water at (x, y): a Shepard mean over the particles (weights V W), of the surface's height where the surface
     /// is the smoother field, as in a lake, and of the depth where that is, as in a sheet running down a slope.
     pub fn at(&self, x: f64, y: f64) -> Sample {
-        if !self.may_be_wet(x, y) {
+        if !self.may_be_wet(x, y) || self.obstacles.hold([x, y]) {
             return Sample::default();
         }
         let [from_x, from_y] = self.origin(x, y);
@@ -119,7 +130,10 @@ impl Sampler<'_> {
             u += weight * particle.u;
             v += weight * particle.v;
         });
-        let covers = |total: f64| total >= COVERED || total > 0.0 && total + self.covered_by_images(x, y) >= COVERED;
+        let covers = |total: f64| {
+            total >= COVERED
+                || total > 0.0 && total + self.covered_by_images(x, y) + self.covered_by_obstacles(x, y) >= COVERED
+        };
         if !covers(total) {
             return Sample::default();
         }

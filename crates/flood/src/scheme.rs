@@ -2,6 +2,7 @@
 
 use crate::arrangement::Arrangement;
 use crate::edges::{EdgeRule, EdgeRules};
+use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_terrain::Terrain;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub(crate) struct Surroundings {
     pub terrain: Arc<Terrain>,
     pub edges: EdgeRules,
+    pub obstacles: Obstacles,
     /// Time, s.
     pub time: f64,
 }
@@ -64,10 +66,11 @@ pub(crate) struct Evaluation {
     pub external: [f64; 2],
 }
 
-/// A formulation. A step is: `drift`, then water comes and goes, then `arrange`, `evaluate` and `kick`.
+/// A formulation. In a step particles are accelerated as far as `before` says, move, water comes and goes; then `arrange`,
+/// `evaluate`, and they are accelerated the rest.
 pub(crate) trait Scheme: Send {
-    /// Moves the particles on by `step` s.
-    fn drift(&self, particles: &mut [Particle], step: f64);
+    /// The part of a step's acceleration that comes before the particles move.
+    fn before(&self) -> f64;
 
     /// Sorts the particles into cells.
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes);
@@ -75,11 +78,11 @@ pub(crate) trait Scheme: Send {
     /// Finds depth, next smoothing length and acceleration of the particles as arranged, `step` s after the last time.
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation;
 
-    /// Brings the velocities to the end of a step of `step` s.
-    fn kick(&self, particles: &mut [Particle], step: f64);
-
     /// The particles in their cells, as last arranged.
     fn arrangement(&self) -> &Arrangement;
+
+    /// Force of the water on each obstacle at the last evaluation, over the density of water, m4/s2.
+    fn on_obstacles(&self) -> &[[f64; 2]];
 
     /// Bytes held.
     fn bytes(&self) -> usize;

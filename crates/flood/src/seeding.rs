@@ -6,6 +6,7 @@
 use crate::arrangement::Arrangement;
 use crate::density::{Densities, Density};
 use crate::edges::EdgeRules;
+use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_sph::kernel::cubic_spline;
 use corpuscle_sph::{Lanes, LanesExt, Level, Near, Neighbours, Simd, SimdBase, dispatch};
@@ -45,7 +46,7 @@ pub struct Body<'a> {
 
 impl Body<'_> {
     /// Places particles. Each gets the volume that makes its depth exact where neighbours surround it.
-    pub fn fill(&self, edges: &EdgeRules, seed: u64) -> Vec<Particle> {
+    pub fn fill(&self, edges: &EdgeRules, obstacles: &Obstacles, seed: u64) -> Vec<Particle> {
         let mut particles = self.scatter(edges, seed);
         let mut arrangement = Arrangement::default();
         let mut spare = Vec::new();
@@ -53,7 +54,9 @@ impl Body<'_> {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
             self.relax(&arrangement, &mut particles, edges);
         }
-        self.settle_smoothing(&mut arrangement, &mut particles, &mut spare, edges);
+        // Obstacles are cut out of the glass, so that water stands before their walls as close as elsewhere.
+        particles.retain(|particle| !obstacles.hold([particle.x, particle.y]));
+        self.settle_smoothing(&mut arrangement, &mut particles, &mut spare, edges, obstacles);
         particles.retain(|particle| (self.inside)(particle.x, particle.y));
         particles
     }
@@ -161,6 +164,7 @@ impl Body<'_> {
         particles: &mut Vec<Particle>,
         spare: &mut Vec<Particle>,
         edges: &EdgeRules,
+        obstacles: &Obstacles,
     ) {
         let mut densities = Vec::new();
         for _ in 0..12 {
@@ -169,7 +173,8 @@ impl Body<'_> {
             densities.resize(x.len(), Density::default());
             lists.search(Near::Either, cells, x, y, reach_squared, &mut densities, &Densities { reach_squared });
             for (particle, &place) in particles.iter_mut().zip(real.iter()) {
-                let density = densities[place as usize];
+                let covered = obstacles.coverage([particle.x, particle.y], particle.h);
+                let density = densities[place as usize].beside(covered);
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);
                 particle.next_h = particle.h;
                 particle.depth = (self.depth)(particle.x, particle.y);

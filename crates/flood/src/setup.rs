@@ -134,6 +134,19 @@ pub(crate) fn mean_depth(bodies: &[InitialWater], terrain: &Terrain) -> Option<f
     (places > 0).then(|| sum / f64::from(places))
 }
 
+/// How close particles of `volume` m3 stand where the water at the start is deepest, at most `spacing`, m.
+pub(crate) fn closest(bodies: &[InitialWater], terrain: &Terrain, spacing: f64, volume: f64) -> f64 {
+    let grid = terrain.map_grid();
+    let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |column| (column, row)));
+    let depth = |(column, row)| {
+        let [x, y] = grid.centre(column, row);
+        let depths = bodies.iter().filter(|body| (body.inside)(x, y)).map(|body| (body.depth)(x, y));
+        depths.fold(0.0, f64::max)
+    };
+    let deepest = places.map(depth).fold(0.0, f64::max);
+    if deepest > 0.0 { (volume / deepest).sqrt().min(spacing) } else { spacing }
+}
+
 /// Columns and rows of particles in each layer of a block.
 pub(crate) fn lattice(block: &Block, terrain: &Terrain, spacing: f64) -> [f64; 2] {
     let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));

@@ -1,9 +1,11 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
+mod obstacle;
 mod rain;
 mod structures;
 
+pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
@@ -63,6 +65,8 @@ pub struct Flood {
     pub stage: Vec<Stage>,
     /// Culverts, weirs and other ways from one point to another.
     pub link: Vec<Link>,
+    /// Buildings and walls.
+    pub obstacle: Vec<Obstacle>,
     /// Points where depth, level and velocity are recorded.
     pub gauge: Vec<Gauge>,
     /// Lines through which the discharge is recorded.
@@ -95,6 +99,7 @@ impl Default for Flood {
             outflow: Vec::new(),
             stage: Vec::new(),
             link: Vec::new(),
+            obstacle: Vec::new(),
             gauge: Vec::new(),
             section: Vec::new(),
             observed_extent: None,

@@ -34,6 +34,15 @@ pub mod cubic_spline {
         (outer * outer - inner * inner * 4.0) * (inverse_h * inverse_h * inverse_h * (3.0 * SIGMA))
     }
 
+    /// -dW/dr of one pair, 1/m3.
+    #[inline(always)]
+    pub fn slope_of_one(r: f64, h: f64) -> f64 {
+        let q = r / h;
+        let outer = (2.0 - q).max(0.0);
+        let inner = (1.0 - q).max(0.0);
+        3.0 * SIGMA / (h * h * h) * (outer * outer - 4.0 * inner * inner)
+    }
+
     /// W(r, h) of one pair, 1/m2.
     #[inline(always)]
     pub fn value_of_one(r: f64, h: f64) -> f64 {

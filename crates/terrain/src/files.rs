@@ -17,23 +17,23 @@ const MARGIN: f64 = 2.0;
 /// As [`read_raster`] and [`merge`]; where no file is named, and where none of them has data in `part`.
 pub fn read_rasters(paths: &[PathBuf], crs: Option<&str>, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
     let first = paths.first().ok_or_else(|| TerrainError::unusable(Path::new(""), "no file is named"))?;
-    let mut common = survey(first)?.georeference;
-    choose_system(&mut common, crs, first)?;
+    let mut common = survey(first)?;
+    choose_system(&mut common.georeference, crs, first)?;
     let mut warnings: Vec<(&Path, String)> = Vec::new();
     let mut rasters = Vec::new();
     for path in paths {
-        let Some(mut raster) = read(path, crs, part, common.system.as_ref())? else { continue };
+        let Some(mut raster) = read(path, crs, part, common.georeference.system.as_ref())? else { continue };
         let told = choose_system(&mut raster.georeference, crs, path)?;
         warnings.extend(told.into_iter().map(|warning| (path.as_path(), warning)));
         rasters.push((path.clone(), raster));
     }
     let mut raster = match (rasters.len(), part) {
-        (0, Some(part)) => return Err(outside(first, part)),
+        (0, Some(part)) => return Err(outside(first, part, &common.outline())),
         (1, _) => rasters.swap_remove(0).1,
         _ => merge(rasters)?,
     };
     if let Some(part) = part {
-        raster = raster.cropped(part).ok_or_else(|| outside(first, part))?;
+        raster = raster.cropped(part).ok_or_else(|| outside(first, part, &common.outline()))?;
         refuse_empty(first, &raster)?;
     }
     raster.warnings.extend(without_repeats(warnings));

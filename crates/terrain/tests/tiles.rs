@@ -6,6 +6,7 @@ use corpuscle_terrain::{
 };
 use geotiff_writer::GeoTiffBuilder;
 use ndarray::Array2;
+use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -95,6 +96,29 @@ fn tiles_of_one_grid_are_the_whole_to_the_bit() {
     for step in 0..500 {
         let (x, y) = (CORNER[0] + 0.963 * step as f64, CORNER[1] - 0.797 * step as f64);
         assert_eq!(tiles.height_and_slope(x, y), whole.height_and_slope(x, y), "{x} {y}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Wherever the ground is cut, and in whatever order its parts are named, they are the whole to the bit.
+    #[test]
+    fn any_cuts_in_any_order_are_the_whole(
+        at in (2..COLUMNS - 2, 2..ROWS - 2), overlap in 0usize..2, order in Just([0, 1, 2, 3]).prop_shuffle()
+    ) {
+        let folder = Folder::new();
+        let (column, row) = at;
+        folder.part("whole.tif", [0, 0], [COLUMNS, ROWS], rough);
+        folder.part("0.tif", [0, 0], [column + overlap, row], rough);
+        folder.part("1.tif", [column, 0], [COLUMNS - column, row + overlap], rough);
+        folder.part("2.tif", [0, row], [column, ROWS - row], rough);
+        folder.part("3.tif", [column, row], [COLUMNS - column, ROWS - row], rough);
+        let paths = order.map(|part| folder.path(&format!("{part}.tif")));
+        let merged = read_rasters(&paths, None, None).unwrap();
+        let whole = read_raster(folder.path("whole.tif")).unwrap();
+        prop_assert!(merged.values == whole.values && merged.warnings.is_empty());
+        prop_assert!((merged.georeference.corner[0] - whole.georeference.corner[0]).abs() < 1e-6);
     }
 }
 
@@ -241,7 +265,7 @@ fn a_part_is_what_the_whole_has_there() {
     std::fs::write(folder.path("dem.asc"), header + &rows.join("\n")).unwrap();
     assert_part(&folder.path("dem.asc"), &part);
     let text = read_raster_part(folder.path("dem.tif"), &MapBox::new([0.0, 0.0, 1.0, 1.0]).unwrap());
-    assert!(text.unwrap_err().to_string().contains("none of it lies in the box 0,0,1,1"));
+    assert!(text.unwrap_err().to_string().contains("nothing lies in the box 0,0,1,1"));
 }
 
 #[test]
@@ -261,7 +285,8 @@ fn a_part_of_several_files_is_cut_across_their_borders() {
         assert_eq!(*a, f64::from(*b as f32));
     }
     let elsewhere = MapBox::new([0.0, 0.0, 1.0, 1.0]).unwrap();
-    assert!(read_rasters(&paths, None, Some(&elsewhere)).unwrap_err().to_string().contains("0,0,1,1"));
+    let text = read_rasters(&paths, None, Some(&elsewhere)).unwrap_err().to_string();
+    assert!(text.contains("0,0,1,1") && text.contains("covers 535200,"), "{text}");
 }
 
 #[test]

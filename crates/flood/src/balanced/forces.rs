@@ -17,7 +17,7 @@ pub(super) struct Force {
 }
 
 /// The depth in which two particles push each other, at most, over the smaller of theirs.
-const SHARED: f64 = 3.0;
+pub(super) const SHARED: f64 = 3.0;
 
 /// Finds the forces on all particles.
 pub(super) fn find(

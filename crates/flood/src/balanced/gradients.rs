@@ -2,6 +2,7 @@
 
 use super::{Column, Slopes};
 use crate::arrangement::Arrangement;
+use crate::obstacles::Obstacles;
 use corpuscle_sph::kernel::cubic_spline;
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, Simd, SimdBase, dispatch, gather};
 use rayon::prelude::*;
@@ -16,9 +17,15 @@ const TILT: f64 = 0.6;
 const COMPANY: f64 = 0.4;
 
 /// Finds the slopes of all particles.
-pub(super) fn find(gravity: f64, arrangement: &Arrangement, columns: &[Column], slopes: &mut [Slopes]) {
+pub(super) fn find(
+    gravity: f64,
+    arrangement: &Arrangement,
+    columns: &[Column],
+    obstacles: &Obstacles,
+    slopes: &mut [Slopes],
+) {
     slopes.par_chunks_mut(BLOCK).enumerate().for_each(|(block, slopes)| {
-        dispatch!(Level::new(), simd => find_block(simd, gravity, arrangement, columns, block * BLOCK, slopes));
+        dispatch!(Level::new(), simd => find_block(simd, gravity, arrangement, columns, obstacles, block * BLOCK, slopes));
     });
 }
 
@@ -28,16 +35,25 @@ fn find_block<S: Simd>(
     gravity: f64,
     arrangement: &Arrangement,
     columns: &[Column],
+    obstacles: &Obstacles,
     first: usize,
     slopes: &mut [Slopes],
 ) {
     for (k, slopes) in slopes.iter_mut().enumerate() {
-        of_one(simd, gravity, columns, arrangement.lists.of(first + k), first + k, slopes);
+        of_one(simd, gravity, columns, obstacles, arrangement.lists.of(first + k), first + k, slopes);
     }
 }
 
 #[inline(always)]
-fn of_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], list: Neighbours, i: usize, slopes: &mut Slopes) {
+fn of_one<S: Simd>(
+    simd: S,
+    gravity: f64,
+    columns: &[Column],
+    obstacles: &Obstacles,
+    list: Neighbours,
+    i: usize,
+    slopes: &mut Slopes,
+) {
     let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
     let own = columns[i];
     let inverse_h = Lanes::splat(simd, own.inverse_h);
@@ -71,18 +87,44 @@ fn of_one<S: Simd>(simd: S, gravity: f64, columns: &[Column], list: Neighbours, 
         velocity_step = velocity_step.max(r.select_below(end, du * du + dv * dv, zero));
     }
     let moment = [xx.sum(), xy.sum(), yy.sum()];
-    slopes.alone = (1.0 - (moment[0] + moment[2]) / COMPANY).max(0.0);
     let b = renormalisation(moment);
-    slopes.renormalisation = b;
+    let walls = of_walls(&own, obstacles);
+    let all = [0, 1, 2].map(|k| moment[k] + walls.moment[k]);
+    slopes.alone = (1.0 - (all[0] + all[2]) / COMPANY).max(0.0);
+    slopes.renormalisation = if walls.moment == [0.0; 3] { b } else { renormalisation(all) };
     let turned = |x: f64, y: f64| [b[0] * x + b[1] * y, b[1] * x + b[2] * y];
     slopes.surface = turned(surface_x.sum(), surface_y.sum());
     slopes.u = turned(u_x.sum(), u_y.sum());
     slopes.v = turned(v_x.sum(), v_y.sum());
     let wave = (gravity * own.depth).sqrt();
     slopes.wave_speed = wave;
-    let unrest = (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt() / wave) / REST;
+    let unrest =
+        (surface_step.largest() / own.depth).max(velocity_step.largest().sqrt().max(walls.velocity_step) / wave) / REST;
     let tilt = surface_step.largest() / (TILT * ground_step.largest()).max(1e-12 * own.depth);
     slopes.rest = (-(unrest.min(tilt)).powi(2)).exp();
+}
+
+/// What walls near a particle add.
+#[derive(Debug, Default)]
+struct OfWalls {
+    /// To the moment matrix.
+    moment: [f64; 3],
+    /// Largest difference between the velocity and its mirror image beyond a wall, m/s.
+    velocity_step: f64,
+}
+
+/// Walls take part in the areas that the particle shares, but not in its slopes: what water does along a wall goes on there.
+fn of_walls(own: &Column, obstacles: &Obstacles) -> OfWalls {
+    let mut sum = OfWalls::default();
+    let h = 1.0 / own.inverse_h;
+    obstacles.each([own.x, own.y], 2.0 * h, |site, r, [ex, ey]| {
+        let weight = site.area * cubic_spline::slope_of_one(r, h) / r.max(1e-9 * h);
+        sum.moment =
+            [sum.moment[0] + weight * ex * ex, sum.moment[1] + weight * ex * ey, sum.moment[2] + weight * ey * ey];
+        let across = own.u * site.normal[0] + own.v * site.normal[1];
+        sum.velocity_step = sum.velocity_step.max(2.0 * across.abs());
+    });
+    sum
 }
 
 /// Inverse of the moment matrix (xx, xy, yy), made invertible where the neighbours stand in a line or are missing.

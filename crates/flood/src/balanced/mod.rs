@@ -10,6 +10,7 @@
 mod forces;
 mod gradients;
 mod images;
+mod walls;
 
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::density::{Densities, Density, WeightedDensities};
@@ -19,6 +20,7 @@ use bytemuck::{Pod, Zeroable};
 use corpuscle_sph::{BLOCK, Near};
 use forces::Force;
 use rayon::prelude::*;
+use walls::NearWalls;
 
 /// What the passes read of a particle or image: one cache line, a row of numbers to gather.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -89,6 +91,7 @@ pub(crate) struct Balanced {
     evaluations: Vec<Evaluation>,
     /// The weights, in sorted order; empty where all are the same.
     weights: Vec<f64>,
+    near_walls: NearWalls,
     spare: Vec<Particle>,
 }
 
@@ -103,6 +106,7 @@ impl Balanced {
             forces: Vec::new(),
             evaluations: Vec::new(),
             weights: Vec::new(),
+            near_walls: NearWalls::default(),
             spare: Vec::new(),
         }
     }
@@ -215,13 +219,8 @@ impl Parameters {
 }
 
 impl Scheme for Balanced {
-    fn drift(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += 0.5 * step * particle.ax;
-            particle.v += 0.5 * step * particle.ay;
-            particle.x += step * particle.u;
-            particle.y += step * particle.v;
-        });
+    fn before(&self) -> f64 {
+        0.5
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
@@ -232,25 +231,25 @@ impl Scheme for Balanced {
 
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
         self.find_densities();
+        self.add_walls_to_densities(particles, &surroundings.obstacles);
         self.find_depths(particles, surroundings);
         self.fill_columns(particles, 0.5 * step);
         self.show_images(surroundings);
-        gradients::find(self.parameters.gravity, &self.arrangement, &self.columns, &mut self.slopes);
+        let obstacles = &surroundings.obstacles;
+        gradients::find(self.parameters.gravity, &self.arrangement, &self.columns, obstacles, &mut self.slopes);
         self.turn_images(&surroundings.edges);
         self.forces.resize(self.arrangement.len(), Force::default());
         forces::find(&self.parameters, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
+        self.add_walls_to_forces(obstacles);
         self.take_over(particles)
-    }
-
-    fn kick(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += 0.5 * step * particle.ax;
-            particle.v += 0.5 * step * particle.ay;
-        });
     }
 
     fn arrangement(&self) -> &Arrangement {
         &self.arrangement
+    }
+
+    fn on_obstacles(&self) -> &[[f64; 2]] {
+        &self.near_walls.on_obstacles
     }
 
     fn bytes(&self) -> usize {

@@ -8,6 +8,17 @@ use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Columns of an obstacle: the force on it, and its sum over time.
+fn obstacle_columns(name: &str) -> [GaugeColumn; 4] {
+    let column = |quantity, unit| GaugeColumn { gauge: name.into(), quantity, unit };
+    [
+        column("force_east", "N"),
+        column("force_north", "N"),
+        column("impulse_east", "N_s"),
+        column("impulse_north", "N_s"),
+    ]
+}
+
 impl Model for Flood {
     fn name(&self) -> &'static str {
         "flood"
@@ -86,6 +97,7 @@ impl Model for Flood {
         let points = self.points.iter().flat_map(PointGauge::columns);
         let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
         let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
+        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
         points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(weather).collect()
     }
 
@@ -93,6 +105,9 @@ impl Model for Flood {
         let water = self.sampler(self.since());
         let points = self.points.iter().flat_map(|point| point.row(&water));
         let lines = self.lines.iter().map(|line| line.discharge(&water)).chain(self.state.flows.row());
+        let of_obstacles = self.state.on_obstacles.iter().zip(&self.state.impulses);
+        let lines =
+            lines.chain(of_obstacles.flat_map(|(force, sum)| [*force, *sum]).flatten().map(|push| DENSITY * push));
         let account = self.water();
         let totals = [self.stored(), account.inflow.value(), account.outflow.value()];
         let Wetness { rained, infiltrated, .. } = &self.state.wetness;
@@ -115,7 +130,15 @@ impl Model for Flood {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        let names = self.surroundings.obstacles.names.iter().zip(&self.state.overtopped);
+        let told = |(name, time): (&String, &Option<f64>)| {
+            let time = (*time)?;
+            Some(format!(
+                "from t = {time:.0} s the water at the obstacle '{name}' stood higher than its height_m: it would have flowed over it, \
+                 and was held back"
+            ))
+        };
+        self.warnings.iter().cloned().chain(names.filter_map(told)).collect()
     }
 
     fn save(&self) -> Vec<u8> {
@@ -127,6 +150,7 @@ impl Model for Flood {
         let (shown, state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         if state.owed.len() != self.sources.len()
+            || state.impulses.len() != self.surroundings.obstacles.names.len()
             || !self.structures.fit(&state.flows)
             || self.ground.as_ref().is_some_and(|ground| !ground.fits(&state.wetness))
             || !state.maps.fit(&self.state.maps)

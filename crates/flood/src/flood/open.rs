@@ -5,6 +5,7 @@ use crate::balanced::{self, Balanced};
 use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
+use crate::obstacles;
 use crate::paper::Paper;
 use crate::rain::Ground;
 use crate::scheme::{Scheme, Sizes, Surroundings};
@@ -78,6 +79,12 @@ impl Flood {
         limits::check_blocks(flood, &terrain)?;
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = setup::edge_rules(flood, &terrain, folder)?;
+        let reach = match flood.scheme {
+            SchemeName::Balanced => 2.0 * flood.balanced.largest_smoothing * h,
+            SchemeName::Paper => flood.paper.largest_smoothing * h,
+        };
+        let obstacles =
+            obstacles::open(flood, &terrain, folder, setup::closest(bodies, &terrain, spacing, volume), reach, h)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
         let widest = flood.balanced.largest_smoothing * spacing;
         let ground = Ground::open(flood, &terrain, folder, volume, widest)?;
@@ -99,6 +106,9 @@ impl Flood {
             time_step: 0.0,
             sizes: Sizes { cell: h, even: true },
             external: [0.0; 2],
+            on_obstacles: vec![[0.0; 2]; obstacles.names.len()],
+            impulses: vec![[0.0; 2]; obstacles.names.len()],
+            overtopped: vec![None; obstacles.names.len()],
         };
         let mut model = Self {
             roughness: Roughness::open(flood, &terrain, folder)?,
@@ -108,7 +118,7 @@ impl Flood {
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
             warnings: terrain.warnings().to_vec(),
-            surroundings: Surroundings { terrain, edges, time: 0.0 },
+            surroundings: Surroundings { terrain, edges, obstacles, time: 0.0 },
             settings,
             seed,
             scheme,
@@ -141,7 +151,7 @@ impl Flood {
                 largest_h: flood.balanced.largest_smoothing * eta * self.spacing,
                 shallowest: flood.wet_depth_m,
             }
-            .fill(&self.surroundings.edges, seed);
+            .fill(&self.surroundings.edges, &self.surroundings.obstacles, seed);
             if particles.is_empty() {
                 self.warnings.push(format!(
                     "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
@@ -192,6 +202,7 @@ impl Flood {
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
         self.state.time_step = self.limited(evaluation.time_step);
         self.state.external = evaluation.external;
+        self.state.on_obstacles.copy_from_slice(self.scheme.on_obstacles());
         self.look();
     }
 }

@@ -3,7 +3,7 @@
 mod ground;
 
 use super::{Check, Checked};
-use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Paper, Problem, Series, Water};
+use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Obstacle, Paper, Problem, Series, Water};
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
@@ -39,6 +39,9 @@ impl Check {
         }
         for (index, link) in flood.link.iter().enumerate() {
             self.link(&format!("flood.link.{index}"), link)?;
+        }
+        for (index, obstacle) in flood.obstacle.iter().enumerate() {
+            self.obstacle(&format!("flood.obstacle.{index}"), obstacle)?;
         }
         for (index, gauge) in flood.gauge.iter().enumerate() {
             self.gauge(&format!("flood.gauge.{index}"), gauge)?;
@@ -183,6 +186,24 @@ impl Check {
         })
     }
 
+    fn obstacle(&self, key: &str, obstacle: &Obstacle) -> Checked {
+        self.exactly_one(
+            key,
+            &[
+                ("polygon", obstacle.polygon.is_some()),
+                ("circle", obstacle.circle.is_some()),
+                ("file", obstacle.file.is_some()),
+            ],
+        )?;
+        if let Some(polygon) = &obstacle.polygon {
+            self.polygon(&format!("{key}.polygon"), polygon)?;
+        }
+        if let Some(circle) = obstacle.circle {
+            self.above(&format!("{key}.circle.radius_m"), circle.radius_m, 0.0)?;
+        }
+        obstacle.height_m.map_or(Ok(()), |height| self.above(&format!("{key}.height_m"), height, 0.0))
+    }
+
     fn polygon(&self, key: &str, corners: &[[f64; 2]]) -> Checked {
         self.require(key, corners.len() >= 3, || {
             format!("a polygon needs at least three corners, not {}", corners.len())
@@ -202,13 +223,15 @@ impl Check {
         let outflows = flood.outflow.iter().map(|outflow| &outflow.name);
         let stages = flood.stage.iter().map(|stage| &stage.name);
         let links = flood.link.iter().map(|link| &link.name);
+        let obstacles = flood.obstacle.iter().map(|obstacle| &obstacle.name);
         let mut seen = HashMap::new();
         let all = (gauges.enumerate().map(|named| ("gauge", named)))
             .chain(sections.enumerate().map(|named| ("section", named)))
             .chain(inflows.enumerate().map(|named| ("inflow", named)))
             .chain(outflows.enumerate().map(|named| ("outflow", named)))
             .chain(stages.enumerate().map(|named| ("stage", named)))
-            .chain(links.enumerate().map(|named| ("link", named)));
+            .chain(links.enumerate().map(|named| ("link", named)))
+            .chain(obstacles.enumerate().map(|named| ("obstacle", named)));
         for (kind, (index, name)) in all {
             let key = format!("flood.{kind}.{index}.name");
             self.name(&key, name)?;

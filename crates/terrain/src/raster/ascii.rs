@@ -28,7 +28,7 @@ pub(super) fn looks_like(start: &[u8]) -> bool {
 pub(super) fn read(path: &Path, text: &[u8], part: Option<&MapBox>) -> Result<Raster, TerrainError> {
     let raster = read_whole(path, text)?;
     let Some(part) = part else { return Ok(raster) };
-    let cut = raster.cropped(part).ok_or_else(|| outside(path, part))?;
+    let cut = raster.cropped(part).ok_or_else(|| outside(path, part, &raster.outline()))?;
     check_size(path, [cut.columns, cut.rows])?;
     Ok(cut)
 }

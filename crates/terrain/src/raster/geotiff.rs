@@ -29,7 +29,7 @@ pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Resu
     }
     let whole = place(path, &file)?;
     let window = match part {
-        Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part))?,
+        Some(part) => Window::within(&whole, size, part).ok_or_else(|| outside(path, part, &whole.outline(size)))?,
         None => Window::whole(size),
     };
     check_size(path, window.size)?;

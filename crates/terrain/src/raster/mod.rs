@@ -146,12 +146,14 @@ pub(crate) fn check_size(path: &Path, size: [usize; 2]) -> Result<(), TerrainErr
 }
 
 /// The error for a raster of which nothing lies in a box.
-pub(crate) fn outside(path: &Path, part: &MapBox) -> TerrainError {
-    let MapBox { west, south, east, north } = part;
-    TerrainError::unusable(
-        path,
-        format!("none of it lies in the box {west},{south},{east},{north} (west,south,east,north)"),
-    )
+pub(crate) fn outside(path: &Path, part: &MapBox, outline: &MapBox) -> TerrainError {
+    let sides = |MapBox { west, south, east, north }: &MapBox| format!("{west},{south},{east},{north}");
+    let what = format!(
+        "nothing lies in the box {} (west,south,east,north); this file, in whose coordinates the box must be, covers {}",
+        sides(part),
+        sides(outline)
+    );
+    TerrainError::unusable(path, what)
 }
 
 /// Refuses values and places that no model can use.

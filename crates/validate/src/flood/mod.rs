@@ -3,6 +3,7 @@
 pub(crate) mod bench;
 mod channel;
 mod dam_break;
+mod isolated_building;
 mod lake;
 mod malpasset;
 mod structures;
@@ -37,6 +38,7 @@ pub(crate) const CASES: &[Case] = &[
     weather::LEDGER,
     structures::STRUCTURES,
     structures::TIDE,
+    isolated_building::ISOLATED_BUILDING,
 ];
 
 /// Seed of where particles stand at the start.

@@ -1,0 +1,222 @@
+//! Obstacles as a scene tells them.
+
+use super::{Obstacles, Outline};
+use crate::limits::check_inside;
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Circle, Flood as Settings, Obstacle};
+use corpuscle_terrain::{Bounds, Terrain};
+use geojson::{GeoJson, GeometryValue};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Corners of a circle.
+const ROUND: usize = 180;
+
+/// Rings of places.
+type Rings = Vec<Vec<[f64; 2]>>;
+
+/// Opens the obstacles of a scene for particles that stand `spacing` m apart where they are closest and reach at most `reach` m; `h0`
+/// is the kernel's reach in scheme paper, m.
+///
+/// # Errors
+/// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain.
+pub(crate) fn open(
+    flood: &Settings,
+    terrain: &Terrain,
+    folder: &Path,
+    spacing: f64,
+    reach: f64,
+    h0: f64,
+) -> Result<Obstacles, ModelError> {
+    let mut outlines = Vec::new();
+    for (number, obstacle) in flood.obstacle.iter().enumerate() {
+        let who = format!("the obstacle '{}'", obstacle.name);
+        for rings in polygons(obstacle, terrain, folder)? {
+            let rings: Rings = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
+            let Some(outer) = rings.first() else { continue };
+            check_overlap(&who, outer, terrain)?;
+            let rings = rings.into_iter().map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();
+            outlines.push(Outline { obstacle: number, rings });
+        }
+    }
+    let names = flood.obstacle.iter().map(|obstacle| obstacle.name.clone()).collect();
+    let mut obstacles = Obstacles::new(names, outlines, spacing, reach, h0);
+    let heights: Vec<_> = flood.obstacle.iter().map(|obstacle| obstacle.height_m).collect();
+    obstacles.set_tops(&heights, |x, y| terrain.height(x, y));
+    Ok(obstacles)
+}
+
+/// The polygons of an obstacle, in model coordinates.
+fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Rings>, ModelError> {
+    let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|place| terrain.to_model(place)).collect();
+    if let Some(polygon) = &obstacle.polygon {
+        return Ok(vec![vec![to_model(polygon.clone())]]);
+    }
+    if let Some(circle) = obstacle.circle {
+        check_inside(&format!("the middle of the obstacle '{}'", obstacle.name), &[circle.centre], terrain)?;
+        return Ok(vec![vec![round(circle, terrain)]]);
+    }
+    let Some(file) = &obstacle.file else { return Ok(Vec::new()) };
+    let path = folder.join(file);
+    let refused =
+        |what: String| ModelError::Setup(format!("{} (obstacle '{}'): {what}", path.display(), obstacle.name));
+    let polygons = read(&path).map_err(refused)?;
+    if polygons.is_empty() {
+        return Err(refused("holds no polygon; give areas, not points or lines".into()));
+    }
+    let could_be_degrees = |[x, y]: &[f64; 2]| (-180.0..=180.0).contains(x) && (-90.0..=90.0).contains(y);
+    let is_geojson = matches!(extension(&path).as_str(), "geojson" | "json");
+    // GeoJSON is in longitude and latitude (RFC 7946), but many files have the terrain's own coordinates.
+    let degrees = is_geojson && polygons.iter().flatten().flatten().all(could_be_degrees);
+    let place = |place: [f64; 2]| match terrain.from_lon_lat(place) {
+        Ok(model) if degrees => model,
+        _ => terrain.to_model(place),
+    };
+    let ring = |ring: Vec<[f64; 2]>| ring.into_iter().map(place).collect();
+    Ok(polygons.into_iter().map(|rings| rings.into_iter().map(ring).collect()).collect())
+}
+
+fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
+    let [x, y] = terrain.to_model(circle.centre);
+    // The polygon has the circle's area.
+    let radius = circle.radius_m * (TAU / (ROUND as f64 * (TAU / ROUND as f64).sin())).sqrt();
+    let corner = |k: usize| {
+        let (sin, cos) = (TAU * k as f64 / ROUND as f64).sin_cos();
+        [x + radius * cos, y + radius * sin]
+    };
+    (0..ROUND).map(corner).collect()
+}
+
+/// A ring with a side along an edge of the terrain goes on beyond it: that side is no wall to the water.
+fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[f64; 2]> {
+    let near = 1e-6 * reach;
+    let edges =
+        [(0, bounds.x_min, -reach), (0, bounds.x_max, reach), (1, bounds.y_min, -reach), (1, bounds.y_max, reach)];
+    for (axis, edge, outward) in edges {
+        let before = std::mem::take(&mut ring);
+        for (k, &corner) in before.iter().enumerate() {
+            let next = before[(k + 1) % before.len()];
+            ring.push(corner);
+            if [corner, next].iter().all(|end| (end[axis] - edge).abs() <= near) {
+                for mut end in [corner, next] {
+                    end[axis] += outward;
+                    ring.push(end);
+                }
+            }
+        }
+    }
+    ring
+}
+
+fn check_overlap(who: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+    let bounds = terrain.bounds();
+    let beyond = |axis: usize, low: f64, high: f64| {
+        ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)
+    };
+    if beyond(0, bounds.x_min, bounds.x_max) || beyond(1, bounds.y_min, bounds.y_max) {
+        let [x, y] = ring[0];
+        let what =
+            format!("{who} lies outside the terrain: its first corner is at ({x}, {y}) m in the model's coordinates");
+        return Err(ModelError::Setup(what));
+    }
+    Ok(())
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
+fn read(path: &Path) -> Result<Vec<Rings>, String> {
+    match extension(path).as_str() {
+        "geojson" | "json" => geojson(path),
+        "shp" => shapefile(path),
+        "csv" => csv(path),
+        other => Err(format!("'.{other}' is no format of polygons here; give .geojson, .shp or .csv")),
+    }
+}
+
+fn geojson(path: &Path) -> Result<Vec<Rings>, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    let geojson: GeoJson = text.parse().map_err(|error: geojson::Error| error.to_string())?;
+    let mut polygons = Vec::new();
+    match &geojson {
+        GeoJson::Geometry(geometry) => collect(&geometry.value, &mut polygons),
+        GeoJson::Feature(feature) => {
+            feature.geometry.iter().for_each(|geometry| collect(&geometry.value, &mut polygons))
+        }
+        GeoJson::FeatureCollection(collection) => {
+            let geometries = collection.features.iter().filter_map(|feature| feature.geometry.as_ref());
+            geometries.for_each(|geometry| collect(&geometry.value, &mut polygons));
+        }
+    }
+    Ok(polygons)
+}
+
+fn collect(geometry: &GeometryValue, polygons: &mut Vec<Rings>) {
+    let polygon = |rings: &geojson::PolygonType| -> Rings {
+        let place = |position: &geojson::Position| Some([*position.as_slice().first()?, *position.as_slice().get(1)?]);
+        rings.iter().map(|ring| ring.iter().filter_map(place).collect()).collect()
+    };
+    match geometry {
+        GeometryValue::Polygon { coordinates } => polygons.push(polygon(coordinates)),
+        GeometryValue::MultiPolygon { coordinates } => polygons.extend(coordinates.iter().map(polygon)),
+        GeometryValue::GeometryCollection { geometries } => {
+            geometries.iter().for_each(|geometry| collect(&geometry.value, polygons));
+        }
+        _ => {}
+    }
+}
+
+/// The rings of each shape together: holes are rings too, by the even-odd rule.
+fn shapefile(path: &Path) -> Result<Vec<Rings>, String> {
+    let shapes = shapefile::read_shapes(path).map_err(|error| error.to_string())?;
+    let polygon = |shape: shapefile::Shape| -> Option<Rings> {
+        match shape {
+            shapefile::Shape::Polygon(polygon) => {
+                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
+            }
+            shapefile::Shape::PolygonM(polygon) => {
+                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
+            }
+            shapefile::Shape::PolygonZ(polygon) => {
+                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
+            }
+            _ => None,
+        }
+    };
+    Ok(shapes.into_iter().filter_map(polygon).collect())
+}
+
+/// Corners in columns x and y; where there is a column `name`, each name is a polygon.
+fn csv(path: &Path) -> Result<Vec<Rings>, String> {
+    let reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
+    let mut reader = reader.map_err(|error| error.to_string())?;
+    let headers = reader.headers().map_err(|error| error.to_string())?.clone();
+    let column = |name: &str| headers.iter().position(|header| header.eq_ignore_ascii_case(name));
+    let (Some(x), Some(y)) = (column("x"), column("y")) else {
+        return Err(format!(
+            "needs columns x and y; its first line is '{}'",
+            headers.iter().collect::<Vec<_>>().join(", ")
+        ));
+    };
+    let name = column("name");
+    let mut rings: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| error.to_string())?;
+        let number = |column: usize| {
+            let text = record.get(column).unwrap_or_default();
+            let value: Result<f64, _> = text.parse();
+            value
+                .ok()
+                .filter(|value| value.is_finite())
+                .ok_or_else(|| format!("line {}: '{text}' is no number", row + 2))
+        };
+        let corner = [number(x)?, number(y)?];
+        let of = name.and_then(|column| record.get(column)).unwrap_or_default().to_owned();
+        match rings.last_mut() {
+            Some((last, ring)) if *last == of => ring.push(corner),
+            _ => rings.push((of, vec![corner])),
+        }
+    }
+    Ok(rings.into_iter().map(|(_, ring)| vec![ring]).collect())
+}

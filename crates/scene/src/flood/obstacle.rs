@@ -1,0 +1,34 @@
+//! Buildings and walls.
+
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Something rigid that water goes round. Give exactly one of `polygon`, `circle` and `file`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Obstacle {
+    /// Its name.
+    pub name: String,
+    /// Its corners.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub polygon: Option<Vec<[f64; 2]>>,
+    /// A round one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circle: Option<Circle>,
+    /// A file with polygons: GeoJSON, shapefile, or CSV with a column each for x and y.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// How high it stands above the ground, m. Water that comes higher is told; it does not flow over it. Left out: high enough.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<f64>,
+}
+
+/// A circle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// Its middle.
+    pub centre: [f64; 2],
+    /// Its radius, m.
+    pub radius_m: f64,
+}
