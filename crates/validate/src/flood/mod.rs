@@ -6,6 +6,7 @@ mod dam_break;
 mod isolated_building;
 mod lake;
 mod malpasset;
+mod solids;
 mod thacker;
 
 use crate::{Case, Row};
@@ -30,6 +31,8 @@ pub(crate) const CASES: &[Case] = &[
     channel::MACDONALD,
     malpasset::MALPASSET,
     isolated_building::ISOLATED_BUILDING,
+    solids::CUBOID,
+    solids::CYLINDER,
 ];
 
 /// Seed of where particles stand at the start.
