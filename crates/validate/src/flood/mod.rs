@@ -6,6 +6,7 @@ mod dam_break;
 mod isolated_building;
 mod lake;
 mod malpasset;
+mod rough_terrain;
 mod solids;
 mod thacker;
 
@@ -31,6 +32,7 @@ pub(crate) const CASES: &[Case] = &[
     channel::MACDONALD,
     malpasset::MALPASSET,
     isolated_building::ISOLATED_BUILDING,
+    rough_terrain::ROUGH_TERRAIN,
     solids::CUBOID,
     solids::CYLINDER,
 ];
