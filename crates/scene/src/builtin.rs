@@ -21,6 +21,7 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/rough-terrain",
     "flood/cuboid",
     "flood/cylinder",
+    "flood/cloudburst",
     "flood/dam-break",
     "flood/lake-at-rest",
     "flood/iowa-river",

@@ -8,7 +8,10 @@ mod lake;
 mod malpasset;
 mod rough_terrain;
 mod solids;
+mod structures;
+mod swashes;
 mod thacker;
+mod weather;
 
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -31,6 +34,12 @@ pub(crate) const CASES: &[Case] = &[
     channel::BUMP,
     channel::MACDONALD,
     malpasset::MALPASSET,
+    swashes::SWASHES,
+    weather::RAIN_ON_A_PLANE,
+    weather::INFILTRATION,
+    weather::LEDGER,
+    structures::STRUCTURES,
+    structures::TIDE,
     isolated_building::ISOLATED_BUILDING,
     rough_terrain::ROUGH_TERRAIN,
     solids::CUBOID,
