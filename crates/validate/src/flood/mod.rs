@@ -6,6 +6,8 @@ mod dam_break;
 mod isolated_building;
 mod lake;
 mod malpasset;
+mod rough_terrain;
+mod solids;
 mod structures;
 mod swashes;
 mod thacker;
@@ -39,6 +41,9 @@ pub(crate) const CASES: &[Case] = &[
     structures::STRUCTURES,
     structures::TIDE,
     isolated_building::ISOLATED_BUILDING,
+    rough_terrain::ROUGH_TERRAIN,
+    solids::CUBOID,
+    solids::CYLINDER,
 ];
 
 /// Seed of where particles stand at the start.
