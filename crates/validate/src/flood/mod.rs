@@ -3,10 +3,13 @@
 pub(crate) mod bench;
 mod channel;
 mod dam_break;
+mod ea_test5;
 mod isolated_building;
 mod lake;
 mod malpasset;
+mod measured;
 mod thacker;
+mod triangular_obstacle;
 
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -30,6 +33,8 @@ pub(crate) const CASES: &[Case] = &[
     channel::MACDONALD,
     malpasset::MALPASSET,
     isolated_building::ISOLATED_BUILDING,
+    triangular_obstacle::TRIANGULAR_OBSTACLE,
+    ea_test5::EA_TEST5,
 ];
 
 /// Seed of where particles stand at the start.
