@@ -21,6 +21,7 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/rough-terrain",
     "flood/dam-break",
     "flood/lake-at-rest",
+    "flood/city",
     "flood/iowa-river",
     "flood/chishui",
     "gas/maxwell",
