@@ -4,9 +4,7 @@ use crate::particle::Particle;
 use crate::setup::setup;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Flood as Settings, Friction, LandUse, Manning};
-use corpuscle_sph::BLOCK;
 use corpuscle_terrain::{RasterField, Terrain};
-use rayon::prelude::*;
 use std::path::Path;
 
 /// How the ground slows the water.
@@ -42,34 +40,30 @@ impl Roughness {
         Ok(Self::Manning(Coefficient::Classes(open(raster)?, classes, Box::new(rest))))
     }
 
-    /// Slows the water for `step` s, exactly for the depth as it is; it stops water but never turns it round.
-    ///
-    /// - Manning 1891: dv/dt = -g n^2 |v| v / d^(4/3), so v / (1 + g n^2 |v| d^(-4/3) step).
-    /// - Chezy 1775: dv/dt = -g |v| v / (C^2 d), likewise.
-    /// - In proportion to the velocity: dv/dt = -g S v, so v exp(-g S step).
-    ///
-    /// Gives the change of momentum over density, sum of both components, m4/s; `impulses` is working memory.
-    pub fn slow(&self, particles: &mut [Particle], gravity: f64, step: f64, impulses: &mut Vec<f64>) -> f64 {
-        if matches!(self, Self::Manning(Coefficient::Even(0.0))) {
-            return 0.0;
-        }
-        let slow_block = |particles: &mut [Particle]| {
-            let inside = particles.iter_mut().filter(|particle| particle.outside.is_none());
-            inside.map(|particle| self.slow_one(particle, gravity, step)).sum::<f64>()
-        };
-        particles.par_chunks_mut(BLOCK).map(slow_block).collect_into_vec(impulses);
-        impulses.iter().sum()
+    /// Whether it slows nothing.
+    pub fn is_smooth(&self) -> bool {
+        matches!(self, Self::Manning(Coefficient::Even(0.0)))
     }
 
-    fn slow_one(&self, particle: &mut Particle, gravity: f64, step: f64) -> f64 {
-        let (depth, speed) = (particle.depth, particle.speed());
+    /// Slows a particle for `step` s by backward Euler steps of dv/dt = -k |v| v or -k v, for the depth as it is. That stops water but
+    /// never turns it round, and keeps water steady where friction balances another force, however long the step.
+    ///
+    /// - Manning 1891: k = g n^2 / d^(4/3).
+    /// - Chezy 1775: k = g / (C^2 d).
+    /// - In proportion to the velocity: k = g S.
+    ///
+    /// Gives the change of momentum over density, sum of both components, m4/s.
+    #[inline]
+    pub fn slow(&self, particle: &mut Particle, gravity: f64, step: f64) -> f64 {
+        let depth = particle.depth;
+        let quadratic = |k: f64| 2.0 / (1.0 + (1.0 + 4.0 * k * step * particle.speed()).sqrt());
         let factor = match self {
             Self::Manning(coefficient) => {
                 let n = coefficient.at(particle.x, particle.y);
-                1.0 / (1.0 + step * gravity * n * n * speed / (depth * depth.cbrt()))
+                quadratic(gravity * n * n / (depth * depth.cbrt()))
             }
-            Self::Other(Friction::Chezy(c)) => 1.0 / (1.0 + step * gravity * speed / (c * c * depth)),
-            Self::Other(Friction::Linear(slope)) => (-step * gravity * slope).exp(),
+            Self::Other(Friction::Chezy(c)) => quadratic(gravity / (c * c * depth)),
+            Self::Other(Friction::Linear(slope)) => 1.0 / (1.0 + step * gravity * slope),
         };
         let before = particle.u + particle.v;
         particle.u *= factor;
@@ -96,34 +90,34 @@ impl Coefficient {
 mod tests {
     use super::*;
 
-    #[test]
-    fn friction_follows_the_exact_solution_for_any_step() {
+    fn particle() -> Particle {
         let mut particle = Particle::new(0, 0.0, 0.0, 1.0, 1.0);
         (particle.u, particle.v, particle.depth) = (3.0, 4.0, 0.5);
-        let (mut once, mut often) = ([particle], [particle]);
-        let rough = Roughness::Manning(Coefficient::Even(0.03));
-        let impulse = rough.slow(&mut once, 9.81, 2.0, &mut Vec::new());
-        assert_eq!(impulse, once[0].u + once[0].v - 7.0);
-        for _ in 0..1000 {
-            rough.slow(&mut often, 9.81, 0.002, &mut Vec::new());
-        }
-        let exact = 5.0 / (1.0 + 2.0 * 9.81 * 0.03 * 0.03 * 5.0 / 0.5_f64.powf(4.0 / 3.0));
-        assert!((once[0].speed() - exact).abs() < 1e-12);
-        assert!((often[0].speed() - exact).abs() < 1e-10);
-        assert!((once[0].u / once[0].v - 0.75).abs() < 1e-12);
+        particle
     }
 
+    /// In small steps the exact solutions; in any step v' with v' + k |v'| v' step = v, along v.
     #[test]
-    fn other_laws_follow_their_exact_solutions() {
-        let slowed = |friction: Friction| {
-            let mut particle = Particle::new(0, 0.0, 0.0, 1.0, 1.0);
-            (particle.u, particle.v, particle.depth) = (3.0, 4.0, 0.5);
-            let mut water = [particle];
-            Roughness::Other(friction).slow(&mut water, 9.81, 2.0, &mut Vec::new());
-            water[0].speed()
-        };
-        let chezy = 5.0 / (1.0 + 2.0 * 9.81 * 5.0 / (40.0 * 40.0 * 0.5));
-        assert!((slowed(Friction::Chezy(40.0)) - chezy).abs() < 1e-12);
-        assert!((slowed(Friction::Linear(0.01)) - 5.0 * (-2.0 * 9.81 * 0.01_f64).exp()).abs() < 1e-12);
+    fn friction_follows_its_laws() {
+        let manning = 9.81 * 0.03 * 0.03 / 0.5_f64.powf(4.0 / 3.0);
+        let chezy = 9.81 / (40.0 * 40.0 * 0.5);
+        let rough = [
+            (Roughness::Manning(Coefficient::Even(0.03)), manning, true),
+            (Roughness::Other(Friction::Chezy(40.0)), chezy, true),
+            (Roughness::Other(Friction::Linear(0.01)), 9.81 * 0.01, false),
+        ];
+        for (rough, k, quadratic) in rough {
+            let (mut once, mut often) = (particle(), particle());
+            let impulse = rough.slow(&mut once, 9.81, 2.0);
+            assert_eq!(impulse, once.u + once.v - 7.0);
+            let speed = once.speed();
+            let before = speed + 2.0 * k * speed * if quadratic { speed } else { 1.0 };
+            assert!((before - 5.0).abs() < 1e-12 && (once.u / once.v - 0.75).abs() < 1e-12);
+            for _ in 0..10_000 {
+                rough.slow(&mut often, 9.81, 2e-4);
+            }
+            let exact = if quadratic { 5.0 / (1.0 + 2.0 * k * 5.0) } else { 5.0 * (-2.0 * k).exp() };
+            assert!((often.speed() / exact - 1.0).abs() < 1e-4, "{} {exact}", often.speed());
+        }
     }
 }

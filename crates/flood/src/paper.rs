@@ -329,11 +329,8 @@ fn pair_forces<S: Simd>(
 }
 
 impl Scheme for Paper {
-    fn drift(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.x += step * particle.u;
-            particle.y += step * particle.v;
-        });
+    fn before(&self) -> f64 {
+        0.0
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
@@ -352,13 +349,6 @@ impl Scheme for Paper {
         self.add_walls(particles, &surroundings.obstacles);
         let external = self.take_over(particles, surroundings, step);
         Evaluation { time_step: self.parameters.time_step_s, external }
-    }
-
-    fn kick(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += step * particle.ax;
-            particle.v += step * particle.ay;
-        });
     }
 
     fn arrangement(&self) -> &Arrangement {

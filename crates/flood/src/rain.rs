@@ -102,15 +102,12 @@ impl Ground {
             ground.intensity = Intensity::Table(intensity);
             if let Some(path) = &rain.raster {
                 let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
-                for (factor, [x, y]) in ground.factor.iter_mut().zip(&centres) {
-                    *factor *= raster.nearest(*x, *y).unwrap_or(0.0);
-                    if *factor < 0.0 {
-                        return Err(setup(format!(
-                            "{}: the factor of rain is {factor} at {:?}; it must not be negative",
-                            path.display(),
-                            terrain.to_own([*x, *y])
-                        )));
-                    }
+                let size = ground.size();
+                for (factor, &centre) in ground.factor.iter_mut().zip(&centres) {
+                    *factor *= mean_factor(&raster, centre, size).map_err(|[x, y]| {
+                        let place = terrain.to_own([x, y]);
+                        setup(format!("{}: the factor of rain at {place:?} must not be negative", path.display()))
+                    })?;
                 }
             }
         }
@@ -311,6 +308,27 @@ impl Wetness {
         self.film.iter().copied().collect::<ExactSum>().value()
     }
 }
+
+/// Mean of a raster of factors over a cell, from places evenly over it; 0 where there is no data.
+///
+/// # Errors
+/// A place where it is negative.
+fn mean_factor(raster: &RasterField, centre: [f64; 2], size: [f64; 2]) -> Result<f64, [f64; 2]> {
+    let mut sum = 0.0;
+    for look in 0..LOOKS * LOOKS {
+        let part = |look: usize| (look as f64 + 0.5) / LOOKS as f64 - 0.5;
+        let place = [centre[0] + part(look % LOOKS) * size[0], centre[1] + part(look / LOOKS) * size[1]];
+        let factor = raster.nearest(place[0], place[1]).unwrap_or(0.0);
+        if factor < 0.0 {
+            return Err(place);
+        }
+        sum += factor;
+    }
+    Ok(sum / (LOOKS * LOOKS) as f64)
+}
+
+/// Places along each side at which a cell looks at the raster of rain.
+const LOOKS: usize = 5;
 
 /// Depth at which a film becomes a particle where the scene has no rain of its own to say so, m.
 const FILM: f64 = 1e-3;

@@ -72,6 +72,22 @@ impl Sampler<'_> {
         places.filter(|place| particle[*place] == IMAGE).filter_map(weight).sum()
     }
 
+    /// Where the water that is at (x, y) now was when the particles were arranged: in a fast step it goes farther than they reach.
+    fn origin(&self, x: f64, y: f64) -> [f64; 2] {
+        if self.since == 0.0 {
+            return [x, y];
+        }
+        let (mut total, mut u, mut v) = (0.0, 0.0, 0.0);
+        for particle in self.near(x, y, self.arrangement.cells.reach_at(x, y)) {
+            let weight = cubic_spline::value_of_one((x - particle.x).hypot(y - particle.y), particle.h);
+            total += weight;
+            u += weight * particle.u;
+            v += weight * particle.v;
+        }
+        let since = self.since / total.max(f64::MIN_POSITIVE);
+        [x - since * u, y - since * v]
+    }
+
     /// The share that obstacles cover, seen as far as the particles here see.
     fn covered_by_obstacles(&self, x: f64, y: f64) -> f64 {
         let mean_h = |(sum, count): (f64, f64)| sum / f64::max(count, 1.0);
@@ -87,15 +103,20 @@ impl Sampler<'_> {
         if !self.may_be_wet(x, y) || self.obstacles.hold([x, y]) {
             return Sample::default();
         }
+        let [from_x, from_y] = self.origin(x, y);
+        if !self.may_be_wet(from_x, from_y) {
+            return Sample::default();
+        }
         let near = |each: &mut dyn FnMut(&Particle, f64, f64, f64)| {
-            for particle in self.near(x, y, 1.1 * self.arrangement.cells.reach_at(x, y)) {
+            for particle in self.near(from_x, from_y, 1.1 * self.arrangement.cells.reach_at(from_x, from_y)) {
                 let dx = x - (particle.x + self.since * particle.u);
                 let dy = y - (particle.y + self.since * particle.v);
                 let h = self.smoothing * particle.h;
                 let r_squared = dx * dx + dy * dy;
                 if r_squared < 4.0 * h * h {
                     let weight = particle.area() * cubic_spline::value_of_one(r_squared.sqrt(), h);
-                    each(particle, weight, dx, dy);
+                    // The surface keeps its place, as over a slope, while its water moves on.
+                    each(particle, weight, x - particle.x, y - particle.y);
                 }
             }
         };

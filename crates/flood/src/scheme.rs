@@ -66,19 +66,17 @@ pub(crate) struct Evaluation {
     pub external: [f64; 2],
 }
 
-/// A formulation. A step is: `drift`, then water comes and goes, then `arrange`, `evaluate` and `kick`.
+/// A formulation. In a step particles are accelerated as far as `before` says, move, water comes and goes; then `arrange`,
+/// `evaluate`, and they are accelerated the rest.
 pub(crate) trait Scheme: Send {
-    /// Moves the particles on by `step` s.
-    fn drift(&self, particles: &mut [Particle], step: f64);
+    /// The part of a step's acceleration that comes before the particles move.
+    fn before(&self) -> f64;
 
     /// Sorts the particles into cells.
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes);
 
     /// Finds depth, next smoothing length and acceleration of the particles as arranged, `step` s after the last time.
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation;
-
-    /// Brings the velocities to the end of a step of `step` s.
-    fn kick(&self, particles: &mut [Particle], step: f64);
 
     /// The particles in their cells, as last arranged.
     fn arrangement(&self) -> &Arrangement;

@@ -156,3 +156,56 @@ fn ponds_soak_away_as_the_laws_say() {
     let drained = pond("constant.rate_mm_per_h = 3600.0");
     assert!((drained / 0.2 - 1.0).abs() < 0.02, "{drained}");
 }
+
+/// Rain, roughness and soil by rasters: rain falls in the west, the north is smooth and sealed, the south rough and thirsty.
+#[test]
+fn rasters_say_where_it_rains_and_what_the_ground_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 48\nNODATA_value -9999\n";
+    std::fs::write(folder.path().join("rain.asc"), format!("{header}2 0\n2 0\n")).unwrap();
+    std::fs::write(folder.path().join("land.asc"), format!("{header}10 10\n20 20\n")).unwrap();
+    let text = r#"
+        run.until_s = 80
+        terrain.plane = { extent = { length_m = 96, width_m = 96, cell_m = 2 }, slope_east = -0.01 }
+        [flood]
+        spacing_m = 2
+        wet_depth_m = 0.001
+        water = [{ depth_m = 0.1 }]
+        edges = { west = "periodic", east = "periodic", south = "wall", north = "wall" }
+        rain = { intensity_mm_per_h = 18.0, raster = "rain.asc" }
+        land_use.raster = "land.asc"
+        [[flood.land_use.class]]
+        code = 10
+        manning = 0.02
+        [[flood.land_use.class]]
+        code = 20
+        manning = 0.1
+        infiltration.constant.rate_mm_per_h = 36.0
+    "#;
+    let mut scene = Scene::parse(text, "test", &[]).unwrap();
+    scene.resolve_defaults();
+    let scene = scene.flood().unwrap();
+    let terrain = Arc::new(Terrain::open(&scene.terrain, 1, folder.path()).unwrap());
+    let mut flood = Flood::new(&scene.flood, 1, folder.path(), Arc::clone(&terrain)).unwrap();
+    go(&mut flood, 80.0);
+    // 36 mm/h on half of the ground rain, and soak in on another half.
+    let half = 0.01 / 1000.0 * 80.0 * 96.0 * 48.0;
+    for quantity in ["total_rain", "total_infiltration"] {
+        let found = gauge(&flood, quantity);
+        assert!((found / half - 1.0).abs() < 0.12, "{quantity}: {found} of {half}");
+    }
+    let speed = |side: fn(f64) -> bool| {
+        let there: Vec<f64> = flood.particles().iter().filter(|p| side(p.y)).map(|p| p.u).collect();
+        there.iter().sum::<f64>() / there.len() as f64
+    };
+    let (north, south) = (speed(|y| y > 60.0), speed(|y| y < 36.0));
+    assert!(north > 3.0 * south && south > 0.1, "{north} {south}");
+    let maps = flood.maps();
+    let soaked = maps.iter().find(|map| map.name == "infiltration").unwrap();
+    let (top, bottom) = (soaked.values[soaked.columns * 5], soaked.values[soaked.columns * 40]);
+    assert!(top == 0.0 && (bottom / 8e-4 - 1.0).abs() < 0.2, "{top} {bottom}");
+    // A factor below nothing is refused.
+    std::fs::write(folder.path().join("rain.asc"), format!("{header}2 -1\n2 0\n")).unwrap();
+    let error = Flood::new(&scene.flood, 1, folder.path(), terrain).err().unwrap().to_string();
+    assert!(error.contains("rain.asc") && error.contains("must not be negative"), "{error}");
+}

@@ -19,6 +19,7 @@ macro_rules! builtin_scenes {
 pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/valley",
     "flood/rough-terrain",
+    "flood/cloudburst",
     "flood/dam-break",
     "flood/lake-at-rest",
     "flood/city",

@@ -1,6 +1,7 @@
 //! The text of a scene as a tree that knows where each value is written.
 
 use crate::error::{Place, Problem};
+use crate::units;
 use std::borrow::Cow;
 use std::ops::Range;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -34,6 +35,20 @@ impl<'a> Document<'a> {
             offset += value.len() + 1;
         }
         Ok(document)
+    }
+
+    /// The tree with the keys of a flood in feet called as they are in metres; whether it is one.
+    pub fn in_si_names(&mut self) -> Result<bool, Box<Problem>> {
+        if !units::are_us(&self.root) {
+            return Ok(false);
+        }
+        let written = self.root.clone();
+        units::rename(&mut self.root).map_err(|(key, what)| {
+            self.root = written;
+            let place = self.place_of(&key);
+            Box::new(Problem { key, what, place })
+        })?;
+        Ok(true)
     }
 
     /// The tree, for deserialising.

@@ -19,6 +19,8 @@ use std::path::PathBuf;
 pub struct Flood {
     /// Which formulation moves the water.
     pub scheme: Scheme,
+    /// What lengths and discharges are written in. A scene that was read is in metres.
+    pub units: FloodUnits,
     /// Distance between particles, m, in water of depth `spacing_depth_m`. At the start particles hold
     /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower.
     pub spacing_m: f64,
@@ -78,6 +80,7 @@ impl Default for Flood {
     fn default() -> Self {
         Self {
             scheme: Scheme::Balanced,
+            units: FloodUnits::Si,
             spacing_m: 10.0,
             spacing_depth_m: None,
             gravity_m_per_s2: 9.81,
@@ -112,6 +115,16 @@ pub enum Scheme {
     Balanced,
     /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
     Paper,
+}
+
+/// What the numbers of a flood are written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FloodUnits {
+    /// Metres, cubic metres a second, millimetres an hour.
+    Si,
+    /// Feet, cubic feet a second, inches an hour.
+    Us,
 }
 
 /// Manning's roughness.

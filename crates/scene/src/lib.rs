@@ -17,6 +17,7 @@ mod parse;
 mod resolve;
 mod series;
 mod terrain;
+mod units;
 mod write;
 mod written;
 

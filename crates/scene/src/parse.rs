@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::written::Written;
-use crate::{Problem, Scene, SceneError};
+use crate::{Problem, Scene, SceneError, units};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -23,18 +23,28 @@ impl Scene {
     /// # Errors
     /// [`SceneError::Invalid`] with the line and key of the first thing that is not as it must be.
     pub fn parse(text: &str, name: &str, overrides: &[(String, String)]) -> Result<Self, SceneError> {
-        let document = Document::parse(text, name, overrides)?;
+        let mut document = Document::parse(text, name, overrides)?;
+        let in_us = document.in_si_names()?;
+        let read = Self::read_document(&document, in_us);
+        Ok(read.map_err(|problem| if in_us { Box::new(units::in_us(*problem)) } else { problem })?)
+    }
+
+    fn read_document(document: &Document<'_>, in_us: bool) -> Result<Self, Box<Problem>> {
         let written = Written::deserialize(toml::de::ValueDeserializer::from(document.root()))
-            .map_err(|error| explain(&error, &document))?;
+            .map_err(|error| explain(&error, document))?;
         let checked = written.into_scene().and_then(|scene| {
             scene.find_problem()?;
-            all_was_read(&scene, &document)?;
+            all_was_read(&scene, document)?;
             Ok(scene)
         });
-        checked.map_err(|mut problem| {
+        let mut scene = checked.map_err(|mut problem| {
             problem.place = document.place_of(&problem.key).or_else(|| Some(document.whole()));
-            problem.into()
-        })
+            problem
+        })?;
+        if in_us {
+            units::convert(&mut scene, &document.root())?;
+        }
+        Ok(scene)
     }
 }
 

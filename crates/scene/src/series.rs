@@ -22,7 +22,18 @@ pub enum Series {
     File {
         /// The file.
         csv: PathBuf,
+        /// By what its values are multiplied.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        factor: f64,
     },
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(factor: &f64) -> bool {
+    *factor == 1.0
 }
 
 impl Series {
@@ -38,7 +49,11 @@ impl Series {
                 check_rows(rows).map_err(error)?;
                 Ok(Table { rows: rows.clone() })
             }
-            Self::File { csv } => read_csv(&folder.join(csv)),
+            Self::File { csv, factor } => {
+                let mut table = read_csv(&folder.join(csv))?;
+                table.rows.iter_mut().for_each(|row| row[1] *= factor);
+                Ok(table)
+            }
         }
     }
 }
@@ -96,7 +111,7 @@ impl Inflow {
             None => Ok(table),
             Some([time, discharge]) => {
                 let file = match &self.discharge_m3_per_s {
-                    Series::File { csv } => folder.join(csv),
+                    Series::File { csv, .. } => folder.join(csv),
                     _ => "the scene".into(),
                 };
                 let what = format!(
@@ -180,7 +195,7 @@ mod tests {
     fn load_csv(text: &str) -> Result<Table, SceneError> {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("q.csv"), text).unwrap();
-        Series::File { csv: "q.csv".into() }.load(folder.path())
+        Series::File { csv: "q.csv".into(), factor: 1.0 }.load(folder.path())
     }
 
     #[test]
@@ -222,7 +237,8 @@ mod tests {
             let message = load_csv(text).unwrap_err().to_string();
             assert!(parts.iter().all(|part| message.contains(part)), "{text:?}: {message}");
         }
-        let missing = Series::File { csv: "none.csv".into() }.load(Path::new("/tmp")).unwrap_err().to_string();
+        let missing =
+            Series::File { csv: "none.csv".into(), factor: 1.0 }.load(Path::new("/tmp")).unwrap_err().to_string();
         assert!(missing.contains("none.csv") && missing.contains("cannot read"), "{missing}");
     }
 
@@ -234,7 +250,7 @@ mod tests {
             name: "river".into(),
             at: Some([0.0, 0.0]),
             line: None,
-            discharge_m3_per_s: Series::File { csv: "q.csv".into() },
+            discharge_m3_per_s: Series::File { csv: "q.csv".into(), factor: 1.0 },
             velocity_m_per_s: [0.0, 0.0],
         };
         let message = inflow.load_discharge(folder.path()).unwrap_err().to_string();

@@ -41,23 +41,23 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
     }
     let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
     for edge in edges {
-        if let Edge::Stage(Series::File { csv }) = edge {
+        if let Edge::Stage(Series::File { csv, .. }) = edge {
             paths.push(csv);
         }
     }
     for inflow in &mut flood.inflow {
-        if let Series::File { csv } = &mut inflow.discharge_m3_per_s {
+        if let Series::File { csv, .. } = &mut inflow.discharge_m3_per_s {
             paths.push(csv);
         }
     }
     paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
     for stage in &mut flood.stage {
-        if let Series::File { csv } = &mut stage.level_m {
+        if let Series::File { csv, .. } = &mut stage.level_m {
             paths.push(csv);
         }
     }
     if let Some(rain) = &mut flood.rain {
-        if let Series::File { csv } = &mut rain.intensity_mm_per_h {
+        if let Series::File { csv, .. } = &mut rain.intensity_mm_per_h {
             paths.push(csv);
         }
         paths.extend(rain.raster.as_mut());
@@ -72,7 +72,7 @@ fn gas_paths(gas: &mut Gas) -> Vec<&mut PathBuf> {
     let always = [&mut walls.x_min, &mut walls.x_max, &mut walls.y_min, &mut walls.y_max];
     let all = always.into_iter().chain(walls.z_min.as_mut()).chain(walls.z_max.as_mut());
     all.filter_map(|wall| match wall {
-        Wall::Motion(Motion::Displacement(Series::File { csv })) => Some(csv),
+        Wall::Motion(Motion::Displacement(Series::File { csv, .. })) => Some(csv),
         _ => None,
     })
     .collect()
@@ -84,7 +84,7 @@ fn dew_paths(dew: &mut Dew) -> Vec<&mut PathBuf> {
         if let Shape::Mesh(mesh) = &mut solid.shape {
             paths.push(&mut mesh.path);
         }
-        if let Series::File { csv } = &mut solid.temperature_c {
+        if let Series::File { csv, .. } = &mut solid.temperature_c {
             paths.push(csv);
         }
     }

@@ -117,7 +117,7 @@ fn paths_become_absolute() {
     let mut scene = parse(&GOOD.replace("[[0.0, 5.0], [30.0, 5.0], [60.0, 25.0]]", "{ csv = \"pane.csv\" }"));
     scene.resolve_paths(Path::new("/data"));
     let solids = &scene.dew().unwrap().solid;
-    assert_eq!(solids[0].temperature_c, Series::File { csv: "/data/pane.csv".into() });
+    assert_eq!(solids[0].temperature_c, Series::File { csv: "/data/pane.csv".into(), factor: 1.0 });
     assert!(matches!(&solids[2].shape, Shape::Mesh(mesh) if mesh.path == Path::new("/data/bolt.stl")));
 }
 

@@ -85,7 +85,7 @@ fn the_message_shows_the_line_and_marks_the_value() {
 fn unknown_words() {
     assert_refused("seed = 1", "sed = 1", &["sed is not a key", "did you mean `seed`"]);
     assert_refused("spacing_m = 1.0", "spacng_m = 1.0", &["flood.spacng_m", "did you mean `spacing_m`"]);
-    assert_refused("spacing_m = 1.0", "qq = 1.0", &["flood.qq", "known: scheme, spacing_m"]);
+    assert_refused("spacing_m = 1.0", "qq = 1.0", &["flood.qq", "known: scheme, units, spacing_m"]);
     assert_refused("[run]", "[rum]", &["rum", "did you mean `run`"]);
     assert_refused("[terrain.plane]", "[terrain.plain]", &["did you mean `plane`", "rough-hills"]);
     assert_refused("west = \"wall\"", "west = \"wal\"", &["flood.edges.west", "did you mean `wall`"]);
@@ -287,4 +287,25 @@ fn structures() {
     let same = "link = [{ name = \"a\", from = [0, 0], to = [0, 0], law = { weir = { crest_m = 1, width_m = 1 } } }]";
     spoil(same, &["flood.link.0.to", "another place"]);
     spoil("outflow = [{ name = \"river\", at = [1, 1], rating = [[0, 1]] }]", &["flood.outflow.0.name", "is taken by"]);
+}
+
+#[test]
+fn errors_in_feet_speak_of_feet() {
+    let feet = |keys: &str| {
+        let text = format!("run.until_s = 1\nterrain.plane = {{}}\n[flood]\nunits = \"us\"\n{keys}\n");
+        refuse(&text, &[])
+    };
+    let cases: [(&str, &[&str]); 6] = [
+        ("spacing_m = 3", &["test.toml:5:", "flood.spacing_m: with units = \"us\" give spacing_ft"]),
+        ("spacing_ft = -3", &["test.toml:5:", "flood.spacing_ft = -3.0", "larger than 0"]),
+        ("spacng_ft = 3", &["did you mean `spacing_ft`"]),
+        ("spacing_ft = \"a\"", &["flood.spacing_ft", "expected a number"]),
+        ("water = [{ level_ft = 1, depth_ft = 1 }]", &["flood.water.0", "not level_ft and depth_ft together"]),
+        ("inflow = [{ name = \"a\", at = [1, 1] }]", &["flood.inflow.0.discharge_ft3_per_s is missing"]),
+    ];
+    for (keys, words) in cases {
+        let message = feet(keys);
+        assert!(words.iter().all(|word| message.contains(word)), "{words:?} are not in {message}");
+    }
+    assert_refused("spacing_m = 1.0", "spacing_ft = 1.0", &["flood.spacing_ft", "not a key that is known here"]);
 }

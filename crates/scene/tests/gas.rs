@@ -120,7 +120,7 @@ fn methods_and_paths() {
     assert_eq!(parse(&GOOD.replace("\"event-driven\"", "\"list\"")).gas().unwrap().method, Method::List);
     scene = parse(&GOOD.replace("[[0.0, 0.0], [5.0, -2.0]]", "{ csv = \"lid.csv\" }"));
     scene.resolve_paths(Path::new("/data"));
-    let lid = Series::File { csv: "/data/lid.csv".into() };
+    let lid = Series::File { csv: "/data/lid.csv".into(), factor: 1.0 };
     assert_eq!(scene.gas().unwrap().walls.y_max, Wall::Motion(Motion::Displacement(lid)));
 }
 

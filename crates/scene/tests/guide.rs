@@ -87,6 +87,7 @@ fn full(terrain: Terrain) -> Scene {
     let place = Some([0.0; 2]);
     let flood = Flood {
         scheme: Scheme::Balanced,
+        units: FloodUnits::Si,
         spacing_m: 1.0,
         spacing_depth_m: Some(1.0),
         paper: Paper { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..Paper::default() },
@@ -387,6 +388,8 @@ fn the_guide_tells_the_forms_of_values() {
         "{ rating = ",
         "green-ampt = ",
         "{ csv = ",
+        "factor = ",
+        "\"us\"",
         "{ stage = ",
         "{ thermal = ",
         "{ piston = ",

@@ -1,6 +1,6 @@
 //! A scene written and read again is the same scene, and no text makes the parser panic.
 
-use corpuscle_scene::{BUILTIN, FloodScene, Manning, Scene, Series, Terrain, builtin};
+use corpuscle_scene::{BUILTIN, Edge, FloodScene, Infiltration, LinkLaw, Manning, Scene, Series, Terrain, builtin};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -60,7 +60,7 @@ fn paths_become_absolute_and_round_trip() {
     let Terrain::File(file) = terrain else { panic!("{terrain:?}") };
     assert_eq!(file.path, Path::new("/data/scene/dem.tif"));
     assert_eq!(flood.manning, Manning::Raster { raster: "/data/scene/n.tif".into() });
-    assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into() });
+    assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into(), factor: 1.0 });
     assert_eq!(flood.observed_extent.as_deref(), Some(Path::new("/abs/seen.geojson")));
     let written = scene.to_toml().unwrap();
     assert!(written.contains("/data/scene/tide.csv") && written.contains("/data/scene/sub/depth.tif"), "{written}");
@@ -152,4 +152,59 @@ proptest! {
             Err(error) => prop_assert!(error.to_string().contains("flood.spacing_m"), "{}", error),
         }
     }
+}
+
+#[test]
+fn feet_become_metres_and_defaults_stay() {
+    let text = r#"
+        run.until_s = 1
+        terrain.plane.extent = { length_m = 100 }
+        [flood]
+        units = "us"
+        spacing_ft = 10
+        gravity_ft_per_s2 = 32.0
+        rain = { intensity_in_per_h = [[0, 1], [9, 2]] }
+        infiltration.green-ampt = { conductivity_in_per_h = 1, suction_ft = 2, deficit = 0.5 }
+        edges.west = { stage = [[5, 10]] }
+        water = [{ depth_ft = 2, polygon = [[0, 0], [1, 0], [1, 1]], velocity_ft_per_s = [1, 2] }]
+        inflow = [{ name = "a", at = [7, 7], discharge_ft3_per_s = { csv = "q.csv" } }]
+        outflow = [{ name = "b", at = [7, 7], rating = [[1, 100]] }]
+        stage = [{ name = "c", line = [[7, 7], [8, 8]], level_ft = 3 }]
+        [[flood.link]]
+        name = "d"
+        from = [1, 1]
+        to = [9, 9]
+        law.culvert = { width_ft = 4, height_ft = 3, floor_ft = [2, 1] }
+        [[flood.link]]
+        name = "e"
+        from = [1, 1]
+        to = [9, 9]
+        law.weir = { crest_ft = 4, width_ft = 3, coefficient = 3.1 }
+    "#;
+    let scene = Scene::parse(text, "test", &[]).unwrap();
+    let flood = &scene.flood().unwrap().flood;
+    let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+    near(flood.spacing_m, 3.048);
+    near(flood.gravity_m_per_s2, 32.0 * 0.3048);
+    let rain = flood.rain.as_ref().unwrap();
+    assert_eq!(rain.intensity_mm_per_h, Series::Table(vec![[0.0, 25.4], [9.0, 50.8]]));
+    assert_eq!((rain.film_m, flood.wet_depth_m), (0.001, 0.01));
+    let Some(Infiltration::GreenAmpt(ground)) = flood.infiltration else { panic!() };
+    near(ground.suction_m, 0.6096);
+    assert_eq!((ground.conductivity_mm_per_h, ground.deficit), (25.4, 0.5));
+    assert_eq!(flood.edges.west, Edge::Stage(Series::Table(vec![[5.0, 3.048]])));
+    assert_eq!((flood.water[0].depth_m, flood.water[0].velocity_m_per_s), (Some(0.6096), [0.3048, 0.6096]));
+    assert_eq!(flood.water[0].polygon.as_ref().unwrap()[1], [1.0, 0.0]);
+    let Series::File { factor, .. } = flood.inflow[0].discharge_m3_per_s else { panic!() };
+    near(factor, 0.028316846592);
+    near(flood.outflow[0].rating[0][1], 2.8316846592);
+    near(flood.outflow[0].rating[0][0], 0.3048);
+    assert_eq!(flood.stage[0].level_m, Series::Constant(3.0 * 0.3048));
+    let LinkLaw::Culvert(culvert) = &flood.link[0].law else { panic!() };
+    assert_eq!((culvert.width_m, culvert.floor_m), (Some(4.0 * 0.3048), Some([0.6096, 0.3048])));
+    let LinkLaw::Weir(weir) = &flood.link[1].law else { panic!() };
+    near(weir.coefficient, 3.1 * 0.3048_f64.sqrt());
+    // Written in metres, it is the same scene.
+    let again = Scene::parse(&scene.to_toml().unwrap(), "again", &[]).unwrap();
+    assert_eq!(again, scene);
 }

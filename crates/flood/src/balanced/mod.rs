@@ -219,13 +219,8 @@ impl Parameters {
 }
 
 impl Scheme for Balanced {
-    fn drift(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += 0.5 * step * particle.ax;
-            particle.v += 0.5 * step * particle.ay;
-            particle.x += step * particle.u;
-            particle.y += step * particle.v;
-        });
+    fn before(&self) -> f64 {
+        0.5
     }
 
     fn arrange(&mut self, particles: &mut Vec<Particle>, surroundings: &Surroundings, sizes: Sizes) {
@@ -247,13 +242,6 @@ impl Scheme for Balanced {
         forces::find(&self.parameters, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
         self.add_walls_to_forces(obstacles);
         self.take_over(particles)
-    }
-
-    fn kick(&self, particles: &mut [Particle], step: f64) {
-        particles.par_iter_mut().for_each(|particle| {
-            particle.u += 0.5 * step * particle.ax;
-            particle.v += 0.5 * step * particle.ay;
-        });
     }
 
     fn arrangement(&self) -> &Arrangement {

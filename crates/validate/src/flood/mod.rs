@@ -8,8 +8,11 @@ mod isolated_building;
 mod lake;
 mod malpasset;
 mod measured;
+mod structures;
+mod swashes;
 mod thacker;
 mod triangular_obstacle;
+mod weather;
 
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -32,6 +35,12 @@ pub(crate) const CASES: &[Case] = &[
     channel::BUMP,
     channel::MACDONALD,
     malpasset::MALPASSET,
+    swashes::SWASHES,
+    weather::RAIN_ON_A_PLANE,
+    weather::INFILTRATION,
+    weather::LEDGER,
+    structures::STRUCTURES,
+    structures::TIDE,
     isolated_building::ISOLATED_BUILDING,
     triangular_obstacle::TRIANGULAR_OBSTACLE,
     ea_test5::EA_TEST5,

@@ -2,6 +2,7 @@
 
 use super::{GRAVITY, order, rows, run, settings, water_everywhere};
 use crate::{Case, Options, Row};
+use corpuscle_flood::Flood;
 use corpuscle_model::ModelError;
 use corpuscle_scene::Edges;
 use corpuscle_terrain::{Bounds, Terrain};
@@ -38,14 +39,14 @@ fn bowl() -> Arc<Terrain> {
 }
 
 /// Height of the surface and velocity at a place and a time.
-type Exact = fn(x: f64, y: f64, t: f64) -> (f64, [f64; 2]);
+pub(super) type Exact = fn(x: f64, y: f64, t: f64) -> (f64, [f64; 2]);
 
-fn omega() -> f64 {
+pub(super) fn omega() -> f64 {
     (8.0 * GRAVITY * H0).sqrt() / A
 }
 
 /// Thacker's curved surface, with A = (a^2 - r0^2)/(a^2 + r0^2).
-fn curved(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
+pub(super) fn curved(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
     let r0 = 0.8;
     let amplitude = (A * A - r0 * r0) / (A * A + r0 * r0);
     let root = (1.0 - amplitude * amplitude).sqrt();
@@ -58,7 +59,7 @@ fn curved(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
 }
 
 /// Thacker's plane surface; its frequency is half the curved one's for the same bowl, squared.
-fn plane(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
+pub(super) fn plane(x: f64, y: f64, t: f64) -> (f64, [f64; 2]) {
     let eta = 0.5;
     let omega = (2.0 * GRAVITY * H0).sqrt() / A;
     let (sin, cos) = (omega * t).sin_cos();
@@ -82,15 +83,20 @@ fn measure(case: &'static str, exact: Exact, period: f64, bound: f64) -> Result<
     ])
 }
 
-/// mean |h - h_exact| / mean h_exact after one period, on a grid of 2 cm.
-fn error(exact: Exact, period: f64, spacing: f64) -> Result<f64, ModelError> {
+/// The water at `time`, started as an exact solution has it.
+pub(super) fn swing(exact: Exact, time: f64, spacing: f64) -> Result<Flood, ModelError> {
     let terrain = bowl();
     let ground = Arc::clone(&terrain);
     let depth = move |x: f64, y: f64| exact(x, y, 0.0).0 - ground.height(x, y);
     let water = water_everywhere(bounds(), depth, move |x, y| exact(x, y, 0.0).1);
-    let mut settings = settings(period, spacing, H0, Edges::default());
+    let mut settings = settings(time, spacing, H0, Edges::default());
     settings.wet_depth_m = 1e-3;
-    let flood = run(&settings, &terrain, &[water], period)?;
+    run(&settings, &terrain, &[water], time)
+}
+
+/// mean |h - h_exact| / mean h_exact after one period, on a grid of 2 cm.
+fn error(exact: Exact, period: f64, spacing: f64) -> Result<f64, ModelError> {
+    let (flood, terrain) = (swing(exact, period, spacing)?, bowl());
     let cells = 200;
     let at = |k: usize| -2.0 + 4.0 * (k as f64 + 0.5) / cells as f64;
     let (mut wrong, mut right) = (0.0, 0.0);
