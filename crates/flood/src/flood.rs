@@ -78,6 +78,8 @@ struct State {
     /// Force on each obstacle at the last evaluation, m4/s2, and its sum over time, m4/s.
     on_obstacles: Vec<[f64; 2]>,
     impulses: Vec<[f64; 2]>,
+    /// How often a particle was put back to the wall of an obstacle.
+    put_back: u64,
     /// When water was first seen to stand higher than each obstacle, s.
     overtopped: Vec<Option<f64>>,
 }
@@ -146,6 +148,11 @@ impl Flood {
     /// The particles as they stand at the end of the last step.
     pub fn particles(&self) -> &[Particle] {
         &self.state.particles
+    }
+
+    /// How often so far a particle came into an obstacle in a step and was put back to its wall.
+    pub fn put_back(&self) -> u64 {
+        self.state.put_back
     }
 
     /// Bytes held for the particles and the work on them.

@@ -19,6 +19,8 @@ macro_rules! builtin_scenes {
 pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/valley",
     "flood/rough-terrain",
+    "flood/cuboid",
+    "flood/cylinder",
     "flood/cloudburst",
     "flood/dam-break",
     "flood/lake-at-rest",

@@ -66,6 +66,9 @@ impl Model for Flood {
         let terrain = &self.surroundings.terrain;
         let on_ground = order.into_iter().map(|particle| {
             let (x, y) = (particle.x + since * particle.u, particle.y + since * particle.v);
+            // What comes into an obstacle is put back before it is shown.
+            let held = self.surroundings.obstacles.hold([x, y]);
+            let (x, y) = if held { (particle.x, particle.y) } else { (x, y) };
             let height = terrain.height(x, y);
             (particle, [x, y, height + particle.depth], 0.0, height, particle.depth, radius(particle))
         });

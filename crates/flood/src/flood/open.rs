@@ -108,6 +108,7 @@ impl Flood {
             external: [0.0; 2],
             on_obstacles: vec![[0.0; 2]; obstacles.names.len()],
             impulses: vec![[0.0; 2]; obstacles.names.len()],
+            put_back: 0,
             overtopped: vec![None; obstacles.names.len()],
         };
         let mut model = Self {

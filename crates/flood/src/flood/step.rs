@@ -133,10 +133,11 @@ impl Flood {
     /// Puts back what has come into obstacles.
     fn keep_out(&mut self) {
         if self.surroundings.obstacles.any() {
-            let State { particles, impulses, momentum, .. } = &mut self.state;
+            let State { particles, impulses, momentum, put_back, .. } = &mut self.state;
             let sum = |impulses: &[[f64; 2]]| impulses.iter().flatten().sum::<f64>();
             let before = sum(impulses);
-            self.surroundings.obstacles.keep_out(particles, self.spacing, impulses);
+            let back = self.surroundings.obstacles.keep_out(particles, self.spacing, impulses);
+            *put_back += back as u64;
             momentum.book(-DENSITY * (sum(impulses) - before));
         }
     }

@@ -88,8 +88,8 @@ impl Obstacles {
     }
 
     /// Puts particles that have come inside back to the wall; what of their velocity led in is taken off. Gives what that adds to
-    /// each obstacle's impulse, m4/s, in `impulses`.
-    pub fn keep_out(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) {
+    /// each obstacle's impulse, m4/s, in `impulses`, and tells how many.
+    pub fn keep_out(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) -> usize {
         let put_back = |particle: &mut Particle| {
             let place = [particle.x, particle.y];
             if particle.outside.is_some() || !self.may_reach(place) {
@@ -106,9 +106,10 @@ impl Obstacles {
             Some((self.outlines.all[nearest.outline].obstacle, taken))
         };
         let taken: Vec<_> = particles.par_iter_mut().filter_map(put_back).collect();
-        for (obstacle, taken) in taken {
+        for &(obstacle, taken) in &taken {
             (0..2).for_each(|axis| impulses[obstacle][axis] += taken[axis]);
         }
+        taken.len()
     }
 
     /// Gives the obstacles tops: their heights, m, above the ground below them; none where they are high enough.

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Corners of a circle.
-const ROUND: usize = 180;
+const ROUND: usize = 360;
 
 /// Rings of places.
 type Rings = Vec<Vec<[f64; 2]>>;
@@ -78,8 +78,8 @@ fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec
 
 fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
     let [x, y] = terrain.to_model(circle.centre);
-    // The polygon has the circle's area.
-    let radius = circle.radius_m * (TAU / (ROUND as f64 * (TAU / ROUND as f64).sin())).sqrt();
+    // The polygon's sides touch the circle from outside: what is not in it is not in the circle.
+    let radius = circle.radius_m / (0.5 * TAU / ROUND as f64).cos();
     let corner = |k: usize| {
         let (sin, cos) = (TAU * k as f64 / ROUND as f64).sin_cos();
         [x + radius * cos, y + radius * sin]

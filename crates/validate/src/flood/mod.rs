@@ -8,6 +8,8 @@ mod isolated_building;
 mod lake;
 mod malpasset;
 mod measured;
+mod rough_terrain;
+mod solids;
 mod structures;
 mod swashes;
 mod thacker;
@@ -44,6 +46,9 @@ pub(crate) const CASES: &[Case] = &[
     isolated_building::ISOLATED_BUILDING,
     triangular_obstacle::TRIANGULAR_OBSTACLE,
     ea_test5::EA_TEST5,
+    rough_terrain::ROUGH_TERRAIN,
+    solids::CUBOID,
+    solids::CYLINDER,
 ];
 
 /// Seed of where particles stand at the start.
