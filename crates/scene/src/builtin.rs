@@ -24,6 +24,7 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/cloudburst",
     "flood/dam-break",
     "flood/lake-at-rest",
+    "flood/city",
     "flood/iowa-river",
     "flood/chishui",
     "gas/maxwell",

@@ -1,6 +1,7 @@
 //! Maps: relief, a classed field over it, marked places, and what a reader needs to read them.
 
 use super::classes::{Classes, hex};
+use super::clip::inside_unit_square;
 use super::ground::Ground;
 use super::png::{encode_indexed, encode_rgb};
 use super::relief::{contour_interval, relief};
@@ -57,6 +58,8 @@ pub(crate) enum PlaceKind {
     Inflow,
     /// A section: a line.
     Section,
+    /// An obstacle: the corners of a polygon.
+    Obstacle,
 }
 
 /// A marked place: its name, and points in the terrain's own coordinates.
@@ -229,12 +232,19 @@ impl MapFigure<'_> {
     }
 
     fn draw_places(&self, svg: &mut Svg, frame: &Frame) {
+        let (obstacles, marks): (Vec<_>, Vec<_>) =
+            self.places.iter().partition(|place| place.kind == PlaceKind::Obstacle);
+        for obstacle in obstacles {
+            let parts: Vec<_> = obstacle.points.iter().map(|point| self.ground.part(*point)).collect();
+            let corners: Vec<_> = inside_unit_square(&parts).into_iter().map(|part| frame.place(part)).collect();
+            draw_place(svg, PlaceKind::Obstacle, &corners);
+        }
         if self.size == Size::Thumb {
             return;
         }
         let mut taken: Vec<[f64; 4]> = Vec::new();
         let mut names = Vec::new();
-        for place in self.places {
+        for place in marks {
             let points: Vec<[f64; 2]> =
                 place.points.iter().map(|point| frame.place(self.ground.part(*point))).collect();
             let Some(anchor) = draw_place(svg, place.kind, &points) else { continue };
@@ -314,13 +324,19 @@ impl MapFigure<'_> {
     fn draw_key(&self, svg: &mut Svg, frame: &Frame, top: f64) -> f64 {
         let start = frame.corner[0].min(frame.width - 546.0);
         let (mut x, y) = (start, top + 12.0);
-        let kinds = [(PlaceKind::Gauge, "gauge"), (PlaceKind::Inflow, "inflow"), (PlaceKind::Section, "section")];
+        let kinds = [
+            (PlaceKind::Gauge, "gauge"),
+            (PlaceKind::Inflow, "inflow"),
+            (PlaceKind::Section, "section"),
+            (PlaceKind::Obstacle, "obstacle"),
+        ];
         for (kind, name) in kinds {
             if !self.places.iter().any(|place| place.kind == kind) {
                 continue;
             }
             let points = match kind {
                 PlaceKind::Section => vec![[x, y - 4.0], [x + 20.0, y - 4.0]],
+                PlaceKind::Obstacle => vec![[x, y - 9.0], [x + 14.0, y - 9.0], [x + 14.0, y], [x, y]],
                 _ => vec![[x + 7.0, y - 4.0]],
             };
             let wide = if kind == PlaceKind::Section { 26.0 } else { 18.0 };
@@ -360,6 +376,7 @@ fn draw_place(svg: &mut Svg, kind: PlaceKind, points: &[[f64; 2]]) -> Option<[f6
     let (first, last) = (*points.first()?, *points.last()?);
     match kind {
         PlaceKind::Gauge => svg.circle(first, 4.5, "gauge"),
+        PlaceKind::Obstacle => svg.path(points.iter().copied(), true, "obstacle"),
         PlaceKind::Section => {
             svg.path(points.iter().copied(), false, "section-under");
             svg.path(points.iter().copied(), false, "section");
@@ -457,6 +474,7 @@ mod tests {
             Place { kind: PlaceKind::Gauge, name: "G & <1>".into(), points: vec![[50.0, 50.0]] },
             Place { kind: PlaceKind::Inflow, name: "river".into(), points: vec![[0.0, 50.0]] },
             Place { kind: PlaceKind::Section, name: "S".into(), points: vec![[20.0, 0.0], [20.0, 100.0]] },
+            Place { kind: PlaceKind::Obstacle, name: "O".into(), points: vec![[5.0, 5.0], [15.0, 5.0], [5.0, 30.0]] },
         ];
         for extent in [[400.0, 200.0], [4000.0, 20.0], [20.0, 4000.0]] {
             let ground = ground(extent);
@@ -477,6 +495,7 @@ mod tests {
                 let figure = map.figure();
                 assert!(figure.size()[0] <= 1001.0, "{extent:?} {size:?}");
                 assert!(!figure.inline().contains("NaN"));
+                assert!(figure.inline().contains("\"obstacle\""), "{extent:?} {size:?}");
             }
         }
     }

@@ -3,6 +3,7 @@
 mod balls;
 mod chart;
 mod classes;
+mod clip;
 mod ground;
 mod map;
 mod plot;

@@ -191,7 +191,7 @@ fn draw_snapshots(
             ground: &report.ground,
             relief_url: &reference,
             layer: Some(&layer),
-            places: &[],
+            places: &report.places,
             size: Size::Thumb,
             heading: None,
             title: &caption,

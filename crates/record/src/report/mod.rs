@@ -14,13 +14,14 @@ use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
-use corpuscle_scene::{Flood, FloodScene, Scene};
+use corpuscle_scene::{Circle, Flood, FloodScene, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
 
 pub use dew::DewReport;
 pub use gas::GasReport;
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -68,13 +69,14 @@ impl Whole {
         Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: range }
     }
 
-    /// Round the cells with a value and the places.
+    /// Round the cells with a value and the places but obstacles.
     fn window(&self, field: Option<&Field>, places: &[Place], terrain: &Terrain) -> Window {
         let [columns, _] = self.grid;
         let values = field.map_or(&[][..], |field| &field.values).iter().enumerate();
         let wet = values.filter(|(_, value)| !value.is_nan());
         let cells = wet.map(|(cell, _)| [(cell % columns) as f64, (cell / columns) as f64]);
-        let marked = places.iter().flat_map(|place| &place.points);
+        let marks = places.iter().filter(|place| place.kind != PlaceKind::Obstacle);
+        let marked = marks.flat_map(|place| &place.points);
         let marked = marked.map(|point| terrain.map_grid().georeference.position(*point));
         Window::round(self.grid, self.cell, cells.chain(marked))
     }
@@ -208,5 +210,22 @@ fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
         let at = gauge.at.or(from_lon_lat.map(|model| terrain.to_own(model)));
         Place { kind: PlaceKind::Gauge, name: gauge.name.clone(), points: at.into_iter().collect() }
     });
-    sections.chain(inflows).chain(gauges).collect()
+    let obstacles = flood.obstacle.iter().map(|obstacle| Place {
+        kind: PlaceKind::Obstacle,
+        name: obstacle.name.clone(),
+        points: obstacle.polygon.clone().or(obstacle.circle.map(|circle| round(circle, terrain))).unwrap_or_default(),
+    });
+    // An obstacle from a file has no corners here: it shows as ground that stays dry.
+    let drawn = obstacles.filter(|obstacle| !obstacle.points.is_empty());
+    sections.chain(inflows).chain(gauges).chain(drawn).collect()
+}
+
+/// A circle as a polygon in the terrain's own coordinates.
+fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
+    let [x, y] = terrain.to_model(circle.centre);
+    let at = |corner: u32| {
+        let (sin, cos) = (TAU * f64::from(corner) / 48.0).sin_cos();
+        terrain.to_own([x + circle.radius_m * cos, y + circle.radius_m * sin])
+    };
+    (0..48).map(at).collect()
 }

@@ -1,5 +1,6 @@
 //! A dam break against an oblique building in a flume (Soares-Frazao & Zech 2007).
 
+use super::measured::{Watched, root_mean_square, table};
 use super::{SEED, rows, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -8,7 +9,6 @@ use corpuscle_scene::{Edge, Edges, Flood as Settings, Gauge, Manning, Obstacle};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 pub(super) const ISOLATED_BUILDING: Case = Case {
     name: "flood/isolated-building",
@@ -61,17 +61,8 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     };
     let bodies = [water(0.4, 0.0, 6.75), water(0.02, 6.75, LENGTH)];
     let mut flood = Flood::with_water(&settings, SEED, folder, terrain, &bodies)?;
-    let looks = (TIME / LOOK) as usize;
-    let mut seen = Vec::with_capacity(looks + 1);
-    for look in 0..=looks {
-        flood.advance_to(look as f64 * LOOK, &AtomicBool::new(false))?;
-        seen.push(flood.gauge_row());
-    }
-    let at = |time: f64, column: usize| {
-        let look = (time / LOOK).clamp(0.0, looks as f64 - 1e-9);
-        let (before, part) = (look as usize, look.fract());
-        seen[before][column] * (1.0 - part) + seen[before + 1][column] * part
-    };
+    let seen = Watched::run(&mut flood, TIME, LOOK)?;
+    let at = |time: f64, column: usize| seen.at(time, column);
     let mut out = Vec::new();
     for gauge in 0..6 {
         let pairs = depths.iter().filter_map(|row| Some([at(row[0]?, 4 * gauge), row[gauge + 1]?]));
@@ -120,17 +111,4 @@ fn flume(folder: &Path) -> Settings {
     };
     settings.obstacle = ["dam_1", "dam_2", "building"].map(obstacle).into();
     settings
-}
-
-fn root_mean_square(pairs: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let [sum, count] = pairs.fold([0.0; 2], |[sum, count], [a, b]| [sum + (a - b).powi(2), count + 1.0]);
-    (sum / count).sqrt()
-}
-
-/// Rows of numbers, separated by commas or tabs, after some lines of headers; none where a field is empty.
-fn table(path: &Path, headers: usize) -> Result<Vec<Vec<Option<f64>>>, ModelError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
-    let fields = |line: &str| line.split([',', '\t']).map(|field| field.trim().parse().ok()).collect();
-    Ok(text.lines().skip(headers).filter(|line| !line.trim().is_empty()).map(fields).collect())
 }

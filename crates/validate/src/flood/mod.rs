@@ -3,14 +3,17 @@
 pub(crate) mod bench;
 mod channel;
 mod dam_break;
+mod ea_test5;
 mod isolated_building;
 mod lake;
 mod malpasset;
+mod measured;
 mod rough_terrain;
 mod solids;
 mod structures;
 mod swashes;
 mod thacker;
+mod triangular_obstacle;
 mod weather;
 
 use crate::{Case, Row};
@@ -41,6 +44,8 @@ pub(crate) const CASES: &[Case] = &[
     structures::STRUCTURES,
     structures::TIDE,
     isolated_building::ISOLATED_BUILDING,
+    triangular_obstacle::TRIANGULAR_OBSTACLE,
+    ea_test5::EA_TEST5,
     rough_terrain::ROUGH_TERRAIN,
     solids::CUBOID,
     solids::CYLINDER,

@@ -1,0 +1,88 @@
+//! The valley below a failing dam of the Environment Agency's benchmark of flood models.
+
+use super::measured::{Watched, table};
+use super::{SEED, rows, settings};
+use crate::{Case, Options, Row};
+use corpuscle_flood::Flood;
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{
+    Edges, Flood as Settings, Gauge, Inflow, Manning, NoData, Series, Terrain as TerrainScene, TerrainFile,
+};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) const EA_TEST5: Case = Case {
+    name: "flood/ea-test5",
+    about: "A valley below a failing dam (test 5 of the Environment Agency's benchmark of 2D flood models, Neelz & Pender \
+            2013): 3000 m3/s at most over a line of 260 m, n 0.04, the first 5 h; highest depth and arrival (0.05 m) at \
+            seven gauges against LISFLOOD-FP 8.1 FV1 on cells of 50 m.",
+    slow: true,
+    run: ea_test5,
+};
+
+const TIME: f64 = 5.0 * 3600.0;
+
+/// Distance of particles in water 2 m deep, m.
+const SPACING: f64 = 25.0;
+
+/// Time between looks, s.
+const LOOK: f64 = 10.0;
+
+/// Names of the measures at a gauge: of depth and of arrival.
+const MEASURES: [[&str; 2]; 7] = [
+    ["depth_error_G1", "relative_arrival_error_G1"],
+    ["depth_error_G2", "relative_arrival_error_G2"],
+    ["depth_error_G3", "relative_arrival_error_G3"],
+    ["depth_error_G4", "relative_arrival_error_G4"],
+    ["depth_error_G5", "relative_arrival_error_G5"],
+    ["depth_error_G6", "relative_arrival_error_G6"],
+    ["depth_error_G7", "relative_arrival_error_G7"],
+];
+
+fn ea_test5(options: &Options) -> Vec<Row> {
+    match &options.data {
+        None => vec![Row::without_data(EA_TEST5.name, options)],
+        Some(data) => rows(EA_TEST5.name, measure(&data.join("ea_test5"))),
+    }
+}
+
+fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
+    let peers = table(&folder.join("peers-50m-first-5h.csv"), 1)?;
+    let ground = TerrainFile { path: folder.join("dem-10m.tif"), crs: None, no_data: NoData::Wall };
+    let terrain =
+        Terrain::open(&TerrainScene::File(ground), SEED, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
+    let mut flood = Flood::with_water(&valley(folder)?, SEED, folder, Arc::new(terrain), &[])?;
+    let seen = Watched::run(&mut flood, TIME, LOOK)?;
+    let mut out = Vec::new();
+    for (gauge, (peer, [depth, arrival])) in peers.iter().zip(MEASURES).enumerate() {
+        let fv1 = |column: usize| peer.get(column).copied().flatten().unwrap_or(f64::NAN);
+        let error = (seen.largest(4 * gauge) - fv1(2)).abs();
+        out.push(Row::at_most(EA_TEST5.name, depth, error, "m", 0.3));
+        let error = (seen.first(4 * gauge, 0.05) / fv1(4) - 1.0).abs();
+        out.push(Row::at_most(EA_TEST5.name, arrival, error, "", 0.15));
+    }
+    let water = flood.ledger().balances[0].relative_error().abs();
+    out.push(Row::at_most(EA_TEST5.name, "water_relative_error", water, "", 1e-12));
+    Ok(out)
+}
+
+fn valley(folder: &Path) -> Result<Settings, ModelError> {
+    let mut settings = settings(TIME, SPACING, 2.0, Edges::default());
+    settings.manning = Manning::Number(0.04);
+    settings.map_every_s = Some(TIME);
+    let line = table(&folder.join("inflow-line.csv"), 1)?;
+    let discharge = table(&folder.join("inflow.csv"), 2)?;
+    settings.inflow = vec![Inflow {
+        name: "dam".into(),
+        at: None,
+        line: Some(line.iter().filter_map(|row| Some([row[0]?, row[1]?])).collect()),
+        discharge_m3_per_s: Series::Table(discharge.iter().filter_map(|row| Some([row[0]?, row[1]?])).collect()),
+        velocity_m_per_s: [0.0; 2],
+    }];
+    let gauge = |(number, row): (usize, &Vec<Option<f64>>)| {
+        Some(Gauge { name: format!("G{}", number + 1), at: Some([row[1]?, row[2]?]), lon_lat: None })
+    };
+    settings.gauge = table(&folder.join("gauges.csv"), 1)?.iter().enumerate().filter_map(gauge).collect();
+    Ok(settings)
+}

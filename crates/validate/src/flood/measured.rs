@@ -1,0 +1,58 @@
+//! Reading what was measured, and watching gauges to compare with it.
+
+use corpuscle_flood::Flood;
+use corpuscle_model::{Model, ModelError};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// The gauges of a flood, looked at in even steps of time from its start.
+pub(super) struct Watched {
+    /// Time between looks, s.
+    look: f64,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Watched {
+    /// Runs a flood to `until` s and looks at its gauges every `look` s.
+    pub fn run(flood: &mut Flood, until: f64, look: f64) -> Result<Self, ModelError> {
+        let mut rows = Vec::new();
+        for number in 0..=(until / look).round() as usize {
+            flood.advance_to(number as f64 * look, &AtomicBool::new(false))?;
+            rows.push(flood.gauge_row());
+        }
+        Ok(Self { look, rows })
+    }
+
+    /// What a column read at `time` s, linearly between the looks before and after.
+    pub fn at(&self, time: f64, column: usize) -> f64 {
+        let last = (self.rows.len() - 1) as f64;
+        let look = (time / self.look).clamp(0.0, last - 1e-9);
+        let (before, part) = (look as usize, look.fract());
+        self.rows[before][column] * (1.0 - part) + self.rows[before + 1][column] * part
+    }
+
+    /// Time of the first look at which a column was `least` or more, s; infinite where none was.
+    pub fn first(&self, column: usize, least: f64) -> f64 {
+        let look = self.rows.iter().position(|row| row[column] >= least);
+        look.map_or(f64::INFINITY, |look| look as f64 * self.look)
+    }
+
+    /// The largest that a column read.
+    pub fn largest(&self, column: usize) -> f64 {
+        self.rows.iter().map(|row| row[column]).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Root of the mean square of the differences of pairs.
+pub(super) fn root_mean_square(pairs: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let [sum, count] = pairs.fold([0.0; 2], |[sum, count], [a, b]| [sum + (a - b).powi(2), count + 1.0]);
+    (sum / count).sqrt()
+}
+
+/// Rows of numbers, separated by commas or tabs, after some lines of headers; none where a field is empty.
+pub(super) fn table(path: &Path, headers: usize) -> Result<Vec<Vec<Option<f64>>>, ModelError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
+    let fields = |line: &str| line.split([',', '\t']).map(|field| field.trim().parse().ok()).collect();
+    Ok(text.lines().skip(headers).filter(|line| !line.trim().is_empty()).map(fields).collect())
+}
