@@ -14,6 +14,7 @@ mod grid;
 mod ground;
 mod holes;
 mod mosaic;
+mod polygons;
 mod raster;
 mod summary;
 mod surface;
@@ -27,6 +28,7 @@ pub use generated::valley_centre;
 pub use georeference::Georeference;
 pub use grid::MapGrid;
 pub use mosaic::merge;
+pub use polygons::{Polygon, polygons_of_geojson};
 pub use raster::{
     MapBox, Raster, RasterField, Survey, Window, read_raster, read_raster_part, survey, write_geotiff, write_raster,
 };

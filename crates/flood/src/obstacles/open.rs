@@ -4,16 +4,12 @@ use super::{Obstacles, Outline};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Circle, Flood as Settings, Obstacle};
-use corpuscle_terrain::{Bounds, Terrain};
-use geojson::{GeoJson, GeometryValue};
+use corpuscle_terrain::{Bounds, Polygon, Terrain, polygons_of_geojson};
 use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Corners of a circle.
 const ROUND: usize = 360;
-
-/// Rings of places.
-type Rings = Vec<Vec<[f64; 2]>>;
 
 /// Opens the obstacles of a scene for particles that stand `spacing` m apart where they are closest and reach at most `reach` m; `h0`
 /// is the kernel's reach in scheme paper, m.
@@ -32,7 +28,7 @@ pub(crate) fn open(
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
         let who = format!("the obstacle '{}'", obstacle.name);
         for rings in polygons(obstacle, terrain, folder)? {
-            let rings: Rings = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
+            let rings: Polygon = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
             let Some(outer) = rings.first() else { continue };
             check_overlap(&who, outer, terrain)?;
             let rings = rings.into_iter().map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();
@@ -47,7 +43,7 @@ pub(crate) fn open(
 }
 
 /// The polygons of an obstacle, in model coordinates.
-fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Rings>, ModelError> {
+fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Polygon>, ModelError> {
     let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|place| terrain.to_model(place)).collect();
     if let Some(polygon) = &obstacle.polygon {
         return Ok(vec![vec![to_model(polygon.clone())]]);
@@ -60,20 +56,11 @@ fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec
     let path = folder.join(file);
     let refused =
         |what: String| ModelError::Setup(format!("{} (obstacle '{}'): {what}", path.display(), obstacle.name));
-    let polygons = read(&path).map_err(refused)?;
+    let polygons = read(&path, terrain).map_err(refused)?;
     if polygons.is_empty() {
         return Err(refused("holds no polygon; give areas, not points or lines".into()));
     }
-    let could_be_degrees = |[x, y]: &[f64; 2]| (-180.0..=180.0).contains(x) && (-90.0..=90.0).contains(y);
-    let is_geojson = matches!(extension(&path).as_str(), "geojson" | "json");
-    // GeoJSON is in longitude and latitude (RFC 7946), but many files have the terrain's own coordinates.
-    let degrees = is_geojson && polygons.iter().flatten().flatten().all(could_be_degrees);
-    let place = |place: [f64; 2]| match terrain.from_lon_lat(place) {
-        Ok(model) if degrees => model,
-        _ => terrain.to_model(place),
-    };
-    let ring = |ring: Vec<[f64; 2]>| ring.into_iter().map(place).collect();
-    Ok(polygons.into_iter().map(|rings| rings.into_iter().map(ring).collect()).collect())
+    Ok(polygons.into_iter().map(|rings| rings.into_iter().map(to_model).collect()).collect())
 }
 
 fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
@@ -126,51 +113,24 @@ fn extension(path: &Path) -> String {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-fn read(path: &Path) -> Result<Vec<Rings>, String> {
+fn read(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     match extension(path).as_str() {
-        "geojson" | "json" => geojson(path),
+        "geojson" | "json" => geojson(path, terrain),
         "shp" => shapefile(path),
         "csv" => csv(path),
         other => Err(format!("'.{other}' is no format of polygons here; give .geojson, .shp or .csv")),
     }
 }
 
-fn geojson(path: &Path) -> Result<Vec<Rings>, String> {
+fn geojson(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
-    let geojson: GeoJson = text.parse().map_err(|error: geojson::Error| error.to_string())?;
-    let mut polygons = Vec::new();
-    match &geojson {
-        GeoJson::Geometry(geometry) => collect(&geometry.value, &mut polygons),
-        GeoJson::Feature(feature) => {
-            feature.geometry.iter().for_each(|geometry| collect(&geometry.value, &mut polygons))
-        }
-        GeoJson::FeatureCollection(collection) => {
-            let geometries = collection.features.iter().filter_map(|feature| feature.geometry.as_ref());
-            geometries.for_each(|geometry| collect(&geometry.value, &mut polygons));
-        }
-    }
-    Ok(polygons)
-}
-
-fn collect(geometry: &GeometryValue, polygons: &mut Vec<Rings>) {
-    let polygon = |rings: &geojson::PolygonType| -> Rings {
-        let place = |position: &geojson::Position| Some([*position.as_slice().first()?, *position.as_slice().get(1)?]);
-        rings.iter().map(|ring| ring.iter().filter_map(place).collect()).collect()
-    };
-    match geometry {
-        GeometryValue::Polygon { coordinates } => polygons.push(polygon(coordinates)),
-        GeometryValue::MultiPolygon { coordinates } => polygons.extend(coordinates.iter().map(polygon)),
-        GeometryValue::GeometryCollection { geometries } => {
-            geometries.iter().for_each(|geometry| collect(&geometry.value, polygons));
-        }
-        _ => {}
-    }
+    Ok(terrain.polygons_to_own(polygons_of_geojson(&text)?))
 }
 
 /// The rings of each shape together: holes are rings too, by the even-odd rule.
-fn shapefile(path: &Path) -> Result<Vec<Rings>, String> {
+fn shapefile(path: &Path) -> Result<Vec<Polygon>, String> {
     let shapes = shapefile::read_shapes(path).map_err(|error| error.to_string())?;
-    let polygon = |shape: shapefile::Shape| -> Option<Rings> {
+    let polygon = |shape: shapefile::Shape| -> Option<Polygon> {
         match shape {
             shapefile::Shape::Polygon(polygon) => {
                 Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
@@ -188,7 +148,7 @@ fn shapefile(path: &Path) -> Result<Vec<Rings>, String> {
 }
 
 /// Corners in columns x and y; where there is a column `name`, each name is a polygon.
-fn csv(path: &Path) -> Result<Vec<Rings>, String> {
+fn csv(path: &Path) -> Result<Vec<Polygon>, String> {
     let reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path);
     let mut reader = reader.map_err(|error| error.to_string())?;
     let headers = reader.headers().map_err(|error| error.to_string())?.clone();

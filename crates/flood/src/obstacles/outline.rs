@@ -1,5 +1,6 @@
 //! Outlines of obstacles: which places are inside, and the way to the nearest wall.
 
+use crate::setup::is_inside;
 use corpuscle_terrain::Bounds;
 
 /// A polygon of rings, each closed by itself; places that an odd number of them hold are inside.
@@ -38,9 +39,7 @@ impl Outline {
 
     /// Whether a place is inside, by the even-odd rule.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
-        let crosses =
-            |[a, b]: &[[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-        self.sides().filter(crosses).count() % 2 == 1
+        self.rings.iter().filter(|ring| is_inside(ring, x, y)).count() % 2 == 1
     }
 
     /// The way from its nearest wall to a place, m.

@@ -2,8 +2,7 @@
 
 use super::wet_area;
 use crate::RecordError;
-use corpuscle_terrain::Terrain;
-use geojson::{GeoJson, GeometryValue};
+use corpuscle_terrain::{Polygon, Terrain, polygons_of_geojson};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -34,9 +33,8 @@ pub struct ExtentScores {
 /// [`RecordError::Read`], or [`RecordError::Content`] for a file that is no GeoJSON or has no polygon on the terrain.
 pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<ExtentScores, RecordError> {
     let text = fs::read_to_string(observed).map_err(RecordError::read(observed))?;
-    let geojson: GeoJson = text.parse().map_err(|error| RecordError::content(observed, error))?;
-    let mut polygons = Vec::new();
-    collect_polygons(&geojson, &mut polygons);
+    let polygons = polygons_of_geojson(&text).map_err(|error| RecordError::content(observed, error))?;
+    let polygons = terrain.polygons_to_own(polygons);
     let observed_wet = draw(&polygons, terrain);
     if !observed_wet.contains(&true) {
         let count = polygons.len();
@@ -64,53 +62,13 @@ fn scores(cells: &[[bool; 2]], terrain: &Terrain) -> ExtentScores {
     }
 }
 
-/// Rings of places.
-type Polygon = Vec<Vec<[f64; 2]>>;
-
-fn collect_polygons(geojson: &GeoJson, polygons: &mut Vec<Polygon>) {
-    match geojson {
-        GeoJson::Geometry(geometry) => collect_from(&geometry.value, polygons),
-        GeoJson::Feature(feature) => {
-            feature.geometry.iter().for_each(|geometry| collect_from(&geometry.value, polygons));
-        }
-        GeoJson::FeatureCollection(collection) => {
-            let geometries = collection.features.iter().filter_map(|feature| feature.geometry.as_ref());
-            geometries.for_each(|geometry| collect_from(&geometry.value, polygons));
-        }
-    }
-}
-
-fn collect_from(geometry: &GeometryValue, polygons: &mut Vec<Polygon>) {
-    let polygon = |rings: &geojson::PolygonType| -> Polygon {
-        let place = |position: &geojson::Position| [position.as_slice()[0], position.as_slice()[1]];
-        rings.iter().map(|ring| ring.iter().filter(|p| p.as_slice().len() >= 2).map(place).collect()).collect()
-    };
-    match geometry {
-        GeometryValue::Polygon { coordinates } => polygons.push(polygon(coordinates)),
-        GeometryValue::MultiPolygon { coordinates } => polygons.extend(coordinates.iter().map(polygon)),
-        GeometryValue::GeometryCollection { geometries } => {
-            geometries.iter().for_each(|geometry| collect_from(&geometry.value, polygons));
-        }
-        _ => {}
-    }
-}
-
 /// The cells of the terrain's map grid whose centres are inside one of the polygons.
 fn draw(polygons: &[Polygon], terrain: &Terrain) -> Vec<bool> {
     let grid = terrain.map_grid();
-    let could_be_degrees = |[x, y]: &[f64; 2]| (-180.0..=180.0).contains(x) && (-90.0..=90.0).contains(y);
-    let degrees = polygons.iter().flatten().flatten().all(could_be_degrees);
-    let cell_position = |place: [f64; 2]| {
-        let own = match terrain.from_lon_lat(place) {
-            Ok(model) if degrees => terrain.to_own(model),
-            _ => place,
-        };
-        grid.georeference.position(own)
-    };
     let mut wet = vec![false; grid.columns * grid.rows];
     for polygon in polygons {
         let rings: Vec<Vec<[f64; 2]>> =
-            polygon.iter().map(|ring| ring.iter().map(|place| cell_position(*place)).collect()).collect();
+            polygon.iter().map(|ring| ring.iter().map(|place| grid.georeference.position(*place)).collect()).collect();
         fill(&rings, grid.columns, &mut wet);
     }
     wet
