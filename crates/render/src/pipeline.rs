@@ -23,7 +23,6 @@ impl Recipe<'_> {
         self.build(gpu, "fragment", Some(COLOUR_FORMAT), Some(wgpu::CompareFunction::GreaterEqual))
     }
 
-    #[expect(dead_code, reason = "the first thing that throws shadows comes with the next change")]
     /// A pipeline that draws into the sun's depth map; `entry` is its fragment entry point.
     pub(crate) fn cast(&self, gpu: &Gpu, entry: &str) -> wgpu::RenderPipeline {
         self.build(gpu, entry, None, Some(wgpu::CompareFunction::GreaterEqual))
