@@ -8,6 +8,7 @@ use crate::maps::Maps;
 use crate::obstacles;
 use crate::paper::Paper;
 use crate::rain::Ground;
+use crate::refinement::Refinement;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
@@ -115,6 +116,7 @@ impl Flood {
             roughness: Roughness::open(flood, &terrain, folder)?,
             ground,
             structures,
+            refinement: flood.refinement.as_ref().map(|refinement| Refinement::new(refinement, volume, spacing)),
             points: setup::point_gauges(flood, &terrain)?,
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
