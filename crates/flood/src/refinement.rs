@@ -56,7 +56,7 @@ impl Refinement {
         limits: &Limits,
         next_id: &mut u64,
     ) -> bool {
-        let mut merged = false;
+        let mut changed = false;
         for number in 0..arrangement.real.len() {
             let particle = &particles[number];
             if particle.outside.is_some() || particle.volume <= 0.0 || particle.depth <= 0.0 {
@@ -67,19 +67,21 @@ impl Refinement {
                     let other = particles[partner];
                     (particles[partner].volume, particles[partner].weight) = (0.0, 0.0);
                     join(&mut particles[number], &other);
-                    merged = true;
+                    changed = true;
                 }
             } else if self.is_wide(particle, gravity) {
                 let axis = emptiest(number, arrangement);
-                if let Some([one, mut other]) = halves(particle, axis, limits) {
+                let change = change_along(axis, number, particles, arrangement);
+                if let Some([one, mut other]) = halves(particle, axis, change, limits) {
                     other.id = *next_id;
                     *next_id += 1;
                     particles[number] = one;
                     particles.push(other);
+                    changed = true;
                 }
             }
         }
-        merged
+        changed
     }
 
     fn is_wide(&self, particle: &Particle, gravity: f64) -> bool {
@@ -145,15 +147,41 @@ fn emptiest(number: usize, arrangement: &Arrangement) -> [f64; 2] {
     [angle.cos(), angle.sin()]
 }
 
+/// How the velocity changes along a direction, 1/s: the line that fits that of the neighbours best.
+fn change_along(axis: [f64; 2], number: usize, particles: &[Particle], arrangement: &Arrangement) -> [f64; 2] {
+    let own = &particles[number];
+    let (mut squares, mut change) = (0.0, [0.0; 2]);
+    for (place, r) in neighbours(arrangement, arrangement.real[number] as usize) {
+        let near = arrangement.particle[place];
+        if near == IMAGE {
+            continue;
+        }
+        let near = &particles[near as usize];
+        let along = (near.x - own.x) * axis[0] + (near.y - own.y) * axis[1];
+        let weight = cubic_spline::value_of_one(r, own.h) * near.weight;
+        squares += weight * along * along;
+        change[0] += weight * along * (near.u - own.u);
+        change[1] += weight * along * (near.v - own.v);
+    }
+    if squares > 0.0 { change.map(|sum| crate::balanced::envf("GRAD", 1.0) * sum / squares) } else { change }
+}
+
 /// The halves of a particle along a direction; none where one would stand beyond an edge or in an obstacle.
-fn halves(particle: &Particle, axis: [f64; 2], limits: &Limits) -> Option<[Particle; 2]> {
-    let apart = APART * particle.area().sqrt();
+fn halves(particle: &Particle, axis: [f64; 2], change: [f64; 2], limits: &Limits) -> Option<[Particle; 2]> {
+    let apart = crate::balanced::envf("APART", APART) * particle.area().sqrt();
     let half = |side: f64| Particle {
         x: particle.x + side * apart * axis[0],
         y: particle.y + side * apart * axis[1],
+        u: particle.u + side * apart * change[0],
+        v: particle.v + side * apart * change[1],
         volume: 0.5 * particle.volume,
         weight: 0.5 * particle.weight,
-        next_h: CLOSER * particle.next_h,
+        depth: particle.depth
+            + side
+                * apart
+                * (0..2).map(|k| axis[k] * (particle.surface_slope[k] - particle.ground_slope[k])).sum::<f64>(),
+        h: crate::balanced::envf("CLOSER", CLOSER) * particle.h,
+        next_h: crate::balanced::envf("CLOSER", CLOSER) * particle.next_h,
         ..*particle
     };
     let halves = [half(-1.0), half(1.0)];
@@ -174,6 +202,8 @@ fn join(particle: &mut Particle, other: &Particle) {
     particle.ax = mean(particle.ax, other.ax);
     particle.ay = mean(particle.ay, other.ay);
     particle.next_h = particle.next_h.max(other.next_h) / CLOSER;
+    particle.h = particle.h.max(other.h);
+    particle.depth = mean(particle.depth, other.depth);
     particle.id = particle.id.min(other.id);
     particle.volume = volume;
     particle.weight += other.weight;
