@@ -22,9 +22,6 @@ pub struct Particle {
     /// Volume by which it counts in the depth of the water round it, m3. That of a particle of its size as the scene asks for
     /// it; `volume / weight` makes the depth exact where its neighbours stand unevenly. Parts of a particle share both.
     pub weight: f64,
-    /// By what its depth is multiplied: where it was split or merged its depth stays as it was, though the particles round it
-    /// stand otherwise, until they have settled. 1 for all others.
-    pub correction: f64,
     /// Smoothing length, m.
     pub h: f64,
     /// Smoothing length for the next step, m.
@@ -56,7 +53,6 @@ impl Particle {
             ay: 0.0,
             volume,
             weight: volume,
-            correction: 1.0,
             h,
             next_h: h,
             depth: 0.0,

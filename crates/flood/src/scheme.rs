@@ -78,9 +78,6 @@ pub(crate) trait Scheme: Send {
     /// Finds depth, next smoothing length and acceleration of the particles as arranged, `step` s after the last time.
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation;
 
-    /// Keeps the depths as the particles say, which were split or merged since they were evaluated and arranged anew.
-    fn keep_depths(&mut self, _particles: &mut [Particle], _surroundings: &Surroundings) {}
-
     /// The particles in their cells, as last arranged.
     fn arrangement(&self) -> &Arrangement;
 

@@ -138,13 +138,11 @@ impl Balanced {
     }
 
     /// Hands depth, ground and next smoothing length to the particles.
-    fn find_depths(&self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) {
+    fn find_depths(&self, particles: &mut [Particle], surroundings: &Surroundings) {
         let Parameters { eta, largest_h, .. } = self.parameters;
         let find = |particle: &mut Particle, place: u32| {
             let density = &self.densities[place as usize];
-            let settled = step * envf("SETTLE", 0.1) * (9.81 * particle.depth).sqrt() / particle.h;
-            particle.correction = 1.0 + (particle.correction - 1.0) / (1.0 + settled);
-            particle.depth = particle.volume * density.alike * particle.correction;
+            particle.depth = particle.volume * density.alike;
             particle.next_h = density.next_h(particle.h, eta).min(largest_h);
             if let Some(level) = surroundings.stage(particle.outside) {
                 particle.depth = (level - particle.ground).max(SHALLOWEST_STAGE * particle.depth);
@@ -174,7 +172,7 @@ impl Balanced {
                 v: particle.v + ahead * particle.ay,
                 surface: particle.surface(),
                 depth: particle.depth,
-                area: 1.0 / (density.alike * particle.correction),
+                area: 1.0 / density.alike,
                 inverse_h: 1.0 / particle.h,
             };
             slopes.ground = particle.ground_slope;
@@ -234,7 +232,7 @@ impl Scheme for Balanced {
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
         self.find_densities();
         self.add_walls_to_densities(particles, &surroundings.obstacles);
-        self.find_depths(particles, surroundings, step);
+        self.find_depths(particles, surroundings);
         self.fill_columns(particles, 0.5 * step);
         self.show_images(surroundings);
         let obstacles = &surroundings.obstacles;
@@ -244,18 +242,6 @@ impl Scheme for Balanced {
         forces::find(&self.parameters, &self.arrangement, &self.columns, &self.slopes, &mut self.forces);
         self.add_walls_to_forces(obstacles);
         self.take_over(particles)
-    }
-
-    fn keep_depths(&mut self, particles: &mut [Particle], surroundings: &Surroundings) {
-        self.find_densities();
-        self.add_walls_to_densities(particles, &surroundings.obstacles);
-        let places = particles.par_iter_mut().zip(&self.arrangement.real);
-        places.for_each(|(particle, &place)| {
-            let correction = particle.depth / (particle.volume * self.densities[place as usize].alike);
-            if particle.outside.is_none() && (correction / particle.correction - 1.0).abs() > 1e-9 {
-                particle.correction = correction.clamp(0.5, 2.0);
-            }
-        });
     }
 
     fn arrangement(&self) -> &Arrangement {
@@ -274,11 +260,4 @@ impl Scheme for Balanced {
             + 8 * self.weights.capacity()
             + self.spare.capacity() * size_of::<Particle>()
     }
-}
-
-pub fn envf(name: &str, default: f64) -> f64 {
-    use std::sync::OnceLock;
-    static A: OnceLock<std::collections::HashMap<String, f64>> = OnceLock::new();
-    let map = A.get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k, v.parse().ok()?))).collect());
-    map.get(name).copied().unwrap_or(default)
 }

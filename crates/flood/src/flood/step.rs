@@ -2,7 +2,6 @@
 
 use super::{DENSITY, Flood, State};
 use crate::particle::Particle;
-use crate::refinement::Limits;
 use crate::sampling::Sampler;
 use corpuscle_model::ModelError;
 use corpuscle_scene::Scheme as SchemeName;
@@ -77,13 +76,13 @@ impl Flood {
 
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
         let step = self.state.time_step;
-        self.refine();
         self.carry_beyond();
         self.push(step, Part::Before);
         self.keep_out();
+        let merged = self.refine();
         let taken = self.regulate(step);
         self.gain(step);
-        if self.weather() | taken {
+        if self.weather() | taken | merged {
             self.state.particles.retain(|particle| particle.volume > 0.0);
         }
         if !self.renew() {
@@ -135,21 +134,14 @@ impl Flood {
         self.state.momentum.book(DENSITY * self.of_blocks.iter().sum::<f64>());
     }
 
-    /// Merges and splits particles, where it is time to.
-    fn refine(&mut self) {
+    /// Merges and splits particles, where it is time to; whether particles are left without volume, to be taken out.
+    fn refine(&mut self) -> bool {
         let Some(refinement) = self.refinement.filter(|_| self.state.steps.is_multiple_of(REFINED)) else {
-            return;
+            return false;
         };
-        let limits = Limits { edges: &self.surroundings.edges, obstacles: &self.surroundings.obstacles };
         let State { particles, next_id, .. } = &mut self.state;
-        if refinement.refine(particles, self.scheme.arrangement(), self.settings.gravity_m_per_s2, &limits, next_id) {
-            particles.retain(|particle| particle.volume > 0.0);
-            self.state.sizes.even = false;
-            self.arrange();
-            if crate::balanced::envf("KEEP", 1.0) > 0.0 {
-                self.scheme.keep_depths(&mut self.state.particles, &self.surroundings);
-            }
-        }
+        let obstacles = &self.surroundings.obstacles;
+        refinement.refine(particles, self.scheme.arrangement(), obstacles, self.settings.gravity_m_per_s2, next_id)
     }
 
     /// Puts back what has come into obstacles.
