@@ -17,11 +17,10 @@ pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), FetchError> {
 fn try_write(path: &Path, content: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder)?;
-    let mut file = tempfile::NamedTempFile::new_in(folder)?;
-    file.write_all(&Sha256::digest(content))?;
-    file.write_all(content)?;
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    corpuscle_whole::write_whole(path, |file| {
+        file.write_all(&Sha256::digest(content))?;
+        file.write_all(content)
+    })
 }
 
 /// What a sealed file holds.

@@ -1,10 +1,8 @@
 //! Classes of values and their colours, as a legend shows them.
 
+use super::colour::Colour;
 use super::text::short_number;
 use super::ticks::{self, TimeUnit};
-
-/// A colour: red, green, blue.
-pub(crate) type Colour = [u8; 3];
 
 /// A kind of quantity and its colours. All ramps change steadily in lightness, so they hold without colour vision too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,11 +125,6 @@ impl Classes {
             None => range,
         }
     }
-}
-
-/// `#rrggbb`.
-pub(crate) fn hex([red, green, blue]: Colour) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn sorted(values: &[f32]) -> Vec<f32> {

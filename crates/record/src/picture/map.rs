@@ -1,7 +1,8 @@
 //! Maps: relief, a classed field over it, marked places, and what a reader needs to read them.
 
-use super::classes::{Classes, hex};
+use super::classes::Classes;
 use super::clip::inside_unit_square;
+use super::colour::hex;
 use super::ground::Ground;
 use super::png::{encode_indexed, encode_rgb};
 use super::relief::{contour_interval, relief};

@@ -7,19 +7,17 @@ mod clip;
 mod ground;
 mod map;
 mod plot;
-mod png;
 mod relief;
 mod resample;
 mod solids;
-mod style;
-mod svg;
-mod text;
-mod ticks;
 mod window;
 
-pub(crate) use balls::{Across, Balls, Disc, Key, Side, from_hex, of_speed};
+use corpuscle_drawing::{bars, colour, png, style, svg, text, ticks};
+
+pub(crate) use balls::{Across, Balls, Disc, Key, Side};
 pub(crate) use chart::{Chart, Series};
-pub(crate) use classes::{Classes, Colour, Ramp};
+pub(crate) use classes::{Classes, Ramp};
+pub(crate) use colour::{Colour, from_hex, of_part};
 pub(crate) use ground::Ground;
 pub(crate) use map::{Layer, MapFigure, Place, PlaceKind, Size, ground_image, heading, legend};
 pub(crate) use plot::plot;

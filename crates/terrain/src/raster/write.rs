@@ -2,10 +2,10 @@
 
 use super::Raster;
 use crate::{Georeference, MapGrid, TerrainError};
+use corpuscle_whole::WholeFile;
 use geotiff_reader::transform::GeoTransform;
 use geotiff_writer::{Compression, GeoTiffBuilder, Predictor, RasterType};
 use ndarray::ArrayView2;
-use std::io::{BufWriter, Write};
 use std::path::Path;
 
 /// Side of a tile in the file, cells.
@@ -40,13 +40,9 @@ fn write(
     let filled: Vec<f32> = values.iter().map(|value| if value.is_nan() { no_data } else { *value }).collect();
     let array = ArrayView2::from_shape((rows, columns), &filled).map_err(|error| TerrainError::write(path, error))?;
     let builder = builder(place, [columns, rows], no_data);
-    let mut file = temporary_beside(path).map_err(|error| TerrainError::write(path, error))?;
-    let mut buffer = BufWriter::new(file.as_file_mut());
-    builder.write_2d_to(&mut buffer, array).map_err(|error| TerrainError::write(path, error))?;
-    buffer.flush().map_err(|error| TerrainError::write(path, error))?;
-    drop(buffer);
-    file.persist(path).map_err(|error| TerrainError::write(path, error))?;
-    Ok(())
+    let mut file = WholeFile::create(path).map_err(|error| TerrainError::write(path, error))?;
+    builder.write_2d_to(&mut file, array).map_err(|error| TerrainError::write(path, error))?;
+    file.finish().map_err(|error| TerrainError::write(path, error))
 }
 
 /// What the file says about itself.
@@ -62,17 +58,4 @@ fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: f32) -> G
         .compression(Compression::Deflate)
         .predictor(Predictor::FloatingPoint)
         .tile_size(TILE, TILE)
-}
-
-/// A temporary file in the same folder, to be renamed, as readable as a file usually is.
-fn temporary_beside(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Temporary files are private unless told otherwise; the user's mask still applies.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
 }

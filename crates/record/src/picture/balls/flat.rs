@@ -1,9 +1,9 @@
 //! Balls in two dimensions: to scale, seen from above.
 
-use super::colour::hex;
 use super::paint::Flat;
 use super::{Balls, Disc, MOST, Side};
-use crate::picture::classes::Colour;
+use crate::picture::colour::Colour;
+use crate::picture::colour::hex;
 use crate::picture::png::data_url;
 use crate::picture::svg::{Figure, Svg};
 

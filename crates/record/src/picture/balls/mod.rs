@@ -1,15 +1,11 @@
 //! Balls in their box: flat in two dimensions, as shaded spheres in three.
 
-mod colour;
 mod flat;
 mod key;
 mod paint;
 mod space;
 
-pub(crate) use colour::{from_hex, of_speed};
-pub(crate) use key::{scale_bar, value_bar};
-
-use super::classes::Colour;
+use super::colour::Colour;
 use super::svg::{Anchor, Figure, Svg};
 
 /// A ball to be drawn.

@@ -1,7 +1,7 @@
 //! Pictures of many balls, pixel by pixel.
 
-use super::colour::mix;
-use crate::picture::classes::Colour;
+use crate::picture::colour::Colour;
+use crate::picture::colour::mix;
 use crate::picture::png::encode_rgba;
 
 /// Discs side by side on a transparent ground.

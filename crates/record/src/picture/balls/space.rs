@@ -1,8 +1,8 @@
 //! Balls in three dimensions: shaded spheres in a box drawn in perspective.
 
-use super::colour::mix;
 use super::paint::{Seen, Spheres};
 use super::{Balls, MOST, Side};
+use crate::picture::colour::mix;
 use crate::picture::png::data_url;
 use crate::picture::svg::{Figure, Svg};
 

@@ -8,7 +8,8 @@ mod view;
 pub(crate) use drops::Cap;
 pub(crate) use view::{Vector, View};
 
-use super::balls::{of_speed, scale_bar, value_bar};
+use super::bars::{scale_bar, value_bar};
+use super::colour::of_part;
 use super::png::{data_url, encode_rgb};
 use super::svg::{Anchor, Figure, Svg};
 use corpuscle_model::{SolidShape, Surface};
@@ -76,7 +77,7 @@ impl SolidsPicture<'_> {
         for (colour, hit) in colours.iter_mut().zip(&hits).filter(|(_, hit)| hit.solid == Some(0)) {
             if let Some(value) = field.at(hit.place, hit.normal) {
                 let bright = 0.85 + 0.15 * (-dot(hit.normal, screen.view.ahead)).max(0.0);
-                let shown = of_speed(value / most).map(|channel| f64::from(channel) * bright);
+                let shown = of_part(value / most).map(|channel| f64::from(channel) * bright);
                 *colour = mix(BEHIND, shown, hit.cover);
             }
         }

@@ -1,6 +1,6 @@
 //! The air in a slice through the middle of the box, coloured by its speed.
 
-use crate::picture::{Balls, Colour, Disc, Figure, Key, Side, of_speed};
+use crate::picture::{Balls, Colour, Disc, Figure, Key, Side, of_part};
 use corpuscle_model::{Frame, Model, ParticleSet};
 use corpuscle_scene::dew::Face;
 use corpuscle_scene::{Axis, Dew};
@@ -38,7 +38,7 @@ pub(super) fn slice(dew: &Dew, model: &dyn Model) -> Result<Option<Figure>, Stri
         let [x, y] = [set.position[at][right], set.position[at][up]];
         Disc { position: [x, y, 0.0], radius: 0.5 * dew.spacing_m, colour }
     };
-    let coloured = |at: usize| disc(air, at, of_speed((speed(at) / most).min(1.0)));
+    let coloured = |at: usize| disc(air, at, of_part((speed(at) / most).min(1.0)));
     let solids = set(&frame, "solid");
     let solid = solids
         .iter()

@@ -1,6 +1,6 @@
 //! From what a model shows of a gas to the picture of it.
 
-use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_speed};
+use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_part};
 use corpuscle_model::{Container, Frame, Model, ParticleSet};
 use corpuscle_scene::{Axis, Gas, Units, Wall, padded};
 
@@ -108,7 +108,7 @@ fn discs<'a>(gas: &Gas, set: &'a ParticleSet, key: &Key) -> impl Iterator<Item =
     (0..set.len()).map(move |i| Disc {
         position: set.position[i],
         radius: set.radius[i],
-        colour: most.map_or(of_kind, |most| of_speed(length(set.velocity[i]) / most)),
+        colour: most.map_or(of_kind, |most| of_part(length(set.velocity[i]) / most)),
     })
 }
 

@@ -1,17 +1,17 @@
 //! SVG, element by element.
 
-use super::style::{FIGURE_CSS, Theme};
+use crate::style::{FIGURE_CSS, Theme};
 use std::fmt::Write;
 
 /// A drawing in the making. Units are CSS pixels, y downwards.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Svg {
+pub struct Svg {
     body: String,
 }
 
 /// A finished drawing.
 #[derive(Debug, Clone)]
-pub(crate) struct Figure {
+pub struct Figure {
     width: f64,
     height: f64,
     /// What is seen, for those who cannot see it.
@@ -21,9 +21,12 @@ pub(crate) struct Figure {
 
 /// Which end of a text stands at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Anchor {
+pub enum Anchor {
+    /// Its start.
     Start,
+    /// Its middle.
     Middle,
+    /// Its end.
     End,
 }
 
@@ -38,7 +41,7 @@ impl Anchor {
 }
 
 /// Text with the letters escaped that mean something in XML and HTML; control characters become spaces.
-pub(crate) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -63,19 +66,19 @@ fn at(value: f64) -> f64 {
 
 impl Svg {
     /// A straight line.
-    pub(crate) fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], class: &str) {
+    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], class: &str) {
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(at);
         self.put(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" class="{class}"/>"#));
     }
 
     /// A rectangle.
-    pub(crate) fn rectangle(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], class: &str) {
+    pub fn rectangle(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], class: &str) {
         let [x, y, width, height] = [x, y, width, height].map(at);
         self.put(format_args!(r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" class="{class}"/>"#));
     }
 
     /// A rectangle of a given colour.
-    pub(crate) fn swatch(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], colour: &str) {
+    pub fn swatch(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], colour: &str) {
         let [x, y, width, height] = [x, y, width, height].map(at);
         self.put(format_args!(
             r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" fill="{colour}" class="swatch"/>"#
@@ -83,25 +86,25 @@ impl Svg {
     }
 
     /// A circle.
-    pub(crate) fn circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str) {
+    pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str) {
         let [x, y, radius] = [x, y, radius].map(at);
         self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}" class="{class}"/>"#));
     }
 
     /// A text whose baseline starts, is centred or ends at a place.
-    pub(crate) fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, class: &str, text: &str) {
+    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, class: &str, text: &str) {
         let ([x, y], anchor, text) = ([x, y].map(at), anchor.name(), escape(text));
         self.put(format_args!(r#"<text x="{x}" y="{y}" text-anchor="{anchor}" class="{class}">{text}</text>"#));
     }
 
     /// A circle of a class, with declarations of its own.
-    pub(crate) fn styled_circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str, style: &str) {
+    pub fn styled_circle(&mut self, [x, y]: [f64; 2], radius: f64, class: &str, style: &str) {
         let [x, y, radius] = [x, y, radius].map(at);
         self.put(format_args!(r#"<circle cx="{x}" cy="{y}" r="{radius}" class="{class}" style="{style}"/>"#));
     }
 
     /// Circles of one class and fill.
-    pub(crate) fn circles(&mut self, circles: impl IntoIterator<Item = ([f64; 2], f64)>, fill: &str, class: &str) {
+    pub fn circles(&mut self, circles: impl IntoIterator<Item = ([f64; 2], f64)>, fill: &str, class: &str) {
         self.put(format_args!(r#"<g fill="{fill}" class="{class}">"#));
         for ([x, y], radius) in circles {
             let [x, y, radius] = [x, y, radius].map(at);
@@ -111,18 +114,12 @@ impl Svg {
     }
 
     /// A line through places, closed or not; one that is not a number breaks it.
-    pub(crate) fn path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str) {
+    pub fn path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str) {
         self.styled_path(places, closed, class, "");
     }
 
     /// A [`Svg::path`] with declarations of its own.
-    pub(crate) fn styled_path(
-        &mut self,
-        places: impl IntoIterator<Item = [f64; 2]>,
-        closed: bool,
-        class: &str,
-        style: &str,
-    ) {
+    pub fn styled_path(&mut self, places: impl IntoIterator<Item = [f64; 2]>, closed: bool, class: &str, style: &str) {
         let mut data = String::new();
         let mut command = 'M';
         for place in places {
@@ -142,7 +139,7 @@ impl Svg {
     }
 
     /// A picture stretched over a rectangle.
-    pub(crate) fn image(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], url: &str, opacity: f64) {
+    pub fn image(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], url: &str, opacity: f64) {
         let [x, y, width, height] = [x, y, width, height].map(at);
         self.put(format_args!(
             r#"<image x="{x}" y="{y}" width="{width}" height="{height}" preserveAspectRatio="none" image-rendering="smooth" opacity="{opacity}" href="{url}"/>"#
@@ -150,25 +147,25 @@ impl Svg {
     }
 
     /// Something that stands elsewhere on the page, one unit wide and high, stretched over a rectangle.
-    pub(crate) fn reuse(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], reference: &str) {
+    pub fn reuse(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], reference: &str) {
         let [x, y, width, height] = [x, y, width, height].map(at);
         self.put(format_args!(r#"<use href="{reference}" transform="translate({x} {y}) scale({width} {height})"/>"#));
     }
 
     /// Another drawing, moved.
-    pub(crate) fn place(&mut self, [x, y]: [f64; 2], figure: &Figure) {
+    pub fn place(&mut self, [x, y]: [f64; 2], figure: &Figure) {
         let ([x, y], body) = ([x, y].map(at), &figure.body);
         self.put(format_args!(r#"<g transform="translate({x} {y})">{body}</g>"#));
     }
 
     /// Another drawing, moved and made larger or smaller.
-    pub(crate) fn place_scaled(&mut self, [x, y]: [f64; 2], scale: f64, figure: &Figure) {
+    pub fn place_scaled(&mut self, [x, y]: [f64; 2], scale: f64, figure: &Figure) {
         let ([x, y], body) = ([x, y].map(at), &figure.body);
         self.put(format_args!(r#"<g transform="translate({x} {y}) scale({scale:.4})">{body}</g>"#));
     }
 
     /// The finished drawing; `title` says what is seen.
-    pub(crate) fn finish(self, [width, height]: [f64; 2], title: &str) -> Figure {
+    pub fn finish(self, [width, height]: [f64; 2], title: &str) -> Figure {
         Figure { width: at(width), height: at(height), title: title.to_owned(), body: self.body }
     }
 
@@ -178,12 +175,12 @@ impl Svg {
 }
 
 /// Figures one below the other.
-pub(crate) fn stack(figures: &[Figure], gap: f64) -> Figure {
+pub fn stack(figures: &[Figure], gap: f64) -> Figure {
     beside(figures, 1, [0.0, gap])
 }
 
 /// Figures in rows of `columns`, with gaps `[across, down]`; each column is as wide as the widest figure.
-pub(crate) fn beside(figures: &[Figure], columns: usize, gap: [f64; 2]) -> Figure {
+pub fn beside(figures: &[Figure], columns: usize, gap: [f64; 2]) -> Figure {
     let columns = columns.min(figures.len()).max(1);
     let width = figures.iter().map(|figure| figure.width).fold(0.0, f64::max);
     let mut svg = Svg::default();
@@ -201,19 +198,19 @@ pub(crate) fn beside(figures: &[Figure], columns: usize, gap: [f64; 2]) -> Figur
 
 impl Figure {
     /// The figure with empty space round it.
-    pub(crate) fn with_margin(&self, margin: f64) -> Self {
+    pub fn with_margin(&self, margin: f64) -> Self {
         let mut svg = Svg::default();
         svg.place([margin, margin], self);
         svg.finish([self.width + 2.0 * margin, self.height + 2.0 * margin], &self.title)
     }
 
     /// Width and height, CSS pixels.
-    pub(crate) fn size(&self) -> [f64; 2] {
+    pub fn size(&self) -> [f64; 2] {
         [self.width, self.height]
     }
 
     /// As part of a page that has the style sheet.
-    pub(crate) fn inline(&self) -> String {
+    pub fn inline(&self) -> String {
         let Self { width, height, title, body } = self;
         let title = escape(title);
         format!(
@@ -223,13 +220,22 @@ impl Figure {
     }
 
     /// As a file of its own, on light ground.
-    pub(crate) fn standalone(&self) -> String {
+    pub fn standalone(&self) -> String {
+        let [width, height] = self.size();
+        self.file(&format!("<rect width=\"{width}\" height=\"{height}\" class=\"page\"/>\n"))
+    }
+
+    /// As a file of its own without ground, to be laid over a picture.
+    pub fn transparent(&self) -> String {
+        self.file("")
+    }
+
+    fn file(&self, ground: &str) -> String {
         let Self { width, height, body, .. } = self;
         let style = Theme::Light.resolve(FIGURE_CSS);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-             height=\"{height}\">\n<style>{style}</style>\n<rect width=\"{width}\" height=\"{height}\" \
-             class=\"page\"/>\n{body}</svg>\n"
+             height=\"{height}\">\n<style>{style}</style>\n{ground}{body}</svg>\n"
         )
     }
 }

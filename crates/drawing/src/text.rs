@@ -3,7 +3,7 @@
 const THIN: char = '\u{2009}';
 
 /// About three figures: `12 345`, `12.3`, `0.0123`, `3.2 × 10⁻⁷`.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     let size = value.abs();
     match size {
         _ if !value.is_finite() => "–".into(),
@@ -19,7 +19,7 @@ pub(crate) fn number(value: f64) -> String {
 }
 
 /// About three figures without zeros at the end, for what is often whole: `20`, `14.2`.
-pub(crate) fn short_number(value: f64) -> String {
+pub fn short_number(value: f64) -> String {
     let text = number(value);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
@@ -57,7 +57,7 @@ fn scientific(value: f64) -> String {
 }
 
 /// An area given in m2, in m², ha or km².
-pub(crate) fn area(square_metres: f64) -> String {
+pub fn area(square_metres: f64) -> String {
     match square_metres.abs() {
         1e6.. => format!("{} km²", number(square_metres / 1e6)),
         1e4.. => format!("{} ha", number(square_metres / 1e4)),
@@ -66,7 +66,7 @@ pub(crate) fn area(square_metres: f64) -> String {
 }
 
 /// A volume given in m3, in m³ or million m³.
-pub(crate) fn volume(cubic_metres: f64) -> String {
+pub fn volume(cubic_metres: f64) -> String {
     match cubic_metres.abs() {
         1e6.. => format!("{} million m³", number(cubic_metres / 1e6)),
         _ => format!("{} m³", number(cubic_metres)),
@@ -74,7 +74,7 @@ pub(crate) fn volume(cubic_metres: f64) -> String {
 }
 
 /// A time given in s: `45 s`, `12 min`, `1 h 05 min`, `2 d 3 h`.
-pub(crate) fn time(seconds: f64) -> String {
+pub fn time(seconds: f64) -> String {
     let whole = seconds.abs().round() as u64;
     let (days, hours, minutes) = (whole / 86400, whole / 3600 % 24, whole / 60 % 60);
     match seconds.abs() {

@@ -1,7 +1,7 @@
 //! The look of all figures. One style sheet: on a page its colours follow light and dark, in a PNG they are fixed.
 
 /// Rules for the classes that figures use. Colours are variables.
-pub(crate) const FIGURE_CSS: &str = include_str!("figure.css");
+pub const FIGURE_CSS: &str = include_str!("figure.css");
 
 /// Values of the style sheet's variables: name, in light, in dark. Series colours are Okabe and Ito's, which people with
 /// any colour vision tell apart, lightened for dark pages.
@@ -22,7 +22,7 @@ const COLOURS: [(&str, &str, &str); 12] = [
 
 /// Which colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Theme {
+pub enum Theme {
     /// Dark on light: paper.
     Light,
     /// Light on dark.
@@ -31,12 +31,12 @@ pub(crate) enum Theme {
 
 impl Theme {
     /// The declarations of the colour variables, for a page's style sheet.
-    pub(crate) fn variables(self) -> String {
+    pub fn variables(self) -> String {
         COLOURS.iter().map(|(name, light, dark)| format!("--{name}:{};", self.choose(light, dark))).collect()
     }
 
     /// A style sheet with its variables replaced, for readers that know none.
-    pub(crate) fn resolve(self, css: &str) -> String {
+    pub fn resolve(self, css: &str) -> String {
         COLOURS.iter().fold(css.to_owned(), |css, (name, light, dark)| {
             css.replace(&format!("var(--{name})"), self.choose(light, dark))
         })

@@ -1,7 +1,7 @@
 //! Round values along an axis.
 
 /// Round steps of which at most `most` fit into `span`: 1, 2 or 5 times a power of ten.
-pub(crate) fn step(span: f64, most: usize) -> f64 {
+pub fn step(span: f64, most: usize) -> f64 {
     let least = span / most.max(1) as f64;
     if !(least.is_finite() && least > 0.0) {
         return 1.0;
@@ -12,7 +12,7 @@ pub(crate) fn step(span: f64, most: usize) -> f64 {
 }
 
 /// The multiples of `step` from `low` to `high`.
-pub(crate) fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
+pub fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
     let slack = 1e-9 * (high - low).abs();
     let first = ((low - slack) / step).ceil() as i64;
     let last = ((high + slack) / step).floor() as i64;
@@ -20,7 +20,7 @@ pub(crate) fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
 }
 
 /// A multiple of `step` with no more decimals than the step needs.
-pub(crate) fn label(value: f64, step: f64) -> String {
+pub fn label(value: f64, step: f64) -> String {
     let decimals = (0..9).find(|decimals| {
         let scaled = step * 10f64.powi(*decimals);
         (scaled - scaled.round()).abs() < 1e-6 * scaled
@@ -31,7 +31,7 @@ pub(crate) fn label(value: f64, step: f64) -> String {
 
 /// The unit of a time axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TimeUnit {
+pub struct TimeUnit {
     /// As printed: `h`.
     pub name: &'static str,
     /// Its length, s.
@@ -42,7 +42,7 @@ pub(crate) struct TimeUnit {
 
 impl TimeUnit {
     /// The unit for a run of this length, s.
-    pub(crate) fn of(length: f64) -> Self {
+    pub fn of(length: f64) -> Self {
         match length {
             345_600.0.. => Self { name: "days", seconds: 86400.0, steps: &[0.5, 1.0, 2.0, 5.0, 10.0] },
             7_200.0.. => Self { name: "h", seconds: 3600.0, steps: &[0.25, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0, 24.0] },
@@ -52,7 +52,7 @@ impl TimeUnit {
     }
 
     /// A step in this unit, of which at most `most` fit into `span` (in this unit).
-    pub(crate) fn step(self, span: f64, most: usize) -> f64 {
+    pub fn step(self, span: f64, most: usize) -> f64 {
         let least = span / most as f64;
         self.steps.iter().copied().find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or_else(|| step(span, most))
     }

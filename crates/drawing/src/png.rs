@@ -1,6 +1,6 @@
 //! PNG: pictures from pixels, and from SVG with the fonts that come along.
 
-use super::svg::Figure;
+use crate::svg::Figure;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
@@ -13,8 +13,8 @@ const PIXELS: f32 = 1.6;
 /// The only fonts, so that a picture is the same on every machine.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut fonts = Database::new();
-    fonts.load_font_data(include_bytes!("../../fonts/Inter-Regular.otf").to_vec());
-    fonts.load_font_data(include_bytes!("../../fonts/Inter-SemiBold.otf").to_vec());
+    fonts.load_font_data(include_bytes!("../fonts/Inter-Regular.otf").to_vec());
+    fonts.load_font_data(include_bytes!("../fonts/Inter-SemiBold.otf").to_vec());
     Arc::new(fonts)
 });
 
@@ -22,9 +22,8 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 ///
 /// # Errors
 /// What cannot be drawn (a figure without extent).
-pub(crate) fn svg_to_png(figure: &Figure) -> Result<Vec<u8>, String> {
-    let options = Options { fontdb: FONTS.clone(), font_family: "Inter".into(), ..Options::default() };
-    let tree = Tree::from_str(&figure.standalone(), &options).map_err(|error| error.to_string())?;
+pub fn svg_to_png(figure: &Figure) -> Result<Vec<u8>, String> {
+    let tree = tree(&figure.standalone())?;
     let [width, height] = figure.size().map(|length| (length as f32 * PIXELS).round() as u32);
     let mut pixels = Pixmap::new(width, height).ok_or("the figure has no extent")?;
     // The page rectangle may end within the last pixel: none is left transparent, and premultiplied colours are plain.
@@ -34,18 +33,45 @@ pub(crate) fn svg_to_png(figure: &Figure) -> Result<Vec<u8>, String> {
     encode_rgb(width, height, &rgb)
 }
 
+/// A figure without ground as pixels, `scale` of them for a CSS pixel: width, height, and red, green, blue and opacity of each
+/// pixel, row by row, the colours multiplied by the opacity.
+///
+/// # Errors
+/// What cannot be drawn (a figure without extent).
+pub fn svg_to_pixels(figure: &Figure, scale: f32) -> Result<(u32, u32, Vec<u8>), String> {
+    let tree = tree(&figure.transparent())?;
+    let [width, height] = figure.size().map(|length| (length as f32 * scale).round() as u32);
+    let mut pixels = Pixmap::new(width, height).ok_or("the figure has no extent")?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
+    Ok((width, height, pixels.take()))
+}
+
+fn tree(svg: &str) -> Result<Tree, String> {
+    let options = Options { fontdb: FONTS.clone(), font_family: "Inter".into(), ..Options::default() };
+    Tree::from_str(svg, &options).map_err(|error| error.to_string())
+}
+
 /// A picture of red, green and blue bytes.
-pub(crate) fn encode_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// What cannot be encoded (bytes that do not fit the size).
+pub fn encode_rgb(width: u32, height: u32, rgb: &[u8]) -> Result<Vec<u8>, String> {
     encode(width, height, rgb, |encoder| encoder.set_color(png::ColorType::Rgb))
 }
 
 /// A picture of red, green, blue and opacity bytes.
-pub(crate) fn encode_rgba(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// What cannot be encoded (bytes that do not fit the size).
+pub fn encode_rgba(width: u32, height: u32, rgba: &[u8]) -> Result<Vec<u8>, String> {
     encode(width, height, rgba, |encoder| encoder.set_color(png::ColorType::Rgba))
 }
 
 /// A picture of one byte for each pixel that chooses a colour (red, green, blue, opacity).
-pub(crate) fn encode_indexed(width: u32, height: u32, indices: &[u8], palette: &[[u8; 4]]) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// What cannot be encoded (bytes that do not fit the size).
+pub fn encode_indexed(width: u32, height: u32, indices: &[u8], palette: &[[u8; 4]]) -> Result<Vec<u8>, String> {
     encode(width, height, indices, |encoder| {
         encoder.set_color(png::ColorType::Indexed);
         encoder.set_palette(palette.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect::<Vec<u8>>());
@@ -70,19 +96,19 @@ fn encode(
 }
 
 /// A PNG as a URL that holds it.
-pub(crate) fn data_url(png: &[u8]) -> String {
+pub fn data_url(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
 /// An SVG file as a URL that holds it.
-pub(crate) fn svg_url(svg: &[u8]) -> String {
+pub fn svg_url(svg: &[u8]) -> String {
     format!("data:image/svg+xml;base64,{}", STANDARD.encode(svg))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::svg::{Anchor, Svg};
+    use crate::svg::{Anchor, Svg};
 
     #[test]
     fn text_leaves_ink_on_the_page() {

@@ -1,0 +1,98 @@
+//! Choice of a device.
+
+use crate::GpuError;
+
+/// What kind of device pictures are drawn with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GpuKind {
+    /// A graphics card.
+    Card,
+    /// A program in its place, such as Mesa's lavapipe.
+    Software,
+}
+
+/// An open device with its queue. Clones are the same device.
+#[derive(Debug, Clone)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Name, as the driver gives it.
+    pub name: String,
+    /// A card, or a program in its place.
+    pub kind: GpuKind,
+}
+
+impl Gpu {
+    /// Opens the best device: a card of its own, then one built in, then software. The first that keeps to the portable floor
+    /// is taken.
+    ///
+    /// # Errors
+    /// [`GpuError::NoDevice`], [`GpuError::Refused`].
+    pub fn open() -> Result<Self, GpuError> {
+        pollster::block_on(Self::open_async())
+    }
+
+    /// [`Gpu::open`] where one may not wait, as in a browser.
+    ///
+    /// # Errors
+    /// Those of [`Gpu::open`].
+    pub async fn open_async() -> Result<Self, GpuError> {
+        let mut description = wgpu::InstanceDescriptor::new_without_display_handle();
+        description.flags = wgpu::InstanceFlags::empty();
+        let instance = wgpu::Instance::new(description);
+        let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+        adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+        let mut refused = GpuError::NoDevice;
+        for adapter in adapters {
+            let info = adapter.get_info();
+            let request = wgpu::DeviceDescriptor {
+                label: Some("corpuscle"),
+                required_limits: wgpu::Limits::default(),
+                ..wgpu::DeviceDescriptor::default()
+            };
+            match adapter.request_device(&request).await {
+                Ok((device, queue)) => {
+                    let software = info.device_type == wgpu::DeviceType::Cpu;
+                    let kind = if software { GpuKind::Software } else { GpuKind::Card };
+                    return Ok(Self { device, queue, name: info.name, kind });
+                }
+                Err(error) => refused = GpuError::Refused { name: info.name, reason: error.to_string() },
+            }
+        }
+        Err(refused)
+    }
+
+    /// Largest width and height of a texture, pixels.
+    pub fn most_pixels(&self) -> u32 {
+        self.device.limits().max_texture_dimension_2d
+    }
+}
+
+/// What is taken first.
+fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// The device for a test; none, after a line that says so, where there is none.
+///
+/// # Panics
+/// Where there is none and the environment has `CORPUSCLE_REQUIRE_GPU=1`.
+pub fn require_gpu(test: &str) -> Option<Gpu> {
+    match Gpu::open() {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let required = std::env::var_os("CORPUSCLE_REQUIRE_GPU").is_some_and(|value| value == "1");
+            assert!(!required, "{test} needs a GPU: {error}");
+            eprintln!("skipped {test}: {error}");
+            None
+        }
+    }
+}

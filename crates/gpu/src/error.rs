@@ -1,0 +1,60 @@
+//! What can go wrong with a graphics card.
+
+/// Why there is no card to draw with, or what it cannot do. The text says what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No card and no software in its place.
+    #[error(
+        "there is no graphics card to draw with, nor software in its place: no Vulkan, Metal or Direct3D 12 device was found. \
+         Everything but the 3D pictures works without. For pictures install the driver of the card, or Mesa's software Vulkan: \
+         `apt-get install mesa-vulkan-drivers` on Debian and Ubuntu, `dnf install mesa-vulkan-drivers` on Fedora"
+    )]
+    NoDevice,
+    /// Every device that was found refused.
+    #[error(
+        "no graphics device could be opened; the last, {name}, said: {reason}. Update its driver, or install Mesa's software Vulkan (Debian and Ubuntu: mesa-vulkan-drivers)"
+    )]
+    Refused {
+        /// Name of the device tried last.
+        name: String,
+        /// What it said.
+        reason: String,
+    },
+    /// A picture larger than the device can hold.
+    #[error(
+        "a picture of {width} x {height} pixels (samples included) is larger than the {most} x {most} that every device can hold; ask for a smaller one"
+    )]
+    TooLarge {
+        /// Width, pixels.
+        width: u32,
+        /// Height, pixels.
+        height: u32,
+        /// Largest width and height, pixels.
+        most: u32,
+    },
+    /// The device was lost, or gave no answer.
+    #[error("the graphics device {name} gave no picture back: {reason}")]
+    Lost {
+        /// Name of the device.
+        name: String,
+        /// What it said.
+        reason: String,
+    },
+}
+
+/// A shader whose pieces do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ImportError {
+    /// A piece that is not in the library.
+    #[error(
+        "line {line} of shader {shader} imports {piece:?}, which is not in the library; add the file to it, or correct the name"
+    )]
+    Missing {
+        /// Name of the shader or piece that imports.
+        shader: String,
+        /// Line of the import, from 1.
+        line: usize,
+        /// Name of the piece.
+        piece: String,
+    },
+}

@@ -1,0 +1,63 @@
+//! Textures to draw into, and back to main memory.
+
+use crate::{Gpu, GpuError, Image};
+
+/// A texture of `size` `[width, height]`, pixels.
+///
+/// # Errors
+/// [`GpuError::TooLarge`].
+pub fn texture_2d(
+    gpu: &Gpu,
+    label: &str,
+    [width, height]: [u32; 2],
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> Result<wgpu::Texture, GpuError> {
+    let most = gpu.most_pixels();
+    if width.max(height) > most {
+        return Err(GpuError::TooLarge { width, height, most });
+    }
+    Ok(gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    }))
+}
+
+/// Reads a texture of four bytes a pixel (`Rgba8Unorm` and its like, usage `COPY_SRC`) back. Waits for the device.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError> {
+    let (width, height) = (texture.width(), texture.height());
+    let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: u64::from(row) * u64::from(height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) };
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let lost = |reason: String| GpuError::Lost { name: gpu.name.clone(), reason };
+    let (done, answer) = std::sync::mpsc::channel();
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        let _ = done.send(result);
+    });
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
+    answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
+    let bytes = buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))?;
+    let rgba = bytes.chunks_exact(row as usize).flat_map(|line| &line[..4 * width as usize]).copied().collect();
+    Ok(Image { width, height, rgba })
+}

@@ -1,0 +1,43 @@
+//! Buffers and what they are bound as.
+
+use corpuscle_gpu::{Gpu, wgpu};
+
+/// A uniform buffer, as a group's layout has it.
+pub(crate) const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
+    ty: wgpu::BufferBindingType::Uniform,
+    has_dynamic_offset: false,
+    min_binding_size: None,
+};
+
+/// A texture of numbers that are loaded, not sampled, as a group's layout has it.
+pub(crate) const TEXTURE: wgpu::BindingType = wgpu::BindingType::Texture {
+    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+    view_dimension: wgpu::TextureViewDimension::D2,
+    multisampled: false,
+};
+
+/// A vertex buffer of instances or vertices.
+pub(crate) fn instances<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, all: &[T]) -> wgpu::Buffer {
+    filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::VERTEX)
+}
+
+/// A uniform buffer.
+pub(crate) fn uniform<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, value: &T) -> wgpu::Buffer {
+    filled(gpu, label, bytemuck::bytes_of(value), wgpu::BufferUsages::UNIFORM)
+}
+
+/// An index buffer.
+pub(crate) fn indices(gpu: &Gpu, label: &str, all: &[u32]) -> wgpu::Buffer {
+    filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::INDEX)
+}
+
+fn filled(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: (bytes.len() as u64).max(16),
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
+}

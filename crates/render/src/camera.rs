@@ -1,0 +1,141 @@
+//! Where a picture is taken from.
+
+use crate::Stage;
+use glam::camera::rh::{proj::directx, view};
+use glam::{DVec3, Mat4, Vec3};
+
+/// Nearest distance that is drawn, in units of the stage.
+const NEAR: f32 = 2e-3;
+/// Half the depth that a lens without perspective covers, in units of the stage.
+const DEPTH: f32 = 4.0;
+
+/// Where a picture is taken from, in the world's coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where the eye is, m.
+    pub eye: DVec3,
+    /// What it looks at, m.
+    pub target: DVec3,
+    /// What is up in the picture; not along the line of sight.
+    pub up: DVec3,
+    /// How it projects.
+    pub lens: Lens,
+}
+
+/// How a camera projects.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Lens {
+    /// As an eye sees.
+    Perspective {
+        /// Angle between the lower and upper edge of the picture, radians.
+        field_of_view: f64,
+    },
+    /// Parallel lines stay parallel, lengths across the line of sight are to scale.
+    Orthographic {
+        /// Height of the world in the picture, m.
+        height: f64,
+    },
+}
+
+impl Camera {
+    /// The stage seen from above, north up, to scale: it fills a picture of `aspect` (width over height) but for a `margin`
+    /// (part of the picture, 0 for none).
+    pub fn plan(stage: &Stage, aspect: f64, margin: f64) -> Self {
+        let size = stage.to - stage.from;
+        let height = size.y.max(size.x / aspect) / (1.0 - 2.0 * margin);
+        let eye = stage.centre() + DVec3::Z * stage.unit() * 2.0;
+        Self { eye, target: stage.centre(), up: DVec3::Y, lens: Lens::Orthographic { height } }
+    }
+
+    /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
+    /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`.
+    pub fn orbit(stage: &Stage, azimuth: f64, elevation: f64, field_of_view: f64, aspect: f64) -> Self {
+        let away = DVec3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
+        let across = DVec3::new(-azimuth.sin(), azimuth.cos(), 0.0);
+        let above = away.cross(across);
+        let slope = (0.5 * field_of_view).tan();
+        let reach = |corner: DVec3| {
+            let place = corner - stage.centre();
+            let sideways = (place.dot(above).abs() / slope).max(place.dot(across).abs() / (slope * aspect));
+            sideways + place.dot(away)
+        };
+        let distance = stage.corners().into_iter().map(reach).fold(0.0, f64::max);
+        Self {
+            eye: stage.centre() + away * distance.max(1e-3 * stage.unit()),
+            target: stage.centre(),
+            up: DVec3::Z,
+            lens: Lens::Perspective { field_of_view },
+        }
+    }
+
+    /// From stage coordinates to those of the eye: x right, y up, looking along -z.
+    pub(crate) fn view_from_world(&self, stage: &Stage) -> Mat4 {
+        view::look_at_mat4(stage.place(self.eye.into()), stage.place(self.target.into()), self.up.as_vec3().normalize())
+    }
+
+    /// From the eye's coordinates to clip space; depth 1 is near, 0 far.
+    pub(crate) fn clip_from_view(&self, stage: &Stage, aspect: f32) -> Mat4 {
+        match self.lens {
+            Lens::Perspective { field_of_view } => {
+                directx::perspective_infinite_reverse(field_of_view as f32, aspect, NEAR)
+            }
+            Lens::Orthographic { height } => {
+                let half = 0.5 * stage.length(height);
+                let [near, far] = self.depths(stage);
+                // Near and far changed places: depth 1 is near.
+                directx::orthographic(-half * aspect, half * aspect, -half, half, far, near)
+            }
+        }
+    }
+
+    /// Nearest and farthest distance from the eye that a lens without perspective shows.
+    fn depths(&self, stage: &Stage) -> [f32; 2] {
+        let distance = (stage.place(self.eye.into()) - stage.place(self.target.into())).length();
+        [distance - DEPTH, distance + DEPTH]
+    }
+
+    /// The line of sight.
+    pub(crate) fn forward(&self) -> Vec3 {
+        (self.target - self.eye).normalize_or(DVec3::NEG_Z).as_vec3()
+    }
+}
+
+impl Stage {
+    /// The eight corners, m.
+    pub(crate) fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|corner| {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { self.from[axis] } else { self.to[axis] };
+            DVec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_orbit_has_all_corners_in_the_picture_and_one_at_its_edge() {
+        let stage = Stage::new([-3.0, 10.0, 0.0], [5.0, 11.0, 2.0]);
+        for (azimuth, elevation) in [(0.3, 0.4), (2.0, 1.2), (-1.0, 0.05)] {
+            let camera = Camera::orbit(&stage, azimuth, elevation, 0.7, 1.5);
+            let clip = camera.clip_from_view(&stage, 1.5) * camera.view_from_world(&stage);
+            let reach = |corner: DVec3| {
+                let at = clip.project_point3(stage.place(corner.into()));
+                assert!(at.z > 0.0 && at.z < 1.0);
+                at.x.abs().max(at.y.abs())
+            };
+            let farthest = stage.corners().into_iter().map(reach).fold(0.0, f32::max);
+            assert!((farthest - 1.0).abs() < 1e-4, "{farthest}");
+        }
+    }
+
+    #[test]
+    fn a_plan_is_to_scale_with_north_up() {
+        let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
+        let camera = Camera::plan(&stage, 2.0, 0.0);
+        let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
+        let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
+        assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");
+    }
+}

@@ -1,0 +1,74 @@
+//! What can be in a picture: the seam between the renderer and each kind of thing.
+
+use corpuscle_gpu::{Gpu, wgpu};
+
+/// A thing in a picture. It takes part in the passes that concern it, in this order:
+///
+/// 1. [`Drawable::cast`], once for all things: what throws shadows draws itself as the sun sees it, depth alone.
+/// 2. [`Drawable::draw`], once for all things: what is opaque draws itself into colour and depth, over the backdrop.
+/// 3. [`Drawable::draw_through`], one thing after another: what lets light through (water, glass) draws itself over a copy of
+///    all that is behind it.
+///
+/// Shaders begin with `#import view` (camera, places, lines of sight), `#import sky` (what is mirrored) or `#import light` (light
+/// on surfaces, shadows); group 0 is bound already, a thing's own groups start at 1. Coordinates are those of the stage; depth is
+/// 1 near and 0 far, so nearer is *greater*; colours are linear light.
+pub trait Drawable {
+    /// Draws what throws shadows, with a pipeline of [`crate::DEPTH_FORMAT`] alone. Group 0 is the view from the sun (without
+    /// perspective).
+    fn cast(&self, _pass: &mut wgpu::RenderPass<'_>) {}
+
+    /// Draws what is opaque, with a pipeline of [`crate::COLOUR_FORMAT`] and [`crate::DEPTH_FORMAT`].
+    fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
+
+    /// True for things that let light through.
+    fn lets_light_through(&self) -> bool {
+        false
+    }
+
+    /// Draws what lets light through, in passes of its own.
+    fn draw_through(&mut self, _frame: &mut Through<'_>) {}
+}
+
+/// What a thing that lets light through draws into, and what is behind it.
+pub struct Through<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// Where its passes go: render and compute passes, as many as it likes.
+    pub encoder: &'a mut wgpu::CommandEncoder,
+    /// Group 0: to be set in each pass that uses a shader with `#import view`.
+    pub view: &'a wgpu::BindGroup,
+    /// Width and height of all four textures, pixels.
+    pub size: [u32; 2],
+    /// Colour to draw into ([`crate::COLOUR_FORMAT`]); holds all that is behind: load, do not clear.
+    pub colour: &'a wgpu::TextureView,
+    /// Depth to draw into and to test against ([`crate::DEPTH_FORMAT`]); load, do not clear. What comes later is drawn over what
+    /// writes here.
+    pub depth: &'a wgpu::TextureView,
+    /// A copy of the colour as it was before, to sample what is refracted or mirrored.
+    pub behind_colour: &'a wgpu::TextureView,
+    /// A copy of the depth as it was before, as a depth texture; 0 where nothing is but the backdrop.
+    pub behind_depth: &'a wgpu::TextureView,
+}
+
+impl Through<'_> {
+    /// Begins a pass that draws into colour and depth over what is there, with group 0 set.
+    pub fn begin(&mut self, label: &str) -> wgpu::RenderPass<'_> {
+        let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(label),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: self.colour,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: self.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, self.view, &[]);
+        pass
+    }
+}

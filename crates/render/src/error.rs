@@ -1,0 +1,9 @@
+//! What can go wrong while a picture is drawn.
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The graphics device cannot.
+    #[error(transparent)]
+    Gpu(#[from] corpuscle_gpu::GpuError),
+}

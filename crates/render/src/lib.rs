@@ -1,0 +1,37 @@
+//! Pictures of a model's frames on the graphics card, off screen or on.
+//!
+//! A [`Renderer`] draws [`Drawable`] things, seen by a [`Camera`] under a [`Light`], into a [`Target`], from which a picture is
+//! read back. It knows no physics and no files.
+//!
+//! Things are drawn in the coordinates of a [`Stage`]: relative to the middle of what is shown, its half diagonal 1. So a gas of
+//! nanometres and a valley of kilometres look alike to single precision.
+
+mod balls;
+mod buffer;
+mod camera;
+mod colour;
+mod drawable;
+mod error;
+mod floor;
+mod light;
+mod pipeline;
+mod renderer;
+mod shaders;
+mod stage;
+mod target;
+mod tone;
+mod tubes;
+mod view;
+
+pub use balls::{BallPainter, BallStyle, Balls};
+pub use camera::{Camera, Lens};
+pub use colour::{ColourTable, linear};
+pub use drawable::{Drawable, Through};
+pub use error::RenderError;
+pub use floor::Floor;
+pub use light::{Backdrop, Light};
+pub use renderer::Renderer;
+pub use stage::Stage;
+pub use target::{COLOUR_FORMAT, DEPTH_FORMAT, Target};
+pub use tubes::{TubePainter, TubeStyle, Tubes, box_edges};
+pub use view::View;

@@ -1,0 +1,65 @@
+//! The sun and what is behind everything.
+
+use glam::Vec3;
+
+/// Sun and surroundings. Colours are linear; 1 is what white paper in full light gives back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Where the sun stands: azimuth (from east over north) and height above the horizon, radians.
+    pub sun: [f32; 2],
+    /// Colour and strength of sunlight.
+    pub sunlight: [f32; 3],
+    /// Half the angle that the sun fills, radians: how soft shadows are. The real one has 0.0047.
+    pub softness: f32,
+    /// Strength of the light that comes from the backdrop.
+    pub ambient: f32,
+    /// What is behind everything, and is mirrored.
+    pub backdrop: Backdrop,
+}
+
+/// What is behind everything.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Backdrop {
+    /// A clear sky with the sun in it.
+    Sky,
+    /// A colour overhead, one at the horizon and one below it.
+    Studio {
+        /// Overhead.
+        above: [f32; 3],
+        /// At the horizon.
+        horizon: [f32; 3],
+        /// Straight below.
+        below: [f32; 3],
+    },
+    /// One colour, shown as it is: the ground of a drawing. Nothing is lit, colours are those of the table.
+    Paper([f32; 3]),
+}
+
+impl Light {
+    /// A clear afternoon.
+    pub fn day() -> Self {
+        Self { sun: [2.5, 0.75], sunlight: [2.3, 2.15, 1.9], softness: 0.02, ambient: 0.75, backdrop: Backdrop::Sky }
+    }
+
+    /// A bright room.
+    pub fn studio() -> Self {
+        let backdrop = Backdrop::Studio { above: [0.92, 0.95, 1.0], horizon: [0.97; 3], below: [0.62, 0.63, 0.65] };
+        Self { sun: [2.3, 0.95], sunlight: [1.75, 1.72, 1.66], softness: 0.05, ambient: 0.8, backdrop }
+    }
+
+    /// White paper.
+    pub fn paper() -> Self {
+        Self { backdrop: Backdrop::Paper([1.0; 3]), ..Self::studio() }
+    }
+
+    /// The direction towards the sun.
+    pub fn towards_sun(&self) -> Vec3 {
+        let [azimuth, height] = self.sun;
+        Vec3::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin())
+    }
+
+    /// True where things are lit, not drawn in plain colours.
+    pub fn is_lit(&self) -> bool {
+        !matches!(self.backdrop, Backdrop::Paper(_))
+    }
+}

@@ -1,0 +1,79 @@
+//! Pipelines that draw into a frame.
+
+use crate::{COLOUR_FORMAT, DEPTH_FORMAT};
+use corpuscle_gpu::{Gpu, wgpu};
+
+/// What a pipeline is made of. Its shader has entry points `vertex` and, unless another is named, `fragment`.
+pub(crate) struct Recipe<'a> {
+    /// For messages.
+    pub label: &'a str,
+    /// The shader.
+    pub module: &'a wgpu::ShaderModule,
+    /// Layouts of its groups; the first is that of the view.
+    pub groups: &'a [&'a wgpu::BindGroupLayout],
+    /// Layouts of its vertex buffers.
+    pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
+    /// Triangles, one by one or in a strip.
+    pub topology: wgpu::PrimitiveTopology,
+}
+
+impl Recipe<'_> {
+    /// A pipeline that draws into colour and depth; nearer hides farther.
+    pub(crate) fn opaque(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
+        self.build(gpu, "fragment", Some(COLOUR_FORMAT), Some(wgpu::CompareFunction::GreaterEqual))
+    }
+
+    /// A pipeline that draws into the sun's depth map; `entry` is its fragment entry point.
+    pub(crate) fn cast(&self, gpu: &Gpu, entry: &str) -> wgpu::RenderPipeline {
+        self.build(gpu, entry, None, Some(wgpu::CompareFunction::GreaterEqual))
+    }
+
+    /// A pipeline that draws into colours of a format, without depth.
+    pub(crate) fn flat(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+        self.build(gpu, "fragment", Some(format), None)
+    }
+
+    fn build(
+        &self,
+        gpu: &Gpu,
+        fragment: &str,
+        colour: Option<wgpu::TextureFormat>,
+        depth: Option<wgpu::CompareFunction>,
+    ) -> wgpu::RenderPipeline {
+        let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        });
+        let buffers: Vec<_> = self.buffers.iter().cloned().map(Some).collect();
+        let targets: Vec<_> = colour.map(|format| Some(format.into())).into_iter().collect();
+        gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: self.module,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState { topology: self.topology, ..wgpu::PrimitiveState::default() },
+            depth_stencil: depth.map(|compare| wgpu::DepthStencilState {
+                format: DEPTH_FORMAT,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(compare),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: self.module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

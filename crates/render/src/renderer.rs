@@ -1,0 +1,135 @@
+//! Draws pictures, pass by pass.
+
+use crate::pipeline::Recipe;
+use crate::tone::Tone;
+use crate::{Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
+use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
+
+/// Draws pictures. Holds what does not change from one to the next.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    view_layout: wgpu::BindGroupLayout,
+    backdrop: wgpu::RenderPipeline,
+    tone: Tone,
+}
+
+impl Renderer {
+    /// A renderer on a device.
+    pub fn new(gpu: &Gpu) -> Self {
+        let view_layout = View::layout(gpu);
+        let backdrop = Recipe {
+            label: "backdrop",
+            module: &shaders::module(gpu, "backdrop", include_str!("sky/backdrop.wgsl")),
+            groups: &[&view_layout],
+            buffers: &[],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+        }
+        .opaque(gpu);
+        Self { gpu: gpu.clone(), tone: Tone::new(gpu), view_layout, backdrop }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The layout of group 0 of every pipeline of a [`Drawable`].
+    pub fn view_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.view_layout
+    }
+
+    /// Draws things into a target, and lays the overlay over (as large as the picture, opacity multiplied in). Returns before
+    /// the device is done.
+    pub fn draw(
+        &self,
+        target: &Target,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        things: &mut [&mut dyn Drawable],
+        overlay: Option<&Image>,
+    ) {
+        let gpu = &self.gpu;
+        let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size());
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
+        if light.is_lit() {
+            draw_shadows(&mut encoder, &view, things);
+        }
+        self.draw_opaque(&mut encoder, target, &view, things);
+        for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {
+            draw_through(gpu, &mut encoder, target, &view, *thing);
+        }
+        self.tone.draw(gpu, &mut encoder, target, light.is_lit(), overlay);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// The picture in a target. Waits for the device.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] where the device was lost.
+    pub fn read(&self, target: &Target) -> Result<Image, RenderError> {
+        Ok(read_rgba8(&self.gpu, &target.picture)?)
+    }
+
+    fn draw_opaque(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &Target,
+        view: &View,
+        things: &[&mut dyn Drawable],
+    ) {
+        let [colour, depth] = [&target.colour, &target.depth].map(whole);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("opaque"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &colour,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            depth_stencil_attachment: Some(cleared(&depth)),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, &view.group, &[]);
+        pass.set_pipeline(&self.backdrop);
+        pass.draw(0..3, 0..1);
+        things.iter().for_each(|thing| thing.draw(&mut pass));
+    }
+}
+
+/// The sun's depth map.
+fn draw_shadows(encoder: &mut wgpu::CommandEncoder, view: &View, things: &[&mut dyn Drawable]) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("shadows"),
+        color_attachments: &[],
+        depth_stencil_attachment: Some(cleared(&view.shadow)),
+        ..wgpu::RenderPassDescriptor::default()
+    });
+    pass.set_bind_group(0, &view.sun_group, &[]);
+    things.iter().for_each(|thing| thing.cast(&mut pass));
+}
+
+fn draw_through(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &Target, view: &View, thing: &mut dyn Drawable) {
+    for (from, to) in [(&target.colour, &target.behind_colour), (&target.depth, &target.behind_depth)] {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
+    let textures = [&target.colour, &target.depth, &target.behind_colour, &target.behind_depth];
+    let [colour, depth, behind_colour, behind_depth] = &textures.map(whole);
+    let size = target.drawn_size();
+    let view = &view.group;
+    thing.draw_through(&mut Through { gpu, encoder, view, size, colour, depth, behind_colour, behind_depth });
+}
+
+fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// Depth that begins at 0: far.
+fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    wgpu::RenderPassDepthStencilAttachment {
+        view,
+        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+        stencil_ops: None,
+    }
+}

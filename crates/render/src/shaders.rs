@@ -1,0 +1,16 @@
+//! The pieces that shaders of this crate import.
+
+use corpuscle_gpu::{Gpu, join, wgpu};
+
+/// Pieces by name: see `#import`.
+const LIBRARY: [(&str, &str); 3] =
+    [("view", include_str!("view.wgsl")), ("sky", include_str!("sky/sky.wgsl")), ("light", include_str!("light.wgsl"))];
+
+/// A shader of this crate, joined from its pieces. `text` is the file of the same name.
+pub(crate) fn module(gpu: &Gpu, name: &str, text: &str) -> wgpu::ShaderModule {
+    let joined = join(name, text, &LIBRARY).expect("a test joins every shader");
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(joined.into()),
+    })
+}

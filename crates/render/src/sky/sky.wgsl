@@ -1,0 +1,34 @@
+// What is behind everything, by direction: seen, mirrored, and as light from all round.
+#import view
+
+// What is seen in a direction, without the sun's disc.
+fn surroundings(direction: vec3f) -> vec3f {
+    if view.frame.w > 0.5 {
+        let up = smoothstep(0.0, 0.9, direction.z);
+        let down = smoothstep(0.0, 0.7, -direction.z);
+        return mix(mix(view.horizon.rgb, view.above.rgb, up), view.below.rgb, down);
+    }
+    let height = max(direction.z, 0.0);
+    // Air gets thicker towards the horizon; light scattered forward makes a glow round the sun.
+    let clear = mix(view.horizon.rgb, view.above.rgb, 1.0 - exp(-3.2 * height));
+    let near_sun = max(dot(direction, view.sun.xyz), 0.0);
+    let glow = 0.25 * pow(near_sun, 12.0) + 0.35 * pow(near_sun, 160.0);
+    let sky = clear + glow * vec3f(1.0, 0.88, 0.7);
+    return mix(sky, view.below.rgb, smoothstep(0.0, 0.12, -direction.z));
+}
+
+// What is seen in a direction, the sun's disc with it.
+fn sky(direction: vec3f) -> vec3f {
+    let seen = surroundings(direction);
+    if view.frame.w > 0.5 {
+        return seen;
+    }
+    let disc = smoothstep(0.99985, 0.99993, dot(direction, view.sun.xyz));
+    return seen + disc * 20.0 * view.sunlight.rgb;
+}
+
+// Light that comes from all round on a surface.
+fn light_from_all_round(normal: vec3f) -> vec3f {
+    let overhead = mix(view.horizon.rgb, view.above.rgb, 0.5);
+    return view.sunlight.w * mix(view.below.rgb, overhead, 0.5 + 0.5 * normal.z);
+}

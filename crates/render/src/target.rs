@@ -1,0 +1,57 @@
+//! What a picture is drawn into.
+
+use crate::RenderError;
+use corpuscle_gpu::{Gpu, texture_2d, wgpu};
+
+/// Format of colours while a picture is drawn: linear light.
+pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of depth: 1 near, 0 far.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Format of the finished picture: sRGB bytes.
+pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// What a picture is drawn into: colour and depth with several samples a pixel, the opaque scene behind what lets light
+/// through, and the finished picture. Kept from picture to picture of a film.
+#[derive(Debug)]
+pub struct Target {
+    /// Width and height of the picture, pixels.
+    pub size: [u32; 2],
+    /// Samples each way in a pixel.
+    pub samples: u32,
+    pub(crate) colour: wgpu::Texture,
+    pub(crate) depth: wgpu::Texture,
+    pub(crate) behind_colour: wgpu::Texture,
+    pub(crate) behind_depth: wgpu::Texture,
+    pub(crate) picture: wgpu::Texture,
+}
+
+impl Target {
+    /// A target for pictures of `size` `[width, height]` pixels with `samples` x `samples` samples a pixel (2 for stills; 1
+    /// is fast).
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] where that is more than a device can hold.
+    pub fn new(gpu: &Gpu, size: [u32; 2], samples: u32) -> Result<Self, RenderError> {
+        use wgpu::TextureUsages as Usage;
+        let size = size.map(|length| length.max(1));
+        let samples = samples.max(1);
+        let drawn = size.map(|length| length.saturating_mul(samples));
+        let texture = |label, format, usage| texture_2d(gpu, label, drawn, format, usage);
+        let into = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
+        let behind = Usage::TEXTURE_BINDING | Usage::COPY_DST;
+        Ok(Self {
+            size,
+            samples,
+            colour: texture("colour", COLOUR_FORMAT, into)?,
+            depth: texture("depth", DEPTH_FORMAT, into)?,
+            behind_colour: texture("colour behind", COLOUR_FORMAT, behind)?,
+            behind_depth: texture("depth behind", DEPTH_FORMAT, behind)?,
+            picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, Usage::RENDER_ATTACHMENT | Usage::COPY_SRC)?,
+        })
+    }
+
+    /// Width and height in samples: of everything but the finished picture.
+    pub fn drawn_size(&self) -> [u32; 2] {
+        self.size.map(|length| length * self.samples)
+    }
+}

@@ -1,0 +1,105 @@
+//! From linear light to the bytes of a picture.
+
+use crate::pipeline::Recipe;
+use crate::target::PICTURE_FORMAT;
+use crate::{Target, shaders};
+use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
+
+/// Averages samples, presses highlights, lays the overlay over.
+#[derive(Debug)]
+pub(crate) struct Tone {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Tone {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let stages = wgpu::ShaderStages::FRAGMENT;
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: stages, ty, count: None };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("tone"),
+            entries: &[entry(0, uniform), entry(1, texture), entry(2, texture)],
+        });
+        let recipe = Recipe {
+            label: "tone",
+            module: &shaders::module(gpu, "tone", include_str!("tone.wgsl")),
+            groups: &[&layout],
+            buffers: &[],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+        };
+        Self { pipeline: recipe.flat(gpu, PICTURE_FORMAT), layout }
+    }
+
+    /// Draws the finished picture. `pressed` is false where colours are to stay as they are. The overlay has the picture's size
+    /// and its opacity multiplied in.
+    pub(crate) fn draw(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &Target,
+        pressed: bool,
+        overlay: Option<&Image>,
+    ) {
+        let overlay = overlay.filter(|image| [image.width, image.height] == target.size);
+        let group = self.group(gpu, target, pressed, overlay);
+        let view = target.picture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("tone"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn group(&self, gpu: &Gpu, target: &Target, pressed: bool, overlay: Option<&Image>) -> wgpu::BindGroup {
+        let settings = [target.samples, u32::from(pressed), u32::from(overlay.is_some()), 0];
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("tone"),
+            size: size_of_val(&settings) as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&settings));
+        let nothing = Image { width: 1, height: 1, rgba: vec![0; 4] };
+        let colour = target.colour.create_view(&wgpu::TextureViewDescriptor::default());
+        let overlay = upload(gpu, overlay.unwrap_or(&nothing));
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("tone"),
+            layout: &self.layout,
+            entries: &[
+                entry(0, buffer.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(&colour)),
+                entry(2, wgpu::BindingResource::TextureView(&overlay)),
+            ],
+        })
+    }
+}
+
+/// An image of at most a target's size on the device.
+fn upload(gpu: &Gpu, image: &Image) -> wgpu::TextureView {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let size = [image.width, image.height];
+    let texture = texture_2d(gpu, "overlay", size, wgpu::TextureFormat::Rgba8Unorm, usage);
+    let texture = texture.expect("no larger than the target, which is there");
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * image.width), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), &image.rgba, layout, texture.size());
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

@@ -1,0 +1,178 @@
+//! What every shader knows of the picture: camera, light, and the sun's depth map. Group 0 of every pipeline; in WGSL `#import view`.
+
+use crate::{Backdrop, Camera, Lens, Light, Stage};
+use corpuscle_gpu::Gpu;
+use corpuscle_gpu::wgpu;
+use glam::camera::rh::{proj::directx, view};
+use glam::{Mat4, Vec3, Vec4};
+
+/// Pixels of the sun's depth map, each way.
+pub(crate) const SHADOW_PIXELS: u32 = 4096;
+
+/// What every shader knows, as `view.wgsl` has it. All in stage coordinates.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Uniform {
+    clip_from_world: Mat4,
+    world_from_clip: Mat4,
+    view_from_world: Mat4,
+    world_from_view: Mat4,
+    clip_from_view: Mat4,
+    view_from_clip: Mat4,
+    sun_from_world: Mat4,
+    /// Place of the eye; 1 with perspective, 0 without.
+    eye: Vec4,
+    /// Line of sight; height of a pixel, at distance 1 where there is perspective.
+    forward: Vec4,
+    /// Direction towards the sun; tangent of half the angle it fills.
+    sun: Vec4,
+    /// Its light; strength of the light from all round.
+    sunlight: Vec4,
+    above: Vec4,
+    horizon: Vec4,
+    below: Vec4,
+    /// Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 2 paper.
+    frame: Vec4,
+}
+
+/// Camera and light of one picture on the device.
+#[derive(Debug)]
+pub struct View {
+    /// Group 0 of the pipelines that draw the picture.
+    pub group: wgpu::BindGroup,
+    /// Group 0 of the pipelines that draw the sun's depth map: the same from the sun.
+    pub(crate) sun_group: wgpu::BindGroup,
+    /// The sun's depth map.
+    pub(crate) shadow: wgpu::TextureView,
+}
+
+impl View {
+    /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`].
+    pub fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        size: [u32; 2],
+    ) -> Self {
+        let sun_from_world = sun_from_world(light);
+        let seen = uniform(stage, camera, light, size, sun_from_world);
+        let from_sun = Uniform {
+            clip_from_world: sun_from_world,
+            world_from_clip: sun_from_world.inverse(),
+            eye: (light.towards_sun() * 4.0).extend(0.0),
+            forward: (-light.towards_sun()).extend(2.0 / SHADOW_PIXELS as f32),
+            frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
+            ..seen
+        };
+        let pixels = if light.is_lit() { SHADOW_PIXELS } else { 1 };
+        let shadow = depth_map(gpu, pixels);
+        let nothing = depth_map(gpu, 1);
+        Self { group: group(gpu, layout, &seen, &shadow), sun_group: group(gpu, layout, &from_sun, &nothing), shadow }
+    }
+
+    /// The layout of group 0: uniform `View`, the sun's depth map, its comparing sampler.
+    pub(crate) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: stages, ty, count: None };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let depth = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Depth,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let compare = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("view"),
+            entries: &[entry(0, uniform), entry(1, depth), entry(2, compare)],
+        })
+    }
+}
+
+fn uniform(stage: &Stage, camera: &Camera, light: &Light, [width, height]: [u32; 2], sun_from_world: Mat4) -> Uniform {
+    let view_from_world = camera.view_from_world(stage);
+    let clip_from_view = camera.clip_from_view(stage, width as f32 / height as f32);
+    let (perspective, tall) = match camera.lens {
+        Lens::Perspective { field_of_view } => (1.0, 2.0 * (0.5 * field_of_view as f32).tan()),
+        Lens::Orthographic { height } => (0.0, stage.length(height)),
+    };
+    let ([above, horizon, below], kind) = match light.backdrop {
+        Backdrop::Sky => ([[0.10, 0.25, 0.62], [0.62, 0.74, 0.88], [0.30, 0.31, 0.30]], 0.0),
+        Backdrop::Studio { above, horizon, below } => ([above, horizon, below], 1.0),
+        Backdrop::Paper(colour) => ([colour; 3], 2.0),
+    };
+    let clip_from_world = clip_from_view * view_from_world;
+    Uniform {
+        clip_from_world,
+        world_from_clip: clip_from_world.inverse(),
+        view_from_world,
+        world_from_view: view_from_world.inverse(),
+        clip_from_view,
+        view_from_clip: clip_from_view.inverse(),
+        sun_from_world,
+        eye: stage.place(camera.eye.into()).extend(perspective),
+        forward: camera.forward().extend(tall / height as f32),
+        sun: light.towards_sun().extend(light.softness.tan()),
+        sunlight: Vec3::from(light.sunlight).extend(light.ambient),
+        above: Vec3::from(above).extend(0.0),
+        horizon: Vec3::from(horizon).extend(0.0),
+        below: Vec3::from(below).extend(0.0),
+        frame: Vec4::new(width as f32, height as f32, stage.unit() as f32, kind),
+    }
+}
+
+/// From the stage to the clip space of a picture taken from the sun that holds all of it.
+fn sun_from_world(light: &Light) -> Mat4 {
+    let towards = light.towards_sun();
+    let up = if towards.z.abs() > 0.99 { Vec3::Y } else { Vec3::Z };
+    let reach = 1.02;
+    // Near and far changed places: depth 1 is near the sun.
+    directx::orthographic(-reach, reach, -reach, reach, 4.0 + reach, 4.0 - reach)
+        * view::look_at_mat4(towards * 4.0, Vec3::ZERO, up)
+}
+
+fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("sun's depth map"),
+        size: wgpu::Extent3d { width: pixels, height: pixels, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: crate::DEPTH_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, uniform: &Uniform, shadow: &wgpu::TextureView) -> wgpu::BindGroup {
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("view"),
+        size: size_of::<Uniform>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(uniform));
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("shadow"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        compare: Some(wgpu::CompareFunction::GreaterEqual),
+        ..wgpu::SamplerDescriptor::default()
+    });
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("view"),
+        layout,
+        entries: &[
+            entry(0, buffer.as_entire_binding()),
+            entry(1, wgpu::BindingResource::TextureView(shadow)),
+            entry(2, wgpu::BindingResource::Sampler(&sampler)),
+        ],
+    })
+}

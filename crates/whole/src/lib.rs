@@ -1,0 +1,113 @@
+//! Files that appear whole or not at all.
+//!
+//! What is written goes to a temporary file in the same folder, which takes the place of the old one only when all of
+//! it is on the disk: whoever reads sees the old content or the new, never a part.
+
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+
+/// A file in the making. Dropped before [`WholeFile::finish`], it leaves nothing behind.
+#[derive(Debug)]
+pub struct WholeFile {
+    path: PathBuf,
+    buffer: BufWriter<NamedTempFile>,
+}
+
+impl WholeFile {
+    /// Begins the file that shall stand at `path`, in a folder that exists.
+    ///
+    /// # Errors
+    /// What the system says where no file can be made in the folder.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        Ok(Self { path: path.into(), buffer: BufWriter::with_capacity(1 << 16, temporary_beside(path)?) })
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// What the system says, as when the disk is full; what stood at the path before is untouched then.
+    pub fn finish(self) -> io::Result<()> {
+        let file = self.buffer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.as_file().sync_data()?;
+        file.persist(self.path).map_err(|error| error.error)?;
+        Ok(())
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.buffer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.buffer.flush()
+    }
+}
+
+impl Seek for WholeFile {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.buffer.seek(place)
+    }
+}
+
+/// Writes a file in one go.
+///
+/// # Errors
+/// What `write` or the system says; what stood at `path` before is untouched then.
+pub fn write_whole(path: &Path, write: impl FnOnce(&mut WholeFile) -> io::Result<()>) -> io::Result<()> {
+    let mut file = WholeFile::create(path)?;
+    write(&mut file)?;
+    file.finish()
+}
+
+/// A temporary file in the folder of `path`, with the permissions that a plain new file would get.
+fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".writing-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_content_and_no_litter() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_whole(&path, |file| file.write_all(b"old")).unwrap();
+        let error = write_whole(&path, |file| {
+            file.write_all(b"half of the new")?;
+            Err(io::ErrorKind::StorageFull.into())
+        });
+        assert_eq!(error.unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_given_up_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut file = WholeFile::create(&folder.path().join("a.txt")).unwrap();
+        file.write_all(b"half").unwrap();
+        drop(file);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_are_readable_by_whom_the_umask_allows() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [plain, whole] = ["plain", "whole"].map(|name| folder.path().join(name));
+        fs::write(&plain, b"x").unwrap();
+        write_whole(&whole, |file| file.write_all(b"x")).unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&plain), mode(&whole));
+    }
+}
