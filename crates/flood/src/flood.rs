@@ -14,6 +14,7 @@ use crate::inflow::Source;
 use crate::maps::Maps;
 use crate::particle::Particle;
 use crate::rain::{Ground, Wetness};
+use crate::refinement::Refinement;
 use crate::sampling::{Sample, Sampler};
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::structures::{Flows, Structures};
@@ -34,6 +35,7 @@ pub struct Flood {
     roughness: Roughness,
     /// The ground, where it rains or water soaks in.
     ground: Option<Ground>,
+    refinement: Option<Refinement>,
     sources: Vec<Source>,
     structures: Structures,
     points: Vec<PointGauge>,

@@ -1,6 +1,6 @@
 //! How a flood is set up.
 
-use super::{Flood, State};
+use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
 use crate::friction::Roughness;
 use crate::limits;
@@ -8,6 +8,7 @@ use crate::maps::Maps;
 use crate::obstacles;
 use crate::paper::Paper;
 use crate::rain::Ground;
+use crate::refinement::Refinement;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
@@ -86,7 +87,8 @@ impl Flood {
         let obstacles =
             obstacles::open(flood, &terrain, folder, setup::closest(bodies, &terrain, spacing, volume), reach, h)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
-        let widest = flood.balanced.largest_smoothing * spacing;
+        let refinement = flood.refinement.as_ref().map(|refinement| Refinement::new(refinement, volume, spacing));
+        let widest = weather::widest(flood, refinement.as_ref());
         let ground = Ground::open(flood, &terrain, folder, volume, widest)?;
         let structures = Structures::open(flood, &terrain, folder, spacing)?;
         let state = State {
@@ -115,6 +117,7 @@ impl Flood {
             roughness: Roughness::open(flood, &terrain, folder)?,
             ground,
             structures,
+            refinement,
             points: setup::point_gauges(flood, &terrain)?,
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
