@@ -30,7 +30,7 @@ pub use colour::{ColourTable, linear};
 pub use drawable::{Drawable, Through};
 pub use error::RenderError;
 pub use floor::Floor;
-pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing};
+pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water};
 pub use light::{Backdrop, Light};
 pub use renderer::Renderer;
 pub use stage::Stage;

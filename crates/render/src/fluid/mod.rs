@@ -19,9 +19,14 @@ mod painter;
 mod passes;
 mod style;
 mod thing;
+mod water;
+
+#[cfg(test)]
+mod picture;
 
 pub use droplet::Droplet;
 pub use painter::FluidPainter;
 pub use passes::FluidPass;
 pub use style::{FluidStyle, Smoothing};
 pub use thing::Fluid;
+pub use water::Water;

@@ -44,7 +44,7 @@ impl FluidStyle {
     pub fn water(radius: f64) -> Self {
         Self {
             smoothing: Smoothing::default(),
-            width: 5.0 * radius,
+            width: 3.0 * radius,
             range: 5.0 * radius,
             rounding: radius,
             most_pixels: 64,

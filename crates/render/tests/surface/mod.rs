@@ -5,7 +5,8 @@
 //! - **Normal error**: the mean angle between the normal of the smoothed surface and that of the exact surface that the line of
 //!   sight through the middle of the pixel meets first. Over all pixels in which both are, but those within [`BAND`] pixels of the
 //!   ball's outline, where the next measure counts, and of the plane's border.
-//! - **Silhouette bleed**: of the pixels within [`BAND`] pixels of the ball's exact outline, on either side, the part whose distance
+//! - **Silhouette bleed**: of the pixels within [`BAND`] pixels of the ball's exact outline, on either side, where the plane is more
+//!   than six particle radii behind, the part whose distance
 //!   is neither that of the ball nor that of the plane: more than two particle radii behind the farthest that is seen of the ball,
 //!   and more than two before the plane on this line of sight. A filter that mixes ball and plane makes such pixels; particles
 //!   that stand out do not.
@@ -23,8 +24,12 @@ const BAND: f64 = 8.0;
 const HALF: f64 = 1.0;
 const WAVE: (f64, f64) = (0.03, 9.0);
 /// The ball.
-const MIDDLE: DVec3 = DVec3::new(0.1, -0.1, 0.55);
+const MIDDLE: DVec3 = DVec3::new(0.1, -0.1, 0.4);
 const RADIUS: f64 = 0.3;
+/// How far particles are off their lattice, in spacings.
+const SHAKEN: f64 = 0.25;
+/// The same off their surface.
+const LIFTED: f64 = 0.1;
 /// Distance between particles.
 const SPACING: f64 = 0.0174;
 
@@ -74,7 +79,7 @@ fn ball_along(origin: DVec3, direction: DVec3) -> (Option<f64>, f64) {
 }
 
 impl Scene {
-    /// Balls whose outer sides lie in the exact surfaces, on a lattice shaken by a tenth of its spacing.
+    /// Balls whose outer sides lie about in the exact surfaces, on a lattice, shaken.
     pub fn wavy_plane_and_ball() -> Self {
         let mut random = Random(7);
         let radius = 1.1 * SPACING;
@@ -82,20 +87,26 @@ impl Scene {
         let count = (2.0 * HALF / SPACING) as i32;
         for row in 0..=count {
             for column in 0..=count {
-                let x = -HALF + SPACING * (f64::from(column) + 0.1 * random.next());
-                let y = -HALF + SPACING * (f64::from(row) + 0.1 * random.next());
+                let x = -HALF + SPACING * (f64::from(column) + SHAKEN * random.next());
+                let y = -HALF + SPACING * (f64::from(row) + SHAKEN * random.next());
                 let (z, slope) = wave(x, y);
                 let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
-                droplets.push(Droplet::ball((DVec3::new(x, y, z) - radius * normal).into(), radius));
+                droplets.push(Droplet::ball(
+                    (DVec3::new(x, y, z) - (radius + LIFTED * SPACING * random.next()) * normal).into(),
+                    radius,
+                ));
             }
         }
         // Points on a sphere at equal distances (Fibonacci lattice).
         let points = (4.0 * std::f64::consts::PI * RADIUS * RADIUS / (SPACING * SPACING)) as i32;
         for point in 0..points {
             let z = 1.0 - (2.0 * f64::from(point) + 1.0) / f64::from(points);
-            let angle = 2.399_963_229_7 * f64::from(point) + 0.1 * SPACING / RADIUS * random.next();
+            let angle = 2.399_963_229_7 * f64::from(point) + SHAKEN * SPACING / RADIUS * random.next();
             let out = DVec3::new((1.0 - z * z).sqrt() * angle.cos(), (1.0 - z * z).sqrt() * angle.sin(), z);
-            droplets.push(Droplet::ball((MIDDLE + (RADIUS - radius) * out).into(), radius));
+            droplets.push(Droplet::ball(
+                (MIDDLE + (RADIUS - radius + LIFTED * SPACING * random.next()) * out).into(),
+                radius,
+            ));
         }
         Self { droplets }
     }
@@ -129,9 +140,11 @@ fn compare(camera: &Camera, distances: &[Option<f64>], normals: &[Option<[f64; 3
         // The middle of the outline's circle is the farthest that is seen of the ball.
         let rim = ((MIDDLE - camera.eye).length_squared() - RADIUS * RADIUS).sqrt() * forward;
         if pixels_to_outline.abs() <= BAND {
-            outline += 1;
-            let before_plane = plane.is_none_or(|plane| *distance < plane * forward - 2.0 * radius);
-            bled += i32::from(*distance > rim + 2.0 * radius && before_plane);
+            let Some(behind) = plane.map(|plane| plane * forward) else { continue };
+            if behind - rim > 6.0 * radius {
+                outline += 1;
+                bled += i32::from(*distance > rim + 2.0 * radius && *distance < behind - 2.0 * radius);
+            }
             continue;
         }
         let Some(hit) = ball.or(plane) else { continue };
