@@ -6,7 +6,7 @@ use corpuscle_gpu::{Image, require_gpu};
 use std::path::PathBuf;
 
 const SIZE: [u32; 2] = [160, 100];
-/// Difference from the reference, of 255, over which a picture is another: drivers round differently.
+/// Difference from the reference, of 255, above which a picture is another: drivers round differently.
 const SAME: f64 = 1.0;
 
 /// Shallow water with waves round a sunken and a dry ball, foam on a part of it, and a drop in the air.

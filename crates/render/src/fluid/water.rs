@@ -104,7 +104,7 @@ fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> D
             continue;
         }
         plane.add((1.0 - (distance / reach).powi(2)).powi(3), away);
-        let difference = DVec2::from((velocity - DVec3::from(set.velocity[near.index])).truncate());
+        let difference = (velocity - DVec3::from(set.velocity[near.index])).truncate();
         if distance > 0.0 && difference != DVec2::ZERO {
             // Ihmsen, Akinci, Akinci and Teschner, Unified Spray, Foam and Air Bubbles for Particle-Based Fluids (2012), eq. 2: relative
             // velocity, the more the straighter the two go towards each other.

@@ -32,9 +32,23 @@ const SHAKEN: f64 = 0.25;
 const LIFTED: f64 = 0.1;
 /// Distance between particles.
 const SPACING: f64 = 0.0174;
+/// Radius of particles.
+const BALL: f64 = 1.1 * SPACING;
 
 pub struct Scene {
     pub droplets: Vec<Droplet>,
+    /// What each pixel should show.
+    exact: Vec<Exact>,
+}
+
+/// What a pixel should show.
+enum Exact {
+    /// Nothing that counts.
+    Nothing,
+    /// A surface with this normal.
+    Surface(DVec3),
+    /// The ball's outline: distances of the farthest that is seen of the ball, and of the plane.
+    Outline(f64, f64),
 }
 
 /// What is measured.
@@ -62,7 +76,7 @@ fn plane_along(origin: DVec3, direction: DVec3) -> Option<f64> {
     if above(far) > 0.0 {
         return None;
     }
-    for _ in 0..60 {
+    for _ in 0..45 {
         let middle = 0.5 * (near + far);
         if above(middle) > 0.0 { near = middle } else { far = middle }
     }
@@ -82,7 +96,6 @@ impl Scene {
     /// Balls whose outer sides lie about in the exact surfaces, on a lattice, shaken.
     pub fn wavy_plane_and_ball() -> Self {
         let mut random = Random(7);
-        let radius = 1.1 * SPACING;
         let mut droplets = Vec::new();
         let count = (2.0 * HALF / SPACING) as i32;
         for row in 0..=count {
@@ -92,8 +105,8 @@ impl Scene {
                 let (z, slope) = wave(x, y);
                 let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
                 droplets.push(Droplet::ball(
-                    (DVec3::new(x, y, z) - (radius + LIFTED * SPACING * random.next()) * normal).into(),
-                    radius,
+                    (DVec3::new(x, y, z) - (BALL + LIFTED * SPACING * random.next()) * normal).into(),
+                    BALL,
                 ));
             }
         }
@@ -103,71 +116,84 @@ impl Scene {
             let z = 1.0 - (2.0 * f64::from(point) + 1.0) / f64::from(points);
             let angle = 2.399_963_229_7 * f64::from(point) + SHAKEN * SPACING / RADIUS * random.next();
             let out = DVec3::new((1.0 - z * z).sqrt() * angle.cos(), (1.0 - z * z).sqrt() * angle.sin(), z);
-            droplets.push(Droplet::ball(
-                (MIDDLE + (RADIUS - radius + LIFTED * SPACING * random.next()) * out).into(),
-                radius,
-            ));
+            droplets
+                .push(Droplet::ball((MIDDLE + (RADIUS - BALL + LIFTED * SPACING * random.next()) * out).into(), BALL));
         }
-        Self { droplets }
+        Self { droplets, exact: exact() }
     }
 
-    pub fn measure(&self, gpu: &Gpu, smoothing: Smoothing) -> Quality {
-        let radius = 1.1 * SPACING;
+    /// With a style's own smoothing, its range times so much.
+    pub fn measure(&self, gpu: &Gpu, smoothing: Smoothing, ranges: f64) -> Quality {
         let renderer = Renderer::new(gpu);
-        let stage = Stage::new([-HALF, -HALF, -0.1], [HALF, HALF, 0.9]);
-        let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
-        let camera = Camera::orbit(&stage, -1.2, 0.75, 0.6, aspect);
-        let style = FluidStyle { smoothing, ..FluidStyle::water(radius) };
-        let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage, style);
+        let water = FluidStyle::water(BALL);
+        let style = FluidStyle { smoothing, range: ranges * water.range, ..water };
+        let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage(), style);
         fluid.fill(gpu, self.droplets.iter().copied());
         let target = Target::new(gpu, SIZE, 1).unwrap();
-        renderer.draw(&target, &stage, &camera, &Light::day(), &mut [&mut fluid as &mut dyn Drawable], None);
-        compare(&camera, &fluid.distances(gpu).unwrap(), &fluid.normals(gpu).unwrap())
+        renderer.draw(&target, &stage(), &camera(), &Light::day(), &mut [&mut fluid as &mut dyn Drawable], None);
+        compare(&self.exact, &fluid.distances(gpu).unwrap(), &fluid.normals(gpu).unwrap())
     }
 }
 
-fn compare(camera: &Camera, distances: &[Option<f64>], normals: &[Option<[f64; 3]>]) -> Quality {
-    let rays = Rays::new(camera);
-    let radius = 1.1 * SPACING;
+fn stage() -> Stage {
+    Stage::new([-HALF, -HALF, -0.1], [HALF, HALF, 0.9])
+}
+
+fn camera() -> Camera {
+    Camera::orbit(&stage(), -1.2, 0.75, 0.6, f64::from(SIZE[0]) / f64::from(SIZE[1]))
+}
+
+fn compare(exact: &[Exact], distances: &[Option<f64>], normals: &[Option<[f64; 3]>]) -> Quality {
     let (mut angles, mut compared, mut bled, mut outline) = (0.0, 0, 0, 0);
-    for (index, (distance, normal)) in distances.iter().zip(normals).enumerate() {
-        let pixel = DVec2::new((index as u32 % SIZE[0]).into(), (index as u32 / SIZE[0]).into()) + 0.5;
-        let (direction, forward) = rays.through(pixel);
-        let (ball, passes) = ball_along(camera.eye, direction);
-        let plane = plane_along(camera.eye, direction);
-        let pixels_to_outline = (passes - RADIUS) / rays.pixel_at((MIDDLE - camera.eye).length());
-        let (Some(distance), Some(normal)) = (distance, normal) else { continue };
-        // The middle of the outline's circle is the farthest that is seen of the ball.
-        let rim = ((MIDDLE - camera.eye).length_squared() - RADIUS * RADIUS).sqrt() * forward;
-        if pixels_to_outline.abs() <= BAND {
-            let Some(behind) = plane.map(|plane| plane * forward) else { continue };
-            if behind - rim > 6.0 * radius {
+    for ((exact, distance), normal) in exact.iter().zip(distances).zip(normals) {
+        match (exact, distance, normal) {
+            (Exact::Outline(rim, plane), Some(distance), _) => {
                 outline += 1;
-                bled += i32::from(*distance > rim + 2.0 * radius && *distance < behind - 2.0 * radius);
+                bled += i32::from(*distance > rim + 2.0 * BALL && *distance < plane - 2.0 * BALL);
             }
-            continue;
-        }
-        let Some(hit) = ball.or(plane) else { continue };
-        let place = camera.eye + hit * direction;
-        if ball.is_none() && place.x.abs().max(place.y.abs()) > HALF - 5.0 * SPACING {
-            continue;
-        }
-        let exact = match ball {
-            Some(_) => (place - MIDDLE).normalize(),
-            None => {
-                let (_, slope) = wave(place.x, place.y);
-                DVec3::new(-slope.x, -slope.y, 1.0).normalize()
+            (Exact::Surface(exact), _, Some(normal)) => {
+                angles += DVec3::from(*normal).angle_between(*exact).to_degrees();
+                compared += 1;
             }
-        };
-        angles += DVec3::from(*normal).angle_between(exact).to_degrees();
-        compared += 1;
+            _ => (),
+        }
     }
-    assert!(compared > 100_000 && outline > 5_000, "{compared} {outline}");
+    assert!(compared > 100_000 && outline > 4_000, "{compared} {outline}");
     Quality { normal_error: angles / f64::from(compared), bleed: f64::from(bled) / f64::from(outline) }
+}
+
+fn exact() -> Vec<Exact> {
+    let rays = Rays::new(&camera());
+    let pixels = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| DVec2::new(x.into(), y.into()) + 0.5));
+    pixels.map(|pixel| exact_at(&rays, pixel)).collect()
+}
+
+fn exact_at(rays: &Rays, pixel: DVec2) -> Exact {
+    let eye = rays.eye;
+    let (direction, forward) = rays.through(pixel);
+    let (ball, passes) = ball_along(eye, direction);
+    let plane = plane_along(eye, direction);
+    let pixels_to_outline = (passes - RADIUS) / (rays.pixel * (MIDDLE - eye).length());
+    if pixels_to_outline.abs() <= BAND {
+        let rim = ((MIDDLE - eye).length_squared() - RADIUS * RADIUS).sqrt() * forward;
+        let behind = plane.map(|plane| plane * forward).filter(|behind| behind - rim > 6.0 * BALL);
+        return behind.map_or(Exact::Nothing, |behind| Exact::Outline(rim, behind));
+    }
+    if let Some(hit) = ball {
+        return Exact::Surface((eye + hit * direction - MIDDLE).normalize());
+    }
+    let Some(hit) = plane else { return Exact::Nothing };
+    let place = eye + hit * direction;
+    if place.x.abs().max(place.y.abs()) > HALF - 5.0 * SPACING {
+        return Exact::Nothing;
+    }
+    let (_, slope) = wave(place.x, place.y);
+    Exact::Surface(DVec3::new(-slope.x, -slope.y, 1.0).normalize())
 }
 
 /// The lines of sight of a camera with perspective.
 struct Rays {
+    eye: DVec3,
     forward: DVec3,
     right: DVec3,
     up: DVec3,
@@ -181,7 +207,7 @@ impl Rays {
         let right = forward.cross(camera.up).normalize();
         let corpuscle_render::Lens::Perspective { field_of_view } = camera.lens else { panic!("perspective") };
         let pixel = 2.0 * (0.5 * field_of_view).tan() / f64::from(SIZE[1]);
-        Self { forward, right, up: right.cross(forward), pixel }
+        Self { eye: camera.eye, forward, right, up: right.cross(forward), pixel }
     }
 
     /// Direction through a place in the picture, and its part along the middle line of sight.
@@ -189,10 +215,6 @@ impl Rays {
         let [x, y] = [place.x - 0.5 * f64::from(SIZE[0]), 0.5 * f64::from(SIZE[1]) - place.y];
         let direction = (self.forward + self.pixel * (x * self.right + y * self.up)).normalize();
         (direction, direction.dot(self.forward))
-    }
-
-    fn pixel_at(&self, distance: f64) -> f64 {
-        self.pixel * distance
     }
 }
 
