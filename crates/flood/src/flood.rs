@@ -45,7 +45,6 @@ pub struct Flood {
     volume: f64,
     h: f64,
     map_period: f64,
-    warnings: Vec<String>,
     state: State,
     /// Working memory.
     of_blocks: Vec<f64>,
@@ -84,6 +83,8 @@ struct State {
     put_back: u64,
     /// When water was first seen to stand higher than each obstacle, s.
     overtopped: Vec<Option<f64>>,
+    /// What a user should know of the water at the start.
+    warnings: Vec<String>,
 }
 
 impl Flood {

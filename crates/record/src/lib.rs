@@ -22,6 +22,6 @@ pub use error::RecordError;
 pub use extent::{ExtentScores, compare_extent, write_extent};
 pub use frames::FrameFormat;
 pub use gauges::GaugeTable;
-pub use report::{DewReport, GasReport, Report};
+pub use report::{DewReport, GasReport, Report, ValidatedCase, ValidatedMeasure, ValidationReport};
 pub use run_folder::{RunFolder, next_run_folder};
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};
