@@ -20,7 +20,7 @@ mod whole;
 pub use checkpoint::Clock;
 pub use error::RecordError;
 pub use extent::{ExtentScores, compare_extent, write_extent};
-pub use frames::FrameFormat;
+pub use frames::{FrameFiles, FrameFormat};
 pub use gauges::GaugeTable;
 pub use report::{DewReport, GasReport, Report};
 pub use run_folder::{RunFolder, next_run_folder};

@@ -39,10 +39,12 @@ pub enum Lens {
 
 impl Camera {
     /// The stage seen from above, north up, to scale: it fills a picture of `aspect` (width over height) but for a `margin`
-    /// (part of the picture, 0 for none).
+    /// on all sides (part of the picture's height, 0 for none).
     pub fn plan(stage: &Stage, aspect: f64, margin: f64) -> Self {
         let size = stage.to - stage.from;
-        let height = size.y.max(size.x / aspect) / (1.0 - 2.0 * margin);
+        // The margin is a part of the height on all four sides.
+        let inner = 1.0 - 2.0 * margin;
+        let height = (size.y / inner).max(size.x / (aspect - 1.0 + inner));
         let eye = stage.centre() + DVec3::Z * stage.unit() * 2.0;
         Self { eye, target: stage.centre(), up: DVec3::Y, lens: Lens::Orthographic { height } }
     }
@@ -66,6 +68,14 @@ impl Camera {
             up: DVec3::Z,
             lens: Lens::Perspective { field_of_view },
         }
+    }
+
+    /// Where a place, m, is in a picture of `aspect`: parts of its width from the left and of its height from above. None behind
+    /// the eye.
+    pub fn project(&self, stage: &Stage, aspect: f64, point: [f64; 3]) -> Option<[f64; 2]> {
+        let clip = self.clip_from_view(stage, aspect as f32) * self.view_from_world(stage);
+        let at = clip * stage.place(point).extend(1.0);
+        (at.w > 0.0).then(|| [0.5 + 0.5 * f64::from(at.x / at.w), 0.5 - 0.5 * f64::from(at.y / at.w)])
     }
 
     /// From stage coordinates to those of the eye: x right, y up, looking along -z.
