@@ -14,6 +14,7 @@ mod number;
 mod picture;
 mod report;
 mod run_folder;
+mod stills;
 mod summary;
 mod whole;
 
@@ -22,6 +23,8 @@ pub use error::RecordError;
 pub use extent::{ExtentScores, compare_extent, write_extent};
 pub use frames::{FrameFiles, FrameFormat};
 pub use gauges::GaugeTable;
-pub use report::{DewReport, GasReport, Report};
-pub use run_folder::{RunFolder, next_run_folder};
+pub use picture::Key as GasKey;
+pub use report::{DewReport, GasReport, Report, gas_key};
+pub use run_folder::{RunFolder, followed_paths, next_run_folder};
+pub use stills::write_picture;
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};

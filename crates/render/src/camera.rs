@@ -50,12 +50,13 @@ impl Camera {
     }
 
     /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
-    /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`.
-    pub fn orbit(stage: &Stage, azimuth: f64, elevation: f64, field_of_view: f64, aspect: f64) -> Self {
+    /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`
+    /// but for a `margin` (part of the picture, 0 for none).
+    pub fn orbit(stage: &Stage, [azimuth, elevation]: [f64; 2], field_of_view: f64, aspect: f64, margin: f64) -> Self {
         let away = DVec3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
         let across = DVec3::new(-azimuth.sin(), azimuth.cos(), 0.0);
         let above = away.cross(across);
-        let slope = (0.5 * field_of_view).tan();
+        let slope = (0.5 * field_of_view).tan() * (1.0 - 2.0 * margin);
         let reach = |corner: DVec3| {
             let place = corner - stage.centre();
             let sideways = (place.dot(above).abs() / slope).max(place.dot(across).abs() / (slope * aspect));
@@ -128,7 +129,7 @@ mod tests {
     fn an_orbit_has_all_corners_in_the_picture_and_one_at_its_edge() {
         let stage = Stage::new([-3.0, 10.0, 0.0], [5.0, 11.0, 2.0]);
         for (azimuth, elevation) in [(0.3, 0.4), (2.0, 1.2), (-1.0, 0.05)] {
-            let camera = Camera::orbit(&stage, azimuth, elevation, 0.7, 1.5);
+            let camera = Camera::orbit(&stage, [azimuth, elevation], 0.7, 1.5, 0.0);
             let clip = camera.clip_from_view(&stage, 1.5) * camera.view_from_world(&stage);
             let reach = |corner: DVec3| {
                 let at = clip.project_point3(stage.place(corner.into()));

@@ -29,7 +29,8 @@ impl Axes {
             return;
         }
         let out = outwards(one, other, middle, long);
-        let (factor, unit) = axis_unit(self.to[axis] - self.from[axis], &self.unit);
+        let longest = (0..3).map(|k| self.to[k] - self.from[k]).fold(0.0, f64::max);
+        let (factor, unit) = axis_unit(longest, &self.unit);
         let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
         let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
         for value in ticks::multiples(low, high, step) {

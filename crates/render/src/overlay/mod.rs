@@ -135,12 +135,12 @@ fn draw_kinds(page: &mut Page<'_>, kinds: &[(String, [u8; 3])]) {
     }
 }
 
-/// Unit of an axis of a length, and what its numbers are divided by.
-fn axis_unit(length: f64, unit: &str) -> (f64, String) {
+/// What the numbers of axes are divided by, and its name, where the longest has this length.
+fn axis_unit(longest: f64, unit: &str) -> (f64, String) {
     if unit.is_empty() {
         return (1.0, String::new());
     }
-    // A length of 3 m is told in m, one of 0.3 m in cm would be unusual: mm.
-    let (factor, prefix) = prefix(length);
+    // Up to a few thousand reads well: 2000 m, not 2 km.
+    let (factor, prefix) = prefix(0.2 * longest);
     (factor, format!("{prefix}{unit}"))
 }
