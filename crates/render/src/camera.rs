@@ -38,15 +38,14 @@ pub enum Lens {
 }
 
 impl Camera {
-    /// The stage seen from above, north up, to scale: it fills a picture of `aspect` (width over height) but for a `margin`
-    /// on all sides (part of the picture's height, 0 for none).
-    pub fn plan(stage: &Stage, aspect: f64, margin: f64) -> Self {
+    /// The stage seen from above, north up, to scale: as large as a picture of `aspect` (width over height) holds between its
+    /// `margins` `[at the sides, below, above]`, parts of the picture's height.
+    pub fn plan(stage: &Stage, aspect: f64, [side, below, above]: [f64; 3]) -> Self {
         let size = stage.to - stage.from;
-        // The margin is a part of the height on all four sides.
-        let inner = 1.0 - 2.0 * margin;
-        let height = (size.y / inner).max(size.x / (aspect - 1.0 + inner));
-        let eye = stage.centre() + DVec3::Z * stage.unit() * 2.0;
-        Self { eye, target: stage.centre(), up: DVec3::Y, lens: Lens::Orthographic { height } }
+        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - 2.0 * side));
+        let target = stage.centre() - DVec3::Y * 0.5 * (below - above) * height;
+        let eye = target + DVec3::Z * stage.unit() * 2.0;
+        Self { eye, target, up: DVec3::Y, lens: Lens::Orthographic { height } }
     }
 
     /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
@@ -144,7 +143,7 @@ mod tests {
     #[test]
     fn a_plan_is_to_scale_with_north_up() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
-        let camera = Camera::plan(&stage, 2.0, 0.0);
+        let camera = Camera::plan(&stage, 2.0, [0.0; 3]);
         let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
         let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
         assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");

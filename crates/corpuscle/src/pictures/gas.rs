@@ -16,8 +16,9 @@ use corpuscle_scene::{Gas, Units, padded};
 /// From where a box in space is seen, radians: to the right of its front, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.02, 0.36];
 const FIELD_OF_VIEW: f64 = 0.5;
-/// Room for axes round the box, part of the picture.
+/// Room for axes round the box in space, part of the picture; and in the plane at the sides, below and above, parts of its height.
 const MARGIN: f64 = 0.1;
+const MARGINS: [f64; 3] = [0.1, 0.215, 0.09];
 /// How far the sun stands to the left of the eye, radians.
 const SUN: f64 = -0.9;
 /// Ink of edges, and the colour of a ball's way.
@@ -44,7 +45,7 @@ impl GasPicture {
         );
         let flat = self.gas.dimensions() == 2;
         let camera = match flat {
-            true => Camera::plan(&stage, studio.aspect(), MARGIN),
+            true => Camera::plan(&stage, studio.aspect(), MARGINS),
             false => Camera::orbit(&stage, DIRECTION, FIELD_OF_VIEW, studio.aspect(), MARGIN),
         };
         let light = if flat { Light::paper() } else { Light::studio().from_azimuth(DIRECTION[0] + SUN) };

@@ -1,14 +1,14 @@
 //! Axes along the edges of a box.
 
-use super::{Axes, Page, axis_unit};
+use super::{Axes, LETTER, Page, axis_unit};
 use corpuscle_drawing::bars::label;
 use corpuscle_drawing::svg::Anchor;
 use corpuscle_drawing::ticks;
 
-/// Length of a tick, and how far from the edge its number and the axis's name stand, CSS pixels.
+/// Length of a tick, how far from the edge its number stands, and the axis's name from the numbers, CSS pixels.
 const TICK: f64 = 6.0;
 const NUMBER: f64 = 18.0;
-const NAME: f64 = 42.0;
+const NAME: f64 = 24.0;
 /// Space of a step between ticks at least, and steps at most.
 const STEP: f64 = 46.0;
 const MOST_STEPS: f64 = 8.0;
@@ -33,17 +33,21 @@ impl Axes {
         let (factor, unit) = axis_unit(longest, &self.unit);
         let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
         let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
+        let mut widest = 0.0_f64;
         for value in ticks::multiples(low, high, step) {
             let mut point = start;
             point[axis] = value * factor;
             let Some([x, y]) = page.place(point) else { continue };
             page.svg.line([x, y], [x + TICK * out[0], y + TICK * out[1]], "over-line");
             let at = [x + NUMBER * out[0], y + NUMBER * out[1] + 4.0];
-            page.svg.text(at, anchor(out), "over-number", &label(value, step));
+            let text = label(value, step);
+            widest = widest.max(LETTER * text.chars().count() as f64);
+            page.svg.text(at, anchor(out), "over-number", &text);
         }
         let name = ["x", "y", "z"][axis];
         let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
-        let at = [0, 1].map(|k| 0.5 * (one[k] + other[k]) + NAME * out[k]);
+        let away = NUMBER + NAME + if anchor(out) == Anchor::Middle { 0.0 } else { widest - 12.0 };
+        let at = [0, 1].map(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
         page.svg.text([at[0], at[1] + 4.0], anchor(out), "over", &name);
     }
 
