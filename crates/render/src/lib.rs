@@ -9,6 +9,7 @@
 mod balls;
 mod buffer;
 mod camera;
+mod camera_path;
 mod caps;
 mod colour;
 mod drawable;
@@ -29,6 +30,7 @@ mod view;
 
 pub use balls::{BallPainter, BallStyle, Balls};
 pub use camera::{Camera, Lens};
+pub use camera_path::CameraPath;
 pub use caps::{Cap, CapPainter, Caps};
 pub use colour::{ColourTable, linear};
 pub use drawable::{Drawable, Through};

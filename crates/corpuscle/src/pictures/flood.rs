@@ -10,12 +10,12 @@ use corpuscle_render::{
 };
 use corpuscle_terrain::Terrain as Ground;
 
-/// From where the block of ground is seen, radians: from the south-west, from above; and how wide the lens is.
-const DIRECTION: [f64; 2] = [-2.0, 0.62];
+/// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
+const DIRECTION: [f64; 2] = [-1.15, 0.6];
 const FIELD_OF_VIEW: f64 = 0.5;
-const MARGIN: f64 = 0.04;
+const MARGIN: f64 = 0.06;
 /// How far the sun stands to the left of the eye, radians.
-const SUN: f64 = -1.2;
+const SUN: f64 = -1.0;
 /// Nodes a side of the drawn ground at most: what a texture can hold everywhere, and a terrain of 4096 x 4096 has.
 const MOST_NODES: usize = 4097;
 /// Height of the block below its lowest ground, part of its width.
@@ -61,7 +61,7 @@ impl FloodPicture {
         let mut water = studio.balls.balls(studio.renderer.gpu(), &self.stage, &BallStyle::new(table.clone()), balls);
         let overlay = Overlay {
             title: title.into(),
-            time: text::time(moment.frame.time),
+            time: format!("t = {}", text::time(moment.frame.time)),
             key: Some(Key::Values("Depth of water, m".into(), table)),
             ..Overlay::default()
         };

@@ -85,9 +85,9 @@ impl GasPicture {
     }
 
     fn overlay(&self, title: &str, moment: &Moment<'_>, key: &GasKey, container: Container) -> Overlay {
-        let (unit, seconds) = match self.gas.units {
-            Units::Si => ("m", " s"),
-            Units::Reduced => ("", ""),
+        let (unit, time) = match self.gas.units {
+            Units::Si => ("m", text::any_time(moment.frame.time)),
+            Units::Reduced => ("", text::short_number(moment.frame.time)),
         };
         let key = match key {
             GasKey::Kinds(kinds) => Key::Kinds(kinds.clone()),
@@ -96,7 +96,7 @@ impl GasPicture {
         };
         Overlay {
             title: title.into(),
-            time: format!("t = {}{seconds}", text::short_number(moment.frame.time)),
+            time: format!("t = {time}"),
             key: Some(key),
             scale_bar: None,
             axes: Some(Axes { from: container.from, to: container.to, unit: unit.into() }),
