@@ -104,6 +104,36 @@ fn interrupted_and_resumed(scene: &str, long: &[&str]) {
     assert!(place.path("stopped/report.html").is_file());
 }
 
+/// Killed ten times, each time a little after some more rows, and checkpoints all the while: some kills meet one being written.
+#[test]
+fn killed_at_ten_moments_and_resumed_a_flood_gives_the_same_bytes() {
+    let place = Place::new();
+    place.write("scene.toml", LAKE);
+    let long = [&LONG[..], &["--set=run.checkpoint_every_wall_s=0.005", "--set=flood.refinement={ spacing_m = 0.4 }"]]
+        .concat();
+    place.run(&[&["run", "scene.toml", "-o", "whole"], &long[..]].concat()).expect_status(0);
+    let gauges = place.path("killed/gauges.csv");
+    let mut rows = 0;
+    for moment in 0..10_u64 {
+        let arguments = match moment {
+            0 => [&["run", "scene.toml", "-o", "killed"], &long[..]].concat(),
+            _ => vec!["run", "--resume", "killed"],
+        };
+        let mut child = place.command(&arguments).stderr(Stdio::null()).spawn().unwrap();
+        rows += 3 + moment as usize % 4;
+        wait_for_rows(&mut child, &gauges, rows);
+        sleep(Duration::from_micros(1700 * moment));
+        signal("-KILL", &child);
+        child.wait().unwrap();
+    }
+    place.run(&["run", "--resume", "killed"]).expect_status(0);
+    let [found, expected] = ["killed", "whole"].map(|folder| results(&place.path(folder)));
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        assert!(found == expected, "{} differs", expected.0);
+    }
+}
+
 /// A limit on the size of files stands for a full disk: both fail a write half way.
 #[test]
 fn a_write_that_fails_ends_the_run_and_leaves_what_is_there_readable() {

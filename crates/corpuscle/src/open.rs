@@ -15,7 +15,19 @@ impl Simulation {
     ///
     /// # Errors
     /// Where the scene, its ground or a file that it names cannot be used.
-    pub fn open(mut scene: Scene, folder: &Path) -> Result<Self, Error> {
+    pub fn open(scene: Scene, folder: &Path) -> Result<Self, Error> {
+        Self::open_with(scene, folder, Flood::new)
+    }
+
+    /// As [`Simulation::open`], for a state that is restored: a flood does not arrange its water at the start.
+    ///
+    /// # Errors
+    /// As [`Simulation::open`].
+    pub fn open_to_restore(scene: Scene, folder: &Path) -> Result<Self, Error> {
+        Self::open_with(scene, folder, Flood::to_restore)
+    }
+
+    fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {
         scene.check()?;
         scene.resolve_paths(folder);
         scene.resolve_defaults();
@@ -23,7 +35,7 @@ impl Simulation {
             ModelScene::Flood(written) => {
                 let terrain = Arc::new(ground(&written.terrain, scene.seed, folder)?);
                 check_observed_extent(&written.flood, &terrain)?;
-                let flood = Flood::new(&written.flood, scene.seed, folder, terrain.clone())?;
+                let flood = new_flood(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();
                 check_inflow(&scene, folder)?;
                 Ok(Self::new(scene, Some(terrain), Box::new(flood)))
@@ -39,6 +51,9 @@ impl Simulation {
         }
     }
 }
+
+/// How a flood is made ready: its settings, seed, folder of relative paths, and ground.
+type NewFlood = fn(&corpuscle_scene::Flood, u64, &Path, Arc<Terrain>) -> Result<Flood, ModelError>;
 
 /// More particles than this over a run are days of computation.
 const MOST_TO_COME: f64 = 2e8;

@@ -31,7 +31,7 @@ impl Recorder {
     /// # Errors
     /// Where the folder holds no run, no checkpoint or one that does not fit.
     pub fn resume(path: &Path) -> Result<(Simulation, Self), Error> {
-        Self::resume_with(path, |scene| Simulation::open(scene, path))
+        Self::resume_with(path, |scene| Simulation::open_to_restore(scene, path))
     }
 
     /// [`Recorder::resume`] with a model of one's own: `open` makes the scene ready.

@@ -14,6 +14,7 @@ use crate::inflow::Source;
 use crate::maps::Maps;
 use crate::particle::Particle;
 use crate::rain::{Ground, Wetness};
+use crate::refinement::Refinement;
 use crate::sampling::{Sample, Sampler};
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::structures::{Flows, Structures};
@@ -34,6 +35,7 @@ pub struct Flood {
     roughness: Roughness,
     /// The ground, where it rains or water soaks in.
     ground: Option<Ground>,
+    refinement: Option<Refinement>,
     sources: Vec<Source>,
     structures: Structures,
     points: Vec<PointGauge>,
@@ -43,7 +45,6 @@ pub struct Flood {
     volume: f64,
     h: f64,
     map_period: f64,
-    warnings: Vec<String>,
     state: State,
     /// Working memory.
     of_blocks: Vec<f64>,
@@ -82,6 +83,8 @@ struct State {
     put_back: u64,
     /// When water was first seen to stand higher than each obstacle, s.
     overtopped: Vec<Option<f64>>,
+    /// What a user should know of the water at the start.
+    warnings: Vec<String>,
 }
 
 impl Flood {

@@ -22,6 +22,7 @@ mod obstacles;
 mod paper;
 mod particle;
 mod rain;
+mod refinement;
 mod sampling;
 mod scheme;
 mod seeding;

@@ -20,7 +20,7 @@ pub(crate) struct Recipe<'a> {
 impl Recipe<'_> {
     /// A pipeline that draws into colour and depth; nearer hides farther.
     pub(crate) fn opaque(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
-        self.build(gpu, "fragment", Some(COLOUR_FORMAT), Some(wgpu::CompareFunction::GreaterEqual))
+        self.build(gpu, "fragment", Some(COLOUR_FORMAT.into()), Some(wgpu::CompareFunction::GreaterEqual))
     }
 
     /// A pipeline that draws into the sun's depth map; `entry` is its fragment entry point.
@@ -30,14 +30,31 @@ impl Recipe<'_> {
 
     /// A pipeline that draws into colours of a format, without depth.
     pub(crate) fn flat(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
-        self.build(gpu, "fragment", Some(format), None)
+        self.build(gpu, "fragment", Some(format.into()), None)
+    }
+
+    /// A pipeline that draws into colours of a format, and keeps what is nearest.
+    pub(crate) fn nearest(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+        self.build(gpu, "fragment", Some(format.into()), Some(wgpu::CompareFunction::Greater))
+    }
+
+    /// A pipeline that adds to colours of a format.
+    pub(crate) fn added(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+        let add = wgpu::BlendComponent {
+            src_factor: wgpu::BlendFactor::One,
+            dst_factor: wgpu::BlendFactor::One,
+            operation: wgpu::BlendOperation::Add,
+        };
+        let blend = Some(wgpu::BlendState { color: add, alpha: add });
+        let target = wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL };
+        self.build(gpu, "fragment", Some(target), None)
     }
 
     fn build(
         &self,
         gpu: &Gpu,
         fragment: &str,
-        colour: Option<wgpu::TextureFormat>,
+        colour: Option<wgpu::ColorTargetState>,
         depth: Option<wgpu::CompareFunction>,
     ) -> wgpu::RenderPipeline {
         let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
@@ -47,7 +64,7 @@ impl Recipe<'_> {
             immediate_size: 0,
         });
         let buffers: Vec<_> = self.buffers.iter().cloned().map(Some).collect();
-        let targets: Vec<_> = colour.map(|format| Some(format.into())).into_iter().collect();
+        let targets: Vec<_> = colour.map(Some).into_iter().collect();
         gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(self.label),
             layout: Some(&layout),

@@ -3,8 +3,14 @@
 use corpuscle_gpu::{Gpu, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 3] =
-    [("view", include_str!("view.wgsl")), ("sky", include_str!("sky/sky.wgsl")), ("light", include_str!("light.wgsl"))];
+const LIBRARY: [(&str, &str); 6] = [
+    ("view", include_str!("view.wgsl")),
+    ("sky", include_str!("sky/sky.wgsl")),
+    ("light", include_str!("light.wgsl")),
+    ("droplet", include_str!("fluid/droplet.wgsl")),
+    ("fluid", include_str!("fluid/fluid.wgsl")),
+    ("smoothing", include_str!("fluid/smoothing.wgsl")),
+];
 
 /// A shader of this crate, joined from its pieces. `text` is the file of the same name.
 pub(crate) fn module(gpu: &Gpu, name: &str, text: &str) -> wgpu::ShaderModule {

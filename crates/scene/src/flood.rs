@@ -3,10 +3,12 @@
 
 mod obstacle;
 mod rain;
+mod refinement;
 mod structures;
 
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
+pub use refinement::Refinement;
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
 use crate::Series;
@@ -44,6 +46,9 @@ pub struct Flood {
     /// Rain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rain: Option<Rain>,
+    /// Particles are split where the water is thin and merged where it is deep (scheme balanced).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refinement: Option<Refinement>,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
@@ -89,6 +94,7 @@ impl Default for Flood {
             land_use: None,
             infiltration: None,
             rain: None,
+            refinement: None,
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),

@@ -100,6 +100,7 @@ fn full(terrain: Terrain) -> Scene {
         }),
         infiltration: None,
         rain: Some(Rain { intensity_mm_per_h: Series::Constant(1.0), raster: Some("a".into()), film_m: 1.0 }),
+        refinement: Some(Refinement { spacing_m: Some(1.0), ..Refinement::default() }),
         wet_depth_m: 1.0,
         map_every_s: Some(1.0),
         balanced: Balanced::default(),

@@ -141,7 +141,8 @@ impl Model for Flood {
                  and was held back"
             ))
         };
-        self.warnings.iter().cloned().chain(names.filter_map(told)).collect()
+        let terrain = self.surroundings.terrain.warnings().iter();
+        terrain.chain(&self.state.warnings).cloned().chain(names.filter_map(told)).collect()
     }
 
     fn save(&self) -> Vec<u8> {

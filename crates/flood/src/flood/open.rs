@@ -1,6 +1,6 @@
 //! How a flood is set up.
 
-use super::{Flood, State};
+use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
 use crate::friction::Roughness;
 use crate::limits;
@@ -8,6 +8,7 @@ use crate::maps::Maps;
 use crate::obstacles;
 use crate::paper::Paper;
 use crate::rain::Ground;
+use crate::refinement::Refinement;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
@@ -36,11 +37,40 @@ impl Flood {
         Self::with_water(settings, seed, folder, terrain, &bodies)
     }
 
+    /// As [`Flood::new`], but without the water at the start, which takes a while to arrange: for a state that is restored.
+    ///
+    /// # Errors
+    /// As [`Flood::new`].
+    pub fn to_restore(
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
+        let ground = Arc::clone(&terrain);
+        let bodies = setup::initial_water(settings, &ground, folder)?;
+        Self::empty(settings, seed, folder, terrain, &bodies)
+    }
+
     /// As [`Flood::new`], with the water at the start given as functions instead of by the scene.
     ///
     /// # Errors
     /// As [`Flood::new`].
     pub fn with_water(
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+        bodies: &[InitialWater],
+    ) -> Result<Self, ModelError> {
+        let mut model = Self::empty(settings, seed, folder, terrain, bodies)?;
+        model.fill(bodies);
+        model.begin();
+        Ok(model)
+    }
+
+    /// All but the particles.
+    fn empty(
         settings: &Settings,
         seed: u64,
         folder: &Path,
@@ -86,7 +116,8 @@ impl Flood {
         let obstacles =
             obstacles::open(flood, &terrain, folder, setup::closest(bodies, &terrain, spacing, volume), reach, h)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
-        let widest = flood.balanced.largest_smoothing * spacing;
+        let refinement = flood.refinement.as_ref().map(|refinement| Refinement::new(refinement, volume, spacing));
+        let widest = weather::widest(flood, refinement.as_ref());
         let ground = Ground::open(flood, &terrain, folder, volume, widest)?;
         let structures = Structures::open(flood, &terrain, folder, spacing)?;
         let state = State {
@@ -110,15 +141,16 @@ impl Flood {
             impulses: vec![[0.0; 2]; obstacles.names.len()],
             put_back: 0,
             overtopped: vec![None; obstacles.names.len()],
+            warnings: Vec::new(),
         };
-        let mut model = Self {
+        let model = Self {
             roughness: Roughness::open(flood, &terrain, folder)?,
             ground,
             structures,
+            refinement,
             points: setup::point_gauges(flood, &terrain)?,
             lines: setup::line_gauges(flood, &terrain, spacing)?,
             map_period,
-            warnings: terrain.warnings().to_vec(),
             surroundings: Surroundings { terrain, edges, obstacles, time: 0.0 },
             settings,
             seed,
@@ -132,8 +164,6 @@ impl Flood {
             renewals: Vec::new(),
             shown: 0.0,
         };
-        model.fill(bodies);
-        model.begin();
         Ok(model)
     }
 
@@ -154,7 +184,7 @@ impl Flood {
             }
             .fill(&self.surroundings.edges, &self.surroundings.obstacles, seed);
             if particles.is_empty() {
-                self.warnings.push(format!(
+                self.state.warnings.push(format!(
                     "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
                      the ground, or its depth below wet_depth_m."
                 ));
@@ -186,7 +216,7 @@ impl Flood {
             && !self.surroundings.edges.holds_level()
         {
             let what = "There is no water: give [[flood.water]], [[flood.inflow]], [flood.rain], [[flood.stage]], or an edge with a stage.";
-            self.warnings.push(what.into());
+            self.state.warnings.push(what.into());
         }
     }
 

@@ -15,6 +15,9 @@ const CELL_OVER_H_BALANCED: f64 = 1.2;
 /// The same for scheme paper, whose particles look as far as they reach themselves.
 const CELL_OVER_H_PAPER: f64 = 1.4;
 
+/// Particles are split and merged once in so many steps.
+const REFINED: u64 = 8;
+
 /// Before the forces of a step are found, or after.
 enum Part {
     Before,
@@ -76,9 +79,10 @@ impl Flood {
         self.carry_beyond();
         self.push(step, Part::Before);
         self.keep_out();
+        let merged = self.refine();
         let taken = self.regulate(step);
         self.gain(step);
-        if self.weather() | taken {
+        if self.weather() | taken | merged {
             self.state.particles.retain(|particle| particle.volume > 0.0);
         }
         if !self.renew() {
@@ -128,6 +132,16 @@ impl Flood {
         };
         self.state.particles.par_chunks_mut(BLOCK).map(push_block).collect_into_vec(&mut self.of_blocks);
         self.state.momentum.book(DENSITY * self.of_blocks.iter().sum::<f64>());
+    }
+
+    /// Merges and splits particles, where it is time to; whether particles are left without volume, to be taken out.
+    fn refine(&mut self) -> bool {
+        let Some(refinement) = self.refinement.filter(|_| self.state.steps.is_multiple_of(REFINED)) else {
+            return false;
+        };
+        let State { particles, next_id, .. } = &mut self.state;
+        let obstacles = &self.surroundings.obstacles;
+        refinement.refine(particles, self.scheme.arrangement(), obstacles, self.settings.gravity_m_per_s2, next_id)
     }
 
     /// Puts back what has come into obstacles.

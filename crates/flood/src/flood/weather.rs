@@ -3,8 +3,9 @@
 use super::{DENSITY, Flood, State};
 use crate::particle::Particle;
 use crate::rain::{Drop, Ground, RainFunction};
+use crate::refinement::Refinement;
 use crate::setup;
-use corpuscle_scene::Scheme as SchemeName;
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
 use rand::RngExt;
 
 /// It rains once in so many steps: seldom enough to cost next to nothing, often enough to be smooth.
@@ -13,17 +14,18 @@ const STEPS: u64 = 8;
 /// A new particle stands at random within this share of its cell, along each side.
 const SCATTER: f64 = 0.7;
 
+/// The widest distance at which particles of a film stand, m: as far as they are not split, or see each other.
+pub(super) fn widest(settings: &Settings, refinement: Option<&Refinement>) -> f64 {
+    refinement.map_or(settings.balanced.largest_smoothing * settings.spacing_m, Refinement::widest)
+}
+
 impl Flood {
     /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does.
     pub fn rain(&mut self, rain: RainFunction) {
-        let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, self.widest());
+        let widest = widest(&self.settings, self.refinement.as_ref());
+        let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, widest);
         self.state.wetness = ground.dry();
         self.ground = Some(ground);
-    }
-
-    /// The widest distance between particles that see each other, m.
-    pub(super) fn widest(&self) -> f64 {
-        self.settings.balanced.largest_smoothing * self.spacing
     }
 
     /// Lets it rain and soak in, where it is time to; whether particles may be left without volume, to be taken out.

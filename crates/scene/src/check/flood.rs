@@ -3,7 +3,9 @@
 mod ground;
 
 use super::{Check, Checked};
-use crate::{Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Obstacle, Paper, Problem, Series, Water};
+use crate::{
+    Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Obstacle, Paper, Problem, Scheme, Series, Water,
+};
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
@@ -18,6 +20,7 @@ impl Check {
         self.above("flood.gravity_m_per_s2", flood.gravity_m_per_s2, 0.0)?;
         self.manning(&flood.manning)?;
         self.ground(flood)?;
+        self.refinement(flood)?;
         self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
         if let Some(period) = flood.map_every_s {
             self.above("flood.map_every_s", period, 0.0)?;
@@ -50,6 +53,20 @@ impl Check {
             self.line(&format!("flood.section.{index}.line"), &section.line)?;
         }
         self.names(flood)
+    }
+
+    fn refinement(&self, flood: &Flood) -> Checked {
+        let Some(refinement) = &flood.refinement else { return Ok(()) };
+        self.require("flood.refinement", flood.scheme == Scheme::Balanced, || {
+            "is for scheme = \"balanced\": particles of scheme paper all have the same mass".into()
+        })?;
+        if let Some(spacing) = refinement.spacing_m {
+            self.above("flood.refinement.spacing_m", spacing, 0.0)?;
+        }
+        let smallest = refinement.smallest;
+        self.require("flood.refinement.smallest", smallest > 0.0 && smallest <= 1.0, || {
+            "must be larger than 0 and at most 1".into()
+        })
     }
 
     fn manning(&self, manning: &Manning) -> Checked {

@@ -2,9 +2,9 @@
 
 use super::{GRAVITY, order, rows, run, settings, strip};
 use crate::{Case, Options, Row};
-use corpuscle_flood::InitialWater;
+use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Edge;
+use corpuscle_scene::{Edge, Flood as Settings, Refinement};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -24,10 +24,10 @@ pub(super) const RITTER: Case = Case {
     run: ritter,
 };
 
-const LENGTH: f64 = 1000.0;
-const DAM: f64 = 500.0;
-const UPSTREAM: f64 = 10.0;
-const TIME: f64 = 20.0;
+pub(super) const LENGTH: f64 = 1000.0;
+pub(super) const DAM: f64 = 500.0;
+pub(super) const UPSTREAM: f64 = 10.0;
+pub(super) const TIME: f64 = 20.0;
 
 fn stoker(_: &Options) -> Vec<Row> {
     rows(STOKER.name, measure(STOKER.name, 1.0, [3.2e-3, 1.0e-2]))
@@ -47,10 +47,9 @@ fn measure(case: &'static str, downstream: f64, bounds: [f64; 2]) -> Result<Vec<
     ])
 }
 
-/// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
-fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
-    let width = 14.0 * spacing;
-    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: width };
+/// The dam break at its end.
+pub(super) fn run_to_end(spacing: f64, downstream: f64, refinement: Option<Refinement>) -> Result<Flood, ModelError> {
+    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: 14.0 * spacing };
     let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
     let pool = |depth: f64, from: f64, to: f64| InitialWater {
         depth: Box::new(move |_, _| depth),
@@ -62,7 +61,13 @@ fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
     if downstream > 0.0 {
         water.push(pool(downstream, DAM, LENGTH));
     }
-    let flood = run(&settings(TIME, spacing, UPSTREAM, strip(&Edge::Wall)), &terrain, &water, TIME)?;
+    let settings = Settings { refinement, ..settings(TIME, spacing, UPSTREAM, strip(&Edge::Wall)) };
+    run(&settings, &terrain, &water, TIME)
+}
+
+/// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
+fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
+    let (flood, width) = (run_to_end(spacing, downstream, None)?, 14.0 * spacing);
     let lines = 7;
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in 0..LENGTH as usize {
@@ -76,7 +81,7 @@ fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
 }
 
 /// Depth at x/t = `ray` from the dam: Ritter's parabola for a dry bed, Stoker's plateau and bore for a wet one.
-fn exact_depth(ray: f64, downstream: f64) -> f64 {
+pub(super) fn exact_depth(ray: f64, downstream: f64) -> f64 {
     let wave = (GRAVITY * UPSTREAM).sqrt();
     let parabola = || (2.0 * wave - ray).powi(2) / (9.0 * GRAVITY);
     if ray < -wave {

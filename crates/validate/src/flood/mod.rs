@@ -8,6 +8,7 @@ mod isolated_building;
 mod lake;
 mod malpasset;
 mod measured;
+mod refinement;
 mod rough_terrain;
 mod solids;
 mod structures;
@@ -41,6 +42,7 @@ pub(crate) const CASES: &[Case] = &[
     weather::RAIN_ON_A_PLANE,
     weather::INFILTRATION,
     weather::LEDGER,
+    refinement::REFINEMENT,
     structures::STRUCTURES,
     structures::TIDE,
     isolated_building::ISOLATED_BUILDING,

@@ -1,0 +1,57 @@
+//! A particle of a fluid, as it is drawn.
+
+use crate::Stage;
+use glam::DVec3;
+
+/// A particle of a fluid, as it is drawn: a ball, or flattened along a direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Droplet {
+    /// Its middle, m.
+    pub place: [f64; 3],
+    /// Radius, across `normal` where it is flattened, m.
+    pub radius: f64,
+    /// The direction along which it is flattened, of length 1.
+    pub normal: [f64; 3],
+    /// Thickness over width: 1 for a ball.
+    pub flatness: f64,
+    /// Water in it where it stands for a column: its volume, m3, spread over `reach` as its kernel has it. 0 for a ball, whose
+    /// own thickness counts.
+    pub volume: f64,
+    /// How far the volume is spread, m.
+    pub reach: f64,
+    /// Foam on it: 0 none, 1 white.
+    pub foam: f64,
+    /// A number of its own, which tells its pattern of foam from others'.
+    pub id: u64,
+}
+
+impl Droplet {
+    /// A ball.
+    pub fn ball(place: [f64; 3], radius: f64) -> Self {
+        Self { place, radius, normal: [0.0, 0.0, 1.0], flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, id: 0 }
+    }
+
+    /// As the device has it; none where a number is not finite.
+    pub(super) fn instance(&self, stage: &Stage) -> Option<Instance> {
+        // Poly6 in the plane is 4 / (pi h^2) in its middle (Mueller, Charypar and Gross 2003).
+        let depth = 4.0 * self.volume / (std::f64::consts::PI * self.reach * self.reach);
+        let [x, y, z] = stage.place(self.place).into();
+        let normal = DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3();
+        let instance = Instance {
+            place: [x, y, z, stage.length(self.radius)],
+            normal: [normal.x, normal.y, normal.z, self.flatness as f32],
+            matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % 4096) as f32],
+        };
+        let all = [instance.place, instance.normal, instance.matter];
+        all.as_flattened().iter().all(|number| number.is_finite()).then_some(instance)
+    }
+}
+
+/// A particle as the device has it, in stage coordinates but for the depth, m: `Droplet` of droplet.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub(super) struct Instance {
+    place: [f32; 4],
+    normal: [f32; 4],
+    matter: [f32; 4],
+}

@@ -1,0 +1,68 @@
+// A particle as a quad that just covers it. Particles are balls, or flattened along a direction.
+#import view
+
+struct Droplet {
+    @location(0) place: vec3f,
+    @location(1) radius: f32,
+    @location(2) normal: vec3f,
+    // Thickness over width: 1 for a ball.
+    @location(3) flatness: f32,
+    // What pass thickness adds up: depth in the middle (0: a ball, whose chord counts), foam, radius of the footprint, seed.
+    @location(4) matter: vec4f,
+}
+
+struct Sprite {
+    @builtin(position) clip: vec4f,
+    // A place on the quad, from the particle's middle.
+    @location(0) offset: vec3f,
+    @location(1) @interpolate(flat) middle: vec3f,
+    @location(2) @interpolate(flat) radius: f32,
+    @location(3) @interpolate(flat) normal: vec3f,
+    @location(4) @interpolate(flat) flatness: f32,
+    @location(5) @interpolate(flat) matter: vec4f,
+}
+
+// Corner `index` of the quad round a particle of this radius.
+fn sprite(droplet: Droplet, index: u32, radius: f32, flatness: f32) -> Sprite {
+    // No smaller than a pixel, or it would fall between them.
+    let least = 0.75 * pixel_at(droplet.place);
+    let wide = max(radius, least);
+    let sight = ray_through(droplet.place).direction;
+    let cosine = dot(droplet.normal, sight);
+    let lean = cross(droplet.normal, sight);
+    // Seen along its normal, any direction across will do.
+    let other = select(vec3f(0.0, 1.0, 0.0), vec3f(1.0, 0.0, 0.0), abs(sight.x) < 0.6);
+    let along = normalize(select(cross(sight, other), lean, dot(lean, lean) > 1e-8));
+    let high = max(wide * sqrt(cosine * cosine + flatness * flatness * (1.0 - cosine * cosine)), least);
+    // With perspective one sees past the middle: the outline is wider than the ball.
+    let distance = max(length(droplet.place - view.eye.xyz), 1e-6);
+    let sine = min(wide / distance, 0.95);
+    let wider = select(1.0, inverseSqrt(1.0 - sine * sine), view.eye.w > 0.5);
+    let corner = wider * (vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0);
+    let offset = corner.x * wide * along + corner.y * high * cross(sight, along);
+    var out: Sprite;
+    out.clip = view.clip_from_world * vec4f(droplet.place + offset, 1.0);
+    out.offset = offset;
+    out.middle = droplet.place;
+    out.radius = wide;
+    out.normal = droplet.normal;
+    out.flatness = max(flatness, least / wide * 0.1);
+    out.matter = droplet.matter;
+    return out;
+}
+
+// Where the line of sight through a place on the quad enters and leaves the particle, as lengths from that place; the first
+// is greater than the second where it misses.
+fn crossing(in: Sprite, direction: vec3f) -> vec2f {
+    // In coordinates stretched along the normal the particle is a ball.
+    let stretch = (1.0 / in.flatness - 1.0) * in.normal;
+    let start = in.offset + dot(in.normal, in.offset) * stretch;
+    let to = direction + dot(in.normal, direction) * stretch;
+    let a = dot(to, to);
+    let b = dot(start, to);
+    let inside = b * b - a * (dot(start, start) - in.radius * in.radius);
+    if inside < 0.0 {
+        return vec2f(1.0, -1.0);
+    }
+    return (vec2f(-1.0, 1.0) * sqrt(inside) - b) / a;
+}

@@ -1,0 +1,82 @@
+// Colour of the fluid: C = a (1 - F) + b F + k_s (n.h)^alpha (flood paper of 2021), a what is seen through it, weakened by its
+// thickness, b what it mirrors, F Fresnel's part, and the sun's highlight after Phong; foam over it.
+#import fluid
+#import light
+
+@group(1) @binding(1) var distances: texture_2d<f32>;
+@group(1) @binding(2) var normals: texture_2d<u32>;
+@group(1) @binding(3) var thickness: texture_2d<f32>;
+@group(1) @binding(4) var behind_colour: texture_2d<f32>;
+@group(1) @binding(5) var behind_depth: texture_depth_2d;
+@group(1) @binding(6) var linear: sampler;
+// Colour; 0 in the last where there is nothing to draw.
+@group(1) @binding(7) var shaded: texture_storage_2d<rgba16float, write>;
+
+// Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
+const INDEX: f32 = 1.0 / 1.333;
+const STRAIGHT: f32 = 0.02;
+// Depth over which a film of water begins to be seen, m.
+const FILM: f32 = 0.01;
+
+fn unfold(packed: u32) -> vec3f {
+    let flat = unpack2x16snorm(packed);
+    let up = 1.0 - abs(flat.x) - abs(flat.y);
+    let signs = select(vec2f(-1.0), vec2f(1.0), flat >= vec2f(0.0));
+    return normalize(vec3f(select((1.0 - abs(flat.yx)) * signs, flat, up >= 0.0), up));
+}
+
+// What is behind the surface in the direction of the refracted light, where its way in water ends.
+fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec3f {
+    let straight = (vec2f(pixel) + 0.5) / view.frame.xy;
+    let clip = view.clip_from_world * vec4f(place + way, 1.0);
+    let bent = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
+    let inside = all(bent > vec2f(0.0)) && all(bent < vec2f(1.0));
+    let at = vec2i(bent * view.frame.xy);
+    // What stands before the water is not seen through it.
+    let nearer = inside && textureLoad(behind_depth, clamp(at, vec2i(0), vec2i(view.frame.xy) - 1), 0) > depth_at(place);
+    let uv = select(straight, bent, inside && !nearer);
+    return textureSampleLevel(behind_colour, linear, uv, 0.0).rgb;
+}
+
+@compute @workgroup_size(32, 2)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let pixel = vec2i(id.xy);
+    if any(pixel >= vec2i(textureDimensions(distances))) {
+        return;
+    }
+    let distance = textureLoad(distances, pixel, 0).r;
+    let place = place_at(pixel, distance);
+    if distance == 0.0 || textureLoad(behind_depth, pixel, 0) > depth_at(place) {
+        textureStore(shaded, pixel, vec4f(0.0));
+        return;
+    }
+    let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
+    let matter = textureSampleLevel(thickness, linear, uv, 0.0);
+    let normal = unfold(textureLoad(normals, pixel, 0).r);
+    let to_eye = towards_eye(place);
+    let cosine = clamp(dot(normal, to_eye), 0.0, 1.0);
+    // A film so thin that it does not close is not seen.
+    let closed = smoothstep(0.0, FILM, matter.r * cosine);
+
+    let refracted = refract(-to_eye, normal, INDEX);
+    let steep = max(-dot(refracted, normal), 0.1);
+    let path = matter.r * cosine / steep;
+    let ground = seen_through(pixel, place, refracted * path / view.frame.z);
+    // The light that the ground gives back came through the water too.
+    let down = max(dot(refract(-view.sun.xyz, normal, INDEX), -normal), 0.3);
+    let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
+    let shine = sunshine(place, normal, vec2f(pixel));
+    let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal);
+    let inner = ground * left + fluid.colour.rgb * daylight * (1.0 - left);
+
+    let fresnel = mirrored(cosine, STRAIGHT) * closed;
+    let back = reflect(-to_eye, normal);
+    let mirror = surroundings(normalize(vec3f(back.xy, abs(back.z))));
+    let half_way = normalize(view.sun.xyz + to_eye);
+    let highlight = fluid.colour.w * pow(max(dot(normal, half_way), 0.0), fluid.surface.x) * shine * closed;
+    var colour = inner * (1.0 - fresnel) + mirror * fresnel + highlight * view.sunlight.rgb;
+
+    let foam = 1.0 - exp(-fluid.absorption.w * matter.g / max(matter.b, 1e-6));
+    colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(foam * closed, 0.0, 0.95));
+    textureStore(shaded, pixel, vec4f(colour, 1.0));
+}

@@ -1,0 +1,51 @@
+// How much water is in a line of sight, in metres, and foam: added up over all particles.
+#import droplet
+
+// The length of a line of sight in water is bounded where it grazes the surface.
+const LEAST_COSINE: f32 = 0.08;
+// Flecks of foam that a particle carries.
+const FLECKS: i32 = 5;
+
+@vertex
+fn vertex(droplet: Droplet, @builtin(vertex_index) index: u32) -> Sprite {
+    if droplet.matter.x > 0.0 {
+        return sprite(droplet, index, droplet.matter.z, 0.0);
+    }
+    return sprite(droplet, index, droplet.radius, droplet.flatness);
+}
+
+@fragment
+fn fragment(in: Sprite) -> @location(0) vec4f {
+    let direction = ray_through(in.middle + in.offset).direction;
+    let metres = view.frame.z;
+    if in.matter.x <= 0.0 {
+        let hit = crossing(in, direction);
+        let chord = max(hit.y - hit.x, 0.0);
+        return vec4f(metres * chord, in.matter.y * chord, chord, 0.0);
+    }
+    // Where the line of sight meets the surface; the share of the column is the kernel's (poly6, Mueller et al. 2003).
+    let cosine = dot(in.normal, direction);
+    let slant = select(-1.0, 1.0, cosine > 0.0) * max(abs(cosine), LEAST_COSINE);
+    let place = in.offset - dot(in.normal, in.offset) / slant * direction;
+    let out = dot(place, place) / (in.radius * in.radius);
+    let share = pow(max(1.0 - out, 0.0), 3.0);
+    return vec4f(metres * in.matter.x * share / abs(slant), in.matter.y * share * flecks(in, place), share, 0.0);
+}
+
+// A pattern of specks that goes with the particle, 1 on average.
+fn flecks(in: Sprite, place: vec3f) -> f32 {
+    var sum = 0.0;
+    for (var fleck = 0; fleck < FLECKS; fleck++) {
+        let random = hash(in.matter.w + f32(fleck) * 0.731);
+        let angle = 6.2831853 * random.x;
+        let at = 0.75 * in.radius * sqrt(random.y) * vec2f(cos(angle), sin(angle));
+        let away = (place.xy - at) / (0.22 * in.radius);
+        sum += exp(-dot(away, away));
+    }
+    return 0.25 + 1.6 * sum;
+}
+
+// Two numbers from 0 to 1 that look random.
+fn hash(seed: f32) -> vec2f {
+    return fract(sin(vec2f(seed * 127.1, seed * 311.7) + vec2f(1.7, 4.3)) * 43758.547);
+}

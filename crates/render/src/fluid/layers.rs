@@ -1,0 +1,50 @@
+//! The pictures between the passes.
+
+use crate::{DEPTH_FORMAT, RenderError};
+use corpuscle_gpu::{Gpu, texture_2d, wgpu};
+use wgpu::{TextureFormat, TextureUsages as Usage};
+
+/// Distance along the line of sight of the picture's middle; 0 where there is no fluid.
+pub(super) const DISTANCE: TextureFormat = TextureFormat::R32Float;
+/// Water, m; foam; what foam is to be divided by.
+pub(super) const THICKNESS: TextureFormat = TextureFormat::Rgba16Float;
+/// A direction, packed.
+pub(super) const NORMAL: TextureFormat = TextureFormat::R32Uint;
+/// Linear light.
+pub(super) const SHADED: TextureFormat = TextureFormat::Rgba16Float;
+
+/// The pictures between the passes, for one size of target.
+#[derive(Debug)]
+pub(super) struct Layers {
+    pub size: [u32; 2],
+    /// Depth is drawn into the first; each filter reads one and writes the other.
+    pub distances: [wgpu::Texture; 2],
+    pub nearest: wgpu::Texture,
+    pub thickness: wgpu::Texture,
+    pub normals: wgpu::Texture,
+    pub shaded: wgpu::Texture,
+}
+
+impl Layers {
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, RenderError> {
+        let texture = |label, format, usage| texture_2d(gpu, label, size, format, usage | Usage::TEXTURE_BINDING);
+        let distances =
+            || texture("distances", DISTANCE, Usage::RENDER_ATTACHMENT | Usage::STORAGE_BINDING | Usage::COPY_SRC);
+        // Thickness has no edges: half as many pixels each way are enough.
+        let half = size.map(|length| length.div_ceil(2));
+        let drawn = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING;
+        Ok(Self {
+            size,
+            distances: [distances()?, distances()?],
+            nearest: texture("nearest", DEPTH_FORMAT, Usage::RENDER_ATTACHMENT)?,
+            thickness: texture_2d(gpu, "thickness", half, THICKNESS, drawn)?,
+            normals: texture("normals", NORMAL, Usage::STORAGE_BINDING | Usage::COPY_SRC)?,
+            shaded: texture("shaded", SHADED, Usage::STORAGE_BINDING)?,
+        })
+    }
+}
+
+/// All of a texture.
+pub(super) fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}

@@ -1,0 +1,32 @@
+//! Water in screen space: particles are drawn as they are, what is nearest is smoothed in the picture, and the surface that comes of
+//! it is shaded (van der Laan, Green and Sainz, Screen Space Fluid Rendering with Curvature Flow, 2009; the flood paper of 2021).
+//!
+//! ```text
+//! depth      particles as sprites, the nearest surface of them          fluid_depth.wgsl
+//! thickness  the same, added up: water and foam in a line of sight      fluid_thickness.wgsl
+//! smoothing  narrow-range or bilateral filter of depth                  narrow_range.wgsl, bilateral.wgsl
+//! normals    from the smoothed depth                                    fluid_normals.wgsl
+//! shading    refraction, mirror, highlight, foam                        fluid_shade.wgsl
+//! composing  into the picture, where it is not hidden                   fluid_compose.wgsl
+//! ```
+//!
+//! Whatever does arithmetic pixel by pixel is a compute shader: fragment shaders only draw sprites and copy.
+
+mod bindings;
+mod droplet;
+mod layers;
+mod painter;
+mod passes;
+mod style;
+mod thing;
+mod water;
+
+#[cfg(test)]
+mod picture;
+
+pub use droplet::Droplet;
+pub use painter::FluidPainter;
+pub use passes::FluidPass;
+pub use style::{FluidStyle, Smoothing};
+pub use thing::Fluid;
+pub use water::Water;

@@ -1,0 +1,124 @@
+//! What all fluids share: pipelines, layouts.
+
+use super::bindings::{DEPTH, MIXED, PLAIN, SAMPLER, UNIFORM, WHOLE, layout, written};
+use super::droplet::Instance;
+use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
+use super::{Fluid, FluidStyle};
+use crate::pipeline::Recipe;
+use crate::{Renderer, Stage, shaders};
+use corpuscle_gpu::{Gpu, wgpu};
+use wgpu::ShaderStages;
+
+/// Draws fluids; holds what all of them share.
+#[derive(Debug, Clone)]
+pub struct FluidPainter {
+    pub(super) depth: wgpu::RenderPipeline,
+    pub(super) thickness: wgpu::RenderPipeline,
+    pub(super) bilateral: Filter,
+    pub(super) narrow_range: Filter,
+    pub(super) square: Filter,
+    pub(super) normals: Filter,
+    pub(super) shading: Filter,
+    pub(super) composing: wgpu::RenderPipeline,
+    pub(super) composed: wgpu::BindGroupLayout,
+    pub(super) sampler: wgpu::Sampler,
+}
+
+/// A compute shader over the pixels of a target, and the layout of its group 1.
+#[derive(Debug, Clone)]
+pub(super) struct Filter {
+    pub pipeline: wgpu::ComputePipeline,
+    pub layout: wgpu::BindGroupLayout,
+}
+
+impl FluidPainter {
+    /// A painter for a renderer.
+    pub fn new(renderer: &Renderer) -> Self {
+        let (gpu, view) = (renderer.gpu(), renderer.view_layout());
+        let [depth, thickness] = sprites(gpu, view);
+        let bilateral = shaders::module(gpu, "bilateral", include_str!("bilateral.wgsl"));
+        let narrow = shaders::module(gpu, "narrow_range", include_str!("narrow_range.wgsl"));
+        let normals = shaders::module(gpu, "fluid_normals", include_str!("fluid_normals.wgsl"));
+        let shading = shaders::module(gpu, "fluid_shade", include_str!("fluid_shade.wgsl"));
+        let smoothing = [UNIFORM, PLAIN, written(DISTANCE), UNIFORM];
+        let shaded = [UNIFORM, PLAIN, WHOLE, MIXED, MIXED, DEPTH, SAMPLER, written(SHADED)];
+        let composed = layout(gpu, "composing", ShaderStages::VERTEX_FRAGMENT, &[UNIFORM, PLAIN, PLAIN]);
+        Self {
+            depth,
+            thickness,
+            bilateral: Filter::new(gpu, view, &bilateral, "along", &smoothing),
+            narrow_range: Filter::new(gpu, view, &narrow, "along", &smoothing),
+            square: Filter::new(gpu, view, &narrow, "square", &smoothing),
+            normals: Filter::new(gpu, view, &normals, "main", &[UNIFORM, PLAIN, written(NORMAL)]),
+            shading: Filter::new(gpu, view, &shading, "main", &shaded),
+            composing: Recipe {
+                label: "composing",
+                module: &shaders::module(gpu, "fluid_compose", include_str!("fluid_compose.wgsl")),
+                groups: &[view, &composed],
+                buffers: &[],
+                topology: wgpu::PrimitiveTopology::TriangleList,
+            }
+            .opaque(gpu),
+            composed,
+            sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("fluid"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            }),
+        }
+    }
+
+    /// A fluid of this style, still without particles.
+    pub fn fluid(&self, gpu: &Gpu, stage: &Stage, style: FluidStyle) -> Fluid {
+        Fluid::new(self.clone(), gpu, *stage, style)
+    }
+}
+
+impl Filter {
+    fn new(
+        gpu: &Gpu,
+        view: &wgpu::BindGroupLayout,
+        module: &wgpu::ShaderModule,
+        entry: &str,
+        bindings: &[wgpu::BindingType],
+    ) -> Self {
+        let layout = layout(gpu, entry, ShaderStages::COMPUTE, bindings);
+        let both = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(entry),
+            bind_group_layouts: &[Some(view), Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: Some(&both),
+            module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { pipeline, layout }
+    }
+}
+
+/// The pipelines that draw particles: nearest depth, and thickness.
+fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
+    let attributes =
+        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32, 4 => Float32x4];
+    let buffers = [wgpu::VertexBufferLayout {
+        array_stride: size_of::<Instance>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &attributes,
+    }];
+    let groups = [view];
+    let recipe = |label, module| Recipe {
+        label,
+        module,
+        groups: &groups,
+        buffers: &buffers,
+        topology: wgpu::PrimitiveTopology::TriangleStrip,
+    };
+    let nearest = shaders::module(gpu, "fluid_depth", include_str!("fluid_depth.wgsl"));
+    let added = shaders::module(gpu, "fluid_thickness", include_str!("fluid_thickness.wgsl"));
+    [recipe("depth", &nearest).nearest(gpu, DISTANCE), recipe("thickness", &added).added(gpu, THICKNESS)]
+}

@@ -1,0 +1,168 @@
+//! The passes, one by one.
+
+use super::bindings::group;
+use super::layers::{Layers, whole};
+use super::painter::Filter;
+use super::{Fluid, Smoothing};
+use crate::Through;
+use corpuscle_gpu::wgpu;
+use wgpu::BindingResource::{Sampler, TextureView};
+
+/// Pixels of a workgroup of every filter.
+const GROUP: [u32; 2] = [32, 2];
+
+/// A pass of a fluid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FluidPass {
+    /// The nearest surface of the particles.
+    Depth,
+    /// How much water is in a line of sight, and foam.
+    Thickness,
+    /// The filter of depth.
+    Smoothing,
+    /// Normals from depth.
+    Normals,
+    /// Colours.
+    Shading,
+    /// Into the picture.
+    Composing,
+}
+
+impl FluidPass {
+    /// All, in their order.
+    pub const ALL: [Self; 6] =
+        [Self::Depth, Self::Thickness, Self::Smoothing, Self::Normals, Self::Shading, Self::Composing];
+}
+
+impl Fluid {
+    /// Encodes a pass.
+    pub(super) fn encode(&self, pass: FluidPass, layers: &Layers, frame: &mut Through<'_>) {
+        match pass {
+            FluidPass::Depth => self.draw_depth(layers, frame),
+            FluidPass::Thickness => self.draw_thickness(layers, frame),
+            FluidPass::Smoothing => self.smooth(layers, frame),
+            FluidPass::Normals => self.find_normals(layers, frame),
+            FluidPass::Shading => self.shade(layers, frame),
+            FluidPass::Composing => self.compose(layers, frame),
+        }
+    }
+
+    fn draw_depth(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let depth = whole(&layers.nearest);
+        let far = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
+        let depth = wgpu::RenderPassDepthStencilAttachment { view: &depth, depth_ops: Some(far), stencil_ops: None };
+        self.draw_sprites(frame, &layers.distances[0], Some(depth), &self.painter.depth);
+    }
+
+    fn draw_thickness(&self, layers: &Layers, frame: &mut Through<'_>) {
+        self.draw_sprites(frame, &layers.thickness, None, &self.painter.thickness);
+    }
+
+    fn draw_sprites(
+        &self,
+        frame: &mut Through<'_>,
+        into: &wgpu::Texture,
+        depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+        pipeline: &wgpu::RenderPipeline,
+    ) {
+        let nothing =
+            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
+        let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("particles"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &whole(into),
+                depth_slice: None,
+                resolve_target: None,
+                ops: nothing,
+            })],
+            depth_stencil_attachment: depth,
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, frame.view, &[]);
+        pass.set_pipeline(pipeline);
+        for (buffer, count) in &self.droplets {
+            pass.set_vertex_buffer(0, buffer.slice(..));
+            pass.draw(0..4, 0..*count);
+        }
+    }
+
+    fn smooth(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let painter = &self.painter;
+        match self.style.smoothing {
+            Smoothing::None => (),
+            Smoothing::Bilateral(times) => {
+                for _ in 0..times {
+                    self.filter(&painter.bilateral, layers, [0, 1], &self.along_rows, frame);
+                    self.filter(&painter.bilateral, layers, [1, 0], &self.along_columns, frame);
+                }
+            }
+            Smoothing::NarrowRange => {
+                self.filter(&painter.narrow_range, layers, [0, 1], &self.along_rows, frame);
+                self.filter(&painter.narrow_range, layers, [1, 0], &self.along_columns, frame);
+                self.filter(&painter.square, layers, [0, 1], &self.along_rows, frame);
+            }
+        }
+    }
+
+    /// The picture of distances that smoothing leaves behind.
+    pub(super) fn surface<'a>(&self, layers: &'a Layers) -> &'a wgpu::Texture {
+        &layers.distances[usize::from(self.style.smoothing == Smoothing::NarrowRange)]
+    }
+
+    fn filter(
+        &self,
+        filter: &Filter,
+        layers: &Layers,
+        [from, to]: [usize; 2],
+        direction: &wgpu::Buffer,
+        frame: &mut Through<'_>,
+    ) {
+        let [from, to] = [from, to].map(|index| whole(&layers.distances[index]));
+        let settings = self.settings.as_entire_binding();
+        let bound = [settings, TextureView(&from), TextureView(&to), direction.as_entire_binding()];
+        run(filter, &bound, layers.size, frame);
+    }
+
+    fn find_normals(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let [from, to] = [self.surface(layers), &layers.normals].map(whole);
+        let bound = [self.settings.as_entire_binding(), TextureView(&from), TextureView(&to)];
+        run(&self.painter.normals, &bound, layers.size, frame);
+    }
+
+    fn shade(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let read = [self.surface(layers), &layers.normals, &layers.thickness].map(whole);
+        let [distances, normals, thickness] = read.each_ref().map(TextureView);
+        let shaded = whole(&layers.shaded);
+        let bound = [
+            self.settings.as_entire_binding(),
+            distances,
+            normals,
+            thickness,
+            TextureView(frame.behind_colour),
+            TextureView(frame.behind_depth),
+            Sampler(&self.painter.sampler),
+            TextureView(&shaded),
+        ];
+        run(&self.painter.shading, &bound, layers.size, frame);
+    }
+
+    fn compose(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let [distances, shaded] = [self.surface(layers), &layers.shaded].map(whole);
+        let bound = [self.settings.as_entire_binding(), TextureView(&distances), TextureView(&shaded)];
+        let group = group(frame.gpu, "composing", &self.painter.composed, &bound);
+        let mut pass = frame.begin("composing");
+        pass.set_pipeline(&self.painter.composing);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+/// Runs a filter over all pixels.
+fn run(filter: &Filter, bound: &[wgpu::BindingResource<'_>], size: [u32; 2], frame: &mut Through<'_>) {
+    let group = group(frame.gpu, "filter", &filter.layout, bound);
+    let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    pass.set_pipeline(&filter.pipeline);
+    pass.set_bind_group(0, frame.view, &[]);
+    pass.set_bind_group(1, &group, &[]);
+    pass.dispatch_workgroups(size[0].div_ceil(GROUP[0]), size[1].div_ceil(GROUP[1]), 1);
+}

@@ -1,0 +1,71 @@
+//! How a fluid looks.
+
+use crate::Stage;
+
+/// How the nearest surface of the particles is smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Smoothing {
+    /// Not at all: the particles are seen.
+    None,
+    /// Bilateral Gaussian, rows and columns, so many times: the flood paper's.
+    Bilateral(u32),
+    /// Narrow-range filter (Truong and Yuksel 2018): smoother at less cost, and edges stay edges.
+    #[default]
+    NarrowRange,
+}
+
+/// How a fluid looks. Lengths are those of the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FluidStyle {
+    /// How depth is smoothed.
+    pub smoothing: Smoothing,
+    /// Half the width of the smoothing, m: a few radii of the particles.
+    pub width: f64,
+    /// How far depths of one surface may part from pixel to pixel, m; standard deviation of the bilateral filter's range.
+    pub range: f64,
+    /// What is farther than that is taken to be this much farther, m: how round edges are.
+    pub rounding: f64,
+    /// The most pixels that smoothing looks to each side.
+    pub most_pixels: u32,
+    /// Part of red, green and blue light that is lost in a metre, 1/m.
+    pub absorption: [f32; 3],
+    /// What deep water gives back of full light.
+    pub colour: [f32; 3],
+    /// Strength of the sun's highlight.
+    pub highlight: f32,
+    /// Its exponent: the greater, the smaller.
+    pub exponent: f32,
+    /// How well foam hides what is below: 0 draws none.
+    pub foam: f32,
+}
+
+impl FluidStyle {
+    /// Water of particles with this radius, m.
+    pub fn water(radius: f64) -> Self {
+        Self {
+            smoothing: Smoothing::default(),
+            width: 3.0 * radius,
+            range: 5.0 * radius,
+            rounding: radius,
+            most_pixels: 64,
+            absorption: [0.55, 0.20, 0.15],
+            colour: [0.045, 0.11, 0.105],
+            highlight: 1.2,
+            exponent: 240.0,
+            foam: 1.5,
+        }
+    }
+
+    /// `Fluid` of fluid.wgsl.
+    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 4] {
+        let [red, green, blue] = self.absorption;
+        let [own_red, own_green, own_blue] = self.colour;
+        let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
+        [
+            [red, green, blue, self.foam],
+            [own_red, own_green, own_blue, self.highlight],
+            [width, range, rounding, self.most_pixels as f32],
+            [self.exponent, 0.0, 0.0, 0.0],
+        ]
+    }
+}

@@ -1,0 +1,229 @@
+//! The particles of shallow water, as they are drawn.
+
+use super::Droplet;
+use corpuscle_model::{ParticleSet, Values};
+use corpuscle_sph::Cells;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Radius of the discs that the surface is drawn with, in distances between particles: they overlap.
+const DISC: f64 = 1.25;
+/// Their thickness over their width.
+const FLATNESS: f64 = 0.12;
+/// How far a particle looks, and its water is spread, in distances between particles.
+const REACH: f64 = 2.0;
+/// Differences of velocity between which air begins to be trapped and is to the full, m/s.
+const TRAPPED: [f64; 2] = [0.35, 1.6];
+/// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
+const ENERGY: [f64; 2] = [0.5, 6.0];
+/// Time in which foam falls to a third, s.
+const LIFE: f64 = 4.0;
+
+/// Makes discs that lie in the water's surface of the particles of shallow water, and balls of those in the air. Remembers the
+/// foam on them from picture to picture, so that it goes with the water and fades.
+#[derive(Debug, Clone, Default)]
+pub struct Water {
+    time: Option<f64>,
+    foam: HashMap<u64, f64>,
+}
+
+/// What is known of a particle on the ground.
+struct Column {
+    index: usize,
+    /// Distance to its neighbours, m.
+    spacing: f64,
+}
+
+impl Water {
+    /// Particles as they are drawn at a time, s, not before that of the last call. Those that have a column `depth` of more than 0 lie
+    /// on the ground; the others are in the air.
+    pub fn droplets(&mut self, time: f64, set: &ParticleSet) -> Vec<Droplet> {
+        let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
+        let deep = |index: usize| match depths {
+            Some(Values::Scalar(depths)) => depths[index] > 0.0,
+            _ => false,
+        };
+        let (ground, air): (Vec<usize>, Vec<usize>) = (0..set.len()).partition(|&index| deep(index));
+        let mut droplets = on_ground(set, &ground);
+        self.keep_foam(time, &mut droplets);
+        droplets.extend(air.into_iter().map(|index| in_air(set, index)));
+        droplets
+    }
+
+    /// Foam is what comes now, or what is left of what was.
+    fn keep_foam(&mut self, time: f64, droplets: &mut [Droplet]) {
+        let left = self.time.map_or(0.0, |before| (-(time - before).max(0.0) / LIFE).exp());
+        for droplet in droplets.iter_mut() {
+            let before = self.foam.get(&droplet.id).copied().unwrap_or(0.0);
+            droplet.foam = droplet.foam.max(left * before);
+        }
+        self.time = Some(time);
+        self.foam =
+            droplets.iter().filter(|droplet| droplet.foam > 0.01).map(|droplet| (droplet.id, droplet.foam)).collect();
+    }
+}
+
+fn in_air(set: &ParticleSet, index: usize) -> Droplet {
+    let volume = set.mass[index] / DENSITY;
+    let radius = (volume * 0.75 / std::f64::consts::PI).cbrt();
+    Droplet { id: set.id[index], foam: 0.3, ..Droplet::ball(set.position[index], radius) }
+}
+
+/// Of water, kg/m3.
+const DENSITY: f64 = 1000.0;
+
+fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
+    if ground.is_empty() {
+        return Vec::new();
+    }
+    let column = |index: usize| Column { index, spacing: 2.0 * set.radius[index] };
+    let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
+    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| set.position[column.index][axis]).collect() };
+    let mean = columns.iter().map(|column| column.spacing).sum::<f64>() / columns.len() as f64;
+    let mut cells = Cells::default();
+    let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
+    columns = order.iter().map(|&at| column(ground[at as usize])).collect();
+    let mut droplets: Vec<Droplet> = columns.par_iter().map(|column| disc(set, &cells, &columns, column)).collect();
+    // The order of the frame, which does not depend on the cells.
+    droplets.sort_unstable_by_key(|droplet| droplet.id);
+    droplets
+}
+
+/// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
+fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
+    let place = DVec3::from(set.position[own.index]);
+    let velocity = DVec3::from(set.velocity[own.index]);
+    let reach = REACH * own.spacing;
+    let mut plane = Plane::default();
+    let (mut closing, mut weights) = (0.0, 0.0);
+    for near in cells.ranges(place.x, place.y, reach).flat_map(|range| &columns[range]) {
+        let away = DVec3::from(set.position[near.index]) - place;
+        let distance = away.truncate().length();
+        if distance >= reach {
+            continue;
+        }
+        plane.add((1.0 - (distance / reach).powi(2)).powi(3), away);
+        let difference = (velocity - DVec3::from(set.velocity[near.index])).truncate();
+        if distance > 0.0 && difference != DVec2::ZERO {
+            // Ihmsen, Akinci, Akinci and Teschner, Unified Spray, Foam and Air Bubbles for Particle-Based Fluids (2012), eq. 2: relative
+            // velocity, the more the straighter the two go towards each other.
+            let weight = 1.0 - distance / reach;
+            let towards = 1.0 + difference.normalize().dot(away.truncate() / distance);
+            closing += weight * difference.length() * towards;
+            weights += weight;
+        }
+    }
+    let (height, slope) = plane.fit(own.spacing);
+    let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
+    let trapped = part(if weights > 0.0 { closing / weights } else { 0.0 }, TRAPPED);
+    let radius = DISC * own.spacing;
+    let middle = place + DVec3::Z * height - normal * (FLATNESS * radius);
+    Droplet {
+        place: middle.into(),
+        radius,
+        normal: normal.into(),
+        flatness: FLATNESS,
+        volume: set.mass[own.index] / DENSITY,
+        reach,
+        foam: trapped * part(0.5 * velocity.length_squared(), ENERGY),
+        id: set.id[own.index],
+    }
+}
+
+/// Where a value is between two: 0 at the first, 1 at the second (Ihmsen et al. 2012, eq. 1).
+fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
+    ((value - low) / (high - low)).clamp(0.0, 1.0)
+}
+
+/// Weighted sums for the plane z = a + b x + c y of least squares.
+#[derive(Default)]
+struct Plane {
+    weight: f64,
+    at: DVec3,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+    slope: DVec2,
+}
+
+impl Plane {
+    fn add(&mut self, weight: f64, place: DVec3) {
+        self.weight += weight;
+        self.at += weight * place;
+        self.xx += weight * place.x * place.x;
+        self.xy += weight * place.x * place.y;
+        self.yy += weight * place.y * place.y;
+        self.slope += weight * place.z * place.truncate();
+    }
+
+    /// Height at the origin and slope. With few neighbours, or all in a line, the plane is level across it: `spacing` tells what is
+    /// little.
+    fn fit(&self, spacing: f64) -> (f64, DVec2) {
+        let mean = self.at / self.weight;
+        let level = 0.004 * spacing * spacing;
+        let xx = self.xx / self.weight - mean.x * mean.x + level;
+        let xy = self.xy / self.weight - mean.x * mean.y;
+        let yy = self.yy / self.weight - mean.y * mean.y + level;
+        let z = self.slope / self.weight - mean.z * mean.truncate();
+        let slope = DVec2::new(yy * z.x - xy * z.y, xx * z.y - xy * z.x) / (xx * yy - xy * xy);
+        (mean.z - slope.dot(mean.truncate()), slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_model::Column as Named;
+
+    /// Water 1 m deep whose surface is a tilted plane, every particle 1 m from the next, with velocities.
+    fn tilted(velocity: impl Fn(f64) -> [f64; 3]) -> ParticleSet {
+        let places: Vec<[f64; 3]> = (0..400)
+            .map(|index| [f64::from(index % 20), f64::from(index / 20)])
+            .map(|[x, y]| [x, y, 0.2 * x - 0.1 * y])
+            .collect();
+        let depth = Values::Scalar(vec![1.0; places.len()]);
+        ParticleSet {
+            name: "water".into(),
+            id: (0..400).collect(),
+            velocity: places.iter().map(|place| velocity(place[0])).collect(),
+            radius: vec![0.5; places.len()],
+            mass: vec![1000.0; places.len()],
+            columns: vec![Named { name: "depth", unit: "m", values: depth }],
+            position: places,
+        }
+    }
+
+    #[test]
+    fn discs_lie_in_the_surface() {
+        let droplets = Water::default().droplets(0.0, &tilted(|_| [0.0; 3]));
+        let middle = droplets.iter().find(|droplet| droplet.id == 210).unwrap();
+        let normal = DVec3::new(-0.2, 0.1, 1.0).normalize();
+        assert!(DVec3::from(middle.normal).angle_between(normal) < 0.02);
+        let top = DVec3::from(middle.place) + DVec3::from(middle.normal) * middle.flatness * middle.radius;
+        assert!((top.z - (0.2 * top.x - 0.1 * top.y)).abs() < 1e-3, "{top}");
+    }
+
+    #[test]
+    fn foam_comes_where_water_meets_water_goes_with_it_and_fades() {
+        let foam = |droplets: &[Droplet], id: u64| droplets.iter().find(|droplet| droplet.id == id).unwrap().foam;
+        let mut water = Water::default();
+        let meeting = tilted(|x| [if x < 10.0 { 1.5 } else { -1.5 }, 0.0, 0.0]);
+        let droplets = water.droplets(0.0, &meeting);
+        assert!(foam(&droplets, 209) > 0.05 && foam(&droplets, 204) == 0.0);
+        let parting = tilted(|x| [if x < 10.0 { -1.5 } else { 1.5 }, 0.0, 0.0]);
+        assert!(foam(&Water::default().droplets(0.0, &parting), 209) < 0.5 * foam(&droplets, 209));
+        let calm = tilted(|_| [0.0; 3]);
+        let later = water.droplets(LIFE, &calm);
+        assert!((foam(&later, 209) / foam(&droplets, 209) - (-1f64).exp()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_in_the_air_is_a_ball_of_its_volume() {
+        let mut set = tilted(|_| [0.0; 3]);
+        set.columns.clear();
+        let droplets = Water::default().droplets(0.0, &set);
+        assert_eq!((droplets.len(), droplets[0].flatness, droplets[0].volume), (400, 1.0, 0.0));
+        assert!((4.0 / 3.0 * std::f64::consts::PI * droplets[0].radius.powi(3) - 1.0).abs() < 1e-12);
+    }
+}
