@@ -4,9 +4,9 @@ use super::{Moment, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_gpu::Image;
-use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
-    BallStyle, Camera, ColourTable, Drawable, Floor, HeightField, Key, Light, Overlay, Stage, Terrain, natural_colours,
+    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Stage, Terrain, Water,
+    natural_colours,
 };
 use corpuscle_terrain::Terrain as Ground;
 
@@ -20,17 +20,13 @@ const SUN: f64 = -1.0;
 const MOST_NODES: usize = 4097;
 /// Height of the block below its lowest ground, part of its width.
 const BASE: f64 = 0.06;
-/// Depths from light to dark.
-const DEPTHS: [[u8; 3]; 5] =
-    [[0xa4, 0xd3, 0xf4], [0x6f, 0xb5, 0xe8], [0x3d, 0x93, 0xd8], [0x1d, 0x6f, 0xbd], [0x0a, 0x2d, 0x63]];
-
 /// Draws a flood.
 pub(super) struct FloodPicture {
     stage: Stage,
     ground: Terrain,
     floor: Floor,
-    /// The depth that has the last colour, m: the largest so far, so that colours keep their meaning as long as they can.
-    deepest: f64,
+    water: Water,
+    fluid: Option<Fluid>,
 }
 
 impl FloodPicture {
@@ -45,35 +41,38 @@ impl FloodPicture {
         let stage = Stage::new([from[0], from[1], base], [to[0], to[1], high]);
         let colours = natural_colours(&field);
         let ground = Terrain::new(&studio.renderer, &stage, field, &colours, base)?;
-        Ok(Self { stage, ground, floor: Floor::new(&studio.renderer, &stage, base), deepest: 0.0 })
+        Ok(Self {
+            stage,
+            ground,
+            floor: Floor::new(&studio.renderer, &stage, base),
+            water: Water::default(),
+            fluid: None,
+        })
     }
 
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let gpu = studio.renderer.gpu();
         let camera = Camera::orbit(&self.stage, DIRECTION, FIELD_OF_VIEW, studio.aspect(), MARGIN);
         let light = Light::day().from_azimuth(DIRECTION[0] + SUN);
-        let all = moment.frame.sets.iter().flat_map(depths);
-        self.deepest = all.copied().fold(self.deepest, f64::max);
-        let table = ColourTable { low: 0.0, high: self.deepest.max(1e-3) as f32, colours: DEPTHS.to_vec() };
-        let balls = moment.frame.sets.iter().flat_map(|set| {
-            let depths = depths(set);
-            (0..set.len()).map(move |at| (set.position[at], set.radius[at], depths.get(at).copied().unwrap_or(0.0)))
-        });
-        let mut water = studio.balls.balls(studio.renderer.gpu(), &self.stage, &BallStyle::new(table.clone()), balls);
+        let sets = || moment.frame.sets.iter().filter(|set| !set.is_empty());
+        let radii = || sets().flat_map(|set| &set.radius);
+        let mean = radii().sum::<f64>() / radii().count().max(1) as f64;
+        let stage = self.stage;
+        // Its style is that of the first particles there are, so that it does not change in a film.
+        let wet = (mean > 0.0)
+            .then(|| self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &stage, FluidStyle::water(mean))));
         let overlay = Overlay {
             title: title.into(),
             time: format!("t = {}", text::time(moment.frame.time)),
-            key: Some(Key::Values("Depth of water, m".into(), table)),
+            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
             ..Overlay::default()
         };
-        let mut things: [&mut dyn Drawable; 3] = [&mut self.ground, &mut self.floor, &mut water];
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor];
+        if let Some(fluid) = wet {
+            let droplets = sets().flat_map(|set| self.water.droplets(moment.frame.time, set));
+            fluid.fill(gpu, droplets);
+            things.push(fluid);
+        }
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)
     }
-}
-
-/// Depth at each particle, m; empty where the set has none.
-fn depths(set: &ParticleSet) -> &[f64] {
-    set.columns.iter().find(|column| column.name == "depth").map_or(&[], |column| match &column.values {
-        Values::Scalar(values) => values,
-        Values::Vector(_) => &[],
-    })
 }

@@ -8,7 +8,8 @@ use crate::{Error, Simulation};
 use corpuscle_gpu::{Gpu, Image};
 use corpuscle_model::{Container, Frame, Path};
 use corpuscle_render::{
-    BallPainter, Camera, CapPainter, Drawable, Light, Overlay, RenderError, Renderer, Stage, Target, TubePainter,
+    BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
+    TubePainter,
 };
 use corpuscle_scene::ModelScene;
 use dew::DewPicture;
@@ -54,6 +55,7 @@ struct Studio {
     balls: BallPainter,
     tubes: TubePainter,
     caps: CapPainter,
+    fluids: FluidPainter,
     target: Target,
 }
 
@@ -75,7 +77,8 @@ impl Pictures {
         let target = Target::new(&gpu, settings.size, settings.samples)?;
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
-        let studio = Studio { renderer, balls, tubes, caps, target };
+        let fluids = FluidPainter::new(&renderer);
+        let studio = Studio { renderer, balls, tubes, caps, fluids, target };
         let scene = simulation.scene();
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
