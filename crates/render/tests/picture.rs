@@ -1,6 +1,6 @@
 //! Pictures as a user of the crate draws them, against those that were looked at (`reference/`).
 //!
-//! Where a picture changed on purpose: run with `CORPUSCLE_NEW_REFERENCES=1`, look at what changed, and keep it.
+//! Where a picture changed on purpose: run with `CORPUSCLE_NEW_REFERENCE=1`, look at what changed, and keep it.
 
 use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
@@ -43,7 +43,7 @@ fn write_png(path: &Path, image: &Image) {
 /// Compares with the reference of a name. The picture that differs is left beside the test's other output.
 fn same_as_reference(name: &str, image: &Image) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(format!("{name}.png"));
-    if std::env::var_os("CORPUSCLE_NEW_REFERENCES").is_some_and(|value| value == "1") {
+    if std::env::var_os("CORPUSCLE_NEW_REFERENCE").is_some_and(|value| value == "1") {
         write_png(&path, image);
     }
     let off = difference(image, &read_png(&path));
