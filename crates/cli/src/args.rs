@@ -230,6 +230,9 @@ pub struct ValidateOptions {
     /// Leave out the cases that take more than some seconds
     #[arg(long)]
     pub fast: bool,
+    /// Write a page of tables and charts as well
+    #[arg(long, value_name = "FILE.html")]
+    pub report: Option<PathBuf>,
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,

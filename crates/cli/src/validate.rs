@@ -4,21 +4,22 @@ use crate::args::ValidateOptions;
 use crate::output::{number, print, print_json};
 use crate::refusal::check_backend;
 use crate::select::select;
+use corpuscle_record::{ValidatedCase, ValidatedMeasure, ValidationReport};
 use corpuscle_validate::{Options, Row, cases};
 use std::process::ExitCode;
 
 /// Runs cases and prints their rows as they come.
 pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     check_backend(options.backend)?;
-    let with = Options {
-        data: std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into),
-        require_data: std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"),
-    };
+    let data = std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into);
+    let with = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
+    let mut report = options.report.as_deref().map(ValidationReport::create).transpose()?;
     let mut rows = Vec::new();
     for case in select(cases(), |case| case.name, &options.cases)? {
         if options.fast && case.slow {
             continue;
         }
+        let first = rows.len();
         for row in (case.run)(&with) {
             let line = line(&row);
             if as_json {
@@ -27,6 +28,11 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
                 print(&line)?;
             }
             rows.push(row);
+        }
+        if let Some(report) = &mut report {
+            let measures = rows[first..].iter().map(measure).collect();
+            report.add(ValidatedCase { name: case.name, about: case.about, measures, charts: with.take_charts() });
+            report.write()?;
         }
     }
     if as_json {
@@ -37,6 +43,19 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     let skipped = rows.iter().filter(|row| row.pass.is_none() && row.value.is_none()).count();
     eprintln!("{} passed, {failed} failed, {skipped} skipped", count(Some(true)));
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// A row as the report has it.
+fn measure(row: &Row) -> ValidatedMeasure {
+    ValidatedMeasure {
+        name: row.measure.clone(),
+        value: row.value,
+        unit: row.unit.clone(),
+        relation: row.relation.clone(),
+        bound: row.bound,
+        pass: row.pass,
+        reason: row.reason.clone(),
+    }
 }
 
 /// A row as people read it: verdict, case, measure, value and bound.

@@ -164,3 +164,14 @@ fn a_terrain_is_refused_with_a_scene_that_runs() {
     let refused = place.run(&["run", "data/broken.asc"]).expect_status(2);
     assert!(refused.stderr.contains("broken.asc"), "{}", refused.stderr);
 }
+
+#[test]
+fn validation_makes_a_page() {
+    let place = Place::new();
+    place.run(&["validate", "gas/figure-11", "--report", "page.html"]).expect_status(0);
+    let page = String::from_utf8(place.read("page.html")).unwrap();
+    let words = ["<h2>gas/figure-11</h2>", "<th scope=\"row\">", "0 do not", "</html>"];
+    assert!(words.iter().all(|word| page.contains(word)), "{page}");
+    let ended = place.run(&["validate", "gas/figure-11", "--report", "nowhere/page.html"]).expect_status(1);
+    assert!(ended.stderr.contains("nowhere/page.html"), "{}", ended.stderr);
+}

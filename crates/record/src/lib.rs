@@ -24,7 +24,7 @@ pub use extent::{ExtentScores, compare_extent, write_extent};
 pub use frames::{FrameFiles, FrameFormat};
 pub use gauges::GaugeTable;
 pub use picture::Key as GasKey;
-pub use report::{DewReport, GasReport, Report, gas_key};
+pub use report::{DewReport, GasReport, Report, ValidatedCase, ValidatedMeasure, ValidationReport, gas_key};
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
 pub use stills::write_picture;
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};

@@ -1,6 +1,8 @@
 //! What a case is and what it gives.
 
+use corpuscle_model::Chart;
 use serde::Serialize;
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
@@ -46,6 +48,25 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Missing data is a failure instead.
     pub require_data: bool,
+    /// What cases have drawn, for a report.
+    charts: RefCell<Vec<Chart>>,
+}
+
+impl Options {
+    /// Cases with the folder of reference data, whose absence is a failure or not.
+    pub fn new(data: Option<PathBuf>, require_data: bool) -> Self {
+        Self { data, require_data, charts: RefCell::default() }
+    }
+
+    /// Takes what cases have drawn since this was last asked.
+    pub fn take_charts(&self) -> Vec<Chart> {
+        self.charts.take()
+    }
+
+    /// Keeps a chart for the report.
+    pub(crate) fn draw(&self, chart: Chart) {
+        self.charts.borrow_mut().push(chart);
+    }
 }
 
 /// All cases.

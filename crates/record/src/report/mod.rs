@@ -9,6 +9,7 @@ mod moments;
 mod page;
 mod parts;
 mod snapshots;
+mod validation;
 
 use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
@@ -24,6 +25,7 @@ pub use gas::{GasReport, gas_key};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
+pub use validation::{ValidatedCase, ValidatedMeasure, ValidationReport};
 
 /// A finished flood as its report needs it.
 #[derive(Debug)]

@@ -33,6 +33,7 @@ impl Axes {
         let (factor, unit) = axis_unit(longest, &self.unit);
         let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
         let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
+        page.svg.line(one, other, "over-line");
         let mut widest = 0.0_f64;
         for value in ticks::multiples(low, high, step) {
             let mut point = start;

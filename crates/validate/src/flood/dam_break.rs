@@ -3,7 +3,7 @@
 use super::{GRAVITY, order, rows, run, settings, strip};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Flood, InitialWater};
-use corpuscle_model::ModelError;
+use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ModelError};
 use corpuscle_scene::{Edge, Flood as Settings, Refinement};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
@@ -29,16 +29,18 @@ pub(super) const DAM: f64 = 500.0;
 pub(super) const UPSTREAM: f64 = 10.0;
 pub(super) const TIME: f64 = 20.0;
 
-fn stoker(_: &Options) -> Vec<Row> {
-    rows(STOKER.name, measure(STOKER.name, 1.0, [3.2e-3, 1.0e-2]))
+fn stoker(options: &Options) -> Vec<Row> {
+    rows(STOKER.name, measure(STOKER.name, 1.0, [3.2e-3, 1.0e-2], options))
 }
 
-fn ritter(_: &Options) -> Vec<Row> {
-    rows(RITTER.name, measure(RITTER.name, 0.0, [4.4e-3, 1.2e-2]))
+fn ritter(options: &Options) -> Vec<Row> {
+    rows(RITTER.name, measure(RITTER.name, 0.0, [4.4e-3, 1.2e-2], options))
 }
 
-fn measure(case: &'static str, downstream: f64, bounds: [f64; 2]) -> Result<Vec<Row>, ModelError> {
-    let [fine, coarse] = [error(1.0, downstream)?, error(4.0, downstream)?];
+fn measure(case: &'static str, downstream: f64, bounds: [f64; 2], options: &Options) -> Result<Vec<Row>, ModelError> {
+    let coarse = run_to_end(4.0, downstream, None)?;
+    options.draw(profile(&coarse, 4.0, downstream));
+    let [fine, coarse] = [error(&run_to_end(1.0, downstream, None)?, 1.0, downstream), error(&coarse, 4.0, downstream)];
     Ok(vec![
         Row::at_most(case, "relative_l1_error_1m", fine, "", bounds[0]),
         Row::at_most(case, "relative_l1_error_4m", coarse, "", bounds[1]),
@@ -66,8 +68,8 @@ pub(super) fn run_to_end(spacing: f64, downstream: f64, refinement: Option<Refin
 }
 
 /// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
-fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
-    let (flood, width) = (run_to_end(spacing, downstream, None)?, 14.0 * spacing);
+fn error(flood: &Flood, spacing: f64, downstream: f64) -> f64 {
+    let width = 14.0 * spacing;
     let lines = 7;
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in 0..LENGTH as usize {
@@ -77,7 +79,29 @@ fn error(spacing: f64, downstream: f64) -> Result<f64, ModelError> {
         let off = |line: usize| (flood.sample(x, width * (line as f64 + 0.5) / lines as f64).depth - exact).abs();
         wrong += (0..lines).map(off).sum::<f64>() / lines as f64;
     }
-    Ok(wrong / right)
+    wrong / right
+}
+
+/// The depth along the middle of the channel over the exact one.
+fn profile(flood: &Flood, spacing: f64, downstream: f64) -> Chart {
+    let series = |name: &str, style, depth: &dyn Fn(f64) -> f64| ChartSeries {
+        name: name.into(),
+        style,
+        points: (0..LENGTH as usize / 2).map(|k| 2.0 * k as f64 + 1.0).map(|x| [x, depth(x)]).collect(),
+        ..ChartSeries::default()
+    };
+    let axis = |label: &str| ChartAxis { label: label.into(), unit: "m".into(), logarithmic: false };
+    Chart {
+        name: "profile".into(),
+        title: format!("Depth {TIME:.0} s after the dam broke, particles {spacing:.0} m apart"),
+        x: axis("Distance"),
+        y: axis("Depth"),
+        series: vec![
+            series("computed", ChartStyle::Line, &|x| flood.sample(x, 7.0 * spacing).depth),
+            series("exact", ChartStyle::Dashes, &|x| exact_depth((x - DAM) / TIME, downstream)),
+        ],
+        note: String::new(),
+    }
 }
 
 /// Depth at x/t = `ray` from the dam: Ritter's parabola for a dry bed, Stoker's plateau and bore for a wet one.

@@ -4,7 +4,7 @@ use super::measured::{Watched, table};
 use super::{SEED, rows, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{ChartSeries, ChartStyle, Model, ModelError};
 use corpuscle_scene::{
     Edges, Flood as Settings, Gauge, Inflow, Manning, NoData, Series, Terrain as TerrainScene, TerrainFile,
 };
@@ -43,11 +43,11 @@ const MEASURES: [[&str; 2]; 7] = [
 fn ea_test5(options: &Options) -> Vec<Row> {
     match &options.data {
         None => vec![Row::without_data(EA_TEST5.name, options)],
-        Some(data) => rows(EA_TEST5.name, measure(&data.join("ea_test5"))),
+        Some(data) => rows(EA_TEST5.name, measure(&data.join("ea_test5"), options)),
     }
 }
 
-fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
+fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let peers = table(&folder.join("peers-50m-first-5h.csv"), 1)?;
     let ground = TerrainFile { path: folder.join("dem-10m.tif"), crs: None, no_data: NoData::Wall };
     let terrain =
@@ -57,6 +57,17 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let mut out = Vec::new();
     for (gauge, (peer, [depth, arrival])) in peers.iter().zip(MEASURES).enumerate() {
         let fv1 = |column: usize| peer.get(column).copied().flatten().unwrap_or(f64::NAN);
+        let mut chart = seen.chart(4 * gauge, &format!("G{}", gauge + 1), "Depth", "m", vec![[fv1(4), 0.05]]);
+        chart.series[1].name = "arrival of FV1".into();
+        let highest = [[0.0, fv1(2)], [TIME, fv1(2)]].to_vec();
+        let style = ChartStyle::Dashes;
+        chart.series.push(ChartSeries {
+            name: "highest of FV1".into(),
+            style,
+            points: highest,
+            ..ChartSeries::default()
+        });
+        options.draw(chart);
         let error = (seen.largest(4 * gauge) - fv1(2)).abs();
         out.push(Row::at_most(EA_TEST5.name, depth, error, "m", 0.3));
         let error = (seen.first(4 * gauge, 0.05) / fv1(4) - 1.0).abs();

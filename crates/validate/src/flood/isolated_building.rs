@@ -32,7 +32,7 @@ const LOOK: f64 = 0.05;
 fn isolated_building(options: &Options) -> Vec<Row> {
     match &options.data {
         None => vec![Row::without_data(ISOLATED_BUILDING.name, options)],
-        Some(data) => rows(ISOLATED_BUILDING.name, measure(&data.join("isolated_building"))),
+        Some(data) => rows(ISOLATED_BUILDING.name, measure(&data.join("isolated_building"), options)),
     }
 }
 
@@ -42,7 +42,7 @@ fn bed(_: f64, y: f64) -> f64 {
     (0.155 / 0.34 * (0.34 - from_side)).max(0.0)
 }
 
-fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
+fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let places = table(&folder.join("point_gauges.csv"), 1)?;
     let depths = table(&folder.join("building_gauges_h.txt"), 2)?;
     let velocities = table(&folder.join("building_gauges_uv.txt"), 2)?;
@@ -65,6 +65,8 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let at = |time: f64, column: usize| seen.at(time, column);
     let mut out = Vec::new();
     for gauge in 0..6 {
+        let measured = depths.iter().filter_map(|row| Some([row[0]?, row[gauge + 1]?])).collect();
+        options.draw(seen.chart(4 * gauge, &format!("G{}", gauge + 1), "Depth", "m", measured));
         let pairs = depths.iter().filter_map(|row| Some([at(row[0]?, 4 * gauge), row[gauge + 1]?]));
         let name =
             ["depth_rmse_G1", "depth_rmse_G2", "depth_rmse_G3", "depth_rmse_G4", "depth_rmse_G5", "depth_rmse_G6"];
@@ -72,10 +74,14 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     }
     for gauge in 0..5 {
         let of = |axis: usize| {
-            let column = 1 + 2 * gauge + axis;
-            let at = &at;
+            let (column, at) = (1 + 2 * gauge + axis, &at);
             velocities.iter().filter_map(move |row| Some([at(row[0]?, 4 * gauge + 2 + axis), (*row.get(column)?)?]))
         };
+        for (axis, component) in ["Velocity along the flume", "Velocity across the flume"].into_iter().enumerate() {
+            let column = 1 + 2 * gauge + axis;
+            let measured = velocities.iter().filter_map(|row| Some([row[0]?, (*row.get(column)?)?])).collect();
+            options.draw(seen.chart(4 * gauge + 2 + axis, &format!("G{}", gauge + 1), component, "m/s", measured));
+        }
         let both = root_mean_square(of(0)).hypot(root_mean_square(of(1)));
         let measured = |axis: usize| root_mean_square(of(axis).map(|[_, measured]| [measured, 0.0]));
         let fast = measured(0).hypot(measured(1));

@@ -1,7 +1,7 @@
 //! Reading what was measured, and watching gauges to compare with it.
 
 use corpuscle_flood::Flood;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, Model, ModelError};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -35,6 +35,25 @@ impl Watched {
     pub fn first(&self, column: usize, least: f64) -> f64 {
         let look = self.rows.iter().position(|row| row[column] >= least);
         look.map_or(f64::INFINITY, |look| look as f64 * self.look)
+    }
+
+    /// A column over time, and beside it what was measured, as `[time, value]` in order of time, on its unit.
+    pub fn chart(&self, column: usize, place: &str, quantity: &str, unit: &str, measured: Vec<[f64; 2]>) -> Chart {
+        let computed = self.rows.iter().enumerate().map(|(look, row)| [look as f64 * self.look, row[column]]).collect();
+        let series =
+            |name: &str, style, points| ChartSeries { name: name.into(), style, points, ..ChartSeries::default() };
+        let axis = |label: &str, unit: &str| ChartAxis { label: label.into(), unit: unit.into(), logarithmic: false };
+        Chart {
+            name: format!("{}_{}", quantity.to_lowercase().replace(' ', "_"), place.to_lowercase()),
+            title: format!("{quantity} at {place}"),
+            x: axis("Time", "s"),
+            y: axis(quantity, unit),
+            series: vec![
+                series("computed", ChartStyle::Line, computed),
+                series("measured", ChartStyle::Points, measured),
+            ],
+            note: String::new(),
+        }
     }
 
     /// The largest that a column read.

@@ -66,7 +66,7 @@ impl Place {
 fn triangular_obstacle(options: &Options) -> Vec<Row> {
     match &options.data {
         None => vec![Row::without_data(TRIANGULAR_OBSTACLE.name, options)],
-        Some(data) => rows(TRIANGULAR_OBSTACLE.name, measure(&data.join("triangular_obstacle"))),
+        Some(data) => rows(TRIANGULAR_OBSTACLE.name, measure(&data.join("triangular_obstacle"), options)),
     }
 }
 
@@ -76,7 +76,7 @@ fn bed(x: f64) -> (f64, [f64; 2]) {
     if height > 0.0 { (height, [0.4 / 3.0 * (CREST - x).signum(), 0.0]) } else { (0.0, [0.0; 2]) }
 }
 
-fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
+fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH };
     let terrain = Arc::new(Terrain::analytic(bounds, SPACING, |x, _| bed(x)));
     let water = |level: f64, from: f64, to: f64| InitialWater {
@@ -91,6 +91,7 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
     let mut out = Vec::new();
     for (gauge, place) in PLACES.iter().enumerate() {
         let measured = depths(&folder.join(format!("{}_Experimental.csv", place.file)))?;
+        options.draw(seen.chart(4 * gauge, place.file, "Depth", "m", measured.clone()));
         let even = evenly(&measured).into_iter().map(|[time, depth]| [seen.at(time, 4 * gauge), depth]);
         out.push(place.row(place.depth, root_mean_square(even), "m", 0.05));
         if let Some(name) = place.arrival {
