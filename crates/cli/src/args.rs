@@ -30,6 +30,8 @@ fn threads(text: &str) -> Result<usize, String> {
 pub enum Command {
     /// Run a scene into a new folder
     Run(RunOptions),
+    /// Draw pictures of a finished run into its folder
+    Render(RenderOptions),
     /// List the built-in scenes, show one, or copy one to edit
     Scenes(ScenesOptions),
     /// Say what would be run: sizes, memory, time step, warnings
@@ -174,6 +176,33 @@ impl From<Frames> for FrameFormat {
             Frames::Csv => Self::Csv,
             Frames::None => Self::None,
         }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct RenderOptions {
+    /// The folder of a run
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Draw the frames nearest to these times, s [default: six from start to end]
+    #[arg(long, value_name = "T", value_delimiter = ',', allow_hyphen_values = true)]
+    pub at: Vec<f64>,
+    /// Draw every frame
+    #[arg(long, conflicts_with = "at")]
+    pub all: bool,
+    /// Width and height of the pictures, pixels
+    #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1920x1080")]
+    pub size: [u32; 2],
+    /// Samples each way in a pixel: 1 is fast, more is smoother
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4), default_value = "2")]
+    pub samples: u32,
+}
+
+fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    match sides {
+        Some(size @ [16..=16384, 16..=16384]) => Ok(size),
+        _ => Err("must be WIDTHxHEIGHT in pixels, as in 1920x1080, each from 16 to 16384".into()),
     }
 }
 

@@ -9,6 +9,7 @@ mod interrupt;
 mod output;
 mod progress;
 mod refusal;
+mod render;
 mod run;
 mod scene_argument;
 mod scenes;
@@ -39,6 +40,7 @@ fn dispatch(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     }
     match &arguments.command {
         Command::Run(options) => run::run(options, arguments.json),
+        Command::Render(options) => render::render(options, arguments.json),
         Command::Scenes(options) => scenes::scenes(options, arguments.json),
         Command::Check(options) => check::check(options, arguments.json),
         Command::Validate(options) => validate::validate(options, arguments.json),

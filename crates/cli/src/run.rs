@@ -31,7 +31,8 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let ended = simulation.run(&mut [&mut recorder], &stop, &mut |progress| bar.show(progress));
     bar.clear();
     let summary = ended.map_err(|error| came_to_grief(&error, &simulation, &recorder))?;
-    tell(&summary, recorder.path());
+    let has_frames = options.frames.is_none_or(|frames| FrameFormat::from(frames) != FrameFormat::None);
+    tell(&summary, recorder.path(), has_frames);
     if as_json {
         print_json(&summary)?;
     }
@@ -74,8 +75,8 @@ fn work(summary: &Summary) -> String {
     }
 }
 
-/// Tells people how it went.
-fn tell(summary: &Summary, folder: &Path) {
+/// Tells people how it went, and how to get pictures where there are frames to draw.
+fn tell(summary: &Summary, folder: &Path, has_frames: bool) {
     let folder = folder.display();
     if summary.status == Status::Stopped {
         let time = number(summary.simulated_time_s);
@@ -95,4 +96,10 @@ fn tell(summary: &Summary, folder: &Path) {
         eprintln!("{quantity}: {initial} at the start, {inflow} in, {outflow} out, {end} now; relative error {error}");
     }
     eprintln!("results in {folder}");
+    if has_frames {
+        // Whether a device is there is found out when it is needed: `render` says what to install.
+        eprintln!(
+            "pictures with `corpuscle render {folder}`, on any graphics card or software Vulkan (mesa-vulkan-drivers)"
+        );
+    }
 }

@@ -24,6 +24,10 @@ pub enum Error {
     /// The run's folder.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// The pictures.
+    #[cfg(feature = "pictures")]
+    #[error(transparent)]
+    Render(#[from] corpuscle_render::RenderError),
 }
 
 impl Error {
@@ -33,6 +37,10 @@ impl Error {
             Self::Scene(_) | Self::Terrain(_) => true,
             #[cfg(feature = "fetch")]
             Self::Fetch(error) => error.is_refusal(),
+            #[cfg(feature = "pictures")]
+            Self::Render(error) => {
+                matches!(error, corpuscle_render::RenderError::Gpu(corpuscle_gpu::GpuError::TooLarge { .. }))
+            }
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
             Self::Record(error) => !matches!(
                 error,

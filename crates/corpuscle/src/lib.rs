@@ -18,6 +18,8 @@
 mod error;
 mod ground;
 mod open;
+#[cfg(feature = "pictures")]
+pub mod pictures;
 mod progress;
 mod recorder;
 mod schedule;
@@ -26,6 +28,8 @@ mod sink;
 
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
+#[cfg(feature = "pictures")]
+pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
 pub use corpuscle_record as record;
 pub use corpuscle_scene as scene;

@@ -1,6 +1,6 @@
 //! Bars that say what colours and lengths mean.
 
-use crate::colour::{hex, of_part};
+use crate::colour::{Colour, hex};
 use crate::svg::{Anchor, Svg};
 use crate::text::number;
 use crate::ticks;
@@ -11,24 +11,32 @@ const SHADES: usize = 48;
 /// Prefixes of units, from large to small.
 const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 
-/// A bar of the colours from 0 to `most`, `width` wide from a place on; gives its lower end.
-pub fn value_bar(svg: &mut Svg, most: f64, [from, top]: [f64; 2], width: f64) -> f64 {
+/// A bar of the colours of values from `low` to `high`, `width` wide from a place on; `colour` is given the part of the way.
+/// Gives its lower end.
+pub fn value_bar(
+    svg: &mut Svg,
+    [low, high]: [f64; 2],
+    colour: impl Fn(f64) -> Colour,
+    [from, top]: [f64; 2],
+    width: f64,
+) -> f64 {
     let part = width / SHADES as f64;
     for shade in 0..SHADES {
-        let colour = hex(of_part((shade as f64 + 0.5) / SHADES as f64));
+        let colour = hex(colour((shade as f64 + 0.5) / SHADES as f64));
         let place = [from + shade as f64 * part, top];
         svg.styled_path(rectangle(place, [part + 0.5, 13.0]), true, "", &format!("fill:{colour}"));
     }
-    let step = ticks::step(most, 5);
-    for value in ticks::multiples(0.0, most, step) {
-        let x = from + value / most * width;
+    let step = ticks::step(high - low, 5);
+    for value in ticks::multiples(low, high, step) {
+        let x = from + (value - low) / (high - low) * width;
         svg.line([x, top + 13.0], [x, top + 17.0], "axis");
         svg.text([x, top + 29.0], Anchor::Middle, "number", &label(value, step));
     }
     top + 32.0
 }
 
-fn label(value: f64, step: f64) -> String {
+/// A value beside a bar or an axis of a step.
+pub fn label(value: f64, step: f64) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) { number(value) } else { ticks::label(value, step) }
 }
 
@@ -48,12 +56,17 @@ pub fn scale_bar(svg: &mut Svg, scale: f64, unit: &str, [right, top]: [f64; 2]) 
 }
 
 /// A length with a prefix that suits it: `5 nm`; in reduced units the number alone.
-fn length_label(length: f64, unit: &str) -> String {
+pub fn length_label(length: f64, unit: &str) -> String {
     if unit.is_empty() {
         return label(length, length);
     }
-    let (factor, prefix) = PREFIXES.into_iter().find(|(factor, _)| length >= factor * 0.999).unwrap_or(PREFIXES[5]);
+    let (factor, prefix) = prefix(length);
     format!("{} {prefix}{unit}", ticks::label(length / factor, length / factor))
+}
+
+/// The prefix of a unit that suits a length, and what it stands for.
+pub fn prefix(length: f64) -> (f64, &'static str) {
+    PREFIXES.into_iter().find(|(factor, _)| length >= factor * 0.999).unwrap_or(PREFIXES[5])
 }
 
 #[cfg(test)]

@@ -73,6 +73,15 @@ pub fn volume(cubic_metres: f64) -> String {
     }
 }
 
+/// A time given in s, however short: `20 ns`, `0.3 s`, `12 min`.
+pub fn any_time(seconds: f64) -> String {
+    if seconds == 0.0 || seconds.abs() >= 0.1 || !seconds.is_finite() {
+        return time(seconds);
+    }
+    let (factor, prefix) = crate::bars::prefix(seconds.abs());
+    format!("{} {prefix}s", short_number(seconds / factor))
+}
+
 /// A time given in s: `45 s`, `12 min`, `1 h 05 min`, `2 d 3 h`.
 pub fn time(seconds: f64) -> String {
     let whole = seconds.abs().round() as u64;
@@ -125,6 +134,11 @@ mod tests {
         ] {
             assert_eq!(time(seconds), text);
         }
+    }
+
+    #[test]
+    fn short_times_have_a_prefix() {
+        assert_eq!([2e-8, 0.0, 0.004, 0.3, 600.0].map(any_time), ["20 ns", "0 s", "4 ms", "0.3 s", "10 min"]);
     }
 
     #[test]

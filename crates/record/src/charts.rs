@@ -48,6 +48,28 @@ fn write_table<const N: usize>(
     write_bytes(path, &table().map_err(|error| RecordError::content(path, error))?)
 }
 
+/// Reads the paths that a run wrote, `path.csv`; none where there is no such file.
+pub(crate) fn read_paths(folder: &Path) -> Result<Vec<Way>, RecordError> {
+    let path = folder.join("path.csv");
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let wrong = |what: String| RecordError::content(&path, what);
+    let mut reader = csv::Reader::from_path(&path).map_err(|error| wrong(error.to_string()))?;
+    let mut ways: Vec<Way> = Vec::new();
+    for row in reader.deserialize::<(String, f64, f64, f64, f64)>() {
+        let (name, time, x, y, z) = row.map_err(|error| wrong(error.to_string()))?;
+        if ways.last().is_none_or(|way| way.name != name) {
+            ways.push(Way { name, ..Way::default() });
+        }
+        if let Some(way) = ways.last_mut() {
+            way.times.push(time);
+            way.points.push([x, y, z]);
+        }
+    }
+    Ok(ways)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -74,5 +96,8 @@ mod tests {
         write_paths(folder.path(), &[way]).unwrap();
         let text = fs::read_to_string(folder.path().join("path.csv")).unwrap();
         assert_eq!(text, "path,time_s,x,y,z\nball 0,0.25,1,2,0\n");
+        assert_eq!(read_paths(folder.path()).unwrap(), [way]);
+        fs::write(folder.path().join("path.csv"), "path,time_s,x,y,z\nball 0,soon,1,2,0\n").unwrap();
+        assert!(read_paths(folder.path()).unwrap_err().to_string().contains("path.csv"));
     }
 }

@@ -42,6 +42,12 @@ pub enum RecordError {
         /// The folder.
         path: PathBuf,
     },
+    /// The run wrote no particle files.
+    #[error("{} holds no particle files, so there is nothing to draw; run its scene.toml again with `--frames vtp`", path.display())]
+    NoFrames {
+        /// The folder of the run.
+        path: PathBuf,
+    },
     /// The checkpoint is damaged or belongs to something else.
     #[error("the checkpoint {} cannot be used: {what}; run the folder's scene.toml again into a new folder", path.display())]
     Checkpoint {

@@ -1,6 +1,6 @@
 //! A run's folder while the run goes on.
 
-use crate::charts::{write_chart, write_paths};
+use crate::charts::{read_paths, write_chart, write_paths};
 use crate::checkpoint::{Progress, checksum};
 use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
@@ -42,6 +42,14 @@ pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, RecordErro
             Err(error) => return Err(RecordError::write(&path)(error)),
         }
     }
+}
+
+/// The ways of the particles that a run followed, from its folder; none where it followed none.
+///
+/// # Errors
+/// [`RecordError::Content`] where `path.csv` is damaged.
+pub fn followed_paths(run: &Path) -> Result<Vec<corpuscle_model::Path>, RecordError> {
+    read_paths(run)
 }
 
 impl RunFolder {

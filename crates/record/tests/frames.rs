@@ -3,7 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use corpuscle_model::{Column, Frame, ParticleSet, Values};
-use corpuscle_record::{FrameFormat, RunFolder};
+use corpuscle_record::{FrameFiles, FrameFormat, RunFolder};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::collections::BTreeMap;
@@ -161,4 +161,79 @@ fn the_collection_lists_all_frames_with_their_times() {
         }
     }
     assert_eq!(sets, [["0", "frame_000000.vtp"], ["0.30000000000000004", "frame_000001.vtp"]]);
+}
+
+/// A run of one frame, written and listed.
+fn listed(format: FrameFormat) -> (tempfile::TempDir, FrameFiles) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = RunFolder::create(&folder.path().join("run"), "", &[], format).unwrap();
+    run.write_frame(&frame()).unwrap();
+    let files = FrameFiles::list(run.path(), |_| frame().time).unwrap();
+    (folder, files)
+}
+
+#[test]
+fn frames_read_back_to_the_bit_from_both_formats() {
+    let bits = |frame: &Frame| {
+        let mut all = vec![frame.time.to_bits()];
+        for set in &frame.sets {
+            let vectors = [&set.position, &set.velocity].map(|column| column.as_flattened().to_vec());
+            let scalars = [set.radius.clone(), set.mass.clone()];
+            let own = set.columns.iter().map(|column| match &column.values {
+                Values::Scalar(values) => values.clone(),
+                Values::Vector(values) => values.as_flattened().to_vec(),
+            });
+            all.extend(vectors.into_iter().chain(scalars).chain(own).flatten().map(f64::to_bits));
+            all.extend(&set.id);
+        }
+        all
+    };
+    for format in [FrameFormat::Vtp, FrameFormat::Csv] {
+        let (_folder, files) = listed(format);
+        assert_eq!(files.times().collect::<Vec<_>>(), [0.1 + 0.2]);
+        let back = files.read(0).unwrap();
+        let names = |frame: &Frame| -> Vec<(String, Vec<&'static str>)> {
+            let columns = |set: &ParticleSet| set.columns.iter().map(|column| column.name).collect();
+            frame.sets.iter().map(|set| (set.name.clone(), columns(set))).collect()
+        };
+        assert_eq!(names(&back), names(&frame()));
+        assert!(bits(&back) == bits(&frame()), "{format:?}");
+    }
+}
+
+#[test]
+fn damaged_particle_files_are_errors_that_name_the_file() {
+    for (format, name) in [(FrameFormat::Vtp, "frame_000000.vtp"), (FrameFormat::Csv, "frame_000000.csv")] {
+        let (folder, files) = listed(format);
+        let path = folder.path().join("run/frames").join(name);
+        let whole = fs::read_to_string(&path).unwrap();
+        let bend = |from: &str, to: &str| whole.replacen(from, to, 1);
+        let damaged = [
+            String::new(),
+            whole[..whole.len() / 2].to_owned(),
+            bend("80000", "80001"),
+            bend("80000", "99999999999999999"),
+            bend("_", "_AAAA"),
+            bend("offset=\"0\"", "offset=\"18446744073709551615\""),
+            bend("water", "0x"),
+            bend("set,id", "id,set"),
+            bend("0.7", "seven"),
+        ];
+        for text in damaged.into_iter().filter(|text| *text != whole) {
+            fs::write(&path, &text).unwrap();
+            // A table cut at the end of a line is a shorter table, a new name is a set: neither may panic.
+            if let Err(error) = files.read(0) {
+                assert!(error.to_string().contains(name), "{error}");
+            }
+        }
+        fs::write(&path, "").unwrap();
+        assert!(files.read(0).is_err());
+    }
+}
+
+#[test]
+fn a_run_without_particle_files_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = FrameFiles::list(folder.path(), |_| 0.0).unwrap_err().to_string();
+    assert!(error.contains("no particle files"), "{error}");
 }

@@ -38,22 +38,24 @@ pub enum Lens {
 }
 
 impl Camera {
-    /// The stage seen from above, north up, to scale: it fills a picture of `aspect` (width over height) but for a `margin`
-    /// (part of the picture, 0 for none).
-    pub fn plan(stage: &Stage, aspect: f64, margin: f64) -> Self {
+    /// The stage seen from above, north up, to scale: as large as a picture of `aspect` (width over height) holds between its
+    /// `margins` `[at the sides, below, above]`, parts of the picture's height.
+    pub fn plan(stage: &Stage, aspect: f64, [side, below, above]: [f64; 3]) -> Self {
         let size = stage.to - stage.from;
-        let height = size.y.max(size.x / aspect) / (1.0 - 2.0 * margin);
-        let eye = stage.centre() + DVec3::Z * stage.unit() * 2.0;
-        Self { eye, target: stage.centre(), up: DVec3::Y, lens: Lens::Orthographic { height } }
+        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - 2.0 * side));
+        let target = stage.centre() - DVec3::Y * 0.5 * (below - above) * height;
+        let eye = target + DVec3::Z * stage.unit() * 2.0;
+        Self { eye, target, up: DVec3::Y, lens: Lens::Orthographic { height } }
     }
 
     /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
-    /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`.
-    pub fn orbit(stage: &Stage, azimuth: f64, elevation: f64, field_of_view: f64, aspect: f64) -> Self {
+    /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`
+    /// but for a `margin` (part of the picture, 0 for none).
+    pub fn orbit(stage: &Stage, [azimuth, elevation]: [f64; 2], field_of_view: f64, aspect: f64, margin: f64) -> Self {
         let away = DVec3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
         let across = DVec3::new(-azimuth.sin(), azimuth.cos(), 0.0);
         let above = away.cross(across);
-        let slope = (0.5 * field_of_view).tan();
+        let slope = (0.5 * field_of_view).tan() * (1.0 - 2.0 * margin);
         let reach = |corner: DVec3| {
             let place = corner - stage.centre();
             let sideways = (place.dot(above).abs() / slope).max(place.dot(across).abs() / (slope * aspect));
@@ -66,6 +68,14 @@ impl Camera {
             up: DVec3::Z,
             lens: Lens::Perspective { field_of_view },
         }
+    }
+
+    /// Where a place, m, is in a picture of `aspect`: parts of its width from the left and of its height from above. None behind
+    /// the eye.
+    pub fn project(&self, stage: &Stage, aspect: f64, point: [f64; 3]) -> Option<[f64; 2]> {
+        let clip = self.clip_from_view(stage, aspect as f32) * self.view_from_world(stage);
+        let at = clip * stage.place(point).extend(1.0);
+        (at.w > 0.0).then(|| [0.5 + 0.5 * f64::from(at.x / at.w), 0.5 - 0.5 * f64::from(at.y / at.w)])
     }
 
     /// From stage coordinates to those of the eye: x right, y up, looking along -z.
@@ -118,7 +128,7 @@ mod tests {
     fn an_orbit_has_all_corners_in_the_picture_and_one_at_its_edge() {
         let stage = Stage::new([-3.0, 10.0, 0.0], [5.0, 11.0, 2.0]);
         for (azimuth, elevation) in [(0.3, 0.4), (2.0, 1.2), (-1.0, 0.05)] {
-            let camera = Camera::orbit(&stage, azimuth, elevation, 0.7, 1.5);
+            let camera = Camera::orbit(&stage, [azimuth, elevation], 0.7, 1.5, 0.0);
             let clip = camera.clip_from_view(&stage, 1.5) * camera.view_from_world(&stage);
             let reach = |corner: DVec3| {
                 let at = clip.project_point3(stage.place(corner.into()));
@@ -133,7 +143,7 @@ mod tests {
     #[test]
     fn a_plan_is_to_scale_with_north_up() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
-        let camera = Camera::plan(&stage, 2.0, 0.0);
+        let camera = Camera::plan(&stage, 2.0, [0.0; 3]);
         let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
         let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
         assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");

@@ -1,5 +1,6 @@
 //! What can be in a picture: the seam between the renderer and each kind of thing.
 
+use crate::{Camera, Stage};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// A thing in a picture. It takes part in the passes that concern it, in this order:
@@ -13,6 +14,9 @@ use corpuscle_gpu::{Gpu, wgpu};
 /// on surfaces, shadows); group 0 is bound already, a thing's own groups start at 1. Coordinates are those of the stage; depth is
 /// 1 near and 0 far, so nearer is *greater*; colours are linear light.
 pub trait Drawable {
+    /// Called before the passes of each picture: what depends on the camera and the size (samples) is made ready.
+    fn prepare(&mut self, _gpu: &Gpu, _stage: &Stage, _camera: &Camera, _size: [u32; 2]) {}
+
     /// Draws what throws shadows, with a pipeline of [`crate::DEPTH_FORMAT`] alone. Group 0 is the view from the sun (without
     /// perspective).
     fn cast(&self, _pass: &mut wgpu::RenderPass<'_>) {}

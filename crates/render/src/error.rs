@@ -6,4 +6,7 @@ pub enum RenderError {
     /// The graphics device cannot.
     #[error(transparent)]
     Gpu(#[from] corpuscle_gpu::GpuError),
+    /// Text and bars over the picture cannot be drawn.
+    #[error("the text over the picture cannot be drawn: {0}")]
+    Overlay(String),
 }

@@ -47,6 +47,11 @@ impl Light {
         Self { sun: [2.3, 0.95], sunlight: [1.75, 1.72, 1.66], softness: 0.05, ambient: 0.8, backdrop }
     }
 
+    /// The same with the sun at another azimuth, radians.
+    pub fn from_azimuth(self, azimuth: f64) -> Self {
+        Self { sun: [azimuth as f32, self.sun[1]], ..self }
+    }
+
     /// White paper.
     pub fn paper() -> Self {
         Self { backdrop: Backdrop::Paper([1.0; 3]), ..Self::studio() }

@@ -29,7 +29,8 @@ fn sunshine(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
         let angle = turn + GOLDEN_ANGLE * f32(tap);
         let out = radius * sqrt((f32(tap) + 0.5) / f32(SHADOW_TAPS));
         // Farther from the middle the surface may rise towards the sun.
-        let reference = seen.z + 0.5 * out * sqrt(1.0 - slant * slant) / max(slant, 0.2);
+        // Beyond the map's far end (0) all that was drawn is nearer to the sun.
+        let reference = max(seen.z + 0.5 * out * sqrt(1.0 - slant * slant) / max(slant, 0.2), 0.0);
         lit += textureSampleCompareLevel(sun_depth, sun_compare, uv + out * vec2f(cos(angle), sin(angle)), reference);
     }
     return lit / f32(SHADOW_TAPS);

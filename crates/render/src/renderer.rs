@@ -52,6 +52,7 @@ impl Renderer {
     ) {
         let gpu = &self.gpu;
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size());
+        things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if light.is_lit() {
             draw_shadows(&mut encoder, &view, things);

@@ -102,7 +102,7 @@ fn uniform(stage: &Stage, camera: &Camera, light: &Light, [width, height]: [u32;
         Lens::Orthographic { height } => (0.0, stage.length(height)),
     };
     let ([above, horizon, below], kind) = match light.backdrop {
-        Backdrop::Sky => ([[0.10, 0.25, 0.62], [0.62, 0.74, 0.88], [0.30, 0.31, 0.30]], 0.0),
+        Backdrop::Sky => ([[0.10, 0.25, 0.62], [0.66, 0.77, 0.90], [0.60, 0.63, 0.65]], 0.0),
         Backdrop::Studio { above, horizon, below } => ([above, horizon, below], 1.0),
         Backdrop::Paper(colour) => ([colour; 3], 2.0),
     };

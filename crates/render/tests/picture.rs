@@ -1,31 +1,229 @@
-//! Pictures as a user of the crate draws them.
+//! Pictures as a user of the crate draws them, against those that were looked at (`reference/`).
+//!
+//! Where a picture changed on purpose: run with `CORPUSCLE_NEW_REFERENCE=1`, look at what changed, and keep it.
 
 use corpuscle_gpu::{Image, require_gpu};
-use corpuscle_render::{Camera, Light, Renderer, Stage, Target};
+use corpuscle_model::SolidShape;
+use corpuscle_render::{
+    Axes, BallPainter, BallStyle, Camera, Cap, CapPainter, ColourTable, Drawable, Floor, HeightField, Key, Light,
+    Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter, TubeStyle, box_edges, natural_colours,
+};
+use std::path::Path;
+use std::sync::Arc;
 
-fn picture(light: &Light, overlay: Option<&Image>) -> Option<Image> {
-    let gpu = require_gpu("pictures")?;
-    let renderer = Renderer::new(&gpu);
-    let target = Target::new(&gpu, [64, 48], 2).unwrap();
+const SIZE: [u32; 2] = [240, 135];
+const ASPECT: f64 = 16.0 / 9.0;
+/// Mean difference of two pictures of the same, in steps of a byte: drivers round differently.
+const SAME: f64 = 0.15;
+/// A part that is missing makes at least this difference.
+const OTHER: f64 = 0.4;
+
+/// Mean difference of all bytes.
+fn difference(one: &Image, other: &Image) -> f64 {
+    assert_eq!([one.width, one.height], [other.width, other.height]);
+    let sum: u64 = one.rgba.iter().zip(&other.rgba).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / one.rgba.len() as f64
+}
+
+fn read_png(path: &Path) -> Image {
+    let file = std::fs::File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgba).unwrap();
+    Image { width: info.width, height: info.height, rgba }
+}
+
+fn write_png(path: &Path, image: &Image) {
+    let mut encoder = png::Encoder::new(std::fs::File::create(path).unwrap(), image.width, image.height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().unwrap().write_image_data(&image.rgba).unwrap();
+}
+
+/// Compares with the reference of a name. The picture that differs is left beside the test's other output.
+fn same_as_reference(name: &str, image: &Image) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(format!("{name}.png"));
+    if std::env::var_os("CORPUSCLE_NEW_REFERENCE").is_some_and(|value| value == "1") {
+        write_png(&path, image);
+    }
+    let off = difference(image, &read_png(&path));
+    if off > SAME {
+        let found = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+        write_png(&found, image);
+        panic!("{name} is off by {off:.2}, more than {SAME}: compare {} with {}", found.display(), path.display());
+    }
+}
+
+/// What a picture is drawn with.
+struct Table {
+    renderer: Renderer,
+    target: Target,
+}
+
+impl Table {
+    fn open(test: &str) -> Option<Self> {
+        let gpu = require_gpu(test)?;
+        Some(Self { renderer: Renderer::new(&gpu), target: Target::new(&gpu, SIZE, 2).unwrap() })
+    }
+
+    fn draw(
+        &self,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        things: &mut [&mut dyn Drawable],
+        overlay: &Overlay,
+    ) -> Image {
+        let overlay = overlay.image(stage, camera, SIZE).unwrap();
+        self.renderer.draw(&self.target, stage, camera, light, things, Some(&overlay));
+        self.renderer.read(&self.target).unwrap()
+    }
+}
+
+fn viridis() -> ColourTable {
+    ColourTable { low: 0.0, high: 1.0, colours: vec![[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] }
+}
+
+/// Balls in a box on a floor with the way of one; parts can be left out by their letters: floor, balls, edges, way, overlay,
+/// shadows.
+fn gas(table: &Table, left_out: &str) -> Image {
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0; 3], [8.0, 8.0, 5.0]);
+    let camera = Camera::orbit(&stage, [-1.0, 0.4], 0.5, ASPECT, 0.1);
+    let place = |k: usize| [0.7 + (k % 5) as f64 * 1.6, 0.7 + (k / 5 % 5) as f64 * 1.6, 0.6 + (k / 25) as f64 * 1.5];
+    let balls = (0..75).filter(|k| k % 4 != 1).map(|k| (place(k), 0.6, (k % 11) as f64 / 10.0));
+    let style = BallStyle::new(viridis());
+    let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &style, balls);
+    let tubes = TubePainter::new(&table.renderer);
+    let ink = TubeStyle { colour: [70, 82, 94], radius: 0.0, least_radius: 0.8, shaded: false };
+    let edges = box_edges([0.0; 3], [8.0, 8.0, 5.0]);
+    let mut edges = tubes.tubes(gpu, &stage, &ink, edges.iter().map(Vec::as_slice));
+    let way = [[1.0, 1.0, 4.8], [7.0, 2.0, 4.0], [4.0, 1.0, 1.0], [7.5, 4.0, 4.6]];
+    let red = TubeStyle { colour: [194, 24, 91], radius: 0.2, least_radius: 0.8, shaded: true };
+    let mut way = tubes.tubes(gpu, &stage, &red, [way.as_slice()]);
+    let mut floor = Floor::new(&table.renderer, &stage, 0.0);
+    let mut things: Vec<&mut dyn Drawable> = Vec::new();
+    let all: [(char, &mut dyn Drawable); 4] =
+        [('f', &mut floor), ('b', &mut balls), ('e', &mut edges), ('w', &mut way)];
+    things.extend(all.into_iter().filter(|(letter, _)| !left_out.contains(*letter)).map(|(_, thing)| thing));
+    let overlay = match left_out.contains('o') {
+        true => Overlay::default(),
+        false => Overlay {
+            title: "Gas".into(),
+            time: "t = 3".into(),
+            key: Some(Key::Values("Speed".into(), viridis())),
+            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into() }),
+            ..Overlay::default()
+        },
+    };
+    let mut light = Light::studio().from_azimuth(-1.9);
+    if left_out.contains('s') {
+        // Straight from above through the opening of the sun: shadows fall elsewhere.
+        light.sun = [-1.9, 1.57];
+    }
+    table.draw(&stage, &camera, &light, &mut things, &overlay)
+}
+
+/// Ground under the sky with a pane of glass on it and drops on the pane; parts left out: terrain, glass, caps.
+fn dew_on_a_hill(table: &Table, left_out: &str) -> Image {
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, -1.0], [10.0, 8.0, 4.0]);
+    let camera = Camera::orbit(&stage, [-1.2, 0.35], 0.6, ASPECT, 0.0);
+    let field = HeightField::sampled([0.0; 2], [10.0, 8.0], [90, 70], |x, y| 0.5 * (0.9 * x).sin() * (1.1 * y).cos());
+    let colours = natural_colours(&field);
+    let mut terrain = Terrain::new(&table.renderer, &stage, field, &colours, -1.0).unwrap();
+    let (low, high) = ([2.0, 2.0, 0.6], [8.0, 2.3, 3.8]);
+    let shape = SolidShape {
+        bounds: [low, high],
+        distance: Arc::new(move |at| {
+            (0..3).map(|k| (low[k] - at[k]).max(at[k] - high[k])).fold(f64::NEG_INFINITY, f64::max)
+        }),
+    };
+    let mut glass = Solid::new(&table.renderer, &stage, &shape, SolidStyle::Glass([225, 240, 232]));
+    let cap = |k: usize| Cap {
+        position: [2.6 + 1.2 * (k % 5) as f64, 2.0, 1.2 + 1.0 * (k / 5) as f64],
+        radius: 0.25 + 0.04 * (k % 4) as f64,
+        normal: [0.0, -1.0, 0.0],
+        height: 0.2,
+    };
+    let mut caps = CapPainter::new(&table.renderer).caps(gpu, &stage, (0..15).map(cap));
+    let mut things: Vec<&mut dyn Drawable> = Vec::new();
+    let all: [(char, &mut dyn Drawable); 3] = [('t', &mut terrain), ('g', &mut glass), ('c', &mut caps)];
+    things.extend(all.into_iter().filter(|(letter, _)| !left_out.contains(*letter)).map(|(_, thing)| thing));
+    table.draw(&stage, &camera, &Light::day().from_azimuth(-2.2), &mut things, &Overlay::default())
+}
+
+/// Flat discs on paper, to scale.
+fn plan(table: &Table) -> Image {
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0; 3], [16.0, 9.0, 0.0]);
+    let camera = Camera::plan(&stage, ASPECT, [0.1; 3]);
+    let discs = (0..40).map(|k| ([1.0 + 2.0 * (k % 8) as f64, 1.0 + 1.8 * (k / 8) as f64, 0.0], 0.7, k as f64 / 39.0));
+    let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &BallStyle::new(viridis()), discs);
+    let overlay = Overlay { scale_bar: Some("m".into()), ..Overlay::default() };
+    table.draw(&stage, &camera, &Light::paper(), &mut [&mut balls], &overlay)
+}
+
+#[test]
+fn pictures_are_as_they_were_when_they_were_looked_at() {
+    let Some(table) = Table::open("reference pictures") else { return };
+    same_as_reference("gas", &gas(&table, ""));
+    same_as_reference("dew-on-a-hill", &dew_on_a_hill(&table, ""));
+    same_as_reference("plan", &plan(&table));
+}
+
+#[test]
+fn a_part_that_is_left_out_is_missed() {
+    let Some(table) = Table::open("parts of pictures") else { return };
+    let (whole_gas, whole_dew) = (gas(&table, ""), dew_on_a_hill(&table, ""));
+    for part in ["f", "b", "e", "w", "o", "s"] {
+        let off = difference(&gas(&table, part), &whole_gas);
+        assert!(off > OTHER, "gas without {part}: {off:.2}");
+    }
+    for part in ["t", "g", "c"] {
+        let off = difference(&dew_on_a_hill(&table, part), &whole_dew);
+        assert!(off > OTHER, "dew without {part}: {off:.2}");
+    }
+}
+
+#[test]
+fn the_same_frame_twice_is_the_same_picture() {
+    let (Some(one), Some(other)) = (Table::open("the same twice"), Table::open("the same twice")) else { return };
+    assert!(gas(&one, "") == gas(&one, ""));
+    assert!(gas(&one, "") == gas(&other, ""));
+    assert!(dew_on_a_hill(&one, "") == dew_on_a_hill(&other, ""));
+}
+
+#[test]
+fn a_plan_keeps_colours_and_scale() {
+    let Some(table) = Table::open("a plan") else { return };
+    let image = plan(&table);
+    // The first disc: 1 m from the left and the bottom, of the first colour; beside it paper.
+    let pixels_per_metre = f64::from(SIZE[1]) * 0.8 / 9.0;
+    let at = |x: f64, y: f64| {
+        let [px, py] = [(x - 8.0) * pixels_per_metre + 120.0, (4.5 - y) * pixels_per_metre + 67.5];
+        image.pixel(px as u32, py as u32)
+    };
+    assert_eq!(at(1.0, 1.0), [0x44, 0x01, 0x54, 255]);
+    assert_eq!(at(1.0, 1.9), [255; 4]);
+    assert_ne!(at(1.55, 1.0), [255; 4]);
+    assert_eq!(at(1.9, 1.0), [255; 4]);
+}
+
+#[test]
+fn the_overlay_lies_over_the_picture_by_its_opacity() {
+    let Some(Table { renderer, target }) = Table::open("the overlay") else { return };
     let stage = Stage::new([0.0; 3], [2.0, 2.0, 1.0]);
-    let camera = Camera::orbit(&stage, -1.5, 0.05, 0.9, 4.0 / 3.0);
-    renderer.draw(&target, &stage, &camera, light, &mut [], overlay);
-    Some(renderer.read(&target).unwrap())
-}
-
-#[test]
-fn the_sky_is_blue_above_and_the_ground_below_is_not() {
-    let Some(image) = picture(&Light::day(), None) else { return };
-    let [top, bottom] = [image.pixel(32, 1), image.pixel(32, 46)];
-    assert!(top[2] > top[0] + 30, "{top:?}");
-    assert!(bottom[2].abs_diff(bottom[0]) < 12, "{bottom:?}");
-}
-
-#[test]
-fn paper_keeps_its_colour_and_the_overlay_lies_over_it() {
-    let mut overlay = Image { width: 64, height: 48, rgba: vec![0; 4 * 64 * 48] };
+    let mut overlay = Image { width: SIZE[0], height: SIZE[1], rgba: vec![0; 4 * (SIZE[0] * SIZE[1]) as usize] };
     overlay.rgba[..4].copy_from_slice(&[100, 0, 0, 128]);
-    let Some(image) = picture(&Light::paper(), Some(&overlay)) else { return };
-    assert_eq!(image.pixel(1, 0), [255; 4]);
-    assert_eq!(image.pixel(0, 0), [227, 127, 127, 255]);
+    renderer.draw(&target, &stage, &Camera::plan(&stage, ASPECT, [0.0; 3]), &Light::paper(), &mut [], Some(&overlay));
+    let image = renderer.read(&target).unwrap();
+    assert_eq!([image.pixel(1, 0), image.pixel(0, 0)], [[255; 4], [227, 127, 127, 255]]);
+}
+
+#[test]
+fn a_picture_too_large_for_the_device_is_refused_in_words() {
+    let Some(gpu) = require_gpu("a picture too large") else { return };
+    let error = Target::new(&gpu, [70_000, 40], 2).unwrap_err().to_string();
+    assert!(error.contains("140000 x 80"), "{error}");
 }

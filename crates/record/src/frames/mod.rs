@@ -2,9 +2,11 @@
 
 mod csv;
 mod patches;
+mod read;
 mod vtp;
 
 pub(crate) use patches::write as write_surface;
+pub use read::FrameFiles;
 
 use crate::RecordError;
 use crate::number::Shortest;

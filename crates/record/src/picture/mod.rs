@@ -14,7 +14,8 @@ mod window;
 
 use corpuscle_drawing::{bars, colour, png, style, svg, text, ticks};
 
-pub(crate) use balls::{Across, Balls, Disc, Key, Side};
+pub use balls::Key;
+pub(crate) use balls::{Across, Balls, Disc, Side};
 pub(crate) use chart::{Chart, Series};
 pub(crate) use classes::{Classes, Ramp};
 pub(crate) use colour::{Colour, from_hex, of_part};

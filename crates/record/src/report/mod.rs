@@ -21,7 +21,7 @@ use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
 
 pub use dew::DewReport;
-pub use gas::GasReport;
+pub use gas::{GasReport, gas_key};
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};

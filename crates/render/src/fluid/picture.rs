@@ -41,7 +41,7 @@ fn draw(skipped: Option<FluidPass>) -> Option<Image> {
     let gpu = require_gpu("a picture of a fluid")?;
     let renderer = Renderer::new(&gpu);
     let stage = Stage::new([-1.0, -1.0, -0.3], [1.0, 1.0, 0.5]);
-    let camera = Camera::orbit(&stage, -1.4, 0.5, 0.6, 1.6);
+    let camera = Camera::orbit(&stage, [-1.4, 0.5], 0.6, 1.6, 0.0);
     let style = FluidStyle { absorption: [1.4, 0.5, 0.4], ..FluidStyle::water(0.05) };
     let mut fluid = FluidPainter::new(&renderer).fluid(&gpu, &stage, style);
     fluid.skipped = skipped;

@@ -14,7 +14,7 @@ fn surroundings(direction: vec3f) -> vec3f {
     let near_sun = max(dot(direction, view.sun.xyz), 0.0);
     let glow = 0.25 * pow(near_sun, 12.0) + 0.35 * pow(near_sun, 160.0);
     let sky = clear + glow * vec3f(1.0, 0.88, 0.7);
-    return mix(sky, view.below.rgb, smoothstep(0.0, 0.12, -direction.z));
+    return mix(sky, view.below.rgb, smoothstep(0.0, 0.6, -direction.z));
 }
 
 // What is seen in a direction, the sun's disc with it.

@@ -35,47 +35,47 @@ fn vertex(
     return Corner(view.clip_from_world * vec4f(place, 1.0), place, vec4f(from_end.xyz, radius), vec4f(to_end.xyz, colour.w), colour.rgb);
 }
 
-// Distance along a line of sight to a cylinder with round ends; below 0 where it misses.
-// Quilez, "Capsule intersection" (iquilezles.org/articles/intersectors).
-fn meets(sight: Ray, from_end: vec3f, to_end: vec3f, radius: f32) -> f32 {
-    let way = to_end - from_end;
-    let from_from = sight.origin - from_end;
-    let way_way = dot(way, way);
-    let way_sight = dot(way, sight.direction);
-    let way_from = dot(way, from_from);
-    let sight_from = dot(sight.direction, from_from);
-    let a = way_way - way_sight * way_sight;
-    let b = way_way * sight_from - way_from * way_sight;
-    let c = way_way * dot(from_from, from_from) - way_from * way_from - radius * radius * way_way;
-    let inside = b * b - a * c;
-    if inside < 0.0 {
-        return -1.0;
+// Nearest crossing of a line, given from near the axis and across it, and a circle round it: offset and direction across,
+// radius. Far below 0 where they miss.
+fn crossing(offset: vec3f, direction: vec3f, radius: f32) -> f32 {
+    let a = dot(direction, direction);
+    let b = dot(offset, direction);
+    let inside = b * b - a * (dot(offset, offset) - radius * radius);
+    if inside < 0.0 || a < 1e-12 {
+        return -1e9;
     }
-    let side = (-b - sqrt(inside)) / max(a, 1e-20);
-    let part = way_from + side * way_sight;
-    if part > 0.0 && part < way_way {
-        return side;
-    }
-    let end = select(sight.origin - to_end, from_from, part <= 0.0);
-    let near = dot(sight.direction, end);
-    let round = near * near - dot(end, end) + radius * radius;
-    if round < 0.0 {
-        return -1.0;
-    }
-    return -near - sqrt(round);
+    return (-b - sqrt(inside)) / a;
 }
 
-// Where the line of sight meets the tube; nothing is drawn where it does not.
+// Where the line of sight meets the tube, a cylinder with round ends; nothing is drawn where it does not. All is reckoned from
+// the point of the axis nearest to the box's side: the radius is small against the length.
 fn hit(corner: Corner) -> vec3f {
-    var sight = ray_through(corner.place);
-    // From near the tube: numbers stay small.
-    let start = dot(corner.from_end.xyz - sight.origin, sight.direction);
-    sight.origin += start * sight.direction;
-    let distance = meets(sight, corner.from_end.xyz, corner.to_end.xyz, corner.from_end.w);
-    if distance == -1.0 {
+    let sight = ray_through(corner.place);
+    let radius = corner.from_end.w;
+    let way = corner.to_end.xyz - corner.from_end.xyz;
+    let long = length(way);
+    let along = select(vec3f(1.0, 0.0, 0.0), way / max(long, 1e-20), long > 1e-9);
+    let start = clamp(dot(corner.place - corner.from_end.xyz, along), 0.0, long);
+    let nearest = corner.from_end.xyz + start * along;
+    let offset = corner.place - nearest;
+    let across = offset - dot(offset, along) * along;
+    let distance = crossing(across, sight.direction - dot(sight.direction, along) * along, radius);
+    let part = start + dot(offset + distance * sight.direction, along);
+    if distance > -1e8 && part >= 0.0 && part <= long {
+        return corner.place + distance * sight.direction;
+    }
+    var found = -1e9;
+    for (var end = 0; end < 2; end++) {
+        let middle = select(corner.from_end.xyz, corner.to_end.xyz, end == 1);
+        let round = crossing(corner.place - middle, sight.direction, radius);
+        if round > -1e8 && (found < -1e8 || round < found) {
+            found = round;
+        }
+    }
+    if found < -1e8 {
         discard;
     }
-    return sight.origin + distance * sight.direction;
+    return corner.place + found * sight.direction;
 }
 
 struct Drawn {

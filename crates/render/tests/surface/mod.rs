@@ -140,7 +140,7 @@ fn stage() -> Stage {
 }
 
 fn camera() -> Camera {
-    Camera::orbit(&stage(), -1.2, 0.75, 0.6, f64::from(SIZE[0]) / f64::from(SIZE[1]))
+    Camera::orbit(&stage(), [-1.2, 0.75], 0.6, f64::from(SIZE[0]) / f64::from(SIZE[1]), 0.0)
 }
 
 fn compare(exact: &[Exact], distances: &[Option<f64>], normals: &[Option<[f64; 3]>]) -> Quality {

@@ -2,7 +2,7 @@
 
 use super::{Balls, Key, Side};
 use crate::picture::bars::{scale_bar, value_bar};
-use crate::picture::colour::hex;
+use crate::picture::colour::{hex, of_part};
 use crate::picture::svg::{Anchor, Svg};
 
 const SPACE_OF_LETTER: f64 = 6.8;
@@ -60,5 +60,5 @@ fn draw_speeds(svg: &mut Svg, most: f64, unit: &str, [left, top]: [f64; 2]) -> f
     let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
     svg.text([left, top + 12.0], Anchor::Start, "text", &format!("Speed{unit}"));
     let from = left + 40.0 + unit.chars().count() as f64 * SPACE_OF_LETTER + 12.0;
-    value_bar(svg, most, [from, top], 300.0)
+    value_bar(svg, [0.0, most], of_part, [from, top], 300.0)
 }

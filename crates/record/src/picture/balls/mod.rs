@@ -41,13 +41,18 @@ pub(crate) struct Across {
     pub hole: Option<[Vec<f64>; 2]>,
 }
 
-/// What colours mean.
+/// What the colours of balls mean.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Key {
+pub enum Key {
     /// Each kind of balls has its own: name and colour.
     Kinds(Vec<(String, Colour)>),
     /// Speed, from 0 to this, with its unit.
-    Speed { most: f64, unit: &'static str },
+    Speed {
+        /// The speed that has the last colour.
+        most: f64,
+        /// Its unit; empty in reduced units.
+        unit: &'static str,
+    },
 }
 
 /// Balls in their box.

@@ -5,6 +5,8 @@ mod facts;
 mod page;
 mod picture;
 
+pub use picture::gas_key;
+
 use super::{moments, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png};
 use crate::whole::write_bytes;

@@ -15,7 +15,7 @@ pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
     let frame = model.frame();
     let container = model.container().unwrap_or(Container { from: [0.0; 3], to: padded(&gas.size) });
     let size = padded(&gas.size);
-    let key = key(gas, &frame);
+    let key = gas_key(gas, &frame);
     Balls {
         dimensions: gas.dimensions(),
         from: container.from,
@@ -56,7 +56,8 @@ fn partition(gas: &Gas, time: f64) -> Option<Across> {
     })
 }
 
-fn key(gas: &Gas, frame: &Frame) -> Key {
+/// What the colours of a gas mean at a time: its kinds, one for each particle set, or the speed of the only kind.
+pub fn gas_key(gas: &Gas, frame: &Frame) -> Key {
     if let [_] = frame.sets[..] {
         let unit = match gas.units {
             Units::Reduced => "",

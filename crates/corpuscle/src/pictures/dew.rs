@@ -1,0 +1,119 @@
+//! Pictures of dew: drops on solids in a bright room.
+
+use super::{Moment, Studio};
+use crate::Error;
+use corpuscle_drawing::text;
+use corpuscle_gpu::Image;
+use corpuscle_model::{ParticleSet, Surface, Values};
+use corpuscle_render::{Axes, Camera, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
+use corpuscle_scene::Dew;
+use corpuscle_scene::dew::Material;
+
+/// How far beside the way that the wet side looks the eye stands, and how high, radians; and how wide the lens is.
+const BESIDE: f64 = 0.45;
+const RAISED: f64 = 0.2;
+const FIELD_OF_VIEW: f64 = 0.5;
+const MARGIN: f64 = 0.09;
+/// How far the sun stands to the left of the eye, radians.
+const SUN: f64 = -1.0;
+/// From where solids are seen that look to no side together, radians.
+const NO_SIDE: f64 = -1.9;
+/// The clearest glass still takes a little, most of it red.
+const GLASS: [u8; 3] = [232, 242, 238];
+/// What is not glass.
+const MATT: [u8; 3] = [150, 152, 156];
+
+/// Draws dew.
+pub(super) struct DewPicture {
+    stage: Stage,
+    solids: Vec<Solid>,
+    floor: Floor,
+    /// From where it is seen, radians.
+    azimuth: f64,
+}
+
+impl DewPicture {
+    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+        let corner = |pick: fn(f64, f64) -> f64, side: usize, start: f64| {
+            std::array::from_fn(|k| surfaces.iter().map(|surface| surface.shape.bounds[side][k]).fold(start, pick))
+        };
+        let stage = match surfaces {
+            [] => Stage::new([0.0; 3], dew.size_m),
+            _ => Stage::new(corner(f64::min, 0, f64::INFINITY), corner(f64::max, 1, f64::NEG_INFINITY)),
+        };
+        let style = |surface: &Surface| {
+            let solid = dew.solid.iter().find(|solid| solid.name == surface.name);
+            solid.map_or(SolidStyle::Opaque(MATT, 0.6), |solid| style(&solid.material))
+        };
+        let solids =
+            surfaces.iter().map(|surface| Solid::new(&studio.renderer, &stage, &surface.shape, style(surface)));
+        let floor = Floor::new(&studio.renderer, &stage, stage.from.z - 0.002 * stage.unit());
+        Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let camera = Camera::orbit(&self.stage, [self.azimuth, RAISED], FIELD_OF_VIEW, studio.aspect(), MARGIN);
+        let light = Light::studio().from_azimuth(self.azimuth + SUN);
+        let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
+        let faces_eye = |cap: &&Cap| {
+            let eye: [f64; 3] = camera.eye.into();
+            (0..3).map(|k| cap.normal[k] * (eye[k] - cap.position[k])).sum::<f64>() > 0.0
+        };
+        let gpu = studio.renderer.gpu();
+        // Those on the far side are seen through the solid, so they come before it.
+        let far = drops.iter().filter(|cap| !faces_eye(cap)).copied();
+        let mut far = studio.caps.caps(gpu, &self.stage, far);
+        let mut near = studio.caps.caps(gpu, &self.stage, drops.iter().filter(faces_eye).copied());
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.floor, &mut far];
+        things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
+        things.push(&mut near);
+        let overlay = Overlay {
+            title: title.into(),
+            time: format!("t = {}", text::time(moment.frame.time)),
+            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
+            ..Overlay::default()
+        };
+        studio.take(&self.stage, &camera, &light, &mut things, &overlay)
+    }
+}
+
+/// What a solid of a material looks like.
+fn style(material: &Material) -> SolidStyle {
+    let Material::Named(name) = material else { return SolidStyle::Opaque(MATT, 0.6) };
+    match name.as_str() {
+        "glass" | "pmma" | "polycarbonate" => SolidStyle::Glass(GLASS),
+        "oak" | "wood" => SolidStyle::Opaque([150, 105, 66], 0.35),
+        "copper" => SolidStyle::Opaque([184, 115, 62], 1.0),
+        "concrete" => SolidStyle::Opaque([150, 146, 138], 0.0),
+        _ => SolidStyle::Opaque(MATT, 0.6),
+    }
+}
+
+/// The azimuth that the wet patches of all solids look to, where they look anywhere together.
+fn wet_side(surfaces: &[Surface]) -> f64 {
+    let mut sum = [0.0; 2];
+    for surface in surfaces {
+        for (normal, half_width) in surface.normal.iter().zip(&surface.half_width) {
+            (0..2).for_each(|k| sum[k] += normal[k] * half_width * half_width);
+        }
+    }
+    let area: f64 = surfaces.iter().flat_map(|surface| &surface.half_width).map(|half| half * half).sum();
+    if sum[0].hypot(sum[1]) > 0.2 * area { sum[1].atan2(sum[0]) } else { NO_SIDE }
+}
+
+/// The drops of a set.
+fn caps(set: &ParticleSet) -> Vec<Cap> {
+    let column = |name: &str| set.columns.iter().find(|column| column.name == name).map(|column| &column.values);
+    let (Some(Values::Scalar(heights)), Some(Values::Vector(normals))) = (column("height"), column("normal")) else {
+        return Vec::new();
+    };
+    let drops = set.position.iter().zip(&set.radius).zip(heights.iter().zip(normals));
+    drops
+        .map(|((position, radius), (height, normal))| Cap {
+            position: *position,
+            radius: *radius,
+            normal: *normal,
+            height: *height,
+        })
+        .collect()
+}

@@ -1,0 +1,78 @@
+//! Pictures of a flood: water on the block of ground.
+
+use super::{Moment, Studio};
+use crate::Error;
+use corpuscle_drawing::text;
+use corpuscle_gpu::Image;
+use corpuscle_render::{
+    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Stage, Terrain, Water,
+    natural_colours,
+};
+use corpuscle_terrain::Terrain as Ground;
+
+/// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
+const DIRECTION: [f64; 2] = [-1.15, 0.6];
+const FIELD_OF_VIEW: f64 = 0.5;
+const MARGIN: f64 = 0.06;
+/// How far the sun stands to the left of the eye, radians.
+const SUN: f64 = -1.0;
+/// Nodes a side of the drawn ground at most: what a texture can hold everywhere, and a terrain of 4096 x 4096 has.
+const MOST_NODES: usize = 4097;
+/// Height of the block below its lowest ground, part of its width.
+const BASE: f64 = 0.06;
+/// Draws a flood.
+pub(super) struct FloodPicture {
+    stage: Stage,
+    ground: Terrain,
+    floor: Floor,
+    water: Water,
+    fluid: Option<Fluid>,
+}
+
+impl FloodPicture {
+    pub(super) fn new(studio: &Studio, ground: &Ground) -> Result<Self, Error> {
+        let bounds = ground.bounds();
+        let grid = ground.map_grid();
+        let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES));
+        let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
+        let field = HeightField::sampled(from, to, nodes, |x, y| ground.height(x, y));
+        let [low, high] = field.range();
+        let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
+        let stage = Stage::new([from[0], from[1], base], [to[0], to[1], high]);
+        let colours = natural_colours(&field);
+        let ground = Terrain::new(&studio.renderer, &stage, field, &colours, base)?;
+        Ok(Self {
+            stage,
+            ground,
+            floor: Floor::new(&studio.renderer, &stage, base),
+            water: Water::default(),
+            fluid: None,
+        })
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let gpu = studio.renderer.gpu();
+        let camera = Camera::orbit(&self.stage, DIRECTION, FIELD_OF_VIEW, studio.aspect(), MARGIN);
+        let light = Light::day().from_azimuth(DIRECTION[0] + SUN);
+        let sets = || moment.frame.sets.iter().filter(|set| !set.is_empty());
+        let radii = || sets().flat_map(|set| &set.radius);
+        let mean = radii().sum::<f64>() / radii().count().max(1) as f64;
+        let stage = self.stage;
+        // Its style is that of the first particles there are, so that it does not change in a film.
+        let wet = (mean > 0.0)
+            .then(|| self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &stage, FluidStyle::water(mean))));
+        let overlay = Overlay {
+            title: title.into(),
+            time: format!("t = {}", text::time(moment.frame.time)),
+            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
+            ..Overlay::default()
+        };
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor];
+        if let Some(fluid) = wet {
+            let droplets = sets().flat_map(|set| self.water.droplets(moment.frame.time, set));
+            fluid.fill(gpu, droplets);
+            things.push(fluid);
+        }
+        studio.take(&self.stage, &camera, &light, &mut things, &overlay)
+    }
+}

@@ -1,0 +1,134 @@
+//! Pictures of a run's moments: what is shown of each model, from where, in which colours.
+
+mod dew;
+mod flood;
+mod gas;
+
+use crate::{Error, Simulation};
+use corpuscle_gpu::{Gpu, Image};
+use corpuscle_model::{Container, Frame, Path};
+use corpuscle_render::{
+    BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
+    TubePainter,
+};
+use corpuscle_scene::ModelScene;
+use dew::DewPicture;
+use flood::FloodPicture;
+use gas::GasPicture;
+
+/// Size and fineness of pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PictureSettings {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Samples each way in a pixel: 2 for stills; 1 is fast.
+    pub samples: u32,
+}
+
+impl Default for PictureSettings {
+    fn default() -> Self {
+        Self { size: [1920, 1080], samples: 2 }
+    }
+}
+
+/// What a picture shows: a model at one time.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment<'a> {
+    /// The particles.
+    pub frame: &'a Frame,
+    /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
+    pub paths: &'a [Path],
+    /// The box round the particles.
+    pub container: Option<Container>,
+}
+
+/// Draws pictures of one run.
+pub struct Pictures {
+    studio: Studio,
+    title: String,
+    subject: Subject,
+}
+
+/// What all subjects draw with.
+struct Studio {
+    renderer: Renderer,
+    balls: BallPainter,
+    tubes: TubePainter,
+    caps: CapPainter,
+    fluids: FluidPainter,
+    target: Target,
+}
+
+/// What is drawn.
+enum Subject {
+    Gas(Box<GasPicture>),
+    Flood(Box<FloodPicture>),
+    Dew(Box<DewPicture>),
+}
+
+impl Pictures {
+    /// Makes ready to draw a scene on the best device.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
+    pub fn open(simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
+        let gpu = Gpu::open().map_err(RenderError::from)?;
+        let renderer = Renderer::new(&gpu);
+        let target = Target::new(&gpu, settings.size, settings.samples)?;
+        let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
+        let caps = CapPainter::new(&renderer);
+        let fluids = FluidPainter::new(&renderer);
+        let studio = Studio { renderer, balls, tubes, caps, fluids, target };
+        let scene = simulation.scene();
+        let subject = match &scene.model {
+            ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
+            ModelScene::Dew(dew) => {
+                Subject::Dew(Box::new(DewPicture::new(&studio, dew, &simulation.model().surfaces())))
+            }
+            ModelScene::Flood(_) => {
+                let terrain = simulation.terrain().expect("a flood that was opened has its ground");
+                Subject::Flood(Box::new(FloodPicture::new(&studio, terrain)?))
+            }
+        };
+        Ok(Self { studio, title: scene.title.clone(), subject })
+    }
+
+    /// The device that draws, by its name.
+    pub fn device(&self) -> &str {
+        &self.studio.renderer.gpu().name
+    }
+
+    /// The picture of a moment.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the device was lost.
+    pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
+        match &mut self.subject {
+            Subject::Gas(gas) => gas.draw(&self.studio, &self.title, moment),
+            Subject::Dew(dew) => dew.draw(&self.studio, &self.title, moment),
+            Subject::Flood(flood) => flood.draw(&self.studio, &self.title, moment),
+        }
+    }
+}
+
+impl Studio {
+    /// Width of a picture over its height.
+    fn aspect(&self) -> f64 {
+        let [width, height] = self.target.size;
+        f64::from(width) / f64::from(height)
+    }
+
+    /// Draws things with their overlay, and reads the picture back.
+    fn take(
+        &self,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        things: &mut [&mut dyn Drawable],
+        overlay: &Overlay,
+    ) -> Result<Image, Error> {
+        let overlay = overlay.image(stage, camera, self.target.size)?;
+        self.renderer.draw(&self.target, stage, camera, light, things, Some(&overlay));
+        Ok(self.renderer.read(&self.target)?)
+    }
+}

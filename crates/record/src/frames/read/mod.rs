@@ -1,0 +1,91 @@
+//! Particle files read back.
+
+mod columns;
+mod csv;
+mod vtp;
+
+use crate::RecordError;
+use corpuscle_model::Frame;
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The particle files of a run, in order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameFiles {
+    files: Vec<(f64, PathBuf)>,
+}
+
+impl FrameFiles {
+    /// The particle files in a run's folder. Times of VTK files stand in `frames.pvd`; tables have none, theirs come from
+    /// `time_of`, which is given the number of the frame.
+    ///
+    /// # Errors
+    /// [`RecordError::NoFrames`] where the run wrote none; [`RecordError::Read`], [`RecordError::Content`] where `frames.pvd`
+    /// cannot be used.
+    pub fn list(run: &Path, time_of: impl Fn(usize) -> f64) -> Result<Self, RecordError> {
+        let folder = run.join("frames");
+        let collection = folder.join("frames.pvd");
+        let files = if collection.exists() {
+            let text = fs::read_to_string(&collection).map_err(RecordError::read(&collection))?;
+            let files = collected(&text).map_err(|what| RecordError::content(&collection, what))?;
+            files.into_iter().map(|(time, name)| (time, folder.join(name))).collect()
+        } else {
+            let path = |index: usize| folder.join(format!("frame_{index:06}.csv"));
+            (0..)
+                .take_while(|index| path(*index).exists())
+                .map(|index| (time_of(index), path(index)))
+                .collect::<Vec<_>>()
+        };
+        if files.is_empty() { Err(RecordError::NoFrames { path: run.to_owned() }) } else { Ok(Self { files }) }
+    }
+
+    /// Times of the frames, s.
+    pub fn times(&self) -> impl ExactSizeIterator<Item = f64> {
+        self.files.iter().map(|(time, _)| *time)
+    }
+
+    /// Number of the frame nearest to a time, s.
+    pub fn nearest(&self, time: f64) -> usize {
+        let distance = |index: &usize| (self.files[*index].0 - time).abs();
+        (0..self.files.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+    }
+
+    /// Reads a frame: as it was written, to the bit (of a table: but for the payload of what is no number, and sets without
+    /// particles). Units do not stand in these files; columns have none.
+    ///
+    /// # Errors
+    /// [`RecordError::Read`], [`RecordError::Content`] where a file is damaged or not one of these.
+    ///
+    /// # Panics
+    /// Where there is no frame of this number.
+    pub fn read(&self, index: usize) -> Result<Frame, RecordError> {
+        let (time, path) = &self.files[index];
+        let text = fs::read_to_string(path).map_err(RecordError::read(path))?;
+        let is_table = path.extension().is_some_and(|extension| extension == "csv");
+        let frame = if is_table { csv::read(&text, *time) } else { vtp::read(&text) };
+        frame.map_err(|what| RecordError::content(path, what))
+    }
+}
+
+/// Times and names of the files in a collection. A name with a folder in it is refused: these files stand beside it.
+fn collected(text: &str) -> Result<Vec<(f64, String)>, String> {
+    let mut reader = Reader::from_str(text);
+    let mut files = Vec::new();
+    loop {
+        match reader.read_event().map_err(|error| error.to_string())? {
+            Event::Empty(element) | Event::Start(element) if element.name().as_ref() == b"DataSet" => {
+                let time = vtp::attribute(&element, "timestep")?;
+                let time = time.parse().map_err(|_| format!("the time `{time}` is not a number"))?;
+                let name = vtp::attribute(&element, "file")?;
+                if Path::new(&name).components().count() != 1 {
+                    return Err(format!("the file `{name}` does not stand beside it"));
+                }
+                files.push((time, name));
+            }
+            Event::Eof => return Ok(files),
+            _ => {}
+        }
+    }
+}

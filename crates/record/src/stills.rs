@@ -1,0 +1,20 @@
+//! Pictures in a run's folder.
+
+use crate::RecordError;
+use crate::whole::write_bytes;
+use corpuscle_drawing::png::encode_rgba;
+use std::fs;
+use std::path::Path;
+
+/// Writes a picture of `size` `[width, height]` (red, green, blue and opacity bytes, rows from the top) as PNG. Its folder is
+/// made where it is not there.
+///
+/// # Errors
+/// [`RecordError::Write`]; [`RecordError::Content`] where the bytes do not fit the size.
+pub fn write_picture(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<(), RecordError> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(RecordError::write(folder))?;
+    }
+    let png = encode_rgba(size[0], size[1], rgba).map_err(|what| RecordError::content(path, what))?;
+    write_bytes(path, &png)
+}

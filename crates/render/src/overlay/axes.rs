@@ -1,0 +1,93 @@
+//! Axes along the edges of a box.
+
+use super::{Axes, LETTER, Page, axis_unit};
+use corpuscle_drawing::bars::label;
+use corpuscle_drawing::svg::Anchor;
+use corpuscle_drawing::ticks;
+
+/// Length of a tick, how far from the edge its number stands, and the axis's name from the numbers, CSS pixels.
+const TICK: f64 = 6.0;
+const NUMBER: f64 = 18.0;
+const NAME: f64 = 24.0;
+/// Space of a step between ticks at least, and steps at most.
+const STEP: f64 = 46.0;
+const MOST_STEPS: f64 = 8.0;
+
+impl Axes {
+    /// Draws the axes on the edges where they hide nothing.
+    pub(super) fn draw(&self, page: &mut Page<'_>) {
+        (0..3).filter(|axis| self.to[*axis] > self.from[*axis]).for_each(|axis| self.draw_axis(page, axis));
+    }
+
+    fn draw_axis(&self, page: &mut Page<'_>, axis: usize) {
+        let Some([start, end]) = self.edge(page, axis) else { return };
+        let ends = [page.place(start), page.place(end)];
+        let middle = page.place(std::array::from_fn(|k| 0.5 * (self.from[k] + self.to[k])));
+        let ([Some(one), Some(other)], Some(middle)) = (ends, middle) else { return };
+        let long = (other[0] - one[0]).hypot(other[1] - one[1]);
+        if long < STEP {
+            return;
+        }
+        let out = outwards(one, other, middle, long);
+        let longest = (0..3).map(|k| self.to[k] - self.from[k]).fold(0.0, f64::max);
+        let (factor, unit) = axis_unit(longest, &self.unit);
+        let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
+        let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
+        page.svg.line(one, other, "over-line");
+        let mut widest = 0.0_f64;
+        for value in ticks::multiples(low, high, step) {
+            let mut point = start;
+            point[axis] = value * factor;
+            let Some([x, y]) = page.place(point) else { continue };
+            page.svg.line([x, y], [x + TICK * out[0], y + TICK * out[1]], "over-line");
+            let at = [x + NUMBER * out[0], y + NUMBER * out[1] + 4.0];
+            let text = label(value, step);
+            widest = widest.max(LETTER * text.chars().count() as f64);
+            page.svg.text(at, anchor(out), "over-number", &text);
+        }
+        let name = ["x", "y", "z"][axis];
+        let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
+        let away = NUMBER + NAME + if anchor(out) == Anchor::Middle { 0.0 } else { widest - 12.0 };
+        let at = [0, 1].map(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
+        page.svg.text([at[0], at[1] + 4.0], anchor(out), "over", &name);
+    }
+
+    /// Ends of the edge for an axis: in the plane that at the bottom or on the left; in space on the bottom face the one nearer to
+    /// the eye, and upright the one farthest left.
+    fn edge(&self, page: &Page<'_>, axis: usize) -> Option<[[f64; 3]; 2]> {
+        let flat = self.from[2] == self.to[2];
+        let edges = (0..8_usize).filter(|bits| bits >> axis & 1 == 0).map(|bits| {
+            let start: [f64; 3] = std::array::from_fn(|k| if bits >> k & 1 == 1 { self.to[k] } else { self.from[k] });
+            let mut end = start;
+            end[axis] = self.to[axis];
+            [start, end]
+        });
+        let is_low = |edge: &[[f64; 3]; 2]| edge[0][2] == self.from[2];
+        if flat {
+            return edges.clone().find(|edge| edge[0] == self.from);
+        }
+        let left = |edge: &[[f64; 3]; 2]| page.place(edge[0]).map_or(f64::INFINITY, |place| place[0]);
+        let below =
+            |edge: &[[f64; 3]; 2]| edge.iter().filter_map(|end| page.place(*end)).map(|place| place[1]).sum::<f64>();
+        match axis {
+            2 => edges.min_by(|a, b| left(a).total_cmp(&left(b))),
+            _ => edges.filter(is_low).max_by(|a, b| below(a).total_cmp(&below(b))),
+        }
+    }
+}
+
+/// The direction across an edge on the page, away from the middle of the box.
+fn outwards(one: [f64; 2], other: [f64; 2], middle: [f64; 2], long: f64) -> [f64; 2] {
+    let across = [(other[1] - one[1]) / long, (one[0] - other[0]) / long];
+    let away = [0.5 * (one[0] + other[0]) - middle[0], 0.5 * (one[1] + other[1]) - middle[1]];
+    let sign = if across[0] * away[0] + across[1] * away[1] < 0.0 { -1.0 } else { 1.0 };
+    across.map(|component| sign * component)
+}
+
+fn anchor(out: [f64; 2]) -> Anchor {
+    match out[0] {
+        ..-0.5 => Anchor::End,
+        0.5.. => Anchor::Start,
+        _ => Anchor::Middle,
+    }
+}

@@ -1,0 +1,176 @@
+//! Solids: meshes from their signed distances, matt, or of glass.
+
+mod mesh;
+
+use crate::buffer::{UNIFORM, instances, uniform};
+use crate::colour::linear;
+use crate::pipeline::Recipe;
+use crate::{Drawable, Renderer, Stage, Through, shaders};
+use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_model::SolidShape;
+
+/// A corner as the device has it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Vertex {
+    place: [f32; 4],
+    normal: [f32; 4],
+}
+
+/// What a solid looks like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SolidStyle {
+    /// Opaque: colour (sRGB), and how much the surface shines, from 0 to 1.
+    Opaque([u8; 3], f32),
+    /// Glass: the part of each colour that it lets through straight, sRGB.
+    Glass([u8; 3]),
+}
+
+/// A solid on the device.
+#[derive(Debug)]
+pub struct Solid {
+    pipeline: wgpu::RenderPipeline,
+    /// None for glass, which throws no shadow worth drawing.
+    cast: Option<wgpu::RenderPipeline>,
+    group: wgpu::BindGroup,
+    buffer: wgpu::Buffer,
+    count: u32,
+    behind: Behind,
+}
+
+/// What is behind a thing that lets light through, as a group.
+#[derive(Debug)]
+pub(crate) struct Behind {
+    pub(crate) layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+}
+
+impl Behind {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
+        let colour = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("behind"),
+            entries: &[entry(0, colour), entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering))],
+        });
+        let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("behind"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..wgpu::SamplerDescriptor::default()
+        });
+        Self { layout, sampler }
+    }
+
+    pub(crate) fn group(&self, frame: &Through<'_>) -> wgpu::BindGroup {
+        frame.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("behind"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(frame.behind_colour) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
+            ],
+        })
+    }
+}
+
+impl Solid {
+    /// A solid from its shape.
+    pub fn new(renderer: &Renderer, stage: &Stage, shape: &SolidShape, style: SolidStyle) -> Self {
+        let gpu = renderer.gpu();
+        let vertex = |(place, normal): ([f64; 3], [f64; 3])| {
+            let [x, y, z] = stage.place(place).into();
+            let [nx, ny, nz] = normal.map(|part| part as f32);
+            Vertex { place: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
+        };
+        let vertices: Vec<Vertex> = mesh::mesh(shape).into_iter().map(vertex).collect();
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("solid"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: UNIFORM,
+                count: None,
+            }],
+        });
+        let (colour, gloss, is_glass) = match style {
+            SolidStyle::Opaque(colour, gloss) => (colour, gloss, false),
+            SolidStyle::Glass(colour) => (colour, 1.0, true),
+        };
+        let [r, g, b] = linear(colour);
+        let settings = uniform(gpu, "solid", &[[r, g, b, 1.0], [gloss, 0.0, 0.0, 0.0]]);
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("solid"),
+            layout: &layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: settings.as_entire_binding() }],
+        });
+        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let buffers = [wgpu::VertexBufferLayout {
+            array_stride: size_of::<Vertex>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        }];
+        let behind = Behind::new(gpu);
+        let (name, text) = match is_glass {
+            true => ("glass", include_str!("glass.wgsl")),
+            false => ("solids", include_str!("solids.wgsl")),
+        };
+        let (opaque, glass) = ([renderer.view_layout(), &layout], [renderer.view_layout(), &layout, &behind.layout]);
+        let recipe = Recipe {
+            label: name,
+            module: &shaders::module(gpu, name, text),
+            groups: if is_glass { &glass } else { &opaque },
+            buffers: &buffers,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+        };
+        Self {
+            pipeline: recipe.opaque(gpu),
+            cast: (!is_glass).then(|| recipe.cast(gpu, "throw_shadow")),
+            group,
+            buffer: instances(gpu, "solid", &vertices),
+            count: vertices.len() as u32,
+            behind,
+        }
+    }
+
+    fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_vertex_buffer(0, self.buffer.slice(..));
+        pass.draw(0..self.count, 0..1);
+    }
+}
+
+impl Drawable for Solid {
+    fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(pipeline) = &self.cast {
+            self.paint(pass, pipeline);
+        }
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if self.cast.is_some() {
+            self.paint(pass, &self.pipeline);
+        }
+    }
+
+    fn lets_light_through(&self) -> bool {
+        self.cast.is_none()
+    }
+
+    fn draw_through(&mut self, frame: &mut Through<'_>) {
+        let behind = self.behind.group(frame);
+        let mut pass = frame.begin("glass");
+        pass.set_bind_group(2, &behind, &[]);
+        self.paint(&mut pass, &self.pipeline);
+    }
+}

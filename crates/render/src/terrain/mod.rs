@@ -1,0 +1,204 @@
+//! The ground as a shaded mesh, finer near the eye.
+
+mod field;
+mod natural;
+mod tiles;
+mod walls;
+
+pub use field::HeightField;
+pub use natural::natural_colours;
+
+use crate::buffer::{TEXTURE, UNIFORM, indices, instances, uniform};
+use crate::pipeline::Recipe;
+use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders};
+use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
+use half::f16;
+use walls::Walls;
+
+/// How much the brightness of the ground differs within a cell.
+const GRAIN: f32 = 0.35;
+
+/// The ground on the device.
+#[derive(Debug)]
+pub struct Terrain {
+    opaque: wgpu::RenderPipeline,
+    cast: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+    index: wgpu::Buffer,
+    field: HeightField,
+    /// The tiles of the picture that is drawn now, and how many.
+    tiles: Option<(wgpu::Buffer, u32)>,
+    walls: Walls,
+}
+
+/// As `terrain.wgsl` has it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Ground {
+    origin: [f32; 4],
+    cell: [f32; 4],
+    nodes: [u32; 4],
+}
+
+impl Terrain {
+    /// Ground of a height field with a picture draped over it (of its own size or any other, rows from the north, opacity 0
+    /// where there is no ground), cut off upright at its borders down to `base`, m.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] for more nodes a side than a texture has pixels.
+    pub fn new(
+        renderer: &Renderer,
+        stage: &Stage,
+        field: HeightField,
+        colours: &Image,
+        base: f64,
+    ) -> Result<Self, RenderError> {
+        let gpu = renderer.gpu();
+        let layout = layout(gpu);
+        let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
+        let recipe = Recipe {
+            label: "terrain",
+            module: &shaders::module(gpu, "terrain", include_str!("terrain.wgsl")),
+            groups: &[renderer.view_layout(), &layout],
+            buffers: &[wgpu::VertexBufferLayout {
+                array_stride: 16,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &attributes,
+            }],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+        };
+        let [x, y, _] = stage.place([field.origin[0], field.origin[1], 0.0]).into();
+        let cell = field.cell.map(|length| stage.length(length));
+        let settings = Ground {
+            origin: [x, y, 0.0, 0.0],
+            cell: [cell[0], cell[1], 0.0, GRAIN],
+            nodes: [field.nodes[0] as u32, field.nodes[1] as u32, 0, 0],
+        };
+        let textures =
+            [upload_heights(gpu, stage, &field)?, upload_slopes(gpu, &field)?, upload_colours(gpu, colours)?];
+        Ok(Self {
+            opaque: recipe.opaque(gpu),
+            cast: recipe.cast(gpu, "throw_shadow"),
+            group: group(gpu, &layout, &settings, &textures),
+            index: indices(gpu, "terrain", &tiles::indices()),
+            walls: Walls::new(renderer, stage, &field, base),
+            field,
+            tiles: None,
+        })
+    }
+
+    fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+        let Some((tiles, count)) = &self.tiles else { return };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_vertex_buffer(0, tiles.slice(..));
+        pass.set_index_buffer(self.index.slice(..), wgpu::IndexFormat::Uint32);
+        pass.draw_indexed(0..tiles::INDICES, 0, 0..*count);
+    }
+}
+
+impl Drawable for Terrain {
+    fn prepare(&mut self, gpu: &Gpu, stage: &Stage, camera: &Camera, size: [u32; 2]) {
+        let chosen = tiles::choose(&self.field, stage, camera, size);
+        self.tiles = Some((instances(gpu, "tiles", &chosen), chosen.len() as u32));
+    }
+
+    fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.paint(pass, &self.cast);
+        self.walls.cast(pass);
+    }
+
+    fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        self.paint(pass, &self.opaque);
+        self.walls.draw(pass);
+    }
+}
+
+fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+    let smooth = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("terrain"),
+        entries: &[
+            entry(0, vertex | fragment, UNIFORM),
+            entry(1, vertex, TEXTURE),
+            entry(2, fragment, smooth),
+            entry(3, fragment, smooth),
+            entry(4, fragment, sampler),
+        ],
+    })
+}
+
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    settings: &Ground,
+    [heights, slopes, colours]: &[wgpu::TextureView; 3],
+) -> wgpu::BindGroup {
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("terrain"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..wgpu::SamplerDescriptor::default()
+    });
+    let settings = uniform(gpu, "terrain", settings);
+    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("terrain"),
+        layout,
+        entries: &[
+            entry(0, settings.as_entire_binding()),
+            entry(1, wgpu::BindingResource::TextureView(heights)),
+            entry(2, wgpu::BindingResource::TextureView(slopes)),
+            entry(3, wgpu::BindingResource::TextureView(colours)),
+            entry(4, wgpu::BindingResource::Sampler(&sampler)),
+        ],
+    })
+}
+
+fn upload(
+    gpu: &Gpu,
+    label: &str,
+    size: [u32; 2],
+    format: wgpu::TextureFormat,
+    bytes: &[u8],
+) -> Result<wgpu::TextureView, RenderError> {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let texture = texture_2d(gpu, label, size, format, usage)?;
+    let row = bytes.len() as u32 / size[1];
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
+    gpu.queue.write_texture(texture.as_image_copy(), bytes, layout, texture.size());
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
+}
+
+/// Heights in stage coordinates; where there are none the lowest.
+fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
+    let [low, _] = field.range();
+    let [x, y, _] = stage.centre().into();
+    let place = |height: f32| {
+        let height = if height.is_nan() { low } else { f64::from(height) };
+        stage.place([x, y, height]).z
+    };
+    let heights: Vec<f32> = field.heights.iter().map(|height| place(*height)).collect();
+    upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
+}
+
+fn upload_slopes(gpu: &Gpu, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
+    let slopes: Vec<u8> = (0..field.heights.len())
+        .flat_map(|index| field.slope(index))
+        .flat_map(|slope| f16::from_f32(slope).to_le_bytes())
+        .collect();
+    upload(gpu, "slopes", field.size(), wgpu::TextureFormat::Rg16Float, &slopes)
+}
+
+/// The drape, its rows turned to begin in the south as those of heights do.
+fn upload_colours(gpu: &Gpu, colours: &Image) -> Result<wgpu::TextureView, RenderError> {
+    let rows: Vec<u8> = colours.rgba.chunks_exact(4 * colours.width as usize).rev().flatten().copied().collect();
+    upload(gpu, "drape", [colours.width, colours.height], wgpu::TextureFormat::Rgba8UnormSrgb, &rows)
+}

@@ -1,0 +1,85 @@
+// The ground: tiles of a height field, coarser far away, with skirts that hide where two of them meet.
+#import light
+
+struct Ground {
+    // West and south end, height of a stage unit's zero, and the length of a cell east and north, all in stage units.
+    origin: vec4f,
+    cell: vec4f,
+    // Nodes east and north.
+    nodes: vec4u,
+}
+
+@group(1) @binding(0) var<uniform> ground: Ground;
+@group(1) @binding(1) var heights: texture_2d<f32>;
+@group(1) @binding(2) var slopes: texture_2d<f32>;
+@group(1) @binding(3) var colours: texture_2d<f32>;
+@group(1) @binding(4) var smooth_sampler: sampler;
+
+// Quads along a side of a tile.
+const QUADS: u32 = 64u;
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,
+    @location(1) uv: vec2f,
+}
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner {
+    let side = QUADS + 1u;
+    var at = vec2u(index % side, index / side);
+    var sunk = 0.0;
+    if index >= side * side {
+        // The skirt: four sides of the tile once more, lower.
+        let along = (index - side * side) % side;
+        let edge = (index - side * side) / side;
+        at = select(vec2u(along, select(0u, QUADS, edge == 1u)), vec2u(select(0u, QUADS, edge == 3u), along), edge >= 2u);
+        sunk = select(1.0, 0.0, tile.z == 1u);
+    }
+    let node = min(tile.xy + at * tile.z, ground.nodes.xy - 1u);
+    let height = textureLoad(heights, node, 0).r;
+    let skirt = sunk * f32(tile.z) * 1.5 * max(ground.cell.x, ground.cell.y);
+    let place = vec3f(ground.origin.xy + vec2f(node) * ground.cell.xy, height - skirt);
+    // Middles of texels are the nodes.
+    let uv = (vec2f(node) + 0.5) / vec2f(ground.nodes.xy);
+    return Corner(view.clip_from_world * vec4f(place, 1.0), place, uv);
+}
+
+// A number from 0 to 1 for a place (Hoskins, "Hash without sine").
+fn scattered(place: vec2f) -> f32 {
+    let bent = fract(place.xyx * 0.1031);
+    let turned = bent + dot(bent, bent.yzx + 33.33);
+    return fract((turned.x + turned.y) * turned.z);
+}
+
+// Smooth noise from 0 to 1 with bumps of length 1.
+fn bumps(place: vec2f) -> f32 {
+    let cell = floor(place);
+    let part = smoothstep(vec2f(0.0), vec2f(1.0), place - cell);
+    let south = mix(scattered(cell), scattered(cell + vec2f(1.0, 0.0)), part.x);
+    let north = mix(scattered(cell + vec2f(0.0, 1.0)), scattered(cell + 1.0), part.x);
+    return mix(south, north, part.y);
+}
+
+@fragment
+fn fragment(corner: Corner) -> @location(0) vec4f {
+    let found = textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0);
+    if found.a < 0.5 {
+        discard;
+    }
+    let slope = textureSampleLevel(slopes, smooth_sampler, corner.uv, 0.0).rg;
+    let normal = normalize(vec3f(-slope, 1.0));
+    let shine = sunshine(corner.place, normal, corner.clip.xy);
+    // Grain finer than the cells, as far as pixels show it.
+    let cells = corner.uv * vec2f(ground.nodes.xy);
+    let fine = clamp(ground.cell.x / pixel_at(corner.place) / 8.0 - 0.25, 0.0, 1.0);
+    let grain = 1.0 + ground.cell.w * fine * (bumps(cells * 3.1) + bumps(cells * 7.3) - 1.0);
+    return vec4f(matt(found.rgb * grain, normal, shine), 1.0);
+}
+
+@fragment
+fn throw_shadow(corner: Corner) {
+    if textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0).a < 0.5 {
+        discard;
+    }
+}

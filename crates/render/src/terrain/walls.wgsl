@@ -1,0 +1,28 @@
+// The sides of the block of ground, cut upright.
+#import light
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,
+    @location(1) @interpolate(flat) normal: vec3f,
+    // Depth below the surface, in stage units.
+    @location(2) deep: f32,
+}
+
+@vertex
+fn vertex(@location(0) place: vec4f, @location(1) normal: vec4f) -> Corner {
+    return Corner(view.clip_from_world * vec4f(place.xyz, 1.0), place.xyz, normal.xyz, place.w);
+}
+
+@fragment
+fn fragment(corner: Corner) -> @location(0) vec4f {
+    let shine = sunshine(corner.place, corner.normal, corner.clip.xy);
+    // Turf, then earth, paler with depth.
+    let earth = mix(vec3f(0.16, 0.115, 0.075), vec3f(0.30, 0.25, 0.20), smoothstep(0.0, 0.12, corner.deep));
+    let turf = 1.0 - smoothstep(0.002, 0.006, corner.deep);
+    return vec4f(matt(mix(earth, vec3f(0.10, 0.13, 0.05), turf), corner.normal, shine), 1.0);
+}
+
+@fragment
+fn throw_shadow(corner: Corner) {
+}
