@@ -3,11 +3,13 @@
 use crate::args::RenderOptions;
 use crate::output::print_json;
 use anyhow::Context;
-use corpuscle::Simulation;
+use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
+use corpuscle::model::{Container, Path};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
 use corpuscle::record::{FrameFiles, followed_paths, write_picture};
 use corpuscle::scene::{Run, Scene};
+use corpuscle::{Simulation, film_rate};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,8 +34,10 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let settings = PictureSettings { size: options.size, samples: options.samples };
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
-    let model = simulation.model();
-    let container = model.container();
+    let container = simulation.model().container();
+    if options.film {
+        return film(options, as_json, &files, &mut pictures, &paths, container);
+    }
     let mut drawn = Vec::new();
     for index in chosen(options, &files) {
         let frame = files.read(index).map_err(corpuscle::Error::from)?;
@@ -46,6 +50,44 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     }
     if as_json {
         print_json(&drawn).context("cannot write the list of pictures")?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A film that was made.
+#[derive(Debug, Serialize)]
+struct Made {
+    film: PathBuf,
+    pictures: usize,
+    rate_per_s: f64,
+    duration_s: f64,
+}
+
+/// Makes a film of all frames.
+fn film(
+    options: &RenderOptions,
+    as_json: bool,
+    files: &FrameFiles,
+    pictures: &mut Pictures,
+    paths: &[Path],
+    container: Option<Container>,
+) -> anyhow::Result<ExitCode> {
+    let count = files.times().len();
+    let to = options.film_to.clone().unwrap_or_else(|| options.run.join("film.mp4"));
+    let rate = options.rate.unwrap_or_else(|| film_rate(count));
+    let mut film = Film::create(&to, Format::of(&to), options.size, rate).map_err(corpuscle::Error::from)?;
+    for index in 0..count {
+        let frame = files.read(index).map_err(corpuscle::Error::from)?;
+        let image = pictures.draw(&Moment { frame: &frame, paths, container })?;
+        film.add(&image.rgba).map_err(corpuscle::Error::from)?;
+        eprint!("\rpicture {} of {count}", index + 1);
+    }
+    eprintln!();
+    film.finish().map_err(corpuscle::Error::from)?;
+    eprintln!("{}", to.display());
+    if as_json {
+        let made = Made { film: to, pictures: count, rate_per_s: rate, duration_s: count as f64 / rate };
+        print_json(&made).context("cannot write what was made")?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -16,6 +16,8 @@
 //! ```
 
 mod error;
+#[cfg(feature = "film")]
+mod filming;
 mod ground;
 mod open;
 #[cfg(feature = "pictures")]
@@ -28,6 +30,8 @@ mod sink;
 
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
+#[cfg(feature = "film")]
+pub use corpuscle_film as film;
 #[cfg(feature = "pictures")]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
@@ -36,6 +40,8 @@ pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
 pub use error::Error;
+#[cfg(feature = "film")]
+pub use filming::{Filming, film_rate};
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
 pub use open::particles_to_come;
