@@ -16,13 +16,29 @@ fn widened(range: Range, there: f32) -> Range {
     return Range(min(range.near, there - fluid.smoothing.y), max(range.far, there + fluid.smoothing.y));
 }
 
-// A pixel on one side: its distance as it counts, and 1 where it counts, 0 where not.
-fn counted(there: f32, here: f32, range: Range) -> vec2f {
-    // No fluid is as far away as can be.
-    if there == 0.0 || there > range.far {
-        return vec2f(here + fluid.smoothing.z, 1.0);
+// A pixel on one side of another.
+struct Side {
+    // Its distance.
+    there: f32,
+    // 1 where it counts, 0 where it is much nearer.
+    counts: f32,
+    // Much farther: another surface, or none at all.
+    beyond: bool,
+}
+
+fn side(there: f32, range: Range) -> Side {
+    let beyond = there == 0.0 || there > range.far;
+    return Side(there, select(0.0, 1.0, beyond || there >= range.near), beyond);
+}
+
+// The distance that a side counts with. What is beyond an edge counts as a little farther, so that edges get round; but no less far
+// than the surface would be that goes on as it came from the other side. Otherwise the edge of a surface seen at a grazing angle would
+// rise towards the eye (our addition: the paper has the first only).
+fn taken(one: Side, other: Side, here: f32) -> f32 {
+    if !one.beyond {
+        return one.there;
     }
-    return vec2f(there, select(0.0, 1.0, there >= range.near));
+    return max(here + fluid.smoothing.z, select(2.0 * here - other.there, here, other.beyond));
 }
 
 @compute @workgroup_size(32, 2)
@@ -38,21 +54,19 @@ fn along(@builtin(global_invocation_id) id: vec3u) {
     let width = select(0, width_in_pixels(here), here > 0.0);
     let sigma = max(f32(width) / 3.0, 0.5);
     for (var out = 1; out <= width; out++) {
-        let left = distance_at(pixel - out * direction.step);
-        let right = distance_at(pixel + out * direction.step);
-        let one = counted(left, here, range);
-        let other = counted(right, here, range);
+        let left = side(distance_at(pixel - out * direction.step), range);
+        let right = side(distance_at(pixel + out * direction.step), range);
         // Both sides or none: a filter that leans to one side moves the surface.
-        let weight = gauss(f32(out), sigma) * one.y * other.y;
-        sum += weight * (one.x + other.x);
+        let weight = gauss(f32(out), sigma) * left.counts * right.counts;
+        sum += weight * (taken(left, right, here) + taken(right, left, here));
         weights += 2.0 * weight;
         if weight > 0.0 {
             // Only what is on the surface tells of its slope.
-            if left > 0.0 && left <= range.far {
-                range = widened(range, left);
+            if !left.beyond {
+                range = widened(range, left.there);
             }
-            if right > 0.0 && right <= range.far {
-                range = widened(range, right);
+            if !right.beyond {
+                range = widened(range, right.there);
             }
         }
     }
@@ -74,10 +88,10 @@ fn square(@builtin(global_invocation_id) id: vec3u) {
         for (var y = 0; y <= SQUARE; y++) {
             for (var x = select(-SQUARE, 1, y == 0); x <= SQUARE; x++) {
                 let out = vec2i(x, y);
-                let one = counted(distance_at(pixel - out), here, range);
-                let other = counted(distance_at(pixel + out), here, range);
-                let weight = gauss(length(vec2f(out)), 0.5 * f32(SQUARE)) * one.y * other.y;
-                sum += weight * (one.x + other.x);
+                let one = side(distance_at(pixel - out), range);
+                let other = side(distance_at(pixel + out), range);
+                let weight = gauss(length(vec2f(out)), 0.5 * f32(SQUARE)) * one.counts * other.counts;
+                sum += weight * (taken(one, other, here) + taken(other, one, here));
                 weights += 2.0 * weight;
             }
         }

@@ -1,13 +1,22 @@
 //! A small picture of a pond against one that was looked at.
 
 use super::{Droplet, FluidPainter, FluidPass, FluidStyle};
-use crate::{BallPainter, BallStyle, Camera, ColourTable, Drawable, Light, Renderer, Stage, Target};
+use crate::{Backdrop, BallPainter, BallStyle, Camera, ColourTable, Drawable, Light, Renderer, Stage, Target};
 use corpuscle_gpu::{Image, require_gpu};
 use std::path::PathBuf;
 
 const SIZE: [u32; 2] = [160, 100];
 /// Difference from the reference, of 255, above which a picture is another: drivers round differently.
 const SAME: f64 = 1.0;
+
+/// A light of its own: the reference is of the water, not of the sky in fashion.
+const LIGHT: Light = Light {
+    sun: [2.5, 0.75],
+    sunlight: [2.2, 2.1, 1.9],
+    softness: 0.02,
+    ambient: 0.75,
+    backdrop: Backdrop::Studio { above: [0.2, 0.4, 0.8], horizon: [0.8, 0.85, 0.9], below: [0.3; 3] },
+};
 
 /// Shallow water with waves round a sunken and a dry ball, foam on a part of it, and a drop in the air.
 fn droplets() -> Vec<Droplet> {
@@ -42,7 +51,7 @@ fn draw(skipped: Option<FluidPass>) -> Option<Image> {
         BallPainter::new(&renderer).balls(&gpu, &stage, &BallStyle::new(ColourTable::plain([190, 160, 120])), ground);
     let target = Target::new(&gpu, SIZE, 1).unwrap();
     let things: &mut [&mut dyn Drawable] = &mut [&mut ground, &mut fluid];
-    renderer.draw(&target, &stage, &camera, &Light::day(), things, None);
+    renderer.draw(&target, &stage, &camera, &LIGHT, things, None);
     Some(renderer.read(&target).unwrap())
 }
 

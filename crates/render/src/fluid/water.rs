@@ -14,7 +14,7 @@ const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
 const REACH: f64 = 2.0;
 /// Differences of velocity between which air begins to be trapped and is to the full, m/s.
-const TRAPPED: [f64; 2] = [0.35, 1.6];
+const TRAPPED: [f64; 2] = [0.8, 3.0];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
 const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
