@@ -190,6 +190,12 @@ pub struct RenderOptions {
     /// Draw every frame
     #[arg(long, conflicts_with = "at")]
     pub all: bool,
+    /// Make a film of every frame, RUN/film.mp4, instead of pictures
+    #[arg(long, conflicts_with_all = ["at", "all"])]
+    pub film: bool,
+    /// Frames that the film shows in a second
+    #[arg(long, value_name = "N", default_value = "10", requires = "film")]
+    pub rate: f64,
     /// Width and height of the pictures, pixels
     #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1920x1080")]
     pub size: [u32; 2],

@@ -28,6 +28,10 @@ pub enum Error {
     #[cfg(feature = "pictures")]
     #[error(transparent)]
     Render(#[from] corpuscle_render::RenderError),
+    /// The film.
+    #[cfg(feature = "film")]
+    #[error(transparent)]
+    Film(#[from] corpuscle_film::FilmError),
 }
 
 impl Error {
@@ -40,6 +44,10 @@ impl Error {
             #[cfg(feature = "pictures")]
             Self::Render(error) => {
                 matches!(error, corpuscle_render::RenderError::Gpu(corpuscle_gpu::GpuError::TooLarge { .. }))
+            }
+            #[cfg(feature = "film")]
+            Self::Film(error) => {
+                matches!(error, corpuscle_film::FilmError::Size { .. } | corpuscle_film::FilmError::Rate { .. })
             }
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
             Self::Record(error) => !matches!(

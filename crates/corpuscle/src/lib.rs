@@ -28,6 +28,8 @@ mod sink;
 
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
+#[cfg(feature = "film")]
+pub use corpuscle_film as film;
 #[cfg(feature = "pictures")]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
