@@ -151,7 +151,7 @@ pub struct RunOptions {
     #[arg(long, conflicts_with = "resume")]
     pub film: bool,
     /// How long the film lasts, s
-    #[arg(long, value_name = "S", value_parser = film_length, default_value = "12")]
+    #[arg(long, value_name = "S", value_parser = film_length, allow_hyphen_values = true, default_value = "12")]
     pub film_length: f64,
     /// Width and height of the film, pixels
     #[arg(long, value_name = "WxH", value_parser = film_size, default_value = "1920x1080")]
@@ -212,15 +212,15 @@ pub struct RenderOptions {
     /// Draw every frame
     #[arg(long, conflicts_with = "at")]
     pub all: bool,
-    /// Make a film of all frames instead of pictures: film.mp4 in the run's folder
+    /// Make a film of every frame, RUN/film.mp4, instead of pictures
     #[arg(long, conflicts_with_all = ["at", "all"])]
     pub film: bool,
-    /// Where the film goes: .mp4, .gif, or a folder of PNG files
+    /// Where the film goes: a name in .mp4 or .gif, or a folder for PNG files [default: RUN/film.mp4]
     #[arg(long, value_name = "PATH", requires = "film")]
     pub film_to: Option<PathBuf>,
-    /// Pictures a second [default: 25, fewer where the film would be over in ten seconds]
-    #[arg(long, value_name = "N", requires = "film")]
-    pub rate: Option<f64>,
+    /// Frames that the film shows in a second
+    #[arg(long, value_name = "N", default_value = "10", requires = "film")]
+    pub rate: f64,
     /// Width and height of the pictures, pixels
     #[arg(long, value_name = "WxH", value_parser = picture_size, default_value = "1920x1080")]
     pub size: [u32; 2],

@@ -3,13 +3,12 @@
 use crate::args::RenderOptions;
 use crate::output::print_json;
 use anyhow::Context;
+use corpuscle::Simulation;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
-use corpuscle::model::{Container, Path};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
 use corpuscle::record::{FrameFiles, followed_paths, write_picture};
 use corpuscle::scene::{Run, Scene};
-use corpuscle::{Simulation, film_rate};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -24,6 +23,14 @@ struct Drawn {
     file: PathBuf,
 }
 
+/// A film that was made.
+#[derive(Debug, Serialize)]
+struct Filmed {
+    file: PathBuf,
+    pictures: usize,
+    duration_s: f64,
+}
+
 /// Draws pictures of a finished run into its folder.
 pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let path = options.run.join("scene.toml");
@@ -34,19 +41,23 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let settings = PictureSettings { size: options.size, samples: options.samples };
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
-    let container = simulation.model().container();
+    let model = simulation.model();
+    let container = model.container();
+    let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
+        let frame = files.read(index)?;
+        let image = pictures.draw(&Moment { frame: &frame, paths: &paths, container })?;
+        Ok((frame.time, image))
+    };
     if options.film {
-        return film(options, as_json, &files, &mut pictures, &paths, container);
+        return film(options, files.times().len(), draw, as_json);
     }
     let mut drawn = Vec::new();
     for index in chosen(options, &files) {
-        let frame = files.read(index).map_err(corpuscle::Error::from)?;
-        let moment = Moment { frame: &frame, paths: &paths, container };
-        let Image { width, height, rgba } = pictures.draw(&moment)?;
+        let (time_s, Image { width, height, rgba }) = draw(index)?;
         let file = options.run.join("pictures").join(format!("picture_{index:06}.png"));
         write_picture(&file, [width, height], &rgba).map_err(corpuscle::Error::from)?;
         eprintln!("{}", file.display());
-        drawn.push(Drawn { time_s: frame.time, file });
+        drawn.push(Drawn { time_s, file });
     }
     if as_json {
         print_json(&drawn).context("cannot write the list of pictures")?;
@@ -54,40 +65,27 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     Ok(ExitCode::SUCCESS)
 }
 
-/// A film that was made.
-#[derive(Debug, Serialize)]
-struct Made {
-    film: PathBuf,
-    pictures: usize,
-    rate_per_s: f64,
-    duration_s: f64,
-}
-
 /// Makes a film of all frames.
 fn film(
     options: &RenderOptions,
+    frames: usize,
+    mut draw: impl FnMut(usize) -> Result<(f64, Image), corpuscle::Error>,
     as_json: bool,
-    files: &FrameFiles,
-    pictures: &mut Pictures,
-    paths: &[Path],
-    container: Option<Container>,
 ) -> anyhow::Result<ExitCode> {
-    let count = files.times().len();
-    let to = options.film_to.clone().unwrap_or_else(|| options.run.join("film.mp4"));
-    let rate = options.rate.unwrap_or_else(|| film_rate(count));
-    let mut film = Film::create(&to, Format::of(&to), options.size, rate).map_err(corpuscle::Error::from)?;
-    for index in 0..count {
-        let frame = files.read(index).map_err(corpuscle::Error::from)?;
-        let image = pictures.draw(&Moment { frame: &frame, paths, container })?;
+    let file = options.film_to.clone().unwrap_or_else(|| options.run.join("film.mp4"));
+    let mut film =
+        Film::create(&file, Format::of(&file), options.size, options.rate).map_err(corpuscle::Error::from)?;
+    for index in 0..frames {
+        let (_, image) = draw(index)?;
         film.add(&image.rgba).map_err(corpuscle::Error::from)?;
-        eprint!("\rpicture {} of {count}", index + 1);
+        eprintln!("picture {} of {frames}", index + 1);
     }
-    eprintln!();
+    let pictures = film.pictures();
     film.finish().map_err(corpuscle::Error::from)?;
-    eprintln!("{}", to.display());
+    let duration_s = pictures as f64 / options.rate;
+    eprintln!("{}: {pictures} pictures, {duration_s} s", file.display());
     if as_json {
-        let made = Made { film: to, pictures: count, rate_per_s: rate, duration_s: count as f64 / rate };
-        print_json(&made).context("cannot write what was made")?;
+        print_json(&Filmed { file, pictures, duration_s }).context("cannot tell of the film")?;
     }
     Ok(ExitCode::SUCCESS)
 }

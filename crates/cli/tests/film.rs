@@ -27,25 +27,24 @@ fn a_run_films_itself() {
 }
 
 #[test]
-fn a_finished_run_is_filmed_from_its_frames() {
+fn a_finished_run_is_filmed_to_where_one_wants() {
     if require_gpu("films").is_none() {
         return;
     }
     let place = Place::new();
     place.write("lake.toml", LAKE);
     place.run(&["run", "lake.toml"]).expect_status(0);
-    let made = place.run(&["render", "runs/lake-1", "--film", "--size", "65x48", "--json"]).expect_status(0).json();
-    // Three frames, at the fewest pictures a second that there are.
-    assert_eq!((&made["pictures"], &made["rate_per_s"], &made["duration_s"]), (&3.into(), &5.0.into(), &0.6.into()));
-    if let Some(probed) = ffprobe::read(&place.path("runs/lake-1/film.mp4")) {
+    let film = ["render", "runs/lake-1", "--film", "--size", "65x48", "--rate", "5", "--film-to"];
+    place.run(&[&film[..], &["lake.mp4"]].concat()).expect_status(0);
+    if let Some(probed) = ffprobe::read(&place.path("lake.mp4")) {
         assert_eq!((probed.size, probed.pictures), ([66, 48], 3));
         assert!((probed.seconds - 0.6).abs() < 1e-3 && (probed.rate - 5.0).abs() < 1e-3, "{probed:?}");
     }
-    let pictures = ["render", "runs/lake-1", "--film", "--film-to", "pictures", "--size", "64x48", "--rate", "10"];
+    let pictures = [&film[..], &["pictures"]].concat();
     place.run(&pictures).expect_status(0);
     assert!(place.path("pictures/000002.png").is_file());
-    let again = place.run(&pictures).expect_status(2);
-    assert!(again.stderr.contains("name another folder"), "{}", again.stderr);
+    let again = place.run(&pictures);
+    assert!(again.status != Some(0) && again.stderr.contains("name another folder"), "{}", again.stderr);
 }
 
 #[test]

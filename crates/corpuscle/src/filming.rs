@@ -7,18 +7,8 @@ use corpuscle_model::Model;
 use corpuscle_record::Summary;
 use std::path::Path;
 
-/// Pictures a second where there are enough of them.
+/// Pictures a second.
 const SMOOTH: f64 = 25.0;
-/// The fewest pictures a second, however few there are.
-const SLOWEST: f64 = 5.0;
-/// How long a film of few pictures should last, s.
-const LASTS: f64 = 10.0;
-
-/// Pictures a second for a film of so many: 25, or fewer where it would be over in less than ten seconds, but at least 5.
-pub fn film_rate(pictures: usize) -> f64 {
-    (pictures as f64 / LASTS).floor().clamp(SLOWEST, SMOOTH)
-}
-
 /// A film that is drawn while a scene runs, evenly from its start to its end.
 pub struct Filming {
     pictures: Pictures,
@@ -64,15 +54,5 @@ impl Sink for Filming {
     fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {
         // Of a run that ended before its end there is a film up to there.
         Ok(self.film.take().map_or(Ok(()), Film::finish)?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::film_rate;
-
-    #[test]
-    fn few_pictures_go_slowly() {
-        assert_eq!([1, 41, 100, 250, 1000].map(film_rate), [5.0, 5.0, 10.0, 25.0, 25.0]);
     }
 }

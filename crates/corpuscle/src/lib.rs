@@ -41,7 +41,7 @@ pub use corpuscle_terrain as terrain;
 
 pub use error::Error;
 #[cfg(feature = "film")]
-pub use filming::{Filming, film_rate};
+pub use filming::Filming;
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
 pub use open::particles_to_come;

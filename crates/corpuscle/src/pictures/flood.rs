@@ -1,13 +1,14 @@
 //! Pictures of a flood: water on the block of ground.
 
-use super::{Moment, Studio};
+use super::{Moment, Studio, buildings};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_gpu::Image;
 use corpuscle_render::{
-    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Stage, Terrain, Water,
-    natural_colours,
+    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Solid, SolidStyle, Stage, Terrain,
+    Water, natural_colours,
 };
+use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
 
 /// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
@@ -20,17 +21,21 @@ const SUN: f64 = -1.0;
 const MOST_NODES: usize = 4097;
 /// Height of the block below its lowest ground, part of its width.
 const BASE: f64 = 0.06;
+/// Colour of buildings.
+const WALLS: [u8; 3] = [206, 196, 184];
+
 /// Draws a flood.
 pub(super) struct FloodPicture {
     stage: Stage,
     ground: Terrain,
     floor: Floor,
+    buildings: Vec<Solid>,
     water: Water,
     fluid: Option<Fluid>,
 }
 
 impl FloodPicture {
-    pub(super) fn new(studio: &Studio, ground: &Ground) -> Result<Self, Error> {
+    pub(super) fn new(studio: &Studio, settings: &Settings, ground: &Ground) -> Result<Self, Error> {
         let bounds = ground.bounds();
         let grid = ground.map_grid();
         let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES));
@@ -38,12 +43,17 @@ impl FloodPicture {
         let field = HeightField::sampled(from, to, nodes, |x, y| ground.height(x, y));
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
-        let stage = Stage::new([from[0], from[1], base], [to[0], to[1], high]);
+        let shapes = buildings::shapes(settings, ground);
+        let roof = shapes.iter().map(|shape| shape.bounds[1][2]).fold(high, f64::max);
+        let stage = Stage::new([from[0], from[1], base], [to[0], to[1], roof]);
         let colours = natural_colours(&field);
+        let walls = |shape| Solid::new(&studio.renderer, &stage, shape, SolidStyle::Opaque(WALLS, 0.1));
+        let buildings = shapes.iter().map(walls).collect();
         let ground = Terrain::new(&studio.renderer, &stage, field, &colours, base)?;
         Ok(Self {
             stage,
             ground,
+            buildings,
             floor: Floor::new(&studio.renderer, &stage, base),
             water: Water::default(),
             fluid: None,
@@ -68,6 +78,7 @@ impl FloodPicture {
             ..Overlay::default()
         };
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor];
+        things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
         if let Some(fluid) = wet {
             let droplets = sets().flat_map(|set| self.water.droplets(moment.frame.time, set));
             fluid.fill(gpu, droplets);

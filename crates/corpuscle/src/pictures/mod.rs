@@ -1,5 +1,6 @@
 //! Pictures of a run's moments: what is shown of each model, from where, in which colours.
 
+mod buildings;
 mod dew;
 mod flood;
 mod gas;
@@ -85,9 +86,9 @@ impl Pictures {
             ModelScene::Dew(dew) => {
                 Subject::Dew(Box::new(DewPicture::new(&studio, dew, &simulation.model().surfaces())))
             }
-            ModelScene::Flood(_) => {
+            ModelScene::Flood(scene) => {
                 let terrain = simulation.terrain().expect("a flood that was opened has its ground");
-                Subject::Flood(Box::new(FloodPicture::new(&studio, terrain)?))
+                Subject::Flood(Box::new(FloodPicture::new(&studio, &scene.flood, terrain)?))
             }
         };
         Ok(Self { studio, title: scene.title.clone(), subject })
