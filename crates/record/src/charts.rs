@@ -93,7 +93,7 @@ mod tests {
              Maxwell,0.5,1e-7,\nMaxwell,1.5,NaN,\n"
         );
         let way = Way { name: "ball 0".into(), times: vec![0.25], points: vec![[1.0, 2.0, 0.0]] };
-        write_paths(folder.path(), &[way]).unwrap();
+        write_paths(folder.path(), std::slice::from_ref(&way)).unwrap();
         let text = fs::read_to_string(folder.path().join("path.csv")).unwrap();
         assert_eq!(text, "path,time_s,x,y,z\nball 0,0.25,1,2,0\n");
         assert_eq!(read_paths(folder.path()).unwrap(), [way]);
