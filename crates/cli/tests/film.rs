@@ -17,7 +17,7 @@ fn a_run_films_itself() {
         place.write(&format!("{name}.toml"), scene);
         let arguments = ["run", &format!("{name}.toml"), "--film", "--film-length", "0.4", "--film-size", "64x48"];
         place.run(&arguments).expect_status(0);
-        let film = place.path(&format!("runs/{name}-1/film.mp4"));
+        let film = place.path(format!("runs/{name}-1/film.mp4"));
         assert!(film.is_file());
         if let Some(probed) = ffprobe::read(&film) {
             assert_eq!((probed.codec.as_str(), probed.size, probed.pictures), ("h264", [64, 48], 10), "{name}");
