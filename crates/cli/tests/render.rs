@@ -26,7 +26,7 @@ fn a_finished_run_is_drawn_and_filmed() {
         (&drawn[0]["time_s"], &drawn[1]["time_s"], drawn.as_array().unwrap().len()),
         (&0.0.into(), &1.0.into(), 2)
     );
-    let picture = |number: usize| fs::read(place.path(&format!("run/pictures/picture_{number:06}.png"))).unwrap();
+    let picture = |number: usize| fs::read(place.path(format!("run/pictures/picture_{number:06}.png"))).unwrap();
     // Width and height stand at bytes 16 to 23 of a PNG.
     assert_eq!(picture(2)[16..24], [0, 0, 0, 160, 0, 0, 0, 90]);
     assert_ne!(picture(0), picture(2));
