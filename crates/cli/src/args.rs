@@ -147,6 +147,28 @@ pub struct RunOptions {
     /// Go on with an interrupted run in its folder
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "until", "output", "frames"])]
     pub resume: Option<PathBuf>,
+    /// Draw a film of the run while it runs: film.mp4 in its folder
+    #[arg(long, conflicts_with = "resume")]
+    pub film: bool,
+    /// How long the film lasts, s
+    #[arg(long, value_name = "S", value_parser = film_length, allow_hyphen_values = true, default_value = "12")]
+    pub film_length: f64,
+    /// Width and height of the film, pixels
+    #[arg(long, value_name = "WxH", value_parser = film_size, default_value = "1920x1080")]
+    pub film_size: [u32; 2],
+}
+
+fn film_size(text: &str) -> Result<[u32; 2], String> {
+    let size = picture_size(text)?;
+    let fits = size[0].max(size[1]) <= 3840 && size[0].min(size[1]) <= 2160;
+    if fits { Ok(size) } else { Err("must be at most 3840x2160, or 2160x3840: H.264 has no larger pictures".into()) }
+}
+
+fn film_length(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds @ 0.1..=3600.0) => Ok(seconds),
+        _ => Err("must be seconds, from 0.1 to 3600".into()),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -193,6 +215,9 @@ pub struct RenderOptions {
     /// Make a film of every frame, RUN/film.mp4, instead of pictures
     #[arg(long, conflicts_with_all = ["at", "all"])]
     pub film: bool,
+    /// Where the film goes: a name in .mp4 or .gif, or a folder for PNG files [default: RUN/film.mp4]
+    #[arg(long, value_name = "PATH", requires = "film")]
+    pub film_to: Option<PathBuf>,
     /// Frames that the film shows in a second
     #[arg(long, value_name = "N", default_value = "10", requires = "film")]
     pub rate: f64,

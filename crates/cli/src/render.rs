@@ -72,8 +72,9 @@ fn film(
     mut draw: impl FnMut(usize) -> Result<(f64, Image), corpuscle::Error>,
     as_json: bool,
 ) -> anyhow::Result<ExitCode> {
-    let file = options.run.join("film.mp4");
-    let mut film = Film::create(&file, Format::Mp4, options.size, options.rate).map_err(corpuscle::Error::from)?;
+    let file = options.film_to.clone().unwrap_or_else(|| options.run.join("film.mp4"));
+    let mut film =
+        Film::create(&file, Format::of(&file), options.size, options.rate).map_err(corpuscle::Error::from)?;
     for index in 0..frames {
         let (_, image) = draw(index)?;
         film.add(&image.rgba).map_err(corpuscle::Error::from)?;

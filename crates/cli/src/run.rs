@@ -8,8 +8,9 @@ use crate::refusal::check_backend;
 use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
+use corpuscle::pictures::PictureSettings;
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
-use corpuscle::{Recorder, Simulation};
+use corpuscle::{Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -27,8 +28,11 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
         eprintln!("warning: {warning}");
     }
     eprintln!("writing {}", recorder.path().display());
+    let mut filming = filming(options, &simulation, recorder.path())?;
     let bar = Bar::new()?;
-    let ended = simulation.run(&mut [&mut recorder], &stop, &mut |progress| bar.show(progress));
+    let mut sinks: Vec<&mut dyn Sink> = vec![&mut recorder];
+    sinks.extend(filming.iter_mut().map(|filming| filming as &mut dyn Sink));
+    let ended = simulation.run(&mut sinks, &stop, &mut |progress| bar.show(progress));
     bar.clear();
     let summary = ended.map_err(|error| came_to_grief(&error, &simulation, &recorder))?;
     let has_frames = options.frames.is_none_or(|frames| FrameFormat::from(frames) != FrameFormat::None);
@@ -37,6 +41,25 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
         print_json(&summary)?;
     }
     Ok(if summary.status == Status::Done { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// The film that is asked for. Where there is no device to draw it with, the run goes on without, and a line says how to get one.
+fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyhow::Result<Option<Filming>> {
+    if !options.film {
+        return Ok(None);
+    }
+    let settings = PictureSettings { size: options.film_size, samples: 1 };
+    match Filming::open(simulation, &folder.join("film.mp4"), settings, options.film_length) {
+        Ok(filming) => {
+            eprintln!("filming on {}", filming.device());
+            Ok(Some(filming))
+        }
+        Err(error @ corpuscle::Error::Render(_)) if !error.is_refusal() => {
+            eprintln!("warning: no film: {error}");
+            Ok(None)
+        }
+        Err(error) => Err(error.into()),
+    }
 }
 
 fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simulation, Recorder)> {

@@ -47,7 +47,7 @@ impl Error {
             }
             #[cfg(feature = "film")]
             Self::Film(error) => {
-                matches!(error, corpuscle_film::FilmError::Size { .. } | corpuscle_film::FilmError::Rate { .. })
+                !matches!(error, corpuscle_film::FilmError::Write { .. } | corpuscle_film::FilmError::Encoder { .. })
             }
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
             Self::Record(error) => !matches!(

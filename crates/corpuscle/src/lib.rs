@@ -16,6 +16,8 @@
 //! ```
 
 mod error;
+#[cfg(feature = "film")]
+mod filming;
 mod ground;
 mod open;
 #[cfg(feature = "pictures")]
@@ -38,6 +40,8 @@ pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
 pub use error::Error;
+#[cfg(feature = "film")]
+pub use filming::Filming;
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
 pub use open::particles_to_come;

@@ -108,12 +108,15 @@ impl Simulation {
         let gauges = Schedule::new(run.gauge_period_s(), until);
         let frames = Schedule::new(run.frame_period_s(), until);
         let pauses = Schedule::new(until / PAUSES, until);
+        let pictures: Vec<_> =
+            sinks.iter().map(|sink| sink.picture_period().map(|period| Schedule::new(period, until))).collect();
         let counted = if self.scene.gas().is_some() { "collisions" } else { "particle-steps" };
         let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
         if !self.resumed {
             for sink in &mut *sinks {
                 sink.gauges(&*self.model)?;
                 sink.frame(&*self.model)?;
+                sink.picture(&*self.model)?;
             }
         }
         let mut kept = start;
@@ -124,12 +127,17 @@ impl Simulation {
         loop {
             let now = self.model.time();
             let [gauge, frame, pause] = [gauges, frames, pauses].map(|schedule| schedule.after(now));
-            let Some(next) = [gauge, frame, pause].into_iter().flatten().min_by(f64::total_cmp) else {
+            let picture: Vec<_> = pictures.iter().map(|schedule| schedule.and_then(|due| due.after(now))).collect();
+            let due = [gauge, frame, pause].into_iter().chain(picture.iter().copied()).flatten();
+            let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
             self.model.advance_to(next, stop)?;
             let stopped = self.model.time() < next;
-            for sink in &mut *sinks {
+            for (sink, picture) in sinks.iter_mut().zip(picture) {
+                if !stopped && picture == Some(next) {
+                    sink.picture(&*self.model)?;
+                }
                 if !stopped && gauge == Some(next) {
                     sink.gauges(&*self.model)?;
                 }

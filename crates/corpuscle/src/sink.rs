@@ -23,6 +23,19 @@ pub trait Sink {
         Ok(())
     }
 
+    /// How often [`Sink::picture`] is due, s; none for never.
+    fn picture_period(&self) -> Option<f64> {
+        None
+    }
+
+    /// A picture of a film is due: at the start, at multiples of the sink's own period, and at the end.
+    ///
+    /// # Errors
+    /// Where it cannot be taken.
+    fn picture(&mut self, _model: &dyn Model) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// The state should be kept, to resume from.
     ///
     /// # Errors

@@ -1,0 +1,58 @@
+//! A film of a run while it runs.
+
+use crate::pictures::{Moment, PictureSettings, Pictures};
+use crate::{Error, Simulation, Sink};
+use corpuscle_film::{Film, Format};
+use corpuscle_model::Model;
+use corpuscle_record::Summary;
+use std::path::Path;
+
+/// Pictures a second.
+const SMOOTH: f64 = 25.0;
+/// A film that is drawn while a scene runs, evenly from its start to its end.
+pub struct Filming {
+    pictures: Pictures,
+    /// None once it is finished.
+    film: Option<Film>,
+    period: f64,
+}
+
+impl Filming {
+    /// Makes ready to film a scene, `seconds` long at 25 pictures a second, into the file that is named.
+    ///
+    /// # Errors
+    /// Those of [`Pictures::open`] and [`Film::create`].
+    pub fn open(simulation: &Simulation, file: &Path, settings: PictureSettings, seconds: f64) -> Result<Self, Error> {
+        let pictures = Pictures::open(simulation, settings)?;
+        let film = Film::create(file, Format::of(file), settings.size, SMOOTH)?;
+        // The first picture is that of the start, the last that of the end.
+        let steps = (SMOOTH * seconds).round().max(2.0) - 1.0;
+        Ok(Self { pictures, film: Some(film), period: simulation.scene().run.until_s / steps })
+    }
+
+    /// The device that draws, by its name.
+    pub fn device(&self) -> &str {
+        self.pictures.device()
+    }
+
+    fn add(&mut self, model: &dyn Model) -> Result<(), Error> {
+        let (frame, paths) = (model.frame(), model.paths());
+        let image = self.pictures.draw(&Moment { frame: &frame, paths: &paths, container: model.container() })?;
+        Ok(self.film.as_mut().map_or(Ok(()), |film| film.add(&image.rgba))?)
+    }
+}
+
+impl Sink for Filming {
+    fn picture_period(&self) -> Option<f64> {
+        Some(self.period)
+    }
+
+    fn picture(&mut self, model: &dyn Model) -> Result<(), Error> {
+        self.add(model)
+    }
+
+    fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {
+        // Of a run that ended before its end there is a film up to there.
+        Ok(self.film.take().map_or(Ok(()), Film::finish)?)
+    }
+}
