@@ -34,7 +34,7 @@ fn row(gpu: &Gpu, particles: usize, size: [u32; 2]) {
     let side = (particles as f64).sqrt();
     let stage = Stage::new([0.0, 0.0, -1.0], [side, side, 1.0]);
     let renderer = Renderer::new(gpu);
-    let camera = Camera::orbit(&stage, -1.2, 0.7, 0.6, f64::from(size[0]) / f64::from(size[1]));
+    let camera = Camera::orbit(&stage, [-1.2, 0.7], 0.6, f64::from(size[0]) / f64::from(size[1]), 0.0);
     let target = Target::new(gpu, size, 1).expect("within every device's limits");
     let mut fluid = FluidPainter::new(&renderer).fluid(gpu, &stage, FluidStyle::water(0.5));
     fluid.fill(gpu, (0..particles).map(|index| droplet(index, side as usize)));

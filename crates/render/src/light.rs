@@ -47,6 +47,13 @@ impl Light {
         Self { sun: [2.3, 0.95], sunlight: [1.75, 1.72, 1.66], softness: 0.05, ambient: 0.8, backdrop }
     }
 
+    /// A room with dark walls and a window: what is clear shows best against it.
+    pub fn dim_room() -> Self {
+        let backdrop =
+            Backdrop::Studio { above: [0.80, 0.85, 0.92], horizon: [0.53, 0.57, 0.62], below: [0.26, 0.28, 0.31] };
+        Self { ambient: 1.0, sunlight: [1.9, 1.85, 1.75], backdrop, ..Self::studio() }
+    }
+
     /// The same with the sun at another azimuth, radians.
     pub fn from_azimuth(self, azimuth: f64) -> Self {
         Self { sun: [azimuth as f32, self.sun[1]], ..self }

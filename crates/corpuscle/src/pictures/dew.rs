@@ -1,4 +1,4 @@
-//! Pictures of dew: drops on solids in a bright room.
+//! Pictures of dew: drops on solids in a dim room, against which they show.
 
 use super::{Moment, Studio};
 use crate::Error;
@@ -53,7 +53,7 @@ impl DewPicture {
 
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
         let camera = Camera::orbit(&self.stage, [self.azimuth, RAISED], FIELD_OF_VIEW, studio.aspect(), MARGIN);
-        let light = Light::studio().from_azimuth(self.azimuth + SUN);
+        let light = Light::dim_room().from_azimuth(self.azimuth + SUN);
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
         let faces_eye = |cap: &&Cap| {
             let eye: [f64; 3] = camera.eye.into();
