@@ -7,6 +7,9 @@
 @group(2) @binding(1) var behind_sampler: sampler;
 
 const MOST_STEPS: i32 = 28;
+// How much more than once a ray is bent that goes through all of a drop, and the part of the room in what is seen through it.
+const LENS: f32 = 4.0;
+const ROOM: f32 = 0.6;
 
 struct Corner {
     @builtin(position) clip: vec4f,
@@ -88,12 +91,12 @@ fn fragment(corner: Corner) -> Drawn {
 
 // Light from a place on a drop.
 fn water(cap: Cap, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
-    // A drop is a lens: what is behind is seen upside down and smaller.
-    let bent = refract(direction, normal, 1.0 / 1.33);
-    let shift = (bent - direction) * max(6.0 * cap.radius, 0.02);
-    let clip = view.clip_from_world * vec4f(place + shift, 1.0);
+    // A drop is a lens: what is near behind it is seen smaller, and the room upside down.
+    let bent = refract(direction, normal, 1.0 / 1.33) - direction;
+    let clip = view.clip_from_world * vec4f(place + bent * max(6.0 * cap.radius, 0.02), 1.0);
     let uv = clamp(clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5, vec2f(0.0), vec2f(1.0));
-    let seen = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
+    let near = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
+    let seen = mix(near, surroundings(normalize(direction + LENS * bent)), ROOM);
     let fresnel = mirrored(dot(normal, -direction), 0.02);
     // Light from the sun gathers on the far side of a drop and leaves the near one darker.
     let lit = 0.82 + 0.3 * dot(normal, -view.sun.xyz) * (1.0 - fresnel);
