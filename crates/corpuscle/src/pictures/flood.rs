@@ -5,8 +5,8 @@ use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_gpu::Image;
 use corpuscle_render::{
-    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Solid, SolidStyle, Stage, Terrain,
-    Water, natural_colours,
+    Axes, Camera, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Solid, SolidStyle, Stage, Terrain,
+    Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -30,7 +30,9 @@ pub(super) struct FloodPicture {
     ground: Terrain,
     floor: Floor,
     buildings: Vec<Solid>,
+    field: HeightField,
     water: Water,
+    sides: WaterSides,
     fluid: Option<Fluid>,
 }
 
@@ -40,7 +42,9 @@ impl FloodPicture {
         let grid = ground.map_grid();
         let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES));
         let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
-        let field = HeightField::sampled(from, to, nodes, |x, y| ground.height(x, y));
+        let field = HeightField::sampled(from, to, nodes, |x, y| {
+            if has_data(ground, [x, y]) { ground.height(x, y) } else { f64::NAN }
+        });
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
         let shapes = buildings::shapes(settings, ground);
@@ -49,13 +53,15 @@ impl FloodPicture {
         let colours = natural_colours(&field);
         let walls = |shape| Solid::new(&studio.renderer, &stage, shape, SolidStyle::Opaque(WALLS, 0.1));
         let buildings = shapes.iter().map(walls).collect();
-        let ground = Terrain::new(&studio.renderer, &stage, field, &colours, base)?;
+        let ground = Terrain::new(&studio.renderer, &stage, field.clone(), &colours, base)?;
         Ok(Self {
             stage,
             ground,
             buildings,
             floor: Floor::new(&studio.renderer, &stage, base),
+            field,
             water: Water::default(),
+            sides: WaterSides::new(&studio.renderer, &stage),
             fluid: None,
         })
     }
@@ -68,22 +74,36 @@ impl FloodPicture {
         let radii = || sets().flat_map(|set| &set.radius);
         let mean = radii().sum::<f64>() / radii().count().max(1) as f64;
         let stage = self.stage;
+        let within = Some([stage.from, stage.to].map(|corner| [corner.x, corner.y]));
         // Its style is that of the first particles there are, so that it does not change in a film.
         let wet = (mean > 0.0)
-            .then(|| self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &stage, FluidStyle::water(mean))));
+            .then(|| FluidStyle { within, ..FluidStyle::water(mean) })
+            .map(|style| self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &stage, style)));
         let overlay = Overlay {
             title: title.into(),
             time: format!("t = {}", text::time(moment.frame.time)),
             axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
             ..Overlay::default()
         };
-        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor];
+        let droplets: Vec<Droplet> = sets().flat_map(|set| self.water.droplets(moment.frame.time, set)).collect();
+        self.sides.fill(gpu, &self.field, &droplets);
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor, &mut self.sides];
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
         if let Some(fluid) = wet {
-            let droplets = sets().flat_map(|set| self.water.droplets(moment.frame.time, set));
             fluid.fill(gpu, droplets);
             things.push(fluid);
         }
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)
     }
+}
+
+/// False for places beside a cell of the terrain's own grid in which its file has no data.
+fn has_data(ground: &Ground, [x, y]: [f64; 2]) -> bool {
+    let grid = ground.map_grid();
+    let [column, row] = grid.position(x, y);
+    // A place on a line between cells has both beside it.
+    let beside =
+        |at: f64, count: usize| [at - 0.25, at + 0.25].map(|at| at.round().clamp(0.0, count as f64 - 1.0) as usize);
+    let rows = beside(row, grid.rows);
+    beside(column, grid.columns).iter().all(|column| rows.iter().all(|row| ground.is_valid_cell(*column, *row)))
 }

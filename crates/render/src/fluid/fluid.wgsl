@@ -10,6 +10,8 @@ struct Fluid {
     smoothing: vec4f,
     // Exponent of the highlight.
     surface: vec4f,
+    // West, south, east and north end of what is drawn.
+    within: vec4f,
 }
 
 @group(1) @binding(0) var<uniform> fluid: Fluid;

@@ -17,6 +17,9 @@ const INDEX: f32 = 1.0 / 1.333;
 const STRAIGHT: f32 = 0.02;
 // Depth over which a film of water begins to be seen, m.
 const FILM: f32 = 0.01;
+// How well particles cover a place (in closed water 3, halfway out of a straight shore 1.5) where water begins to be seen, and where
+// nothing else is: shores follow this, not the rims of discs.
+const SHORE: vec2f = vec2f(0.35, 0.65);
 
 fn unfold(packed: u32) -> vec3f {
     let flat = unpack2x16snorm(packed);
@@ -50,6 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         textureStore(shaded, pixel, vec4f(0.0));
         return;
     }
+    let dry = textureLoad(behind_colour, pixel, 0).rgb;
     let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
     let matter = textureSampleLevel(thickness, linear, uv, 0.0);
     let normal = unfold(textureLoad(normals, pixel, 0).r);
@@ -78,5 +82,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
     let foam = 1.0 - exp(-fluid.absorption.w * matter.g / max(matter.b, 1e-6));
     colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(foam * closed, 0.0, 0.95));
-    textureStore(shaded, pixel, vec4f(colour, 1.0));
+    let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
+    textureStore(shaded, pixel, vec4f(mix(dry, colour, covered), 1.0));
 }

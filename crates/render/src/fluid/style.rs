@@ -37,6 +37,8 @@ pub struct FluidStyle {
     pub exponent: f32,
     /// How well foam hides what is below: 0 draws none.
     pub foam: f32,
+    /// South-western and north-eastern corner, m, beyond which it is not drawn: where the ground is cut off, water is too.
+    pub within: Option<[[f64; 2]; 2]>,
 }
 
 impl FluidStyle {
@@ -53,19 +55,25 @@ impl FluidStyle {
             highlight: 1.2,
             exponent: 240.0,
             foam: 1.5,
+            within: None,
         }
     }
 
     /// `Fluid` of fluid.wgsl.
-    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 4] {
+    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 5] {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
+        let [[west, south], [east, north]] = match self.within {
+            Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
+            None => [[f32::MIN; 2], [f32::MAX; 2]],
+        };
         [
             [red, green, blue, self.foam],
             [own_red, own_green, own_blue, self.highlight],
             [width, range, rounding, self.most_pixels as f32],
             [self.exponent, 0.0, 0.0, 0.0],
+            [west, south, east, north],
         ]
     }
 }

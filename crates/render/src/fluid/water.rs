@@ -3,17 +3,19 @@
 use super::Droplet;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_sph::Cells;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3Swizzles};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Radius of the discs that the surface is drawn with, in distances between particles: they overlap.
-const DISC: f64 = 1.25;
+const DISC: f64 = 1.4;
 /// Their thickness over their width.
 const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
 const REACH: f64 = 2.0;
-/// Differences of velocity between which air begins to be trapped and is to the full, m/s.
+/// Steeper than this no disc stands: where particles pile up at a wall discs would stick out like fins.
+const STEEPEST: f64 = 1.0;
+/// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
 const TRAPPED: [f64; 2] = [0.8, 3.0];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
 const ENERGY: [f64; 2] = [0.5, 6.0];
@@ -28,11 +30,16 @@ pub struct Water {
     foam: HashMap<u64, f64>,
 }
 
-/// What is known of a particle on the ground.
+/// A particle on the ground.
+#[derive(Clone, Copy)]
 struct Column {
     index: usize,
     /// Distance to its neighbours, m.
     spacing: f64,
+    /// Where it is, m.
+    at: DVec2,
+    /// Height of the surface, m, and velocity eastwards and northwards, m/s.
+    state: DVec3,
 }
 
 impl Water {
@@ -77,14 +84,21 @@ fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
     if ground.is_empty() {
         return Vec::new();
     }
-    let column = |index: usize| Column { index, spacing: 2.0 * set.radius[index] };
+    let column = |index: usize| {
+        let ([x, y, z], [east, north, _]) = (set.position[index], set.velocity[index]);
+        let at = DVec2::new(x, y);
+        Column { index, spacing: 2.0 * set.radius[index], at, state: DVec3::new(z, east, north) }
+    };
     let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
-    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| set.position[column.index][axis]).collect() };
+    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
     let mean = columns.iter().map(|column| column.spacing).sum::<f64>() / columns.len() as f64;
     let mut cells = Cells::default();
     let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
-    let mut droplets: Vec<Droplet> = columns.par_iter().map(|column| disc(set, &cells, &columns, column)).collect();
+    // Particles tremble, more so in scheme paper; what is seen is what they do together.
+    let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own.spacing).here, ..*own };
+    columns = columns.par_iter().map(calm).collect();
+    let mut droplets: Vec<Droplet> = columns.par_iter().map(|own| disc(set, &cells, &columns, own)).collect();
     // The order of the frame, which does not depend on the cells.
     droplets.sort_unstable_by_key(|droplet| droplet.id);
     droplets
@@ -92,41 +106,22 @@ fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
 
 /// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
 fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
-    let place = DVec3::from(set.position[own.index]);
-    let velocity = DVec3::from(set.velocity[own.index]);
-    let reach = REACH * own.spacing;
-    let mut plane = Plane::default();
-    let (mut closing, mut weights) = (0.0, 0.0);
-    for near in cells.ranges(place.x, place.y, reach).flat_map(|range| &columns[range]) {
-        let away = DVec3::from(set.position[near.index]) - place;
-        let distance = away.truncate().length();
-        if distance >= reach {
-            continue;
-        }
-        plane.add((1.0 - (distance / reach).powi(2)).powi(3), away);
-        let difference = (velocity - DVec3::from(set.velocity[near.index])).truncate();
-        if distance > 0.0 && difference != DVec2::ZERO {
-            // Ihmsen, Akinci, Akinci and Teschner, Unified Spray, Foam and Air Bubbles for Particle-Based Fluids (2012), eq. 2: relative
-            // velocity, the more the straighter the two go towards each other.
-            let weight = 1.0 - distance / reach;
-            let towards = 1.0 + difference.normalize().dot(away.truncate() / distance);
-            closing += weight * difference.length() * towards;
-            weights += weight;
-        }
-    }
-    let (height, slope) = plane.fit(own.spacing);
+    let fit = Planes::around(own, cells, columns).fit(own.spacing);
+    let slope = DVec2::new(fit.east.x, fit.north.x).clamp_length_max(STEEPEST);
     let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
-    let trapped = part(if weights > 0.0 { closing / weights } else { 0.0 }, TRAPPED);
+    // How fast the water of a disc runs together.
+    let closing = -(fit.east.y + fit.north.z) * REACH * own.spacing;
+    let speed = fit.here.yz().length();
     let radius = DISC * own.spacing;
-    let middle = place + DVec3::Z * height - normal * (FLATNESS * radius);
+    let middle = own.at.extend(fit.here.x) - normal * (FLATNESS * radius);
     Droplet {
         place: middle.into(),
         radius,
         normal: normal.into(),
         flatness: FLATNESS,
         volume: set.mass[own.index] / DENSITY,
-        reach,
-        foam: trapped * part(0.5 * velocity.length_squared(), ENERGY),
+        reach: REACH * own.spacing,
+        foam: part(closing, TRAPPED) * part(0.5 * speed * speed, ENERGY),
         id: set.id[own.index],
     }
 }
@@ -136,38 +131,63 @@ fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Weighted sums for the plane z = a + b x + c y of least squares.
+/// Weighted sums for planes f = a + b x + c y of least squares, of the three numbers of a column's state at once.
 #[derive(Default)]
-struct Plane {
+struct Planes {
     weight: f64,
-    at: DVec3,
+    at: DVec2,
     xx: f64,
     xy: f64,
     yy: f64,
-    slope: DVec2,
+    state: DVec3,
+    state_x: DVec3,
+    state_y: DVec3,
 }
 
-impl Plane {
-    fn add(&mut self, weight: f64, place: DVec3) {
-        self.weight += weight;
-        self.at += weight * place;
-        self.xx += weight * place.x * place.x;
-        self.xy += weight * place.x * place.y;
-        self.yy += weight * place.y * place.y;
-        self.slope += weight * place.z * place.truncate();
+/// Planes at a column: values there, and slopes east and north.
+struct Fit {
+    here: DVec3,
+    east: DVec3,
+    north: DVec3,
+}
+
+impl Planes {
+    /// Of the columns within reach of one.
+    fn around(own: &Column, cells: &Cells, columns: &[Column]) -> Self {
+        let reach = REACH * own.spacing;
+        let mut planes = Self::default();
+        for near in cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &columns[range]) {
+            let away = near.at - own.at;
+            let out = away.length_squared() / (reach * reach);
+            if out < 1.0 {
+                planes.add((1.0 - out).powi(3), away, near.state);
+            }
+        }
+        planes
     }
 
-    /// Height at the origin and slope. With few neighbours, or all in a line, the plane is level across it: `spacing` tells what is
-    /// little.
-    fn fit(&self, spacing: f64) -> (f64, DVec2) {
-        let mean = self.at / self.weight;
+    fn add(&mut self, weight: f64, away: DVec2, state: DVec3) {
+        self.weight += weight;
+        self.at += weight * away;
+        self.xx += weight * away.x * away.x;
+        self.xy += weight * away.x * away.y;
+        self.yy += weight * away.y * away.y;
+        self.state += weight * state;
+        self.state_x += weight * away.x * state;
+        self.state_y += weight * away.y * state;
+    }
+
+    /// With few neighbours, or all in a line, planes are level across it: `spacing` tells what is little.
+    fn fit(&self, spacing: f64) -> Fit {
+        let (at, mean) = (self.at / self.weight, self.state / self.weight);
         let level = 0.004 * spacing * spacing;
-        let xx = self.xx / self.weight - mean.x * mean.x + level;
-        let xy = self.xy / self.weight - mean.x * mean.y;
-        let yy = self.yy / self.weight - mean.y * mean.y + level;
-        let z = self.slope / self.weight - mean.z * mean.truncate();
-        let slope = DVec2::new(yy * z.x - xy * z.y, xx * z.y - xy * z.x) / (xx * yy - xy * xy);
-        (mean.z - slope.dot(mean.truncate()), slope)
+        let xx = self.xx / self.weight - at.x * at.x + level;
+        let xy = self.xy / self.weight - at.x * at.y;
+        let yy = self.yy / self.weight - at.y * at.y + level;
+        let [x, y] = [self.state_x / self.weight - at.x * mean, self.state_y / self.weight - at.y * mean];
+        let determinant = xx * yy - xy * xy;
+        let (east, north) = ((yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant);
+        Fit { here: mean - at.x * east - at.y * north, east, north }
     }
 }
 

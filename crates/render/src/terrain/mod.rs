@@ -177,21 +177,20 @@ fn upload(
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
-/// Heights in stage coordinates; where there are none the lowest.
+/// Heights in stage coordinates; where there are none those nearby.
 fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
-    let [low, _] = field.range();
     let [x, y, _] = stage.centre().into();
-    let place = |height: f32| {
-        let height = if height.is_nan() { low } else { f64::from(height) };
-        stage.place([x, y, height]).z
-    };
-    let heights: Vec<f32> = field.heights.iter().map(|height| place(*height)).collect();
+    let place = |height: f32| stage.place([x, y, f64::from(height)]).z;
+    let heights: Vec<f32> = field.filled().into_iter().map(place).collect();
     upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
 }
 
+/// Slopes; beyond all bounds at nodes without height, so that all quads that meet there are told from the others.
 fn upload_slopes(gpu: &Gpu, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
+    let slope =
+        |index: usize| if field.heights[index].is_finite() { field.slope(index) } else { [f16::MAX.to_f32(), 0.0] };
     let slopes: Vec<u8> = (0..field.heights.len())
-        .flat_map(|index| field.slope(index))
+        .flat_map(slope)
         .flat_map(|slope| f16::from_f32(slope).to_le_bytes())
         .collect();
     upload(gpu, "slopes", field.size(), wgpu::TextureFormat::Rg16Float, &slopes)
