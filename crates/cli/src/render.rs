@@ -37,7 +37,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let scene = Scene::read(&path, &[]).map_err(corpuscle::Error::from)?;
     let files = FrameFiles::list(&options.run, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
     let paths = followed_paths(&options.run).map_err(corpuscle::Error::from)?;
-    let simulation = Simulation::open(scene, &options.run)?;
+    let simulation = Simulation::open_to_restore(scene, &options.run)?;
     let settings = PictureSettings { size: options.size, samples: options.samples };
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());

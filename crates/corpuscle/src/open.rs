@@ -19,7 +19,8 @@ impl Simulation {
         Self::open_with(scene, folder, Flood::new)
     }
 
-    /// As [`Simulation::open`], for a state that is restored: a flood does not arrange its water at the start.
+    /// As [`Simulation::open`], for a state that is restored, or frames that are read back: a flood does not arrange its water at
+    /// the start, which takes minutes for millions of particles.
     ///
     /// # Errors
     /// As [`Simulation::open`].

@@ -31,6 +31,7 @@ mod structures;
 mod zone;
 
 pub use flood::Flood;
+pub use obstacles::obstacle_shapes;
 pub use particle::Particle;
 pub use rain::RainFunction;
 pub use sampling::Sample;

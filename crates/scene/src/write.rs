@@ -15,6 +15,8 @@ impl Scene {
 
     /// Makes every path absolute; relative ones are taken from `folder`, the folder of the scene's file.
     pub fn resolve_paths(&mut self, folder: &Path) {
+        // The folder of `scene.toml` alone is empty, which `absolute` refuses.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         // Where the current folder is gone the path stays relative, and opening the file says so.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         let paths = match &mut self.model {
@@ -62,6 +64,7 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
         }
         paths.extend(rain.raster.as_mut());
     }
+    paths.extend(flood.obstacle.iter_mut().filter_map(|obstacle| obstacle.file.as_mut()));
     paths.extend(flood.land_use.as_mut().map(|land_use| &mut land_use.raster));
     paths.extend(flood.observed_extent.as_mut());
     paths

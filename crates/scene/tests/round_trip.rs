@@ -50,6 +50,20 @@ depth_raster = "sub/depth.tif"
 name = "river"
 line = [[0, 0], [1, 1]]
 discharge_m3_per_s = { csv = "q.csv" }
+[[flood.stage]]
+name = "sea"
+line = [[0, 0], [1, 1]]
+level_m = { csv = "level.csv" }
+[[flood.obstacle]]
+name = "houses"
+file = "houses.geojson"
+[flood.rain]
+intensity_mm_per_h = { csv = "rain.csv" }
+raster = "share.tif"
+[flood.land_use]
+raster = "use.tif"
+[[flood.land_use.class]]
+code = 1
 "#;
 
 #[test]
@@ -63,8 +77,22 @@ fn paths_become_absolute_and_round_trip() {
     assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::File { csv: "/data/scene/q.csv".into(), factor: 1.0 });
     assert_eq!(flood.observed_extent.as_deref(), Some(Path::new("/abs/seen.geojson")));
     let written = scene.to_toml().unwrap();
-    assert!(written.contains("/data/scene/tide.csv") && written.contains("/data/scene/sub/depth.tif"), "{written}");
+    let files = [".tif\"", ".csv\"", ".geojson\""];
+    let values = written.lines().filter_map(|line| line.split_once(" = ")).map(|(_, value)| value);
+    let paths: Vec<&str> = values.filter(|value| files.iter().any(|end| value.contains(end))).collect();
+    assert_eq!(paths.len(), 11, "{written}");
+    for path in paths {
+        assert!(path.contains("\"/data/scene/") || path.contains("\"/abs/"), "{path} stays relative");
+    }
     assert_eq!(parse(&written), scene);
+}
+
+#[test]
+fn the_current_folder_is_made_absolute_too() {
+    let mut scene = parse(FILES);
+    scene.resolve_paths(Path::new(""));
+    let Terrain::File(file) = &scene.flood().unwrap().terrain else { panic!() };
+    assert_eq!(file.path, std::env::current_dir().unwrap().join("dem.tif"));
 }
 
 #[test]

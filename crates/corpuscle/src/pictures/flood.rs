@@ -1,8 +1,9 @@
 //! Pictures of a flood: water on the block of ground.
 
-use super::{Moment, Studio, buildings};
+use super::{Moment, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
+use corpuscle_flood::obstacle_shapes;
 use corpuscle_gpu::Image;
 use corpuscle_render::{
     Axes, Camera, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Solid, SolidStyle, Stage, Terrain,
@@ -10,6 +11,7 @@ use corpuscle_render::{
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
+use std::path::Path;
 
 /// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.15, 0.6];
@@ -21,6 +23,8 @@ const SUN: f64 = -1.0;
 const MOST_NODES: usize = 4097;
 /// Height of the block below its lowest ground, part of its width.
 const BASE: f64 = 0.06;
+/// Height of obstacles that are only said to be high enough, m.
+const HIGH_ENOUGH: f64 = 7.0;
 /// Colour of buildings.
 const WALLS: [u8; 3] = [206, 196, 184];
 
@@ -47,7 +51,8 @@ impl FloodPicture {
         });
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
-        let shapes = buildings::shapes(settings, ground);
+        // The paths of a scene that was opened are absolute.
+        let shapes = obstacle_shapes(settings, ground, Path::new(""), HIGH_ENOUGH)?;
         let roof = shapes.iter().map(|shape| shape.bounds[1][2]).fold(high, f64::max);
         let stage = Stage::new([from[0], from[1], base], [to[0], to[1], roof]);
         let colours = natural_colours(&field);

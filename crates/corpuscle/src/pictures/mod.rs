@@ -1,6 +1,5 @@
 //! Pictures of a run's moments: what is shown of each model, from where, in which colours.
 
-mod buildings;
 mod dew;
 mod flood;
 mod gas;

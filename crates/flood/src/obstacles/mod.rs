@@ -6,10 +6,12 @@
 
 mod open;
 mod outline;
+mod shapes;
 mod sites;
 
 pub(crate) use open::open;
 pub(crate) use outline::{Outline, Outlines};
+pub use shapes::obstacle_shapes;
 pub(crate) use sites::{Site, Sites};
 
 use crate::particle::Particle;

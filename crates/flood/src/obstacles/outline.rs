@@ -56,7 +56,7 @@ impl Outline {
     }
 
     /// The nearest wall; `number` is that of this outline.
-    fn nearest(&self, place: [f64; 2], number: usize) -> Nearest {
+    pub fn nearest(&self, place: [f64; 2], number: usize) -> Nearest {
         let way = self.way_from_wall(place);
         let length = way[0].hypot(way[1]);
         let sign = if self.contains(place) { -1.0 } else { 1.0 };
