@@ -112,7 +112,7 @@ fn gas(table: &Table, left_out: &str) -> Image {
             title: "Gas".into(),
             time: "t = 3".into(),
             key: Some(Key::Values("Speed".into(), viridis())),
-            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into() }),
+            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         },
     };

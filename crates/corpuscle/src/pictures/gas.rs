@@ -1,6 +1,6 @@
 //! Pictures of a gas: to scale on paper in two dimensions, in a bright room in three.
 
-use super::{Moment, Studio};
+use super::{Moment, OwnView, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
@@ -15,9 +15,8 @@ use corpuscle_scene::{Gas, Units, padded};
 
 /// From where a box in space is seen, radians: to the right of its front, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.02, 0.36];
-const FIELD_OF_VIEW: f64 = 0.5;
-/// Room for axes round the box in space, part of the picture; and in the plane at the sides, below and above, parts of its height.
-const MARGIN: f64 = 0.1;
+const OWN_VIEW: OwnView = OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.1, margins: MARGINS };
+/// Room for axes in the plane at the sides, below and above, parts of the picture's height.
 const MARGINS: [f64; 3] = [0.1, 0.215, 0.09];
 /// How far the sun stands to the left of the eye, radians.
 const SUN: f64 = -0.9;
@@ -46,7 +45,7 @@ impl GasPicture {
         let flat = self.gas.dimensions() == 2;
         let camera = match flat {
             true => Camera::plan(&stage, studio.aspect(), MARGINS),
-            false => Camera::orbit(&stage, DIRECTION, FIELD_OF_VIEW, studio.aspect(), MARGIN),
+            false => studio.camera(&stage, &OWN_VIEW, moment.frame.time),
         };
         let light = if flat { Light::paper() } else { Light::studio().from_azimuth(DIRECTION[0] + SUN) };
         let key = gas_key(&self.gas, moment.frame);
@@ -99,7 +98,7 @@ impl GasPicture {
             time: format!("t = {time}"),
             key: Some(key),
             scale_bar: None,
-            axes: Some(Axes { from: container.from, to: container.to, unit: unit.into() }),
+            axes: Some(Axes { from: container.from, to: container.to, unit: unit.into(), heights: 1.0 }),
         }
     }
 }

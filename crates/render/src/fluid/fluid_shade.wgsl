@@ -15,8 +15,6 @@
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
 const INDEX: f32 = 1.0 / 1.333;
 const STRAIGHT: f32 = 0.02;
-// Depth over which a film of water begins to be seen, m.
-const FILM: f32 = 0.01;
 // How well particles cover a place (in closed water 3, halfway out of a straight shore 1.5) where water begins to be seen, and where
 // nothing else is: shores follow this, not the rims of discs.
 const SHORE: vec2f = vec2f(0.35, 0.65);
@@ -60,7 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let to_eye = towards_eye(place);
     let cosine = clamp(dot(normal, to_eye), 0.0, 1.0);
     // A film so thin that it does not close is not seen.
-    let closed = smoothstep(0.0, FILM, matter.r * cosine);
+    let closed = smoothstep(0.0, fluid.surface.y, matter.r * cosine);
 
     let refracted = refract(-to_eye, normal, INDEX);
     let steep = max(-dot(refracted, normal), 0.1);

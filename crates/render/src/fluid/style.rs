@@ -31,6 +31,8 @@ pub struct FluidStyle {
     pub absorption: [f32; 3],
     /// What deep water gives back of full light.
     pub colour: [f32; 3],
+    /// Depth over which a film of water begins to be seen, m: a thinner one does not close.
+    pub film: f64,
     /// Strength of the sun's highlight.
     pub highlight: f32,
     /// Its exponent: the greater, the smaller.
@@ -52,11 +54,17 @@ impl FluidStyle {
             most_pixels: 64,
             absorption: [0.60, 0.24, 0.16],
             colour: [0.035, 0.10, 0.13],
+            film: 0.01,
             highlight: 1.2,
             exponent: 240.0,
             foam: 1.5,
             within: None,
         }
+    }
+
+    /// The same water so much more turbid, or clearer: seen so many times shallower.
+    pub fn turbid(self, times: f64) -> Self {
+        Self { absorption: self.absorption.map(|part| part * times as f32), film: self.film / times, ..self }
     }
 
     /// `Fluid` of fluid.wgsl.
@@ -72,7 +80,7 @@ impl FluidStyle {
             [red, green, blue, self.foam],
             [own_red, own_green, own_blue, self.highlight],
             [width, range, rounding, self.most_pixels as f32],
-            [self.exponent, 0.0, 0.0, 0.0],
+            [self.exponent, self.film as f32, 0.0, 0.0],
             [west, south, east, north],
         ]
     }

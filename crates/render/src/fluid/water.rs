@@ -3,7 +3,7 @@
 use super::Droplet;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_sph::Cells;
-use glam::{DVec2, DVec3, Vec3Swizzles};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -15,8 +15,12 @@ const FLATNESS: f64 = 0.12;
 const REACH: f64 = 2.0;
 /// Steeper than this no disc stands: where particles pile up at a wall discs would stick out like fins.
 const STEEPEST: f64 = 1.0;
+/// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
+const LEVEL: f64 = 0.02;
 /// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
-const TRAPPED: [f64; 2] = [0.8, 3.0];
+const TRAPPED: [f64; 2] = [1.2, 5.0];
+/// Sum of poly6 weights (3.1 in closed water) from which on there is foam, and from which on all of it: drops that run alone have none.
+const CLOSED: [f64; 2] = [1.6, 2.8];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
 const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
@@ -40,19 +44,27 @@ struct Column {
     at: DVec2,
     /// Height of the surface, m, and velocity eastwards and northwards, m/s.
     state: DVec3,
+    /// Slope of the ground `[eastwards, northwards]`, m per m.
+    ground: DVec2,
 }
 
 impl Water {
     /// Particles as they are drawn at a time, s, not before that of the last call. Those that have a column `depth` of more than 0 lie
-    /// on the ground; the others are in the air.
-    pub fn droplets(&mut self, time: f64, set: &ParticleSet) -> Vec<Droplet> {
+    /// on the ground; the others are in the air. `slope` is the ground's at a place `[eastwards, northwards]`, m per m: water without
+    /// neighbours lies along it.
+    pub fn droplets(
+        &mut self,
+        time: f64,
+        set: &ParticleSet,
+        slope: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+    ) -> Vec<Droplet> {
         let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
         let deep = |index: usize| match depths {
             Some(Values::Scalar(depths)) => depths[index] > 0.0,
             _ => false,
         };
         let (ground, air): (Vec<usize>, Vec<usize>) = (0..set.len()).partition(|&index| deep(index));
-        let mut droplets = on_ground(set, &ground);
+        let mut droplets = on_ground(set, &ground, slope);
         self.keep_foam(time, &mut droplets);
         droplets.extend(air.into_iter().map(|index| in_air(set, index)));
         droplets
@@ -74,20 +86,21 @@ impl Water {
 fn in_air(set: &ParticleSet, index: usize) -> Droplet {
     let volume = set.mass[index] / DENSITY;
     let radius = (volume * 0.75 / std::f64::consts::PI).cbrt();
-    Droplet { id: set.id[index], foam: 0.3, ..Droplet::ball(set.position[index], radius) }
+    Droplet { id: set.id[index], foam: 0.15, ..Droplet::ball(set.position[index], radius) }
 }
 
 /// Of water, kg/m3.
 const DENSITY: f64 = 1000.0;
 
-fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
+fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Vec<Droplet> {
     if ground.is_empty() {
         return Vec::new();
     }
     let column = |index: usize| {
         let ([x, y, z], [east, north, _]) = (set.position[index], set.velocity[index]);
         let at = DVec2::new(x, y);
-        Column { index, spacing: 2.0 * set.radius[index], at, state: DVec3::new(z, east, north) }
+        let ground = slope([x, y]).into();
+        Column { index, spacing: 2.0 * set.radius[index], at, state: DVec3::new(z, east, north), ground }
     };
     let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
     let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
@@ -96,9 +109,11 @@ fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
     let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
     // Particles tremble, more so in scheme paper; what is seen is what they do together.
-    let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own.spacing).here, ..*own };
+    let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own).here, ..*own };
     columns = columns.par_iter().map(calm).collect();
     let mut droplets: Vec<Droplet> = columns.par_iter().map(|own| disc(set, &cells, &columns, own)).collect();
+    let foam: Vec<f64> = columns.par_iter().map(|own| foam_around(own, &cells, &columns, &droplets)).collect();
+    droplets.iter_mut().zip(foam).for_each(|(droplet, foam)| droplet.foam = foam);
     // The order of the frame, which does not depend on the cells.
     droplets.sort_unstable_by_key(|droplet| droplet.id);
     droplets
@@ -106,12 +121,13 @@ fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
 
 /// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
 fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
-    let fit = Planes::around(own, cells, columns).fit(own.spacing);
+    let planes = Planes::around(own, cells, columns);
+    let fit = planes.fit(own);
     let slope = DVec2::new(fit.east.x, fit.north.x).clamp_length_max(STEEPEST);
     let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
     // How fast the water of a disc runs together.
     let closing = -(fit.east.y + fit.north.z) * REACH * own.spacing;
-    let speed = fit.here.yz().length();
+    let velocity = DVec3::from(set.velocity[own.index]);
     let radius = DISC * own.spacing;
     let middle = own.at.extend(fit.here.x) - normal * (FLATNESS * radius);
     Droplet {
@@ -121,9 +137,22 @@ fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> D
         flatness: FLATNESS,
         volume: set.mass[own.index] / DENSITY,
         reach: REACH * own.spacing,
-        foam: part(closing, TRAPPED) * part(0.5 * speed * speed, ENERGY),
+        foam: part(closing, TRAPPED) * part(0.5 * velocity.length_squared(), ENERGY) * part(planes.weight, CLOSED),
         id: set.id[own.index],
     }
+}
+
+/// The mean foam within reach of a column: foam spreads, and single particles are not flecked.
+fn foam_around(own: &Column, cells: &Cells, columns: &[Column], droplets: &[Droplet]) -> f64 {
+    let reach = REACH * own.spacing;
+    let near = cells.ranges(own.at.x, own.at.y, reach).flatten();
+    let weighed = near.map(|near| {
+        let out = columns[near].at.distance_squared(own.at) / (reach * reach);
+        ((1.0 - out).max(0.0).powi(3), droplets[near].foam)
+    });
+    let (sum, weights) =
+        weighed.fold((0.0, 0.0), |(sum, weights), (weight, foam)| (sum + weight * foam, weights + weight));
+    sum / weights
 }
 
 /// Where a value is between two: 0 at the first, 1 at the second (Ihmsen et al. 2012, eq. 1).
@@ -160,7 +189,8 @@ impl Planes {
             let away = near.at - own.at;
             let out = away.length_squared() / (reach * reach);
             if out < 1.0 {
-                planes.add((1.0 - out).powi(3), away, near.state);
+                // Heights over a plane along the ground, so that planes of few neighbours lie along it.
+                planes.add((1.0 - out).powi(3), away, near.state - DVec3::X * own.ground.dot(away));
             }
         }
         planes
@@ -177,17 +207,18 @@ impl Planes {
         self.state_y += weight * away.y * state;
     }
 
-    /// With few neighbours, or all in a line, planes are level across it: `spacing` tells what is little.
-    fn fit(&self, spacing: f64) -> Fit {
+    /// With few neighbours, or all in a line, heights follow the ground across it, and velocities do not change.
+    fn fit(&self, own: &Column) -> Fit {
         let (at, mean) = (self.at / self.weight, self.state / self.weight);
-        let level = 0.004 * spacing * spacing;
+        let level = LEVEL * own.spacing * own.spacing;
         let xx = self.xx / self.weight - at.x * at.x + level;
         let xy = self.xy / self.weight - at.x * at.y;
         let yy = self.yy / self.weight - at.y * at.y + level;
         let [x, y] = [self.state_x / self.weight - at.x * mean, self.state_y / self.weight - at.y * mean];
         let determinant = xx * yy - xy * xy;
         let (east, north) = ((yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant);
-        Fit { here: mean - at.x * east - at.y * north, east, north }
+        let here = mean - at.x * east - at.y * north;
+        Fit { here, east: east + DVec3::X * own.ground.x, north: north + DVec3::X * own.ground.y }
     }
 }
 
@@ -195,6 +226,8 @@ impl Planes {
 mod tests {
     use super::*;
     use corpuscle_model::Column as Named;
+
+    const LEVEL_GROUND: fn([f64; 2]) -> [f64; 2] = |_| [0.0; 2];
 
     /// Water 1 m deep whose surface is a tilted plane, every particle 1 m from the next, with velocities.
     fn tilted(velocity: impl Fn(f64) -> [f64; 3]) -> ParticleSet {
@@ -216,7 +249,7 @@ mod tests {
 
     #[test]
     fn discs_lie_in_the_surface() {
-        let droplets = Water::default().droplets(0.0, &tilted(|_| [0.0; 3]));
+        let droplets = Water::default().droplets(0.0, &tilted(|_| [0.0; 3]), LEVEL_GROUND);
         let middle = droplets.iter().find(|droplet| droplet.id == 210).unwrap();
         let normal = DVec3::new(-0.2, 0.1, 1.0).normalize();
         assert!(DVec3::from(middle.normal).angle_between(normal) < 0.02);
@@ -225,16 +258,25 @@ mod tests {
     }
 
     #[test]
+    fn lone_water_lies_along_the_ground() {
+        let mut set = tilted(|_| [0.0; 3]);
+        set.position.iter_mut().for_each(|place| (0..2).for_each(|k| place[k] *= 9.0));
+        let droplets = Water::default().droplets(0.0, &set, |_| [0.3, -0.4]);
+        let normal = DVec3::new(-0.3, 0.4, 1.0).normalize();
+        assert!(droplets.iter().all(|droplet| DVec3::from(droplet.normal).angle_between(normal) < 1e-6));
+    }
+
+    #[test]
     fn foam_comes_where_water_meets_water_goes_with_it_and_fades() {
         let foam = |droplets: &[Droplet], id: u64| droplets.iter().find(|droplet| droplet.id == id).unwrap().foam;
         let mut water = Water::default();
-        let meeting = tilted(|x| [if x < 10.0 { 1.5 } else { -1.5 }, 0.0, 0.0]);
-        let droplets = water.droplets(0.0, &meeting);
+        let meeting = tilted(|x| [if x < 10.0 { 3.0 } else { -3.0 }, 0.0, 0.0]);
+        let droplets = water.droplets(0.0, &meeting, LEVEL_GROUND);
         assert!(foam(&droplets, 209) > 0.05 && foam(&droplets, 204) == 0.0);
-        let parting = tilted(|x| [if x < 10.0 { -1.5 } else { 1.5 }, 0.0, 0.0]);
-        assert!(foam(&Water::default().droplets(0.0, &parting), 209) < 0.5 * foam(&droplets, 209));
+        let parting = tilted(|x| [if x < 10.0 { -3.0 } else { 3.0 }, 0.0, 0.0]);
+        assert!(foam(&Water::default().droplets(0.0, &parting, LEVEL_GROUND), 209) < 0.5 * foam(&droplets, 209));
         let calm = tilted(|_| [0.0; 3]);
-        let later = water.droplets(LIFE, &calm);
+        let later = water.droplets(LIFE, &calm, LEVEL_GROUND);
         assert!((foam(&later, 209) / foam(&droplets, 209) - (-1f64).exp()).abs() < 1e-9);
     }
 
@@ -242,7 +284,7 @@ mod tests {
     fn what_is_in_the_air_is_a_ball_of_its_volume() {
         let mut set = tilted(|_| [0.0; 3]);
         set.columns.clear();
-        let droplets = Water::default().droplets(0.0, &set);
+        let droplets = Water::default().droplets(0.0, &set, LEVEL_GROUND);
         assert_eq!((droplets.len(), droplets[0].flatness, droplets[0].volume), (400, 1.0, 0.0));
         assert!((4.0 / 3.0 * std::f64::consts::PI * droplets[0].radius.powi(3) - 1.0).abs() < 1e-12);
     }

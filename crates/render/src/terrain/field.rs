@@ -37,6 +37,20 @@ impl HeightField {
         if low <= high { [f64::from(low), f64::from(high)] } else { [0.0, 0.0] }
     }
 
+    /// Rise `[eastwards, northwards]` of the quad round a place, m per m; of the nearest for places outside, and level where there
+    /// is no ground.
+    pub fn slope_at(&self, place: [f64; 2]) -> [f64; 2] {
+        let quad = [0, 1].map(|k| {
+            let at = (place[k] - self.origin[k]) / self.cell[k];
+            (at.max(0.0) as usize).min(self.nodes[k] - 2)
+        });
+        let node =
+            |east: usize, north: usize| f64::from(self.heights[(quad[1] + north) * self.nodes[0] + quad[0] + east]);
+        let east = 0.5 * (node(1, 0) - node(0, 0) + node(1, 1) - node(0, 1)) / self.cell[0];
+        let north = 0.5 * (node(0, 1) - node(0, 0) + node(1, 1) - node(1, 0)) / self.cell[1];
+        [east, north].map(|slope| if slope.is_finite() { slope } else { 0.0 })
+    }
+
     /// Where a node is, m.
     pub(crate) fn place(&self, index: usize) -> [f64; 2] {
         let at = [index % self.nodes[0], index / self.nodes[0]];
@@ -54,9 +68,8 @@ impl HeightField {
     /// Edges of quads with ground, beyond which there is none.
     pub(super) fn edges(&self) -> Vec<Edge> {
         let [columns, rows] = self.nodes;
-        let ground = |column: usize, row: usize| {
-            column + 1 < columns && row + 1 < rows && self.has_ground([column, row])
-        };
+        let ground =
+            |column: usize, row: usize| column + 1 < columns && row + 1 < rows && self.has_ground([column, row]);
         let mut edges = Vec::new();
         for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
             if !ground(column, row) {
@@ -168,5 +181,9 @@ mod tests {
             assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{index}: {east} {north}");
         }
         assert_eq!(field.range(), [-6.25, 18.75]);
+        for place in [[1e6 + 3.0, 7.0], [1e6 + 40.0, 25.0], [0.0, 1e9]] {
+            let [east, north] = field.slope_at(place);
+            assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{place:?}: {east} {north}");
+        }
     }
 }
