@@ -8,7 +8,7 @@ use corpuscle::Simulation;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
 use corpuscle::pictures::{Moment, Pictures};
-use corpuscle::record::{FrameFiles, followed_paths, write_picture};
+use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, write_picture};
 use corpuscle::scene::{Run, Scene};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -42,10 +42,11 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let settings = picture_settings(options.size, options.samples, &options.look)?;
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
-    let model = simulation.model();
-    let container = model.container();
+    let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;
+    let at_start = simulation.model().container();
     let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
         let frame = files.read(index)?;
+        let container = at_start.map(|container| walls.container(container, frame.time));
         let image = pictures.draw(&Moment { frame: &frame, paths: &paths, container })?;
         Ok((frame.time, image))
     };

@@ -39,11 +39,11 @@ pub enum Lens {
 
 impl Camera {
     /// The stage seen from above, north up, to scale: as large as a picture of `aspect` (width over height) holds between its
-    /// `margins` `[at the sides, below, above]`, parts of the picture's height.
-    pub fn plan(stage: &Stage, aspect: f64, [side, below, above]: [f64; 3]) -> Self {
+    /// `margins` `[left, right, below, above]`, parts of the picture's height.
+    pub fn plan(stage: &Stage, aspect: f64, [left, right, below, above]: [f64; 4]) -> Self {
         let size = stage.to - stage.from;
-        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - 2.0 * side));
-        let target = stage.centre() - DVec3::Y * 0.5 * (below - above) * height;
+        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - left - right));
+        let target = stage.centre() + 0.5 * height * DVec3::new(right - left, above - below, 0.0);
         let eye = target + DVec3::Z * stage.unit() * 2.0;
         Self { eye, target, up: DVec3::Y, lens: Lens::Orthographic { height } }
     }
@@ -157,7 +157,7 @@ mod tests {
     fn a_camera_that_comes_nearer_shows_less_of_what_it_looks_at() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
         let place = DVec3::new(15.0, 5.0, 0.0);
-        for whole in [Camera::plan(&stage, 2.0, [0.0; 3]), Camera::orbit(&stage, [0.3, 0.9], 0.5, 2.0, 0.0)] {
+        for whole in [Camera::plan(&stage, 2.0, [0.0; 4]), Camera::orbit(&stage, [0.3, 0.9], 0.5, 2.0, 0.0)] {
             let near = whole.looking_at(place).nearer(4.0);
             let [x, y] = near.project(&stage, 2.0, place.into()).unwrap();
             assert!((x - 0.5).abs() < 1e-6 && (y - 0.5).abs() < 1e-6);
@@ -172,9 +172,22 @@ mod tests {
     #[test]
     fn a_plan_is_to_scale_with_north_up() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
-        let camera = Camera::plan(&stage, 2.0, [0.0; 3]);
+        let camera = Camera::plan(&stage, 2.0, [0.0; 4]);
         let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
         let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
         assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");
+    }
+
+    #[test]
+    fn margins_of_a_plan_are_parts_of_the_pictures_height() {
+        let stage = Stage::new([0.0; 3], [10.0, 10.0, 0.0]);
+        let camera = Camera::plan(&stage, 2.0, [0.1, 0.3, 0.2, 0.05]);
+        // Its height is what limits it: three quarters of the picture are the box's side.
+        let corner = |place| camera.project(&stage, 2.0, place).unwrap();
+        let ([left, bottom], [right, top]) = (corner([0.0; 3]), corner([10.0, 10.0, 0.0]));
+        assert!((bottom - 0.8).abs() < 1e-5 && (top - 0.05).abs() < 1e-5, "{bottom} {top}");
+        assert!((2.0 * (right - left) - 0.75).abs() < 1e-5);
+        // What is left over is shared between the sides.
+        assert!((2.0 * ((1.0 - right) - left) - 0.2).abs() < 1e-5);
     }
 }

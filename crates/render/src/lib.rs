@@ -39,7 +39,7 @@ pub use error::RenderError;
 pub use floor::Floor;
 pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use light::{Backdrop, Light};
-pub use overlay::{Axes, Key, Overlay};
+pub use overlay::{Axes, Border, Key, KeyPlace, LineLook, Mark, Overlay};
 pub use renderer::Renderer;
 pub use solids::{Solid, SolidStyle};
 pub use stage::Stage;

@@ -56,7 +56,7 @@ impl DewPicture {
             direction: [self.azimuth, RAISED],
             field_of_view: FIELD_OF_VIEW,
             margin: MARGIN,
-            margins: [MARGIN; 3],
+            margins: [2.0 * MARGIN; 4],
         };
         let camera = studio.camera(&self.stage, &own, moment.frame.time);
         let light = Light::dim_room().from_azimuth(self.azimuth + SUN);

@@ -8,8 +8,8 @@ use corpuscle_flood::obstacle_shapes;
 use corpuscle_gpu::Image;
 use corpuscle_model::ParticleSet;
 use corpuscle_render::{
-    Axes, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, Lens, Light, Overlay, Solid, SolidStyle,
-    Stage, Terrain, Water, WaterSides, natural_colours,
+    Axes, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, KeyPlace, Lens, Light, Overlay, Solid,
+    SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -18,7 +18,7 @@ use std::path::Path;
 /// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.15, 0.6];
 const OWN_VIEW: OwnView =
-    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.14, 0.12, 0.09] };
+    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.13, 0.06, 0.2, 0.09] };
 /// How far the sun stands to the left of the eye, radians.
 const SUN: f64 = -1.0;
 /// Nodes a side of the drawn ground at most: what a texture can hold everywhere, and a terrain of 4096 x 4096 has.
@@ -99,15 +99,16 @@ impl FloodPicture {
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
         let gpu = studio.renderer.gpu();
         let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
+        let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
         let light = Light::day().from_azimuth(DIRECTION[0] + SUN);
         let sets: Vec<ParticleSet> =
             moment.frame.sets.iter().filter(|set| !set.is_empty()).map(|set| raised(set, self.heights)).collect();
-        let overlay = self.overlay(studio, title, moment);
+        let overlay = self.overlay(studio, title, moment, is_plan);
         if let Some(depth) = &self.depth {
             self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
         }
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
-        if matches!(camera.lens, Lens::Perspective { .. }) {
+        if !is_plan {
             things.push(&mut self.floor);
         }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
@@ -130,16 +131,21 @@ impl FloodPicture {
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)
     }
 
-    fn overlay(&self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Overlay {
+    fn overlay(&self, studio: &Studio, title: &str, moment: &Moment<'_>, is_plan: bool) -> Overlay {
         let time = format!("t = {}", text::time(moment.frame.time));
-        let corners = (self.stage.from.into(), self.stage.to.into());
-        let axes = |(from, to)| Axes { from, to, unit: "m".into(), heights: self.heights };
+        let (from, mut to): ([f64; 3], [f64; 3]) = (self.stage.from.into(), self.stage.to.into());
+        if is_plan {
+            to[2] = from[2];
+        }
+        let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
         Overlay {
             title: title.into(),
             time: if self.heights == 1.0 { time } else { format!("{time}, heights × {}", self.heights) },
             key: self.depth.as_ref().map(|depth| Key::Kinds(depth.key())),
             scale_bar: Some("m".into()),
-            axes: studio.shows_all().then(|| axes(corners)),
+            axes: studio.shows_all().then(axes),
+            key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },
+            ..Overlay::default()
         }
     }
 }

@@ -57,8 +57,8 @@ pub(super) struct OwnView {
     pub field_of_view: f64,
     /// Room round what is seen, part of the picture.
     pub margin: f64,
-    /// The same in a plan: at the sides, below and above, parts of the picture's height.
-    pub margins: [f64; 3],
+    /// The same in a plan: left, right, below and above, parts of the picture's height.
+    pub margins: [f64; 4],
 }
 
 impl Studio {
