@@ -255,7 +255,7 @@ fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
     let plan = Camera::plan(&stage, ASPECT, [0.0; 4]);
     let image = table.draw(&stage, &plan, &Light::day(), &mut [&mut ground], &Overlay::default());
     let is_green = |x: u32, y: u32| {
-        let [red, green, blue, _] = image.pixel(x, y);
+        let [red, green, blue, _] = image.pixel(x, y).map(u32::from);
         green > red / 2 + blue
     };
     assert!(is_green(20, 20) && is_green(200, 110) && !is_green(120, 67) && !is_green(110, 67));
@@ -269,7 +269,7 @@ fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
     let droplets: Vec<Droplet> = (0..32 * 9).map(column).collect();
     let mut sides = WaterSides::new(&table.renderer, &stage);
     sides.fill(gpu, &flat, &droplets);
-    let mut draw =
+    let draw =
         |things: &mut [&mut dyn Drawable]| table.draw(&stage, &camera, &Light::day(), things, &Overlay::default());
     let dry = draw(&mut [&mut ground]);
     let wet = draw(&mut [&mut ground, &mut sides]);
@@ -277,7 +277,7 @@ fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
     let seen = |place| camera.project(&stage, ASPECT, place).map(|[x, y]| [x * 240.0, y * 135.0]).unwrap();
     let [x, y] = seen([8.0, 0.0, 0.5]);
     let [red, _, blue, _] = wet.pixel(x as u32, y as u32);
-    assert!(blue > red + 30 && wet.pixel(x as u32, y as u32) != dry.pixel(x as u32, y as u32));
+    assert!(blue > red.saturating_add(30) && wet.pixel(x as u32, y as u32) != dry.pixel(x as u32, y as u32));
     let [x, y] = seen([8.0, 0.0, -0.5]);
     assert_eq!(wet.pixel(x as u32, y as u32), dry.pixel(x as u32, y as u32));
 }

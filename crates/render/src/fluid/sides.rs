@@ -115,16 +115,13 @@ fn levels(field: &HeightField, border: &Border, droplets: &[Droplet]) -> Vec<Opt
             continue;
         }
         let along = droplet.place[border.axis];
-        let first = ((along - reach - start) / cell).ceil().max(0.0) as usize;
-        let last = ((along + reach - start) / cell).floor();
-        for node in first..border.nodes.len() {
-            if node as f64 > last {
-                break;
-            }
-            let away = DVec2::from(field.place(border.nodes[node])) - DVec3::from(droplet.place).truncate();
+        let node = |at: f64| ((at - start) / cell).max(0.0) as usize;
+        let (first, end) = (node(along - reach), node(along + reach + cell).min(border.nodes.len()));
+        for (node, sums) in border.nodes.iter().zip(&mut sums).take(end).skip(first) {
+            let away = DVec2::from(field.place(*node)) - DVec3::from(droplet.place).truncate();
             let weight = (1.0 - away.length_squared() / (reach * reach)).max(0.0).powi(3);
-            sums[node].0 += weight;
-            sums[node].1 += weight * droplet.level(away);
+            sums.0 += weight;
+            sums.1 += weight * droplet.level(away);
         }
     }
     let level = |(node, (weight, sum)): (&usize, (f64, f64))| {
@@ -156,9 +153,8 @@ mod tests {
         let droplets: Vec<Droplet> = (0..200).map(disc).collect();
         let [south, _, _, east] = borders(&field);
         let found = levels(&field, &south, &droplets);
-        for node in 2..18 {
-            let level = found[node].unwrap();
-            assert!((level - (3.0 + 0.1 * node as f64)).abs() < 0.01, "{node}: {level}");
+        for (node, level) in found.iter().enumerate().take(18).skip(2) {
+            assert!((level.unwrap() - (3.0 + 0.1 * node as f64)).abs() < 0.01, "{node}: {level:?}");
         }
         assert!(found[23..].iter().chain(&levels(&field, &east, &droplets)).all(Option::is_none));
     }

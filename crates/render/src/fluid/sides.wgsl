@@ -16,10 +16,15 @@ fn vertex(@location(0) place: vec4f, @location(1) outwards: vec4f) -> Corner {
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
+    let to_eye = towards_eye(corner.place);
+    // Those on the far side would be seen through the water.
+    if dot(corner.normal, to_eye) < 0.0 {
+        discard;
+    }
     // Light comes from above and is lost on its way down.
     let left = exp(-vec3f(0.5, 0.22, 0.16) * corner.deep * view.frame.z);
     let colour = mix(vec3f(0.02, 0.075, 0.10), vec3f(0.16, 0.36, 0.38), left);
-    let fresnel = mirrored(dot(corner.normal, towards_eye(corner.place)), 0.02);
+    let fresnel = 0.6 * mirrored(dot(corner.normal, to_eye), 0.02);
     let lit = matt(colour, vec3f(0.0, 0.0, 1.0), 0.8);
-    return vec4f(mix(lit, surroundings(reflect(-towards_eye(corner.place), corner.normal)), fresnel), 1.0);
+    return vec4f(mix(lit, surroundings(reflect(-to_eye, corner.normal)), fresnel), 1.0);
 }

@@ -13,8 +13,10 @@ const DISC: f64 = 1.4;
 const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
 const REACH: f64 = 2.0;
-/// Steeper than this no disc stands: where particles pile up at a wall discs would stick out like fins.
+/// Steeper than this no water stands.
 const STEEPEST: f64 = 1.0;
+/// How often it is looked whether some does: each time what is within reach of each particle.
+const SETTLINGS: usize = 12;
 /// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
 const LEVEL: f64 = 0.02;
 /// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
@@ -108,6 +110,7 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     let mut cells = Cells::default();
     let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
+    settle(&cells, &mut columns);
     // Particles tremble, more so in scheme paper; what is seen is what they do together.
     let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own).here, ..*own };
     columns = columns.par_iter().map(calm).collect();
@@ -117,6 +120,27 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     // The order of the frame, which does not depend on the cells.
     droplets.sort_unstable_by_key(|droplet| droplet.id);
     droplets
+}
+
+/// Takes down what stands steeper than water can: where scheme paper piles particles up before a wall, it finds columns of great
+/// height. The ground's slope comes on top.
+fn settle(cells: &Cells, columns: &mut Vec<Column>) {
+    let bounded = |own: &Column, all: &[Column]| {
+        let reach = REACH * own.spacing;
+        let steepest = STEEPEST + own.ground.length();
+        let near = cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &all[range]);
+        near.map(|near| (near.state.x, near.at.distance(own.at)))
+            .filter(|(_, distance)| *distance < reach)
+            .fold(own.state.x, |height, (other, distance)| height.min(other + steepest * distance))
+    };
+    for _ in 0..SETTLINGS {
+        let heights: Vec<f64> = columns.par_iter().map(|own| bounded(own, columns)).collect();
+        let settled = columns.iter().zip(&heights).all(|(own, height)| own.state.x == *height);
+        columns.iter_mut().zip(heights).for_each(|(own, height)| own.state.x = height);
+        if settled {
+            break;
+        }
+    }
 }
 
 /// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
@@ -264,6 +288,21 @@ mod tests {
         let droplets = Water::default().droplets(0.0, &set, |_| [0.3, -0.4]);
         let normal = DVec3::new(-0.3, 0.4, 1.0).normalize();
         assert!(droplets.iter().all(|droplet| DVec3::from(droplet.normal).angle_between(normal) < 1e-6));
+    }
+
+    #[test]
+    fn what_stands_steeper_than_water_can_is_taken_down() {
+        let mut set = tilted(|_| [0.0; 3]);
+        for index in [209, 210, 229, 230] {
+            set.position[index][2] += 30.0;
+        }
+        let place = set.position.clone();
+        let level = |index: usize| 0.2 * place[index][0] - 0.1 * place[index][1];
+        let droplets = Water::default().droplets(0.0, &set, LEVEL_GROUND);
+        let piled = droplets.iter().find(|droplet| droplet.id == 209).unwrap();
+        assert!(piled.place[2] < level(209) + 2.0, "{:?}", piled.place);
+        let calm = droplets.iter().find(|droplet| droplet.id == 105).unwrap();
+        assert!((calm.place[2] - level(105)).abs() < 0.3);
     }
 
     #[test]
