@@ -1,12 +1,13 @@
 //! `corpuscle render`.
 
 use crate::args::RenderOptions;
+use crate::look::picture_settings;
 use crate::output::print_json;
 use anyhow::Context;
 use corpuscle::Simulation;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{Moment, PictureSettings, Pictures};
+use corpuscle::pictures::{Moment, Pictures};
 use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, write_picture};
 use corpuscle::scene::{Run, Scene};
 use serde::Serialize;
@@ -38,7 +39,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let files = FrameFiles::list(&options.run, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
     let paths = followed_paths(&options.run).map_err(corpuscle::Error::from)?;
     let simulation = Simulation::open_to_restore(scene, &options.run)?;
-    let settings = PictureSettings { size: options.size, samples: options.samples };
+    let settings = picture_settings(options.size, options.samples, &options.look)?;
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
     let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;

@@ -80,6 +80,19 @@ impl Camera {
         }
     }
 
+    /// The same moved to look at another place, m.
+    pub fn looking_at(self, target: DVec3) -> Self {
+        Self { eye: self.eye + (target - self.target), target, ..self }
+    }
+
+    /// The same so many times nearer to what it looks at, or with what it shows so many times larger where there is no perspective.
+    pub fn nearer(self, times: f64) -> Self {
+        match self.lens {
+            Lens::Perspective { .. } => Self { eye: self.target + (self.eye - self.target) / times, ..self },
+            Lens::Orthographic { height } => Self { lens: Lens::Orthographic { height: height / times }, ..self },
+        }
+    }
+
     /// Where a place, m, is in a picture of `aspect`: parts of its width from the left and of its height from above. None behind
     /// the eye.
     pub fn project(&self, stage: &Stage, aspect: f64, point: [f64; 3]) -> Option<[f64; 2]> {
@@ -147,6 +160,22 @@ mod tests {
             };
             let farthest = stage.corners().into_iter().map(reach).fold(0.0, f32::max);
             assert!((farthest - 1.0).abs() < 1e-4, "{farthest}");
+        }
+    }
+
+    #[test]
+    fn a_camera_that_comes_nearer_shows_less_of_what_it_looks_at() {
+        let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
+        let place = DVec3::new(15.0, 5.0, 0.0);
+        for whole in [Camera::plan(&stage, 2.0, [0.0; 4]), Camera::orbit(&stage, [0.3, 0.9], 0.5, 2.0, 0.0)] {
+            let near = whole.looking_at(place).nearer(4.0);
+            let [x, y] = near.project(&stage, 2.0, place.into()).unwrap();
+            assert!((x - 0.5).abs() < 1e-6 && (y - 0.5).abs() < 1e-6);
+            let width = |camera: &Camera| {
+                let ends = [-0.01, 0.01].map(|off| camera.project(&stage, 2.0, (camera.target + off).into()).unwrap());
+                (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1])
+            };
+            assert!((width(&near) / width(&whole) - 4.0).abs() < 0.05);
         }
     }
 

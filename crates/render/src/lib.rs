@@ -37,7 +37,7 @@ pub use colour::{ColourTable, linear};
 pub use drawable::{Drawable, Through};
 pub use error::RenderError;
 pub use floor::Floor;
-pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water};
+pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use light::{Backdrop, Light};
 pub use overlay::{Axes, Border, Key, KeyPlace, LineLook, Mark, Overlay};
 pub use renderer::Renderer;

@@ -5,9 +5,9 @@
 use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
-    Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Floor, HeightField, Key,
-    KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter,
-    TubeStyle, box_edges, natural_colours,
+    Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, HeightField,
+    Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter,
+    TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -113,7 +113,7 @@ fn gas(table: &Table, left_out: &str) -> Image {
             title: "Gas".into(),
             time: "t = 3".into(),
             key: Some(Key::Values("Speed".into(), viridis())),
-            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into() }),
+            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         },
     };
@@ -178,7 +178,7 @@ fn plan(table: &Table, left_out: &str) -> Image {
             .into(),
         borders,
         marks: (0..5).flat_map(|k| marks([5.0, 1.0 + 1.8 * k as f64, 0.0])).collect(),
-        axes: Some(Axes { from: [0.0; 3], to: [16.0, 9.0, 0.0], unit: "m".into() }),
+        axes: Some(Axes { from: [0.0; 3], to: [16.0, 9.0, 0.0], unit: "m".into(), heights: 1.0 }),
         ..Overlay::default()
     };
     let overlay = Overlay {
@@ -240,6 +240,46 @@ fn a_plan_keeps_colours_and_scale() {
     assert_eq!(at(1.0, 1.9), [255; 4]);
     assert_ne!(at(1.55, 1.0), [255; 4]);
     assert_eq!(at(1.9, 1.0), [255; 4]);
+}
+
+#[test]
+fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
+    let Some(table) = Table::open("ground with a hole") else { return };
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, -1.0], [16.0, 9.0, 1.0]);
+    let flat = HeightField::sampled([0.0; 2], [16.0, 9.0], [65, 37], |x, y| {
+        if (x - 8.0).hypot(y - 4.5) < 2.0 { f64::NAN } else { 0.0 }
+    });
+    let green = Image { width: 1, height: 1, rgba: vec![40, 200, 40, 255] };
+    let mut ground = Terrain::new(&table.renderer, &stage, flat.clone(), &green, -1.0).unwrap();
+    let plan = Camera::plan(&stage, ASPECT, [0.0; 4]);
+    let image = table.draw(&stage, &plan, &Light::day(), &mut [&mut ground], &Overlay::default());
+    let is_green = |x: u32, y: u32| {
+        let [red, green, blue, _] = image.pixel(x, y).map(u32::from);
+        green > red / 2 + blue
+    };
+    assert!(is_green(20, 20) && is_green(200, 110) && !is_green(120, 67) && !is_green(110, 67));
+
+    // Water one metre deep in the southern half, seen from the south.
+    let camera = Camera::orbit(&stage, [-1.57, 0.3], 0.5, ASPECT, 0.0);
+    let column = |index: u64| {
+        let [x, y] = [0.25 + 0.5 * (index % 32) as f64, 0.25 + 0.5 * (index / 32) as f64];
+        Droplet { volume: 0.25, reach: 1.0, flatness: 0.1, id: index, ..Droplet::ball([x, y, 0.93], 0.7) }
+    };
+    let droplets: Vec<Droplet> = (0..32 * 9).map(column).collect();
+    let mut sides = WaterSides::new(&table.renderer, &stage);
+    sides.fill(gpu, &flat, &droplets);
+    let draw =
+        |things: &mut [&mut dyn Drawable]| table.draw(&stage, &camera, &Light::day(), things, &Overlay::default());
+    let dry = draw(&mut [&mut ground]);
+    let wet = draw(&mut [&mut ground, &mut sides]);
+    // A place half way up the face in the middle, and one on the ground before the hole.
+    let seen = |place| camera.project(&stage, ASPECT, place).map(|[x, y]| [x * 240.0, y * 135.0]).unwrap();
+    let [x, y] = seen([8.0, 0.0, 0.5]);
+    let [red, _, blue, _] = wet.pixel(x as u32, y as u32);
+    assert!(blue > red.saturating_add(30) && wet.pixel(x as u32, y as u32) != dry.pixel(x as u32, y as u32));
+    let [x, y] = seen([8.0, 0.0, -0.5]);
+    assert_eq!(wet.pixel(x as u32, y as u32), dry.pixel(x as u32, y as u32));
 }
 
 #[test]

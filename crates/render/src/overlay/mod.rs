@@ -121,6 +121,8 @@ pub struct Axes {
     pub to: [f64; 3],
     /// Unit of lengths; empty in reduced units.
     pub unit: String,
+    /// How many times larger than they are lengths along z are drawn.
+    pub heights: f64,
 }
 
 /// The page that is drawn on, in CSS pixels.

@@ -3,12 +3,12 @@
 
 mod section;
 
-use super::{Moment, Studio};
+use super::{Moment, OwnView, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_gpu::Image;
 use corpuscle_model::{ParticleSet, Surface, Values};
-use corpuscle_render::{Axes, Camera, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
+use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
 use corpuscle_scene::Dew;
 use corpuscle_scene::dew::Material;
 use section::Section;
@@ -79,7 +79,13 @@ impl Room {
     }
 
     fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
-        let camera = Camera::orbit(&self.stage, [self.azimuth, RAISED], FIELD_OF_VIEW, studio.aspect(), MARGIN);
+        let own = OwnView {
+            direction: [self.azimuth, RAISED],
+            field_of_view: FIELD_OF_VIEW,
+            margin: MARGIN,
+            margins: [2.0 * MARGIN; 4],
+        };
+        let camera = studio.camera(&self.stage, &own, moment.frame.time);
         let light = Light::dim_room().from_azimuth(self.azimuth + SUN);
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
         let faces_eye = |cap: &&Cap| {
@@ -97,7 +103,7 @@ impl Room {
         let overlay = Overlay {
             title: title.into(),
             time: format!("t = {}", text::time(moment.frame.time)),
-            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
+            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         };
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)

@@ -64,7 +64,7 @@ impl Section {
             key: Some(Key::Values("Temperature of the air, °C".into(), self.colours.clone())),
             key_place: KeyPlace::Beside,
             labels: self.labels.clone(),
-            axes: Some(Axes { from: stage.from.into(), to: stage.to.into(), unit: "m".into() }),
+            axes: Some(Axes { from: stage.from.into(), to: stage.to.into(), unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         };
         let mut things: Vec<&mut dyn Drawable> = vec![&mut air];

@@ -3,7 +3,7 @@
 mod page;
 mod sides;
 
-use super::{Moment, Studio};
+use super::{Moment, OwnView, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_gpu::Image;
@@ -17,9 +17,9 @@ use sides::Plates;
 
 /// From where a box in space is seen, radians: to the right of its front, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.02, 0.36];
-const FIELD_OF_VIEW: f64 = 0.5;
 /// Room for axes round the box in space, part of the picture.
-const MARGIN: f64 = 0.085;
+const OWN_VIEW: OwnView =
+    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.12, 0.12, 0.16, 0.09] };
 /// In the plane: at the left, at the right, below and above, parts of its height; with the key beside the box, and below it.
 const BESIDE: [f64; 4] = [0.11, 0.38, 0.095, 0.095];
 const BELOW: [f64; 4] = [0.11, 0.06, 0.16, 0.095];
@@ -91,7 +91,7 @@ impl GasPicture {
         );
         let aspect = studio.aspect();
         if self.gas.dimensions() > 2 {
-            let camera = Camera::orbit(&stage, DIRECTION, FIELD_OF_VIEW, aspect, MARGIN);
+            let camera = studio.camera(&stage, &OWN_VIEW, moment.frame.time);
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
         let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];

@@ -40,7 +40,12 @@ impl GasPicture {
             marks: if flat { self.marks(moment) } else { Vec::new() },
             labels: Vec::new(),
             scale_bar: None,
-            axes: Some(Axes { from: view.stage.from.into(), to: view.stage.to.into(), unit: unit.into() }),
+            axes: Some(Axes {
+                from: view.stage.from.into(),
+                to: view.stage.to.into(),
+                unit: unit.into(),
+                heights: 1.0,
+            }),
         }
     }
 
