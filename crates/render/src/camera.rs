@@ -40,12 +40,22 @@ pub enum Lens {
 impl Camera {
     /// The stage seen from above, north up, to scale: as large as a picture of `aspect` (width over height) holds between its
     /// `margins` `[left, right, below, above]`, parts of the picture's height.
-    pub fn plan(stage: &Stage, aspect: f64, [left, right, below, above]: [f64; 4]) -> Self {
+    pub fn plan(stage: &Stage, aspect: f64, margins: [f64; 4]) -> Self {
+        Self::square(stage, aspect, margins, [DVec3::X, DVec3::Y])
+    }
+
+    /// The same from the south, where y is smallest, up being up.
+    pub fn front(stage: &Stage, aspect: f64, margins: [f64; 4]) -> Self {
+        Self::square(stage, aspect, margins, [DVec3::X, DVec3::Z])
+    }
+
+    /// The stage to scale, between margins, with these axes to the right and up.
+    fn square(stage: &Stage, aspect: f64, [left, right, below, above]: [f64; 4], [across, up]: [DVec3; 2]) -> Self {
         let size = stage.to - stage.from;
-        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - left - right));
-        let target = stage.centre() + 0.5 * height * DVec3::new(right - left, above - below, 0.0);
-        let eye = target + DVec3::Z * stage.unit() * 2.0;
-        Self { eye, target, up: DVec3::Y, lens: Lens::Orthographic { height } }
+        let height = (size.dot(up) / (1.0 - below - above)).max(size.dot(across) / (aspect - left - right));
+        let target = stage.centre() + 0.5 * height * ((right - left) * across + (above - below) * up);
+        let eye = target + across.cross(up) * stage.unit() * 2.0;
+        Self { eye, target, up, lens: Lens::Orthographic { height } }
     }
 
     /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)

@@ -36,6 +36,8 @@ pub struct Overlay {
     pub borders: Vec<Border>,
     /// Places that are marked.
     pub marks: Vec<Mark>,
+    /// Texts at places, m.
+    pub labels: Vec<([f64; 3], String)>,
     /// A bar of a round length, with this unit (empty in reduced units), where the lens is to scale.
     pub scale_bar: Option<String>,
     /// Axes along the edges of a box.
@@ -155,6 +157,11 @@ impl Overlay {
         page.svg.text([page.size[0] - MARGIN, MARGIN + 18.0], Anchor::End, "over-title", &self.time);
         borders::draw(&mut page, &self.borders);
         self.marks.iter().for_each(|mark| borders::draw_mark(&mut page, mark));
+        for (place, label) in &self.labels {
+            if let Some([x, y]) = page.place(*place) {
+                page.svg.text([x, y + 5.0], Anchor::Middle, "over", label);
+            }
+        }
         self.draw_key(&mut page);
         page.svg.text([page.size[0] - MARGIN, HEIGHT - MARGIN + 8.0], Anchor::End, "over-number", &self.remark);
         if let (Some(unit), Lens::Orthographic { height }) = (&self.scale_bar, camera.lens) {

@@ -30,6 +30,8 @@ const SUN: f64 = -0.9;
 /// Least radius of a ball that is drawn, pixels of a picture 1080 pixels high, in the plane and in space; and in any picture.
 const LEAST_RADIUS: [f64; 2] = [2.4, 4.5];
 const LEAST_OF_ALL: f64 = 1.2;
+/// Balls are not enlarged beyond this part of the mean distance between them.
+const CLOSEST: f64 = 0.2;
 /// Ink of edges, and the colour of a ball's way.
 const INK: [u8; 3] = [0x46, 0x52, 0x5e];
 const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
@@ -60,7 +62,7 @@ impl GasPicture {
         let light = if flat { Light::paper() } else { Light::studio().from_azimuth(DIRECTION[0] + SUN) };
         let overlay = self.overlay(studio, title, moment, &key, &view);
         let stage = &view.stage;
-        let mut balls = self.balls(studio, stage, moment, &key);
+        let mut balls = self.balls(studio, &view, moment, &key);
         let ways = moment.paths.iter().map(|path| {
             let so_far = path.times.partition_point(|time| *time <= moment.frame.time);
             &path.points[..so_far.min(path.points.len())]
@@ -104,9 +106,9 @@ impl GasPicture {
     }
 
     /// The sets of balls, each in its colours.
-    fn balls(&self, studio: &Studio, stage: &Stage, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
+    fn balls(&self, studio: &Studio, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
         let style = |number: usize| BallStyle {
-            least_radius: self.least_radius(studio) as f32,
+            least_radius: self.least_radius(studio, moment.frame, view) as f32,
             ..BallStyle::new(match key {
                 GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),
                 GasKey::Speed { most, .. } => speeds(*most),
@@ -117,29 +119,39 @@ impl GasPicture {
         let sets = moment.frame.sets.iter().enumerate();
         sets.map(|(number, set)| {
             let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], speed(set, at)));
-            studio.balls.balls(studio.renderer.gpu(), stage, &style(number), balls)
+            studio.balls.balls(studio.renderer.gpu(), &view.stage, &style(number), balls)
         })
         .collect()
     }
 
-    /// Least radius of a ball that is drawn, samples.
-    fn least_radius(&self, studio: &Studio) -> f64 {
-        let of_1080 = LEAST_RADIUS[usize::from(self.gas.dimensions() > 2)];
-        let pixels = (of_1080 * f64::from(studio.target.size[1]) / 1080.0).max(LEAST_OF_ALL);
-        pixels * f64::from(studio.target.samples)
+    /// Least radius of a ball that is drawn, samples: one that can be seen, but not so large that balls run into each other.
+    fn least_radius(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
+        let dimensions = self.gas.dimensions();
+        let of_1080 = LEAST_RADIUS[usize::from(dimensions > 2)];
+        let samples = f64::from(studio.target.samples);
+        let seen = (of_1080 * f64::from(studio.target.size[1]) / 1080.0).max(LEAST_OF_ALL) * samples;
+        let room: f64 = (0..dimensions).map(|k| view.container.to[k] - view.container.from[k]).product();
+        let count = frame.sets.iter().map(ParticleSet::len).sum::<usize>().max(1) as f64;
+        let spacing = (room / count).powf(1.0 / dimensions as f64);
+        seen.min(CLOSEST * spacing / sample_height(studio, view)).max(0.5 * samples)
     }
 
     /// How much larger than it is the smallest ball is drawn.
     fn enlarged(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
         let smallest = frame.sets.iter().flat_map(|set| &set.radius).copied().fold(f64::INFINITY, f64::min);
-        let distance = (view.camera.eye - view.camera.target).length();
-        let tall = match view.camera.lens {
-            Lens::Orthographic { height } => height,
-            Lens::Perspective { field_of_view } => 2.0 * distance * (0.5 * field_of_view).tan(),
-        };
-        let samples = f64::from(studio.target.size[1] * studio.target.samples);
-        (self.least_radius(studio) * tall / samples / smallest).max(1.0)
+        (self.least_radius(studio, frame, view) * sample_height(studio, view) / smallest).max(1.0)
     }
+}
+
+/// Height of a sample in the middle of the stage, m.
+fn sample_height(studio: &Studio, view: &View) -> f64 {
+    let tall = match view.camera.lens {
+        Lens::Orthographic { height } => height,
+        Lens::Perspective { field_of_view } => {
+            2.0 * (view.camera.eye - view.camera.target).length() * (0.5 * field_of_view).tan()
+        }
+    };
+    tall / f64::from(studio.target.size[1] * studio.target.samples)
 }
 
 /// Height of the world in a picture to scale, m.

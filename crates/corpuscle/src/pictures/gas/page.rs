@@ -38,6 +38,7 @@ impl GasPicture {
             remark: self.remark(studio, moment, view),
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
             marks: if flat { self.marks(moment) } else { Vec::new() },
+            labels: Vec::new(),
             scale_bar: None,
             axes: Some(Axes {
                 from: view.stage.from.into(),
@@ -52,11 +53,12 @@ impl GasPicture {
     fn lines(&self, moment: &Moment<'_>) -> Vec<(LineLook, String)> {
         let axes = Axis::ALL.into_iter().take(self.gas.dimensions());
         let walls: Vec<&Wall> = axes.flat_map(|axis| self.gas.walls.along(axis)).collect();
+        let flat = self.gas.dimensions() == 2;
         let followed = moment.paths.iter().any(|path| !path.points.is_empty());
         let found = [
             (followed, LineLook::Way, "way of one ball"),
             (walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })), LineLook::HotWall, "wall at a temperature"),
-            (walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineLook::Open, "periodic side"),
+            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineLook::Open, "periodic side"),
         ];
         found.into_iter().filter(|(there, ..)| *there).map(|(_, look, name)| (look, name.into())).collect()
     }
