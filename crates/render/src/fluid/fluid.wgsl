@@ -16,16 +16,17 @@ struct Fluid {
 
 @group(1) @binding(0) var<uniform> fluid: Fluid;
 
-// The place at a distance, along the picture's middle line of sight, in a pixel.
-fn place_at(pixel: vec2i, distance: f32) -> vec3f {
-    let ray = ray_at_pixel(vec2f(pixel) + 0.5);
-    return ray.origin + ray.direction * (distance - dot(ray.origin - view.eye.xyz, view.forward.xyz))
-        / dot(ray.direction, view.forward.xyz);
-}
-
 // Height of a pixel at a distance.
 fn pixel_size(distance: f32) -> f32 {
     return view.forward.w * select(1.0, max(distance, 1e-4), view.eye.w > 0.5);
+}
+
+// The place at a distance, along the picture's middle line of sight, in a pixel.
+fn place_at(pixel: vec2i, distance: f32) -> vec3f {
+    let away = (vec2f(pixel) + 0.5 - 0.5 * view.frame.xy) * pixel_size(distance);
+    let right = view.world_from_view[0].xyz;
+    let up = view.world_from_view[1].xyz;
+    return view.eye.xyz + distance * view.forward.xyz + away.x * right - away.y * up;
 }
 
 // How many pixels smoothing looks to each side at a distance.

@@ -11,8 +11,9 @@ use glam::DVec3;
 const QUADS: u32 = 64;
 /// Indices of the triangles of a tile with its skirt.
 pub(super) const INDICES: u32 = 6 * QUADS * QUADS + 4 * 6 * QUADS;
-/// A quad may be seen so large, samples.
+/// A quad may be seen so large, samples; and one of a tile at the border, where the upright sides end at the finest nodes.
 const LARGEST: f64 = 4.0;
+const LARGEST_AT_BORDER: f64 = 1.5;
 
 /// A tile: its first node, the distance of its nodes, and 0.
 pub(super) type Tile = [u32; 4];
@@ -56,7 +57,10 @@ pub(super) fn choose(field: &HeightField, stage: &Stage, camera: &Camera, size: 
             continue;
         }
         let tile = [column, row, stride, 0];
-        if stride == 1 || seen_size(field, stage, camera, size, tile) <= LARGEST {
+        let is_border =
+            column == 0 || row == 0 || column + QUADS * stride >= quads[0] || row + QUADS * stride >= quads[1];
+        let largest = if is_border { LARGEST_AT_BORDER } else { LARGEST };
+        if stride == 1 || seen_size(field, stage, camera, size, tile) <= largest {
             chosen.push(tile);
         } else {
             let half = stride / 2;
