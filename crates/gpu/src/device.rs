@@ -49,7 +49,7 @@ impl Gpu {
             let info = adapter.get_info();
             let request = wgpu::DeviceDescriptor {
                 label: Some("corpuscle"),
-                required_limits: wgpu::Limits::default(),
+                required_limits: limits(&adapter.limits()),
                 ..wgpu::DeviceDescriptor::default()
             };
             match adapter.request_device(&request).await {
@@ -64,9 +64,24 @@ impl Gpu {
         Err(refused)
     }
 
+    /// Largest memory that a shader can see as one piece, bytes.
+    pub fn most_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
     /// Largest width and height of a texture, pixels.
     pub fn most_pixels(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
+    }
+}
+
+/// The portable floor, but as much memory as there is.
+fn limits(most: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
+        max_buffer_size: most.max_buffer_size,
+        ..wgpu::Limits::default()
     }
 }
 
