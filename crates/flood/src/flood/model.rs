@@ -41,6 +41,10 @@ impl Model for Flood {
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.card.is_some() {
+            return self.advance_on_card(time, stop);
+        }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -164,6 +168,8 @@ impl Model for Flood {
         (self.shown, self.state) = (shown, state);
         self.surroundings.time = self.state.time;
         self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+        #[cfg(feature = "gpu")]
+        self.send_to_card();
         Ok(())
     }
 }

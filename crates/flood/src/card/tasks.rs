@@ -1,0 +1,119 @@
+//! The passes of a step, each with what it works on.
+
+use super::layout::{CardParticle, Column, Parameters, Partial, Slopes, Status};
+use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, storage, uniform, wgpu};
+
+/// Pieces that the shaders import.
+const LIBRARY: &[(&str, &str)] = &[
+    ("flood_card", include_str!("flood_card.wgsl")),
+    ("flood_friction", include_str!("flood_friction.wgsl")),
+    ("flood_ground", include_str!("flood_ground.wgsl")),
+    ("flood_neighbours", include_str!("flood_neighbours.wgsl")),
+    ("flood_columns", include_str!("flood_columns.wgsl")),
+];
+
+/// Slots of the numbers of groups: see `flood_finish.wgsl`.
+const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
+
+/// Everything on the device.
+#[derive(Debug)]
+pub(super) struct Tasks {
+    pub parameters: wgpu::Buffer,
+    pub status: wgpu::Buffer,
+    pub particles: wgpu::Buffer,
+    pub slopes: wgpu::Buffer,
+    groups: wgpu::Buffer,
+    sort: CellSort,
+    drift: Task,
+    reorder: Task,
+    reach_own: Task,
+    reach_rows: Task,
+    reach: Task,
+    density: Task,
+    gradients: Task,
+    forces: Task,
+    finish: Task,
+}
+
+impl Tasks {
+    /// For so many particles and cells at most.
+    pub fn new(gpu: &Gpu, count: usize, cells: usize, nodes: &wgpu::TextureView) -> Result<Self, GpuError> {
+        let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
+        let status = storage::<Status>(gpu, "status", 1)?;
+        let groups = storage::<[u32; 3]>(gpu, "groups", 4)?;
+        let particles = storage::<CardParticle>(gpu, "particles", count)?;
+        let sorted = storage::<CardParticle>(gpu, "particles in order", count)?;
+        let keys = storage::<u32>(gpu, "numbers of particles", count)?;
+        let sites = storage::<[f32; 4]>(gpu, "sites", count)?;
+        let columns = storage::<Column>(gpu, "columns of water", count)?;
+        let slopes = storage::<Slopes>(gpu, "slopes", count)?;
+        let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
+        let [own, along_rows, reaches] = ["reaches", "reaches of rows", "reaches in cells"];
+        let own = storage::<f32>(gpu, own, cells)?;
+        let along_rows = storage::<f32>(gpu, along_rows, cells)?;
+        let reaches = storage::<f32>(gpu, reaches, cells)?;
+        let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
+        let ground = wgpu::BindingResource::TextureView(nodes);
+        let task = |name, text, buffers: &[&wgpu::Buffer], more: &[wgpu::BindingResource<'_>]| {
+            let buffers = buffers.iter().map(|buffer| buffer.as_entire_binding());
+            let resources: Vec<_> = buffers.chain(more.iter().cloned()).collect();
+            Kernel::new(gpu, name, text, LIBRARY).on(gpu, &resources)
+        };
+        macro_rules! shader {
+            ($name:literal, [$($buffer:expr),*] $(, $more:expr)?) => {
+                task($name, include_str!(concat!($name, ".wgsl")), &[$(&$buffer),*], &[$($more.clone())?])
+            };
+        }
+        Ok(Self {
+            drift: shader!("flood_drift", [parameters, status, particles, sort.counts, sort.places, keys, partials]),
+            reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites]),
+            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
+            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),
+            reach: shader!("flood_reach", [parameters, along_rows, reaches]),
+            density: shader!(
+                "flood_density",
+                [parameters, status, sort.start, reaches, sites, sorted, columns],
+                ground
+            ),
+            gradients: shader!(
+                "flood_slopes",
+                [parameters, status, sort.start, reaches, columns, sorted, slopes],
+                ground
+            ),
+            forces: shader!(
+                "flood_forces",
+                [parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials],
+                ground
+            ),
+            finish: shader!("flood_finish", [parameters, status, partials, groups]),
+            parameters,
+            status,
+            particles,
+            slopes,
+            groups,
+            sort,
+        })
+    }
+
+    /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
+    pub fn steps(&self, pass: &mut wgpu::ComputePass<'_>, count: u32) {
+        self.finish.run(pass, 1);
+        for _ in 0..count {
+            self.step(pass);
+        }
+    }
+
+    fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let groups = &self.groups;
+        self.drift.run_as_told(pass, groups, SLOTS.particles);
+        self.sort.sort(pass, groups, SLOTS);
+        self.reorder.run_as_told(pass, groups, SLOTS.particles);
+        self.reach_own.run_as_told(pass, groups, SLOTS.cells);
+        self.reach_rows.run_as_told(pass, groups, SLOTS.cells);
+        self.reach.run_as_told(pass, groups, SLOTS.cells);
+        self.density.run_as_told(pass, groups, SLOTS.particles);
+        self.gradients.run_as_told(pass, groups, SLOTS.particles);
+        self.forces.run_as_told(pass, groups, SLOTS.particles);
+        self.finish.run(pass, 1);
+    }
+}

@@ -1,0 +1,110 @@
+//! A flood whose steps the graphics card takes.
+
+use super::step::CELL_OVER_H_BALANCED;
+use super::{DENSITY, Flood, State, open};
+use crate::card::{Card, Progress};
+use crate::friction::{Coefficient, Roughness};
+use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Scheme as SchemeName;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a card cannot tell the host is told so.
+fn failed(error: &GpuError) -> ModelError {
+    ModelError::Setup(error.to_string())
+}
+
+impl Flood {
+    /// Lets a graphics card take the steps, in single precision.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where the scene has something that the card's program has not yet, or the card too little memory.
+    pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        let missing = self.missing_on_card();
+        if !missing.is_empty() {
+            let what = missing.join(", ");
+            return Err(ModelError::Setup(format!(
+                "the graphics card cannot yet compute this flood: it has {what}. Run it with `--backend cpu`"
+            )));
+        }
+        let scheme = open::balanced_parameters(&self.settings, self.volume / (self.spacing * self.spacing), self.h);
+        let count = self.state.particles.len();
+        let shortest = self.shortest_step();
+        let card = Card::new(gpu, count, &self.surroundings, &scheme, &self.roughness, shortest);
+        self.card = Some(card.map_err(|error| failed(&error))?);
+        self.send_to_card();
+        Ok(())
+    }
+
+    /// What this flood has that there is no twin of on the card.
+    fn missing_on_card(&self) -> Vec<&'static str> {
+        let rasters = matches!(self.roughness, Roughness::Manning(Coefficient::Raster(_) | Coefficient::Classes(..)));
+        let all = [
+            (self.settings.scheme == SchemeName::Paper, "flood.scheme = \"paper\""),
+            (self.refinement.is_some(), "[flood.refinement]"),
+            (self.ground.is_some(), "[flood.rain] or [flood.infiltration]"),
+            (!self.sources.is_empty(), "[[flood.inflow]]"),
+            (!self.structures.is_empty(), "[[flood.outflow]], [[flood.stage]] or [[flood.link]]"),
+            (!self.state.falling.is_empty(), "water that falls (block)"),
+            (self.surroundings.edges.holds_level(), "an edge with a stage"),
+            (self.surroundings.obstacles.any(), "[[flood.obstacle]]"),
+            (rasters, "Manning's n by a raster or [flood.land_use]"),
+        ];
+        all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
+    }
+
+    /// Hands the state to the card.
+    pub(super) fn send_to_card(&mut self) {
+        let State { particles, time_step, external, .. } = &self.state;
+        if let Some(card) = &mut self.card {
+            card.send(particles, *time_step, *external);
+        }
+    }
+
+    pub(super) fn advance_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        let mut going = self.state.time + self.state.time_step <= time;
+        while going && !stop.load(Ordering::Relaxed) {
+            let look = self.state.next_look as f64 * self.map_period - self.state.time;
+            let Some(card) = &mut self.card else { break };
+            let progress = card.advance(time - self.state.time, look).map_err(|error| failed(&error))?;
+            self.book(&progress);
+            if progress.broken {
+                self.fetch()?;
+                return self.check(progress.step);
+            }
+            if self.state.time >= self.state.next_look as f64 * self.map_period {
+                self.fetch()?;
+                self.look();
+            }
+            going = self.state.time + self.state.time_step <= time;
+        }
+        self.fetch()?;
+        self.shown = if going { self.shown.max(self.state.time) } else { time };
+        Ok(())
+    }
+
+    fn book(&mut self, progress: &Progress) {
+        let state = &mut self.state;
+        state.time += progress.elapsed;
+        state.steps += progress.steps;
+        state.particle_steps += progress.particle_steps;
+        state.time_step = progress.step;
+        state.external = progress.from_outside;
+        state.sizes.cell = CELL_OVER_H_BALANCED * progress.mean_h;
+        state.water.inflow.add(progress.inflow);
+        state.water.outflow.add(progress.outflow);
+        state.momentum.inflow.add(DENSITY * progress.momentum_gained);
+        state.momentum.outflow.add(DENSITY * progress.momentum_lost);
+        self.surroundings.time = state.time;
+    }
+
+    /// Brings the state back from the card.
+    fn fetch(&mut self) -> Result<(), ModelError> {
+        if let Some(card) = &mut self.card
+            && card.fetch(&mut self.state.particles).map_err(|error| failed(&error))?
+        {
+            self.arrange();
+        }
+        Ok(())
+    }
+}
