@@ -53,23 +53,27 @@ impl Tasks {
         let along_rows = storage::<f32>(gpu, along_rows, cells)?;
         let reaches = storage::<f32>(gpu, reaches, cells)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
-        let ground = wgpu::BindingResource::TextureView(nodes);
-        let task = |name, text, buffers: &[&wgpu::Buffer], more: &[wgpu::BindingResource<'_>]| {
+        let task = |name, text, buffers: &[&wgpu::Buffer], nodes: Option<&wgpu::TextureView>| {
             let buffers = buffers.iter().map(|buffer| buffer.as_entire_binding());
-            let resources: Vec<_> = buffers.chain(more.iter().cloned()).collect();
+            let resources: Vec<_> = buffers.chain(nodes.map(wgpu::BindingResource::TextureView)).collect();
             Kernel::new(gpu, name, text, LIBRARY).on(gpu, &resources)
         };
         macro_rules! shader {
-            ($name:literal, [$($buffer:expr),*] $(, $more:expr)?) => {
-                task($name, include_str!(concat!($name, ".wgsl")), &[$(&$buffer),*], &[$($more.clone())?])
+            ($name:literal, [$($buffer:expr),*], $nodes:expr) => {
+                task($name, include_str!(concat!($name, ".wgsl")), &[$(&$buffer),*], $nodes)
             };
         }
+        let (none, ground) = (None, Some(nodes));
         Ok(Self {
-            drift: shader!("flood_drift", [parameters, status, particles, sort.counts, sort.places, keys, partials]),
-            reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites]),
-            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
-            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),
-            reach: shader!("flood_reach", [parameters, along_rows, reaches]),
+            drift: shader!(
+                "flood_drift",
+                [parameters, status, particles, sort.counts, sort.places, keys, partials],
+                none
+            ),
+            reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites], none),
+            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own], none),
+            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows], none),
+            reach: shader!("flood_reach", [parameters, along_rows, reaches], none),
             density: shader!(
                 "flood_density",
                 [parameters, status, sort.start, reaches, sites, sorted, columns],
@@ -85,7 +89,7 @@ impl Tasks {
                 [parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials],
                 ground
             ),
-            finish: shader!("flood_finish", [parameters, status, partials, groups]),
+            finish: shader!("flood_finish", [parameters, status, partials, groups], none),
             parameters,
             status,
             particles,
