@@ -2,7 +2,7 @@
 
 use corpuscle_flood::{Flood, Particle};
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::Model;
+use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{FloodScene, Scene};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -201,6 +201,21 @@ fn no_particle_and_one_particle_go_too() {
         assert_eq!(card.time(), 3.0);
         assert!(differences(&host, &card).iter().all(|apart| *apart < 1e-4));
     }
+}
+
+#[test]
+fn a_lost_card_ends_with_an_error_and_the_state_of_before() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let mut flood = on_card(DAM, &gpu);
+    go(&mut flood, 1.0);
+    let before = by_id(&flood);
+    gpu.device.destroy();
+    let error = flood.advance_to(2.0, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, ModelError::Device(_)) && error.to_string().contains(&gpu.name), "{error}");
+    let mut host = open(DAM);
+    host.restore(&flood.save()).unwrap();
+    assert_eq!(by_id(&host), before);
+    go(&mut host, 2.0);
 }
 
 #[test]

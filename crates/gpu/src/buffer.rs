@@ -16,7 +16,9 @@ pub fn storage<T>(gpu: &Gpu, label: &'static str, length: usize) -> Result<wgpu:
         return Err(GpuError::Memory { name: gpu.name.clone(), what: label, bytes, most });
     }
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | BufferUsages::INDIRECT;
-    Ok(buffer(gpu, label, bytes, usage))
+    let buffer = buffer(gpu, label, bytes, usage);
+    gpu.check()?;
+    Ok(buffer)
 }
 
 /// Numbers that shaders read and nothing but the host changes.
@@ -56,6 +58,7 @@ pub(crate) fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, 
         let _ = done.send(result);
     });
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
+    gpu.check()?;
     answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
     buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))
 }

@@ -1,6 +1,7 @@
 //! Choice of a device.
 
 use crate::GpuError;
+use std::sync::{Arc, OnceLock};
 
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +23,27 @@ pub struct Gpu {
     pub name: String,
     /// A card, or a program in its place.
     pub kind: GpuKind,
+    faults: Faults,
+}
+
+/// The first thing that went wrong on a device, which tells of it when it likes.
+#[derive(Debug, Clone, Default)]
+struct Faults(Arc<OnceLock<String>>);
+
+impl Faults {
+    /// Listens to a device.
+    fn of(device: &wgpu::Device) -> Self {
+        let faults = Self::default();
+        let (of_calls, of_loss) = (faults.clone(), faults.clone());
+        device.on_uncaptured_error(Arc::new(move |error| of_calls.note(error.to_string())));
+        device.set_device_lost_callback(move |_, reason| of_loss.note(format!("it was lost ({reason})")));
+        faults
+    }
+
+    fn note(&self, what: String) {
+        // What goes wrong later follows from it.
+        let _ = self.0.set(what);
+    }
 }
 
 impl Gpu {
@@ -56,12 +78,24 @@ impl Gpu {
                 Ok((device, queue)) => {
                     let software = info.device_type == wgpu::DeviceType::Cpu;
                     let kind = if software { GpuKind::Software } else { GpuKind::Card };
-                    return Ok(Self { device, queue, name: info.name, kind });
+                    let faults = Faults::of(&device);
+                    return Ok(Self { device, queue, name: info.name, kind, faults });
                 }
                 Err(error) => refused = GpuError::Refused { name: info.name, reason: error.to_string() },
             }
         }
         Err(refused)
+    }
+
+    /// Whether nothing has gone wrong so far. A device tells late: ask again after reading something back.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] with what went wrong first.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.faults.0.get() {
+            None => Ok(()),
+            Some(reason) => Err(GpuError::Lost { name: self.name.clone(), reason: reason.clone() }),
+        }
     }
 
     /// Largest memory that a shader can see as one piece, bytes.

@@ -69,6 +69,39 @@ pub(crate) struct Progress {
     pub broken: bool,
 }
 
+impl Progress {
+    /// Nothing yet; `step` is the next one.
+    pub fn none(step: f64) -> Self {
+        Self {
+            steps: 0,
+            particle_steps: 0,
+            elapsed: 0.0,
+            step,
+            outflow: 0.0,
+            inflow: 0.0,
+            momentum_lost: 0.0,
+            momentum_gained: 0.0,
+            from_outside: [0.0; 2],
+            mean_h: 0.0,
+            broken: false,
+        }
+    }
+
+    /// With what was done after it.
+    pub fn and(self, later: Self) -> Self {
+        Self {
+            steps: self.steps + later.steps,
+            particle_steps: self.particle_steps + later.particle_steps,
+            elapsed: self.elapsed + later.elapsed,
+            outflow: self.outflow + later.outflow,
+            inflow: self.inflow + later.inflow,
+            momentum_lost: self.momentum_lost + later.momentum_lost,
+            momentum_gained: self.momentum_gained + later.momentum_gained,
+            ..later
+        }
+    }
+}
+
 impl Card {
     /// Room for `count` particles amid `surroundings`.
     pub fn new(
@@ -132,10 +165,10 @@ impl Card {
         (self.steps, self.ahead) = (0, false);
     }
 
-    /// Brings the water back; whether there was any news of it.
-    pub fn fetch(&mut self, particles: &mut Vec<Particle>) -> Result<bool, GpuError> {
+    /// Brings the water back, where there is any news of it.
+    pub fn fetch(&mut self, particles: &mut Vec<Particle>) -> Result<(), GpuError> {
         if !self.ahead {
-            return Ok(false);
+            return Ok(());
         }
         let count = self.status.particles as usize;
         let sent: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, count)?;
@@ -143,7 +176,7 @@ impl Card {
         particles.clear();
         particles.extend(sent.iter().zip(&slopes).map(|(particle, slopes)| self.origin.to_host(particle, slopes)));
         self.ahead = false;
-        Ok(true)
+        Ok(())
     }
 
     /// Takes some steps, up to `until` s from here or to the first after `look` s.

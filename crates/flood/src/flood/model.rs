@@ -24,6 +24,11 @@ impl Model for Flood {
         "flood"
     }
 
+    #[cfg(feature = "gpu")]
+    fn backend(&self) -> &'static str {
+        if self.card.is_some() { "gpu" } else { "cpu" }
+    }
+
     fn time(&self) -> f64 {
         self.shown
     }

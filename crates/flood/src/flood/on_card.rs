@@ -9,9 +9,8 @@ use corpuscle_model::ModelError;
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a card cannot tell the host is told so.
 fn failed(error: &GpuError) -> ModelError {
-    ModelError::Setup(error.to_string())
+    ModelError::Device(error.to_string())
 }
 
 impl Flood {
@@ -31,7 +30,7 @@ impl Flood {
         let count = self.state.particles.len();
         let shortest = self.shortest_step();
         let card = Card::new(gpu, count, &self.surroundings, &scheme, &self.roughness, shortest);
-        self.card = Some(card.map_err(|error| failed(&error))?);
+        self.card = Some(card.map_err(|error| ModelError::Setup(error.to_string()))?);
         self.send_to_card();
         Ok(())
     }
@@ -62,25 +61,45 @@ impl Flood {
     }
 
     pub(super) fn advance_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
-        let mut going = self.state.time + self.state.time_step <= time;
-        while going && !stop.load(Ordering::Relaxed) {
-            let look = self.state.next_look as f64 * self.map_period - self.state.time;
-            let Some(card) = &mut self.card else { break };
-            let progress = card.advance(time - self.state.time, look).map_err(|error| failed(&error))?;
-            self.book(&progress);
-            if progress.broken {
-                self.fetch()?;
-                return self.check(progress.step);
+        while self.state.time + self.state.time_step <= time {
+            if stop.load(Ordering::Relaxed) {
+                self.shown = self.shown.max(self.state.time);
+                return Ok(());
             }
-            if self.state.time >= self.state.next_look as f64 * self.map_period {
-                self.fetch()?;
+            let look = self.state.next_look as f64 * self.map_period;
+            let steps = self.state.steps;
+            self.advance_to_look(time, look, stop)?;
+            if self.state.time >= look {
                 self.look();
             }
-            going = self.state.time + self.state.time_step <= time;
+            // To the card, which rounds more coarsely, a step that ends at that time may end after it.
+            if self.state.steps == steps {
+                break;
+            }
         }
-        self.fetch()?;
-        self.shown = if going { self.shown.max(self.state.time) } else { time };
+        self.shown = time;
         Ok(())
+    }
+
+    /// Goes on to `time`, or to the first step that ends at `look` or after. What is here changes only when all of it has come back.
+    fn advance_to_look(&mut self, time: f64, look: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        let Some(card) = &mut self.card else { return Ok(()) };
+        let began = self.state.time;
+        let mut done = Progress::none(self.state.time_step);
+        while began + done.elapsed + done.step <= time && began + done.elapsed < look {
+            let now = began + done.elapsed;
+            let progress = card.advance(time - now, look - now).map_err(|error| failed(&error))?;
+            done = done.and(progress);
+            if progress.steps == 0 || done.broken || stop.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        if done.steps > 0 {
+            card.fetch(&mut self.state.particles).map_err(|error| failed(&error))?;
+            self.book(&done);
+            self.arrange();
+        }
+        if done.broken { self.check(done.step) } else { Ok(()) }
     }
 
     fn book(&mut self, progress: &Progress) {
@@ -96,15 +115,5 @@ impl Flood {
         state.momentum.inflow.add(DENSITY * progress.momentum_gained);
         state.momentum.outflow.add(DENSITY * progress.momentum_lost);
         self.surroundings.time = state.time;
-    }
-
-    /// Brings the state back from the card.
-    fn fetch(&mut self) -> Result<(), ModelError> {
-        if let Some(card) = &mut self.card
-            && card.fetch(&mut self.state.particles).map_err(|error| failed(&error))?
-        {
-            self.arrange();
-        }
-        Ok(())
     }
 }
