@@ -29,7 +29,9 @@ struct Parameters {
     // Time step where nothing moves, and the one at which the run has broken down, s.
     longest_step: f32,
     shortest_step: f32,
-    unused: vec2f,
+    // Volume, m3, and smoothing length, m, of a new particle.
+    new_volume: f32,
+    new_h: f32,
 }
 
 const OPEN = 0u;
@@ -83,6 +85,9 @@ struct Status {
     // Corners of the water.
     low: vec2f,
     high: vec2f,
+    // Particles that are to come, and how many of them have.
+    births: u32,
+    born: u32,
 }
 
 const GOING = 0u;

@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read_write> status: Status;
-@group(0) @binding(2) var<storage, read> partials: array<Partial>;
+@group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
@@ -85,6 +85,10 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += 256u) {
             own = joined(own, partials[group]);
+            // Births may call for one more group than there was in the drift.
+            partials[group].outflow = 0.0;
+            partials[group].inflow = 0.0;
+            partials[group].booked_in_drift = 0.0;
         }
     }
     sums[thread] = own;

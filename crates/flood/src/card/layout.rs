@@ -1,5 +1,7 @@
 //! Numbers as the shaders see them: `flood_card.wgsl` and `flood_columns.wgsl` have the same in the same order.
 
+use super::Birth;
+use crate::inflow::TRIES;
 use crate::particle::Particle;
 use bytemuck::{Pod, Zeroable};
 
@@ -28,7 +30,8 @@ pub(super) struct Parameters {
     pub cfl: f32,
     pub longest_step: f32,
     pub shortest_step: f32,
-    pub unused: [f32; 2],
+    pub new_volume: f32,
+    pub new_h: f32,
 }
 
 /// What the sides do.
@@ -64,6 +67,8 @@ pub(super) struct Status {
     pub look: f32,
     pub low: [f32; 2],
     pub high: [f32; 2],
+    pub births: u32,
+    pub born: u32,
 }
 
 /// Values of [`Status::halted`]: broken down; and the host has said until when to go on.
@@ -98,6 +103,16 @@ pub(super) struct Slopes {
     pub others: [f32; 10],
 }
 
+/// A particle that is to come.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardBirth {
+    pub time: f32,
+    pub id: u32,
+    pub velocity: [f32; 2],
+    pub places: [[f32; 2]; TRIES],
+}
+
 /// Bytes of a `Column` and of a `Partial`.
 pub(super) type Column = [f32; 8];
 pub(super) type Partial = [f32; 12];
@@ -125,6 +140,15 @@ impl Origin {
             ground_slope: particle.ground_slope.map(|value| value as f32),
             id: particle.id as u32,
             outside: particle.outside.map_or(0, |side| u32::from(side) + 1),
+        }
+    }
+
+    pub fn birth(self, birth: &Birth) -> CardBirth {
+        CardBirth {
+            time: birth.time as f32,
+            id: birth.id as u32,
+            velocity: birth.velocity.map(|value| value as f32),
+            places: birth.places.map(|place| [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)),
         }
     }
 

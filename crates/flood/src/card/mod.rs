@@ -9,6 +9,7 @@ mod tasks;
 use crate::balanced;
 use crate::edges::EdgeRule;
 use crate::friction::{Coefficient, Roughness};
+use crate::inflow::TRIES;
 use crate::particle::Particle;
 use crate::scheme::Surroundings;
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
@@ -40,7 +41,8 @@ pub(crate) struct Card {
     origin: Origin,
     bounds: Bounds,
     status: Status,
-    /// Cells that there is room for.
+    /// Particles and cells that there is room for.
+    room: usize,
     most_cells: usize,
     /// Steps in all, to lay the cells out at the same ones however often the host looks.
     steps: u64,
@@ -49,6 +51,19 @@ pub(crate) struct Card {
     /// Whether the host has not the state that is here.
     ahead: bool,
 }
+
+/// A particle that is to come, at the one of some places where the surface then stands lowest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Birth {
+    /// Time from now, s.
+    pub time: f64,
+    pub id: u64,
+    pub velocity: [f64; 2],
+    pub places: [[f64; 2]; TRIES],
+}
+
+/// Births that the card can be told of at once.
+pub(crate) const MOST_BIRTHS: usize = 16_384;
 
 /// What a batch of steps did.
 #[derive(Debug, Clone, Copy)]
@@ -65,6 +80,8 @@ pub(crate) struct Progress {
     pub momentum_gained: f64,
     pub from_outside: [f64; 2],
     pub mean_h: f64,
+    /// How many of the births have been.
+    pub born: usize,
     /// Whether the next step is too short to go on.
     pub broken: bool,
 }
@@ -83,6 +100,7 @@ impl Progress {
             momentum_gained: 0.0,
             from_outside: [0.0; 2],
             mean_h: 0.0,
+            born: 0,
             broken: false,
         }
     }
@@ -97,13 +115,14 @@ impl Progress {
             inflow: self.inflow + later.inflow,
             momentum_lost: self.momentum_lost + later.momentum_lost,
             momentum_gained: self.momentum_gained + later.momentum_gained,
+            born: self.born + later.born,
             ..later
         }
     }
 }
 
 impl Card {
-    /// Room for `count` particles amid `surroundings`.
+    /// Room for `count` particles amid `surroundings`; new ones hold `volume` m3 and begin with the smoothing length `h`, m.
     pub fn new(
         gpu: Gpu,
         count: usize,
@@ -111,6 +130,7 @@ impl Card {
         scheme: &balanced::Parameters,
         roughness: &Roughness,
         shortest_step: f64,
+        [volume, h]: [f64; 2],
     ) -> Result<Self, GpuError> {
         let bounds = surroundings.edges.bounds;
         let origin = Origin {
@@ -137,12 +157,36 @@ impl Card {
             cfl: scheme.cfl as f32,
             longest_step: scheme.longest_step as f32,
             shortest_step: shortest_step as f32,
+            new_volume: volume as f32,
+            new_h: h as f32,
             ..Parameters::default()
         };
         let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
-        let tasks = Tasks::new(&gpu, count, most_cells, &nodes)?;
+        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes)?;
         let status = Status::default();
-        Ok(Self { gpu, tasks, parameters, origin, bounds, status, most_cells, steps: 0, batch: 4, ahead: false })
+        Ok(Self {
+            gpu,
+            room: count,
+            tasks,
+            parameters,
+            origin,
+            bounds,
+            status,
+            most_cells,
+            steps: 0,
+            batch: 4,
+            ahead: false,
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
+    }
+
+    /// Particles that there is room for.
+    pub fn room(&self) -> usize {
+        self.room
     }
 
     /// Hands the water over; `step` is the next step, `from_outside` the force at the last evaluation.
@@ -179,11 +223,19 @@ impl Card {
         Ok(())
     }
 
-    /// Takes some steps, up to `until` s from here or to the first after `look` s.
-    pub fn advance(&mut self, until: f64, look: f64) -> Result<Progress, GpuError> {
+    /// Whether the room may not do for `births` more until it is time to ask again; none where it is not time to.
+    pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
+        let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
+        self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+    }
+
+    /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.
+    pub fn advance(&mut self, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
         if self.steps.is_multiple_of(LAID_OUT) {
-            self.lay_out();
+            self.lay_out()?;
         }
+        let births: Vec<_> = births.iter().map(|birth| self.origin.birth(birth)).collect();
+        self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
         let count = planned.min(self.batch).min(to_layout as u32);
@@ -193,6 +245,8 @@ impl Card {
             particle_steps: [0; 2],
             until: until as f32,
             look: look as f32,
+            births: births.len() as u32,
+            born: 0,
             elapsed: [0.0; 2],
             outflow: [0.0; 2],
             inflow: [0.0; 2],
@@ -231,12 +285,13 @@ impl Card {
             momentum_gained: total(self.status.momentum_gained),
             from_outside: self.status.from_outside.map(f64::from),
             mean_h: f64::from(mean_h),
+            born: self.status.born as usize,
             broken: halted == layout::BROKEN,
         }
     }
 
     /// Lays the cells over the water as it stands, as [`corpuscle_sph::Cells`] does.
-    fn lay_out(&mut self) {
+    fn lay_out(&mut self) -> Result<(), GpuError> {
         let Status { low, high, mean_h, particles, .. } = self.status;
         let any = particles > 0;
         let [low, high] = [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
@@ -261,6 +316,10 @@ impl Card {
         // One more cell holds what has left.
         self.status.cells = columns * rows + 1;
         self.gpu.queue.write_buffer(&self.tasks.parameters, 0, bytemuck::bytes_of(&self.parameters));
+        self.tasks.arrange(&self.gpu, &Status { step: 0.0, ..self.status });
+        let arranged: Status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        self.status.particles = arranged.particles;
+        Ok(())
     }
 }
 

@@ -1,7 +1,7 @@
 //! The passes of a step, each with what it works on.
 
-use super::layout::{CardParticle, Column, Parameters, Partial, Slopes, Status};
-use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, storage, uniform, wgpu};
+use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Slopes, Status};
+use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, sort_blocks, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
 const LIBRARY: &[(&str, &str)] = &[
@@ -22,9 +22,12 @@ pub(super) struct Tasks {
     pub status: wgpu::Buffer,
     pub particles: wgpu::Buffer,
     pub slopes: wgpu::Buffer,
+    pub births: wgpu::Buffer,
+    sorted: wgpu::Buffer,
     groups: wgpu::Buffer,
     sort: CellSort,
     drift: Task,
+    bear: Task,
     reorder: Task,
     reach_own: Task,
     reach_rows: Task,
@@ -36,8 +39,14 @@ pub(super) struct Tasks {
 }
 
 impl Tasks {
-    /// For so many particles and cells at most.
-    pub fn new(gpu: &Gpu, count: usize, cells: usize, nodes: &wgpu::TextureView) -> Result<Self, GpuError> {
+    /// For so many particles, cells, and births between two words of the host, at most.
+    pub fn new(
+        gpu: &Gpu,
+        count: usize,
+        cells: usize,
+        most_births: usize,
+        nodes: &wgpu::TextureView,
+    ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
         let groups = storage::<[u32; 3]>(gpu, "groups", 4)?;
@@ -47,6 +56,7 @@ impl Tasks {
         let sites = storage::<[f32; 4]>(gpu, "sites", count)?;
         let columns = storage::<Column>(gpu, "columns of water", count)?;
         let slopes = storage::<Slopes>(gpu, "slopes", count)?;
+        let births = storage::<CardBirth>(gpu, "particles to come", most_births)?;
         let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
         let [own, along_rows, reaches] = ["reaches", "reaches of rows", "reaches in cells"];
         let own = storage::<f32>(gpu, own, cells)?;
@@ -69,6 +79,11 @@ impl Tasks {
                 "flood_drift",
                 [parameters, status, particles, sort.counts, sort.places, keys, partials],
                 none
+            ),
+            bear: shader!(
+                "flood_births",
+                [parameters, status, particles, sort.start, sort.counts, sort.places, keys, births, groups],
+                ground
             ),
             reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites], none),
             reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own], none),
@@ -94,6 +109,8 @@ impl Tasks {
             status,
             particles,
             slopes,
+            births,
+            sorted,
             groups,
             sort,
         })
@@ -107,9 +124,27 @@ impl Tasks {
         }
     }
 
+    /// Brings the particles into the order of new cells. The status says that the next step is 0 s long, so that nothing moves.
+    pub fn arrange(&self, gpu: &Gpu, status: &Status) {
+        let threads = |count: u32| [count.div_ceil(THREADS), 1, 1];
+        let blocks = [sort_blocks(status.cells as usize) as u32, 1, 1];
+        let groups = [threads(status.particles), threads(status.cells), blocks, [1, 1, 1]];
+        gpu.queue.write_buffer(&self.status, 0, bytemuck::bytes_of(status));
+        gpu.queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&groups));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.drift.run_as_told(&mut pass, &self.groups, SLOTS.particles);
+        self.sort.sort(&mut pass, &self.groups, SLOTS);
+        self.reorder.run_as_told(&mut pass, &self.groups, SLOTS.particles);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(&self.sorted, 0, &self.particles, 0, self.particles.size());
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
         let groups = &self.groups;
         self.drift.run_as_told(pass, groups, SLOTS.particles);
+        self.bear.run(pass, 1);
         self.sort.sort(pass, groups, SLOTS);
         self.reorder.run_as_told(pass, groups, SLOTS.particles);
         self.reach_own.run_as_told(pass, groups, SLOTS.cells);

@@ -174,7 +174,7 @@ impl Model for Flood {
         self.surroundings.time = self.state.time;
         self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
         #[cfg(feature = "gpu")]
-        self.send_to_card();
+        self.send_to_card().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())
     }
 }
