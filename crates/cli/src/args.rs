@@ -156,6 +156,8 @@ pub struct RunOptions {
     /// Width and height of the film, pixels
     #[arg(long, value_name = "WxH", value_parser = film_size, default_value = "1920x1080")]
     pub film_size: [u32; 2],
+    #[command(flatten)]
+    pub look: LookOptions,
 }
 
 fn film_size(text: &str) -> Result<[u32; 2], String> {
@@ -227,6 +229,61 @@ pub struct RenderOptions {
     /// Samples each way in a pixel: 1 is fast, more is smoother
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4), default_value = "2")]
     pub samples: u32,
+    #[command(flatten)]
+    pub look: LookOptions,
+}
+
+#[derive(Debug, Args)]
+pub struct LookOptions {
+    /// From where pictures are taken: an eye that stands somewhere, or straight from above, to scale
+    #[arg(long, value_enum, default_value = "orbit")]
+    pub camera: CameraKind,
+    /// Where the eye stands as seen from the middle: bearing from north, and height above the horizon, degrees
+    #[arg(long, value_name = "BEARING,HEIGHT", value_parser = direction, allow_hyphen_values = true)]
+    pub from: Option<[f64; 2]>,
+    /// The place in the middle of the picture, in the scene's coordinates
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    pub look: Option<[f64; 2]>,
+    /// How many times nearer than where all is seen
+    #[arg(long, value_name = "N", value_parser = times, default_value = "1")]
+    pub zoom: f64,
+    /// A camera that moves: a table with columns time_s, bearing_deg, height_deg, zoom and, if it is to look elsewhere, x and y
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["camera", "from", "look", "zoom"])]
+    pub camera_path: Option<PathBuf>,
+    /// What lies on the ground of a flood: natural colours, the water's depth, or a picture (PNG) that covers it from corner to corner
+    #[arg(long, value_name = "natural|depth|FILE.png", default_value = "natural")]
+    pub ground: String,
+    /// Draw heights of a flood so many times higher than they are
+    #[arg(long, value_name = "N", value_parser = times, default_value = "1")]
+    pub heights: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CameraKind {
+    /// An eye that stands somewhere
+    Orbit,
+    /// Straight from above, north up, to scale
+    Plan,
+}
+
+fn times(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(times @ 0.01..=1000.0) => Ok(times),
+        _ => Err("must be a number from 0.01 to 1000".into()),
+    }
+}
+
+fn place(text: &str) -> Result<[f64; 2], String> {
+    let number = |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    let place = text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
+    place.ok_or_else(|| "must be two numbers with a comma between them, as in 500,320".into())
+}
+
+fn direction(text: &str) -> Result<[f64; 2], String> {
+    match place(text) {
+        Ok([bearing, height @ -5.0..=89.0]) => Ok([bearing, height]),
+        _ => Err("must be two numbers of degrees, as in 155,35, the second from -5 to 89".into()),
+    }
 }
 
 fn picture_size(text: &str) -> Result<[u32; 2], String> {

@@ -6,6 +6,7 @@ mod args;
 mod bench;
 mod check;
 mod interrupt;
+mod look;
 mod output;
 mod progress;
 mod refusal;

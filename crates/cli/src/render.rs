@@ -1,13 +1,14 @@
 //! `corpuscle render`.
 
 use crate::args::RenderOptions;
+use crate::look::picture_settings;
 use crate::output::print_json;
 use anyhow::Context;
 use corpuscle::Simulation;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{Moment, PictureSettings, Pictures};
-use corpuscle::record::{FrameFiles, followed_paths, write_picture};
+use corpuscle::pictures::{Moment, Pictures};
+use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, write_picture};
 use corpuscle::scene::{Run, Scene};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -38,13 +39,14 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let files = FrameFiles::list(&options.run, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
     let paths = followed_paths(&options.run).map_err(corpuscle::Error::from)?;
     let simulation = Simulation::open_to_restore(scene, &options.run)?;
-    let settings = PictureSettings { size: options.size, samples: options.samples };
+    let settings = picture_settings(options.size, options.samples, &options.look)?;
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
-    let model = simulation.model();
-    let container = model.container();
+    let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;
+    let at_start = simulation.model().container();
     let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
         let frame = files.read(index)?;
+        let container = at_start.map(|container| walls.container(container, frame.time));
         let image = pictures.draw(&Moment { frame: &frame, paths: &paths, container })?;
         Ok((frame.time, image))
     };

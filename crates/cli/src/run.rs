@@ -2,13 +2,13 @@
 
 use crate::args::{Backend, RunOptions};
 use crate::interrupt::stop_on_interrupt;
+use crate::look::picture_settings;
 use crate::output::{duration, number, print_json, rate};
 use crate::progress::Bar;
 use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
-use corpuscle::pictures::PictureSettings;
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
 use corpuscle::{Filming, Recorder, Simulation, Sink};
 use std::path::Path;
@@ -50,7 +50,7 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
     if !options.film {
         return Ok(None);
     }
-    let settings = PictureSettings { size: options.film_size, samples: 1 };
+    let settings = picture_settings(options.film_size, 1, &options.look)?;
     match Filming::open(simulation, &folder.join("film.mp4"), settings, options.film_length) {
         Ok(filming) => {
             eprintln!("filming on {}", filming.device());

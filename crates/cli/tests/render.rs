@@ -3,7 +3,7 @@
 mod tool;
 
 use std::fs;
-use tool::Place;
+use tool::{LAKE, Place};
 
 const GAS: &str = "title = \"Three\"\nrun = { until_s = 2, frame_every_s = 0.5 }\n[gas]\nsize = [9, 9]\nfollow = 0\n\
                    ball = [{ position = [2, 2], velocity = [1, 0], radius = 1, mass = 1 }, { position = [6, 2], radius = 1, mass = 1 }]";
@@ -40,6 +40,62 @@ fn a_finished_run_is_drawn_and_filmed() {
 }
 
 #[test]
+fn a_flood_is_drawn_from_where_one_wants_and_with_what_one_wants_on_its_ground() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    place.run(&["run", "lake.toml", "-o", "run"]).expect_status(0);
+    if !has_device("pictures of a flood") {
+        return;
+    }
+    place.write("path.csv", "time_s,bearing_deg,height_deg,zoom,x,y\n0,90,30,1,2,2\n100,180,20,2,8,8\n");
+    let small = ["render", "run", "--at", "0", "--size", "160x90", "--samples", "1"];
+    place.run(&small).expect_status(0);
+    fs::rename(place.path("run/pictures/picture_000000.png"), place.path("photo.png")).unwrap();
+    let looks: [&[&str]; 8] = [
+        &[],
+        &["--camera", "plan"],
+        &["--from", "20,50"],
+        &["--look", "3,3", "--zoom", "2.5"],
+        &["--camera-path", "path.csv"],
+        &["--ground", "depth"],
+        &["--ground", "photo.png"],
+        &["--heights", "3"],
+    ];
+    let drawn = looks.map(|look| {
+        place.run(&[&small, look].concat()).expect_status(0);
+        fs::read(place.path("run/pictures/picture_000000.png")).unwrap()
+    });
+    for (number, picture) in drawn.iter().enumerate() {
+        assert!(!drawn[..number].contains(picture), "{:?} changes nothing", looks[number]);
+    }
+}
+
+#[test]
+fn ways_to_look_that_cannot_be_are_refused_in_words() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    place.run(&["run", "lake.toml", "-o", "run"]).expect_status(0);
+    place.write("header.csv", "time,bearing\n0,1\n");
+    place.write("row.csv", "time_s,bearing_deg,height_deg,zoom\n0,90,north,1\n");
+    place.write("photo.png", "no picture");
+    let refused = |look: [&str; 2], what: &str| {
+        let ended = place.run(&["render", "run", look[0], look[1]]).expect_status(2);
+        assert!(ended.stderr.contains(what), "{look:?}: {}", ended.stderr);
+    };
+    refused(["--from", "20"], "155,35");
+    refused(["--from", "20,95"], "89");
+    refused(["--zoom", "0"], "0.01");
+    refused(["--look", "nan,1"], "500,320");
+    refused(["--camera-path", "header.csv"], "bearing_deg");
+    refused(["--camera-path", "row.csv"], "line 2");
+    refused(["--camera-path", "none.csv"], "none.csv");
+    if has_device("a picture for the ground") {
+        refused(["--ground", "photo.png"], "PNG");
+        refused(["--ground", "none.png"], "none.png");
+    }
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_in_words() {
     let place = Place::new();
     let none = place.run(&["render", "nothing"]).expect_status(2);
@@ -65,6 +121,11 @@ fn without_any_device_a_run_ends_well_and_render_says_what_to_install() {
     let run = without(&["run", "gas.toml", "-o", "run"]);
     let told = String::from_utf8(run.stderr).unwrap();
     assert!(run.status.success() && told.contains("corpuscle render run"), "{told}");
+    let filmed = without(&["run", "gas.toml", "-o", "filmed", "--film"]);
+    let told = String::from_utf8(filmed.stderr).unwrap();
+    let line = told.lines().find(|line| line.contains("no film")).unwrap_or_default();
+    assert!(filmed.status.success() && line.contains("apt-get install mesa-vulkan-drivers"), "{told}");
+    assert!(place.path("filmed/report.html").is_file() && !place.path("filmed/film.mp4").exists());
     let drawn = without(&["render", "run"]);
     let told = String::from_utf8(drawn.stderr).unwrap();
     assert_eq!(drawn.status.code(), Some(1), "{told}");

@@ -32,6 +32,15 @@ pub enum Error {
     #[cfg(feature = "pictures")]
     #[error(transparent)]
     Render(#[from] corpuscle_render::RenderError),
+    /// A picture for the ground.
+    #[cfg(feature = "pictures")]
+    #[error("{} cannot be laid on the ground: {what}; it must be a PNG file", path.display())]
+    GroundPicture {
+        /// Its file.
+        path: std::path::PathBuf,
+        /// What is wrong.
+        what: String,
+    },
     /// The film.
     #[cfg(feature = "film")]
     #[error(transparent)]
@@ -49,6 +58,8 @@ impl Error {
             Self::Render(error) => {
                 matches!(error, corpuscle_render::RenderError::Gpu(corpuscle_gpu::GpuError::TooLarge { .. }))
             }
+            #[cfg(feature = "pictures")]
+            Self::GroundPicture { .. } => true,
             #[cfg(feature = "film")]
             Self::Film(error) => {
                 !matches!(error, corpuscle_film::FilmError::Write { .. } | corpuscle_film::FilmError::Encoder { .. })

@@ -23,8 +23,9 @@ impl Filming {
     /// # Errors
     /// Those of [`Pictures::open`] and [`Film::create`].
     pub fn open(simulation: &Simulation, file: &Path, settings: PictureSettings, seconds: f64) -> Result<Self, Error> {
+        let size = settings.size;
         let pictures = Pictures::open(simulation, settings)?;
-        let film = Film::create(file, Format::of(file), settings.size, SMOOTH)?;
+        let film = Film::create(file, Format::of(file), size, SMOOTH)?;
         // The first picture is that of the start, the last that of the end.
         let steps = (SMOOTH * seconds).round().max(2.0) - 1.0;
         Ok(Self { pictures, film: Some(film), period: simulation.scene().run.until_s / steps })

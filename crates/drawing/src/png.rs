@@ -95,6 +95,26 @@ fn encode(
     Ok(bytes)
 }
 
+/// A PNG file of any kind as width, height, and red, green, blue and opacity of each pixel, row by row.
+///
+/// # Errors
+/// What cannot be read.
+pub fn decode_rgba(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(|error| error.to_string())?;
+    let mut pixels = vec![0; reader.output_buffer_size().ok_or("the picture is too large")?];
+    let info = reader.next_frame(&mut pixels).map_err(|error| error.to_string())?;
+    pixels.truncate(info.buffer_size());
+    let rgba = match info.color_type {
+        png::ColorType::GrayscaleAlpha => {
+            pixels.chunks_exact(2).flat_map(|pixel| [pixel[0], pixel[0], pixel[0], pixel[1]]).collect()
+        }
+        _ => pixels,
+    };
+    Ok((info.width, info.height, rgba))
+}
+
 /// A PNG as a URL that holds it.
 pub fn data_url(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
@@ -109,6 +129,20 @@ pub fn svg_url(svg: &[u8]) -> String {
 mod tests {
     use super::*;
     use crate::svg::{Anchor, Svg};
+
+    #[test]
+    fn pixels_come_back_from_files_of_any_kind() {
+        let rgb = encode_rgb(2, 1, &[1, 2, 3, 4, 5, 6]).unwrap();
+        assert_eq!(decode_rgba(&rgb), Ok((2, 1, vec![1, 2, 3, 255, 4, 5, 6, 255])));
+        let indexed = encode_indexed(2, 1, &[1, 0], &[[9, 8, 7, 0], [1, 2, 3, 255]]).unwrap();
+        assert_eq!(decode_rgba(&indexed), Ok((2, 1, vec![1, 2, 3, 255, 9, 8, 7, 0])));
+        let mut grey = Vec::new();
+        let mut encoder = png::Encoder::new(&mut grey, 1, 1);
+        encoder.set_color(png::ColorType::Grayscale);
+        encoder.write_header().unwrap().write_image_data(&[77]).unwrap();
+        assert_eq!(decode_rgba(&grey), Ok((1, 1, vec![77, 77, 77, 255])));
+        assert!(decode_rgba(&rgb[..20]).is_err() && decode_rgba(b"no picture").is_err());
+    }
 
     #[test]
     fn text_leaves_ink_on_the_page() {

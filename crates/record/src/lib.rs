@@ -16,6 +16,7 @@ mod report;
 mod run_folder;
 mod stills;
 mod summary;
+mod wall_places;
 mod whole;
 
 pub use checkpoint::Clock;
@@ -28,3 +29,4 @@ pub use report::{DewReport, GasReport, Report, ValidatedCase, ValidatedMeasure, 
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
 pub use stills::write_picture;
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};
+pub use wall_places::WallPlaces;

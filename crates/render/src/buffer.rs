@@ -26,6 +26,14 @@ pub(crate) fn uniform<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, value: &T) 
     filled(gpu, label, bytemuck::bytes_of(value), wgpu::BufferUsages::UNIFORM)
 }
 
+/// A buffer of things that shaders read by their number.
+pub(crate) fn storage<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, all: &[T]) -> wgpu::Buffer {
+    // A binding holds one element at least.
+    let bytes = bytemuck::cast_slice(all);
+    let nothing = [0; 64];
+    filled(gpu, label, if bytes.is_empty() { &nothing } else { bytes }, wgpu::BufferUsages::STORAGE)
+}
+
 /// An index buffer.
 pub(crate) fn indices(gpu: &Gpu, label: &str, all: &[u32]) -> wgpu::Buffer {
     filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::INDEX)

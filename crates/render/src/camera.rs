@@ -39,13 +39,23 @@ pub enum Lens {
 
 impl Camera {
     /// The stage seen from above, north up, to scale: as large as a picture of `aspect` (width over height) holds between its
-    /// `margins` `[at the sides, below, above]`, parts of the picture's height.
-    pub fn plan(stage: &Stage, aspect: f64, [side, below, above]: [f64; 3]) -> Self {
+    /// `margins` `[left, right, below, above]`, parts of the picture's height.
+    pub fn plan(stage: &Stage, aspect: f64, margins: [f64; 4]) -> Self {
+        Self::square(stage, aspect, margins, [DVec3::X, DVec3::Y])
+    }
+
+    /// The same from the south, where y is smallest, up being up.
+    pub fn front(stage: &Stage, aspect: f64, margins: [f64; 4]) -> Self {
+        Self::square(stage, aspect, margins, [DVec3::X, DVec3::Z])
+    }
+
+    /// The stage to scale, between margins, with these axes to the right and up.
+    fn square(stage: &Stage, aspect: f64, [left, right, below, above]: [f64; 4], [across, up]: [DVec3; 2]) -> Self {
         let size = stage.to - stage.from;
-        let height = (size.y / (1.0 - below - above)).max(size.x / (aspect - 2.0 * side));
-        let target = stage.centre() - DVec3::Y * 0.5 * (below - above) * height;
-        let eye = target + DVec3::Z * stage.unit() * 2.0;
-        Self { eye, target, up: DVec3::Y, lens: Lens::Orthographic { height } }
+        let height = (size.dot(up) / (1.0 - below - above)).max(size.dot(across) / (aspect - left - right));
+        let target = stage.centre() + 0.5 * height * ((right - left) * across + (above - below) * up);
+        let eye = target + across.cross(up) * stage.unit() * 2.0;
+        Self { eye, target, up, lens: Lens::Orthographic { height } }
     }
 
     /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
@@ -67,6 +77,19 @@ impl Camera {
             target: stage.centre(),
             up: DVec3::Z,
             lens: Lens::Perspective { field_of_view },
+        }
+    }
+
+    /// The same moved to look at another place, m.
+    pub fn looking_at(self, target: DVec3) -> Self {
+        Self { eye: self.eye + (target - self.target), target, ..self }
+    }
+
+    /// The same so many times nearer to what it looks at, or with what it shows so many times larger where there is no perspective.
+    pub fn nearer(self, times: f64) -> Self {
+        match self.lens {
+            Lens::Perspective { .. } => Self { eye: self.target + (self.eye - self.target) / times, ..self },
+            Lens::Orthographic { height } => Self { lens: Lens::Orthographic { height: height / times }, ..self },
         }
     }
 
@@ -141,11 +164,40 @@ mod tests {
     }
 
     #[test]
+    fn a_camera_that_comes_nearer_shows_less_of_what_it_looks_at() {
+        let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
+        let place = DVec3::new(15.0, 5.0, 0.0);
+        for whole in [Camera::plan(&stage, 2.0, [0.0; 4]), Camera::orbit(&stage, [0.3, 0.9], 0.5, 2.0, 0.0)] {
+            let near = whole.looking_at(place).nearer(4.0);
+            let [x, y] = near.project(&stage, 2.0, place.into()).unwrap();
+            assert!((x - 0.5).abs() < 1e-6 && (y - 0.5).abs() < 1e-6);
+            let width = |camera: &Camera| {
+                let ends = [-0.01, 0.01].map(|off| camera.project(&stage, 2.0, (camera.target + off).into()).unwrap());
+                (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1])
+            };
+            assert!((width(&near) / width(&whole) - 4.0).abs() < 0.05);
+        }
+    }
+
+    #[test]
     fn a_plan_is_to_scale_with_north_up() {
         let stage = Stage::new([0.0; 3], [20.0, 10.0, 0.0]);
-        let camera = Camera::plan(&stage, 2.0, [0.0; 3]);
+        let camera = Camera::plan(&stage, 2.0, [0.0; 4]);
         let clip = camera.clip_from_view(&stage, 2.0) * camera.view_from_world(&stage);
         let at = clip.project_point3(stage.place([20.0, 10.0, 0.0]));
         assert!((at.x - 1.0).abs() < 1e-5 && (at.y - 1.0).abs() < 1e-5, "{at}");
+    }
+
+    #[test]
+    fn margins_of_a_plan_are_parts_of_the_pictures_height() {
+        let stage = Stage::new([0.0; 3], [10.0, 10.0, 0.0]);
+        let camera = Camera::plan(&stage, 2.0, [0.1, 0.3, 0.2, 0.05]);
+        // Its height is what limits it: three quarters of the picture are the box's side.
+        let corner = |place| camera.project(&stage, 2.0, place).unwrap();
+        let ([left, bottom], [right, top]) = (corner([0.0; 3]), corner([10.0, 10.0, 0.0]));
+        assert!((bottom - 0.8).abs() < 1e-5 && (top - 0.05).abs() < 1e-5, "{bottom} {top}");
+        assert!((2.0 * (right - left) - 0.75).abs() < 1e-5);
+        // What is left over is shared between the sides.
+        assert!((2.0 * ((1.0 - right) - left) - 0.2).abs() < 1e-5);
     }
 }

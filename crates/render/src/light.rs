@@ -31,6 +31,15 @@ pub enum Backdrop {
         /// Straight below.
         below: [f32; 3],
     },
+    /// The same with a bright window towards the sun, which is mirrored more than it is seen.
+    Room {
+        /// Overhead.
+        above: [f32; 3],
+        /// At the horizon.
+        horizon: [f32; 3],
+        /// Straight below.
+        below: [f32; 3],
+    },
     /// One colour, shown as it is: the ground of a drawing. Nothing is lit, colours are those of the table.
     Paper([f32; 3]),
 }
@@ -50,7 +59,7 @@ impl Light {
     /// A room with dark walls and a window: what is clear shows best against it.
     pub fn dim_room() -> Self {
         let backdrop =
-            Backdrop::Studio { above: [0.80, 0.85, 0.92], horizon: [0.53, 0.57, 0.62], below: [0.26, 0.28, 0.31] };
+            Backdrop::Room { above: [0.92, 0.97, 1.05], horizon: [0.53, 0.57, 0.62], below: [0.17, 0.185, 0.21] };
         Self { ambient: 1.0, sunlight: [1.9, 1.85, 1.75], backdrop, ..Self::studio() }
     }
 

@@ -3,10 +3,11 @@
 use corpuscle_gpu::{Gpu, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 6] = [
+const LIBRARY: [(&str, &str); 7] = [
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
+    ("cap", include_str!("caps/cap.wgsl")),
     ("droplet", include_str!("fluid/droplet.wgsl")),
     ("fluid", include_str!("fluid/fluid.wgsl")),
     ("smoothing", include_str!("fluid/smoothing.wgsl")),

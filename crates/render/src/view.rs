@@ -31,7 +31,7 @@ struct Uniform {
     above: Vec4,
     horizon: Vec4,
     below: Vec4,
-    /// Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 2 paper.
+    /// Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 1.25 room, 2 paper.
     frame: Vec4,
 }
 
@@ -104,6 +104,7 @@ fn uniform(stage: &Stage, camera: &Camera, light: &Light, [width, height]: [u32;
     let ([above, horizon, below], kind) = match light.backdrop {
         Backdrop::Sky => ([[0.10, 0.25, 0.62], [0.66, 0.77, 0.90], [0.60, 0.63, 0.65]], 0.0),
         Backdrop::Studio { above, horizon, below } => ([above, horizon, below], 1.0),
+        Backdrop::Room { above, horizon, below } => ([above, horizon, below], 1.25),
         Backdrop::Paper(colour) => ([colour; 3], 2.0),
     };
     let clip_from_world = clip_from_view * view_from_world;

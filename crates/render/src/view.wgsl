@@ -20,7 +20,7 @@ struct View {
     above: vec4f,
     horizon: vec4f,
     below: vec4f,
-    // Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 2 paper.
+    // Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 1.25 room, 2 paper.
     frame: vec4f,
 }
 

@@ -5,8 +5,9 @@
 use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
-    Axes, BallPainter, BallStyle, Camera, Cap, CapPainter, ColourTable, Drawable, Floor, HeightField, Key, Light,
-    Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter, TubeStyle, box_edges, natural_colours,
+    Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, HeightField,
+    Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter,
+    TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -112,7 +113,7 @@ fn gas(table: &Table, left_out: &str) -> Image {
             title: "Gas".into(),
             time: "t = 3".into(),
             key: Some(Key::Values("Speed".into(), viridis())),
-            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into() }),
+            axes: Some(Axes { from: [0.0; 3], to: [8.0, 8.0, 5.0], unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         },
     };
@@ -153,14 +154,39 @@ fn dew_on_a_hill(table: &Table, left_out: &str) -> Image {
     table.draw(&stage, &camera, &Light::day().from_azimuth(-2.2), &mut things, &Overlay::default())
 }
 
-/// Flat discs on paper, to scale.
-fn plan(table: &Table) -> Image {
+/// Flat discs on paper, to scale, in a cylinder with a piston; parts left out: borders, marks, what lines mean.
+fn plan(table: &Table, left_out: &str) -> Image {
     let gpu = table.renderer.gpu();
     let stage = Stage::new([0.0; 3], [16.0, 9.0, 0.0]);
-    let camera = Camera::plan(&stage, ASPECT, [0.1; 3]);
+    let camera = Camera::plan(&stage, ASPECT, [0.1; 4]);
     let discs = (0..40).map(|k| ([1.0 + 2.0 * (k % 8) as f64, 1.0 + 1.8 * (k / 8) as f64, 0.0], 0.7, k as f64 / 39.0));
     let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &BallStyle::new(viridis()), discs);
-    let overlay = Overlay { scale_bar: Some("m".into()), ..Overlay::default() };
+    let line = |look, ends: [[f64; 2]; 2], outwards| Border::Line { look, ends, outwards };
+    let borders = vec![
+        line(LineLook::Wall, [[0.0, 0.0], [16.0, 0.0]], [0.0, -1.0]),
+        line(LineLook::HotWall, [[0.0, 0.0], [0.0, 9.0]], [-1.0, 0.0]),
+        line(LineLook::Open, [[0.0, 9.0], [16.0, 9.0]], [0.0, 1.0]),
+        line(LineLook::Partition, [[8.0, 0.0], [8.0, 3.0]], [0.0, 0.0]),
+        Border::Piston { ends: [[12.0, 0.0], [12.0, 9.0]], outwards: [1.0, 0.0], rod: 3.0 },
+    ];
+    let marks = |place: [f64; 3]| [Mark::Ring(place, 0.7), Mark::Start([place[0] + 1.0, place[1], 0.0])];
+    let whole = Overlay {
+        scale_bar: Some("m".into()),
+        key_place: KeyPlace::Corner,
+        lines: [LineLook::Way, LineLook::Wall, LineLook::HotWall, LineLook::Open, LineLook::Partition]
+            .map(|look| (look, format!("what is drawn as {look:?}")))
+            .into(),
+        borders,
+        marks: (0..5).flat_map(|k| marks([5.0, 1.0 + 1.8 * k as f64, 0.0])).collect(),
+        axes: Some(Axes { from: [0.0; 3], to: [16.0, 9.0, 0.0], unit: "m".into(), heights: 1.0 }),
+        ..Overlay::default()
+    };
+    let overlay = Overlay {
+        borders: if left_out.contains('b') { Vec::new() } else { whole.borders },
+        marks: if left_out.contains('m') { Vec::new() } else { whole.marks },
+        lines: if left_out.contains('l') { Vec::new() } else { whole.lines },
+        ..whole
+    };
     table.draw(&stage, &camera, &Light::paper(), &mut [&mut balls], &overlay)
 }
 
@@ -169,7 +195,7 @@ fn pictures_are_as_they_were_when_they_were_looked_at() {
     let Some(table) = Table::open("reference pictures") else { return };
     same_as_reference("gas", &gas(&table, ""));
     same_as_reference("dew-on-a-hill", &dew_on_a_hill(&table, ""));
-    same_as_reference("plan", &plan(&table));
+    same_as_reference("plan", &plan(&table, ""));
 }
 
 #[test]
@@ -179,6 +205,12 @@ fn a_part_that_is_left_out_is_missed() {
     for part in ["f", "b", "e", "w", "o", "s"] {
         let off = difference(&gas(&table, part), &whole_gas);
         assert!(off > OTHER, "gas without {part}: {off:.2}");
+    }
+    let whole_plan = plan(&table, "");
+    for part in ["b", "m", "l"] {
+        // Lines cover little of a picture.
+        let off = difference(&plan(&table, part), &whole_plan);
+        assert!(off > SAME, "plan without {part}: {off:.2}");
     }
     for part in ["t", "g", "c"] {
         let off = difference(&dew_on_a_hill(&table, part), &whole_dew);
@@ -197,7 +229,7 @@ fn the_same_frame_twice_is_the_same_picture() {
 #[test]
 fn a_plan_keeps_colours_and_scale() {
     let Some(table) = Table::open("a plan") else { return };
-    let image = plan(&table);
+    let image = plan(&table, "l");
     // The first disc: 1 m from the left and the bottom, of the first colour; beside it paper.
     let pixels_per_metre = f64::from(SIZE[1]) * 0.8 / 9.0;
     let at = |x: f64, y: f64| {
@@ -211,12 +243,52 @@ fn a_plan_keeps_colours_and_scale() {
 }
 
 #[test]
+fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
+    let Some(table) = Table::open("ground with a hole") else { return };
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, -1.0], [16.0, 9.0, 1.0]);
+    let flat = HeightField::sampled([0.0; 2], [16.0, 9.0], [65, 37], |x, y| {
+        if (x - 8.0).hypot(y - 4.5) < 2.0 { f64::NAN } else { 0.0 }
+    });
+    let green = Image { width: 1, height: 1, rgba: vec![40, 200, 40, 255] };
+    let mut ground = Terrain::new(&table.renderer, &stage, flat.clone(), &green, -1.0).unwrap();
+    let plan = Camera::plan(&stage, ASPECT, [0.0; 4]);
+    let image = table.draw(&stage, &plan, &Light::day(), &mut [&mut ground], &Overlay::default());
+    let is_green = |x: u32, y: u32| {
+        let [red, green, blue, _] = image.pixel(x, y).map(u32::from);
+        green > red / 2 + blue
+    };
+    assert!(is_green(20, 20) && is_green(200, 110) && !is_green(120, 67) && !is_green(110, 67));
+
+    // Water one metre deep in the southern half, seen from the south.
+    let camera = Camera::orbit(&stage, [-1.57, 0.3], 0.5, ASPECT, 0.0);
+    let column = |index: u64| {
+        let [x, y] = [0.25 + 0.5 * (index % 32) as f64, 0.25 + 0.5 * (index / 32) as f64];
+        Droplet { volume: 0.25, reach: 1.0, flatness: 0.1, id: index, ..Droplet::ball([x, y, 0.93], 0.7) }
+    };
+    let droplets: Vec<Droplet> = (0..32 * 9).map(column).collect();
+    let mut sides = WaterSides::new(&table.renderer, &stage);
+    sides.fill(gpu, &flat, &droplets);
+    let draw =
+        |things: &mut [&mut dyn Drawable]| table.draw(&stage, &camera, &Light::day(), things, &Overlay::default());
+    let dry = draw(&mut [&mut ground]);
+    let wet = draw(&mut [&mut ground, &mut sides]);
+    // A place half way up the face in the middle, and one on the ground before the hole.
+    let seen = |place| camera.project(&stage, ASPECT, place).map(|[x, y]| [x * 240.0, y * 135.0]).unwrap();
+    let [x, y] = seen([8.0, 0.0, 0.5]);
+    let [red, _, blue, _] = wet.pixel(x as u32, y as u32);
+    assert!(blue > red.saturating_add(30) && wet.pixel(x as u32, y as u32) != dry.pixel(x as u32, y as u32));
+    let [x, y] = seen([8.0, 0.0, -0.5]);
+    assert_eq!(wet.pixel(x as u32, y as u32), dry.pixel(x as u32, y as u32));
+}
+
+#[test]
 fn the_overlay_lies_over_the_picture_by_its_opacity() {
     let Some(Table { renderer, target }) = Table::open("the overlay") else { return };
     let stage = Stage::new([0.0; 3], [2.0, 2.0, 1.0]);
     let mut overlay = Image { width: SIZE[0], height: SIZE[1], rgba: vec![0; 4 * (SIZE[0] * SIZE[1]) as usize] };
     overlay.rgba[..4].copy_from_slice(&[100, 0, 0, 128]);
-    renderer.draw(&target, &stage, &Camera::plan(&stage, ASPECT, [0.0; 3]), &Light::paper(), &mut [], Some(&overlay));
+    renderer.draw(&target, &stage, &Camera::plan(&stage, ASPECT, [0.0; 4]), &Light::paper(), &mut [], Some(&overlay));
     let image = renderer.read(&target).unwrap();
     assert_eq!([image.pixel(1, 0), image.pixel(0, 0)], [[255; 4], [227, 127, 127, 255]]);
 }

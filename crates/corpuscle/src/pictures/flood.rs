@@ -1,13 +1,15 @@
 //! Pictures of a flood: water on the block of ground.
 
-use super::{Moment, Studio};
+use super::look::{self, DepthClasses};
+use super::{GroundLook, Moment, OwnView, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_flood::obstacle_shapes;
 use corpuscle_gpu::Image;
+use corpuscle_model::ParticleSet;
 use corpuscle_render::{
-    Axes, Camera, Drawable, Floor, Fluid, FluidStyle, HeightField, Light, Overlay, Solid, SolidStyle, Stage, Terrain,
-    Water, natural_colours,
+    Axes, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, KeyPlace, Lens, Light, Overlay, Solid,
+    SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -15,8 +17,8 @@ use std::path::Path;
 
 /// From where the block of ground is seen, radians: from the south-east, from above; and how wide the lens is.
 const DIRECTION: [f64; 2] = [-1.15, 0.6];
-const FIELD_OF_VIEW: f64 = 0.5;
-const MARGIN: f64 = 0.06;
+const OWN_VIEW: OwnView =
+    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.13, 0.06, 0.2, 0.09] };
 /// How far the sun stands to the left of the eye, radians.
 const SUN: f64 = -1.0;
 /// Nodes a side of the drawn ground at most: what a texture can hold everywhere, and a terrain of 4096 x 4096 has.
@@ -25,6 +27,10 @@ const MOST_NODES: usize = 4097;
 const BASE: f64 = 0.06;
 /// Height of obstacles that are only said to be high enough, m.
 const HIGH_ENOUGH: f64 = 7.0;
+/// Depth that water is made for which is as clear as clear deep water, m, and how turbid other water is at least and at most: a flood
+/// of centimetres is muddy, and would not be seen otherwise.
+const CLEAR: f64 = 1.5;
+const TURBID: [f64; 2] = [0.4, 20.0];
 /// Colour of buildings.
 const WALLS: [u8; 3] = [206, 196, 184];
 
@@ -34,17 +40,33 @@ pub(super) struct FloodPicture {
     ground: Terrain,
     floor: Floor,
     buildings: Vec<Solid>,
+    field: HeightField,
     water: Water,
+    sides: WaterSides,
     fluid: Option<Fluid>,
+    /// How many times clearer or more turbid the water is than clear deep water.
+    turbid: f64,
+    /// Where depth is drawn as a map has it, its classes.
+    depth: Option<DepthClasses>,
+    /// How many times higher than they are heights are drawn.
+    heights: f64,
 }
 
 impl FloodPicture {
-    pub(super) fn new(studio: &Studio, settings: &Settings, ground: &Ground) -> Result<Self, Error> {
+    pub(super) fn new(
+        studio: &Studio,
+        settings: &Settings,
+        ground: &Ground,
+        look: GroundLook,
+        heights: f64,
+    ) -> Result<Self, Error> {
         let bounds = ground.bounds();
         let grid = ground.map_grid();
         let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES));
         let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
-        let field = HeightField::sampled(from, to, nodes, |x, y| ground.height(x, y));
+        let field = HeightField::sampled(from, to, nodes, |x, y| {
+            if has_data(ground, [x, y]) { heights * ground.height(x, y) } else { f64::NAN }
+        });
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
         // The paths of a scene that was opened are absolute.
@@ -54,41 +76,94 @@ impl FloodPicture {
         let colours = natural_colours(&field);
         let walls = |shape| Solid::new(&studio.renderer, &stage, shape, SolidStyle::Opaque(WALLS, 0.1));
         let buildings = shapes.iter().map(walls).collect();
-        let ground = Terrain::new(&studio.renderer, &stage, field, &colours, base)?;
+        let mut mesh = Terrain::new(&studio.renderer, &stage, field.clone(), &colours, base)?;
+        if let GroundLook::Picture(path) = &look {
+            mesh.drape(studio.renderer.gpu(), &look::picture(path)?)?;
+        }
+        let depth = settings.spacing_depth_m.unwrap_or(1.0);
         Ok(Self {
             stage,
-            ground,
+            ground: mesh,
             buildings,
             floor: Floor::new(&studio.renderer, &stage, base),
+            field,
             water: Water::default(),
+            sides: WaterSides::new(&studio.renderer, &stage),
             fluid: None,
+            turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
+            depth: (look == GroundLook::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
+            heights,
         })
     }
 
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
         let gpu = studio.renderer.gpu();
-        let camera = Camera::orbit(&self.stage, DIRECTION, FIELD_OF_VIEW, studio.aspect(), MARGIN);
+        let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
+        let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
         let light = Light::day().from_azimuth(DIRECTION[0] + SUN);
-        let sets = || moment.frame.sets.iter().filter(|set| !set.is_empty());
-        let radii = || sets().flat_map(|set| &set.radius);
-        let mean = radii().sum::<f64>() / radii().count().max(1) as f64;
-        let stage = self.stage;
-        // Its style is that of the first particles there are, so that it does not change in a film.
-        let wet = (mean > 0.0)
-            .then(|| self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &stage, FluidStyle::water(mean))));
-        let overlay = Overlay {
-            title: title.into(),
-            time: format!("t = {}", text::time(moment.frame.time)),
-            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
-            ..Overlay::default()
-        };
-        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground, &mut self.floor];
+        let sets: Vec<ParticleSet> =
+            moment.frame.sets.iter().filter(|set| !set.is_empty()).map(|set| raised(set, self.heights)).collect();
+        let overlay = self.overlay(studio, title, moment, is_plan);
+        if let Some(depth) = &self.depth {
+            self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
+        }
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
+        if !is_plan {
+            things.push(&mut self.floor);
+        }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
-        if let Some(fluid) = wet {
-            let droplets = sets().flat_map(|set| self.water.droplets(moment.frame.time, set));
+        if self.depth.is_none() && !sets.is_empty() {
+            let radii = || sets.iter().flat_map(|set| &set.radius);
+            let mean = radii().sum::<f64>() / radii().count() as f64;
+            let within = Some([self.stage.from, self.stage.to].map(|corner| [corner.x, corner.y]));
+            let style = || FluidStyle { within, ..FluidStyle::water(mean).turbid(self.turbid) };
+            // Its style is that of the first particles there are, so that it does not change in a film.
+            let fluid = self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &self.stage, style()));
+            let (water, field) = (&mut self.water, &self.field);
+            let droplets: Vec<Droplet> = sets
+                .iter()
+                .flat_map(|set| water.droplets(moment.frame.time, set, |place| field.slope_at(place)))
+                .collect();
+            self.sides.fill(gpu, &self.field, &droplets);
             fluid.fill(gpu, droplets);
-            things.push(fluid);
+            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
         }
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)
     }
+
+    fn overlay(&self, studio: &Studio, title: &str, moment: &Moment<'_>, is_plan: bool) -> Overlay {
+        let time = format!("t = {}", text::time(moment.frame.time));
+        let (from, mut to): ([f64; 3], [f64; 3]) = (self.stage.from.into(), self.stage.to.into());
+        if is_plan {
+            to[2] = from[2];
+        }
+        let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
+        Overlay {
+            title: title.into(),
+            time: if self.heights == 1.0 { time } else { format!("{time}, heights × {}", self.heights) },
+            key: self.depth.as_ref().map(|depth| Key::Kinds(depth.key())),
+            scale_bar: Some("m".into()),
+            axes: studio.shows_all().then(axes),
+            key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },
+            ..Overlay::default()
+        }
+    }
+}
+
+/// Particles with their heights drawn so many times higher than they are.
+fn raised(set: &ParticleSet, times: f64) -> ParticleSet {
+    let mut set = set.clone();
+    set.position.iter_mut().for_each(|place| place[2] *= times);
+    set
+}
+
+/// False for places beside a cell of the terrain's own grid in which its file has no data.
+fn has_data(ground: &Ground, [x, y]: [f64; 2]) -> bool {
+    let grid = ground.map_grid();
+    let [column, row] = grid.position(x, y);
+    // A place on a line between cells has both beside it.
+    let beside =
+        |at: f64, count: usize| [at - 0.25, at + 0.25].map(|at| at.round().clamp(0.0, count as f64 - 1.0) as usize);
+    let rows = beside(row, grid.rows);
+    beside(column, grid.columns).iter().all(|column| rows.iter().all(|row| ground.is_valid_cell(*column, *row)))
 }

@@ -3,6 +3,8 @@
 mod dew;
 mod flood;
 mod gas;
+mod look;
+mod viewpoint;
 
 use crate::{Error, Simulation};
 use corpuscle_gpu::{Gpu, Image};
@@ -15,19 +17,29 @@ use corpuscle_scene::ModelScene;
 use dew::DewPicture;
 use flood::FloodPicture;
 use gas::GasPicture;
+pub use look::GroundLook;
+pub use viewpoint::Viewpoint;
+use viewpoint::{OwnView, Station};
 
-/// Size and fineness of pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How pictures are taken.
+#[derive(Debug, Clone, PartialEq)]
 pub struct PictureSettings {
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel: 2 for stills; 1 is fast.
     pub samples: u32,
+    /// From where, at times, s: one entry is a camera that stands, several are stations of one that moves; none is the model's own
+    /// choice.
+    pub viewpoints: Vec<(f64, Viewpoint)>,
+    /// What lies on the ground of a flood.
+    pub ground: GroundLook,
+    /// How many times higher than they are heights of a flood are drawn.
+    pub heights: f64,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], samples: 2 }
+        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundLook::Natural, heights: 1.0 }
     }
 }
 
@@ -57,6 +69,7 @@ struct Studio {
     caps: CapPainter,
     fluids: FluidPainter,
     target: Target,
+    stations: Vec<Station>,
 }
 
 /// What is drawn.
@@ -75,11 +88,16 @@ impl Pictures {
         let gpu = Gpu::open().map_err(RenderError::from)?;
         let renderer = Renderer::new(&gpu);
         let target = Target::new(&gpu, settings.size, settings.samples)?;
+        let scene = simulation.scene();
+        let viewpoints = settings.viewpoints.into_iter();
+        let stations = match simulation.terrain() {
+            Some(ground) => viewpoints.map(|at| Station::on_ground(at, ground, settings.heights)).collect(),
+            None => viewpoints.map(Station::plain).collect(),
+        };
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
         let fluids = FluidPainter::new(&renderer);
-        let studio = Studio { renderer, balls, tubes, caps, fluids, target };
-        let scene = simulation.scene();
+        let studio = Studio { renderer, balls, tubes, caps, fluids, target, stations };
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
             ModelScene::Dew(dew) => {
@@ -87,7 +105,13 @@ impl Pictures {
             }
             ModelScene::Flood(scene) => {
                 let terrain = simulation.terrain().expect("a flood that was opened has its ground");
-                Subject::Flood(Box::new(FloodPicture::new(&studio, &scene.flood, terrain)?))
+                Subject::Flood(Box::new(FloodPicture::new(
+                    &studio,
+                    &scene.flood,
+                    terrain,
+                    settings.ground,
+                    settings.heights,
+                )?))
             }
         };
         Ok(Self { studio, title: scene.title.clone(), subject })

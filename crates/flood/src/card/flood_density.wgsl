@@ -19,7 +19,8 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     var number = 0.0;
     var weighted = 0.0;
     var r_slope = 0.0;
-    for (var k = 0u; k < MIRRORS; k++) {
+    let mirrors = mirrors_round(parameters, place);
+    for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, place);
         let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);

@@ -55,7 +55,8 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
     var force = vec2f(0.0);
     var from_outside = vec2f(0.0);
-    for (var k = 0u; k < MIRRORS; k++) {
+    let mirrors = mirrors_round(parameters, own.place);
+    for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, own.place);
         let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);

@@ -17,6 +17,13 @@ struct Mirror {
 
 const MIRRORS = 9u;
 
+// How many of them there are to look into: amid the water the first alone.
+fn mirrors_round(parameters: Parameters, place: vec2f) -> u32 {
+    let farthest = 2.0 * parameters.largest_h;
+    let is_amid = all(place - farthest > parameters.bounds.xz) && all(place + farthest < parameters.bounds.yw);
+    return select(MIRRORS, 1u, is_amid);
+}
+
 // How far from an edge a particle has an image, in reaches.
 const IMAGE_MARGIN = 1.5;
 

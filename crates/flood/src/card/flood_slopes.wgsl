@@ -48,7 +48,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var surface_step = 0.0;
     var velocity_step = 0.0;
     var ground_step = 0.0;
-    for (var k = 0u; k < MIRRORS; k++) {
+    let mirrors = mirrors_round(parameters, own.place);
+    for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, own.place);
         let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);

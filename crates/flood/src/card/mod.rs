@@ -50,6 +50,8 @@ pub(crate) struct Card {
     batch: u32,
     /// Whether the host has not the state that is here.
     ahead: bool,
+    /// Time spent on steps, s.
+    busy: f64,
 }
 
 /// A particle that is to come, at the one of some places where the surface then stands lowest.
@@ -176,12 +178,23 @@ impl Card {
             steps: 0,
             batch: 4,
             ahead: false,
+            busy: 0.0,
         })
     }
 
     /// The device.
     pub fn gpu(&self) -> Gpu {
         self.gpu.clone()
+    }
+
+    /// Wall-clock time spent on steps, s.
+    pub fn busy(&self) -> f64 {
+        self.busy
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.tasks.bytes
     }
 
     /// Particles that there is room for.
@@ -264,6 +277,7 @@ impl Card {
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let took = began.elapsed().as_secs_f64();
+        self.busy += took;
         self.batch =
             if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) }.min(LAID_OUT as u32);
         self.steps += u64::from(self.status.steps);

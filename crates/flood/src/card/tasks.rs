@@ -23,6 +23,8 @@ pub(super) struct Tasks {
     pub particles: wgpu::Buffer,
     pub slopes: wgpu::Buffer,
     pub births: wgpu::Buffer,
+    /// Bytes held.
+    pub bytes: u64,
     sorted: wgpu::Buffer,
     groups: wgpu::Buffer,
     sort: CellSort,
@@ -63,6 +65,9 @@ impl Tasks {
         let along_rows = storage::<f32>(gpu, along_rows, cells)?;
         let reaches = storage::<f32>(gpu, reaches, cells)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
+        let of_particles = [&particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
+        let of_cells = [&own, &along_rows, &reaches, &sort.counts, &sort.places, &sort.start, &sort.order];
+        let bytes = of_particles.into_iter().chain(of_cells).map(wgpu::Buffer::size).sum();
         let task = |name, text, buffers: &[&wgpu::Buffer], nodes: Option<&wgpu::TextureView>| {
             let buffers = buffers.iter().map(|buffer| buffer.as_entire_binding());
             let resources: Vec<_> = buffers.chain(nodes.map(wgpu::BindingResource::TextureView)).collect();
@@ -110,6 +115,7 @@ impl Tasks {
             particles,
             slopes,
             births,
+            bytes,
             sorted,
             groups,
             sort,

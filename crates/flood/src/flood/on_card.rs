@@ -33,6 +33,16 @@ impl Flood {
         self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }
 
+    /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
+    pub fn seconds_on_card(&self) -> Option<f64> {
+        self.card.as_ref().map(Card::busy)
+    }
+
+    /// Bytes held on the card.
+    pub fn bytes_on_card(&self) -> Option<u64> {
+        self.card.as_ref().map(Card::bytes)
+    }
+
     /// Makes room on a card for the particles that there are, and for more where water comes in, and hands the state over.
     fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let depth = self.volume / (self.spacing * self.spacing);

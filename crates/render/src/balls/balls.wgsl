@@ -72,10 +72,11 @@ struct Drawn {
 fn fragment(corner: Corner) -> Drawn {
     let found = hit(corner.place, corner.ball);
     if is_paper() {
-        // A darker rim, a pixel and a half of the finished picture wide.
+        // A darker rim, a pixel of the finished picture wide and narrower on small ones.
         let edge = length(corner.place - corner.ball.xyz);
-        let rim = smoothstep(corner.ball.w - 3.2 * view.forward.w, corner.ball.w - 2.2 * view.forward.w, edge);
-        let large = smoothstep(4.0, 10.0, corner.ball.w / view.forward.w);
+        let inner = corner.ball.w - min(2.4 * view.forward.w, 0.3 * corner.ball.w);
+        let rim = smoothstep(inner - 0.5 * view.forward.w, inner + 0.5 * view.forward.w, edge);
+        let large = smoothstep(1.5, 8.0, corner.ball.w / view.forward.w);
         return Drawn(vec4f(mix(corner.colour, 0.35 * corner.colour, rim * large), 1.0), depth_at(corner.ball.xyz));
     }
     let sight = ray_through(found.place);

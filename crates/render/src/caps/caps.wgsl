@@ -1,32 +1,61 @@
-// Drops on a surface: caps of spheres, found pixel by pixel along the line of sight. They bend what is behind them and mirror
-// what is before.
+// Drops on a surface: caps of spheres that flow into each other where they come near, found pixel by pixel along the line of
+// sight. They bend what is behind them and mirror what is before.
 #import light
+#import cap
 
-@group(1) @binding(0) var behind: texture_2d<f32>;
-@group(1) @binding(1) var behind_sampler: sampler;
+@group(2) @binding(0) var behind: texture_2d<f32>;
+@group(2) @binding(1) var behind_sampler: sampler;
+
+const MOST_STEPS: i32 = 28;
+// How much more than once a ray is bent that goes through all of a drop, and the part of the room in what is seen through it.
+const LENS: f32 = 4.0;
+const ROOM: f32 = 0.6;
 
 struct Corner {
     @builtin(position) clip: vec4f,
     @location(0) place: vec3f,
-    // Middle of the covered disc and its radius.
-    @location(1) @interpolate(flat) disc: vec4f,
-    // The way out of the surface, and the cap's height.
-    @location(2) @interpolate(flat) cap: vec4f,
+    @location(1) @interpolate(flat) number: u32,
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, @location(0) disc: vec4f, @location(1) cap: vec4f) -> Corner {
-    let sight = ray_through(disc.xyz);
-    let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.direction.z) > 0.9);
-    let right = normalize(cross(sight.direction, aside));
-    let up = cross(right, sight.direction);
-    let corner = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u)) - 1.0;
-    let middle = disc.xyz + 0.5 * cap.w * cap.xyz;
-    // Caps higher than half a sphere bulge beyond their disc.
-    let bulge = select(disc.w, (disc.w * disc.w + cap.w * cap.w) / (2.0 * cap.w), cap.w > disc.w);
-    let reach = 1.05 * length(vec2f(bulge, 0.5 * cap.w));
-    let place = middle + reach * (corner.x * right + corner.y * up);
-    return Corner(view.clip_from_world * vec4f(place, 1.0), place, disc, cap);
+fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u32) -> Corner {
+    let cap = caps[number];
+    let middle = cap.place + 0.5 * cap.height * cap.out;
+    // Caps higher than half a sphere bulge beyond their disc; necks reach beyond both.
+    let bulge = select(cap.radius, sphere_radius(cap), cap.height > cap.radius);
+    let reach = 1.05 * length(vec2f(bulge, 0.5 * cap.height)) + 2.0 * settings.neck;
+    return Corner(facing_corner(index, middle, select(reach, 0.0, is_fine(cap))), facing_place(index, middle, reach), number);
+}
+
+// Distance from the joint surface of a cap and its neighbours, and its slope: spheres joined by the logarithm of the sum of
+// exponentials, which does not depend on their order (Quilez, "Smooth minimum", 2013).
+fn from_drops(cap: Cap, place: vec3f) -> vec4f {
+    let own = place - sphere_centre(cap);
+    let own_distance = length(own) - sphere_radius(cap);
+    var sum = 1.0;
+    var slope = normalize(own);
+    for (var at = cap.first; at < cap.first + cap.count; at++) {
+        let other = caps[neighbours[at]];
+        let offset = place - sphere_centre(other);
+        let distance = length(offset) - sphere_radius(other);
+        let weight = exp(clamp((own_distance - distance) / settings.neck, -30.0, 30.0));
+        sum += weight;
+        slope += weight * normalize(offset);
+    }
+    return vec4f(slope / sum, own_distance - settings.neck * log(sum));
+}
+
+// Where the line of sight comes into reach of a cap's sphere, and where it goes out; out before in where it misses.
+fn reach_of(cap: Cap, sight: Ray) -> vec2f {
+    let from_centre = sight.origin - sphere_centre(cap);
+    let along = dot(from_centre, sight.direction);
+    let aside = from_centre - along * sight.direction;
+    let radius = sphere_radius(cap) + 2.0 * settings.neck;
+    let inside = radius * radius - dot(aside, aside);
+    if inside < 0.0 {
+        return vec2f(1e9, -1e9);
+    }
+    return vec2f(-along - sqrt(inside), -along + sqrt(inside));
 }
 
 struct Drawn {
@@ -36,36 +65,42 @@ struct Drawn {
 
 @fragment
 fn fragment(corner: Corner) -> Drawn {
-    let height = corner.cap.w;
-    let out = corner.cap.xyz;
-    // Radius of the sphere from those of the disc and the cap's height.
-    let radius = (corner.disc.w * corner.disc.w + height * height) / (2.0 * height);
-    let centre = corner.disc.xyz + (height - radius) * out;
+    let cap = caps[corner.number];
     let sight = ray_through(corner.place);
-    let from_centre = sight.origin - centre;
-    let along = dot(from_centre, sight.direction);
-    let aside = from_centre - along * sight.direction;
-    let inside = radius * radius - dot(aside, aside);
-    if inside < 0.0 {
+    var reach = reach_of(cap, sight);
+    for (var at = cap.first; at < cap.first + cap.count; at++) {
+        let other = reach_of(caps[neighbours[at]], sight);
+        reach = vec2f(min(reach.x, other.x), max(reach.y, other.y));
+    }
+    var distance = reach.x;
+    var found = vec4f(0.0, 0.0, 0.0, 1.0);
+    let near_enough = 0.002 * cap.radius;
+    for (var step = 0; step < MOST_STEPS; step++) {
+        found = from_drops(cap, sight.origin + distance * sight.direction);
+        distance += found.w;
+        if found.w < near_enough || distance > reach.y {
+            break;
+        }
+    }
+    let place = sight.origin + distance * sight.direction;
+    if found.w > 20.0 * near_enough || dot(place - cap.place, cap.out) < 0.0 {
         discard;
     }
-    let normal = (aside - sqrt(inside) * sight.direction) / radius;
-    let place = centre + radius * normal;
-    if dot(place - corner.disc.xyz, out) < 0.0 {
-        discard;
-    }
-    let to_eye = -sight.direction;
-    // A drop is a lens: what is behind is seen upside down and smaller.
-    let bent = refract(sight.direction, normal, 1.0 / 1.33);
-    let shift = (bent - sight.direction) * max(6.0 * corner.disc.w, 0.02);
-    let clip = view.clip_from_world * vec4f(place + shift, 1.0);
+    return Drawn(vec4f(water(cap, place, normalize(found.xyz), sight.direction), 1.0), depth_at(place));
+}
+
+// Light from a place on a drop.
+fn water(cap: Cap, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
+    // A drop is a lens: what is near behind it is seen smaller, and the room upside down.
+    let bent = refract(direction, normal, 1.0 / 1.33) - direction;
+    let clip = view.clip_from_world * vec4f(place + bent * max(6.0 * cap.radius, 0.02), 1.0);
     let uv = clamp(clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5, vec2f(0.0), vec2f(1.0));
-    let seen = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
-    let fresnel = mirrored(dot(normal, to_eye), 0.02);
+    let near = textureSampleLevel(behind, behind_sampler, uv, 0.0).rgb;
+    let seen = mix(near, surroundings(normalize(direction + LENS * bent)), ROOM);
+    let fresnel = mirrored(dot(normal, -direction), 0.02);
     // Light from the sun gathers on the far side of a drop and leaves the near one darker.
     let lit = 0.82 + 0.3 * dot(normal, -view.sun.xyz) * (1.0 - fresnel);
-    let half_way = normalize(view.sun.xyz + to_eye);
+    let half_way = normalize(view.sun.xyz - direction);
     let spark = 3.0 * pow(max(dot(normal, half_way), 0.0), 260.0);
-    let colour = seen * lit * (1.0 - fresnel) + surroundings(reflect(sight.direction, normal)) * fresnel;
-    return Drawn(vec4f(colour + spark * view.sunlight.rgb, 1.0), depth_at(place));
+    return seen * lit * (1.0 - fresnel) + surroundings(reflect(direction, normal)) * fresnel + spark * view.sunlight.rgb;
 }

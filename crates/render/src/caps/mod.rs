@@ -1,10 +1,22 @@
-//! Drops on solids as caps of spheres.
+//! Drops on solids: caps of spheres that flow together where they come near, and fog of those too small to be seen.
 
-use crate::buffer::instances;
+mod fog;
+mod neighbours;
+
+use crate::buffer::{UNIFORM, storage, uniform};
 use crate::pipeline::Recipe;
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
 use corpuscle_gpu::{Gpu, wgpu};
+use fog::Fog;
+use glam::Vec3;
+use std::sync::Arc;
+
+/// How far drops reach for each other, part of their mean radius; and the gap over which they still do, in these lengths.
+const NECK: f32 = 0.12;
+const GAP: f32 = 4.0;
+/// Drops of smaller radius are fog, samples.
+const FINEST: f32 = 1.5;
 
 /// A drop: a cap on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,21 +37,30 @@ pub struct Cap {
 struct Instance {
     disc: [f32; 4],
     cap: [f32; 4],
+    /// Where its neighbours' numbers begin, and how many there are.
+    neighbours: [u32; 2],
+    unused: [u32; 2],
 }
 
 /// Draws drops; holds what all of them share.
 #[derive(Debug)]
 pub struct CapPainter {
+    tools: Arc<Tools>,
+}
+
+#[derive(Debug)]
+struct Tools {
     pipeline: wgpu::RenderPipeline,
-    behind: std::sync::Arc<Behind>,
+    layout: wgpu::BindGroupLayout,
+    behind: Behind,
+    fog: Fog,
 }
 
 /// Drops on the device.
 #[derive(Debug)]
 pub struct Caps {
-    pipeline: wgpu::RenderPipeline,
-    behind: std::sync::Arc<Behind>,
-    buffer: wgpu::Buffer,
+    tools: Arc<Tools>,
+    group: wgpu::BindGroup,
     count: u32,
 }
 
@@ -47,21 +68,17 @@ impl CapPainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
-        let behind = Behind::new(gpu);
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let (behind, layout) = (Behind::new(gpu), layout(gpu));
         let pipeline = Recipe {
             label: "caps",
             module: &shaders::module(gpu, "caps", include_str!("caps.wgsl")),
-            groups: &[renderer.view_layout(), &behind.layout],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: size_of::<Instance>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            }],
+            groups: &[renderer.view_layout(), &layout, &behind.layout],
+            buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         }
         .opaque(gpu);
-        Self { pipeline, behind: behind.into() }
+        let fog = Fog::new(renderer, &layout);
+        Self { tools: Arc::new(Tools { pipeline, layout, behind, fog }) }
     }
 
     /// Drops; those without height are left out.
@@ -69,18 +86,30 @@ impl CapPainter {
         let instance = |cap: Cap| {
             let ([x, y, z], normal) = (<[f32; 3]>::from(stage.place(cap.position)), cap.normal.map(|part| part as f32));
             let height = stage.length(cap.height);
-            Instance { disc: [x, y, z, stage.length(cap.radius)], cap: [normal[0], normal[1], normal[2], height] }
+            let disc = [x, y, z, stage.length(cap.radius)];
+            Instance { disc, cap: [normal[0], normal[1], normal[2], height], neighbours: [0; 2], unused: [0; 2] }
         };
         let drawn = |instance: &Instance| {
             instance.disc.iter().chain(&instance.cap).all(|number| number.is_finite()) && instance.cap[3] > 0.0
         };
-        let all: Vec<Instance> = caps.into_iter().map(instance).filter(drawn).collect();
-        Caps {
-            pipeline: self.pipeline.clone(),
-            behind: self.behind.clone(),
-            buffer: instances(gpu, "caps", &all),
-            count: all.len() as u32,
-        }
+        let mut all: Vec<Instance> = caps.into_iter().map(instance).filter(drawn).collect();
+        let neck = NECK * all.iter().map(|cap| cap.disc[3]).sum::<f32>() / all.len().max(1) as f32;
+        let discs: Vec<_> = all.iter().map(|cap| (Vec3::from_slice(&cap.disc), cap.disc[3])).collect();
+        let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
+        all.iter_mut().zip(spans).for_each(|(cap, span)| cap.neighbours = span);
+        let buffers = [
+            storage(gpu, "caps", &all),
+            storage(gpu, "caps' neighbours", &list),
+            uniform(gpu, "caps", &[neck.max(1e-9), FINEST, 0.0, 0.0]),
+        ];
+        let entries: Vec<_> = (0..)
+            .zip(&buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let layout = &self.tools.layout;
+        let group =
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("caps"), layout, entries: &entries });
+        Caps { tools: self.tools.clone(), group, count: all.len() as u32 }
     }
 }
 
@@ -90,11 +119,29 @@ impl Drawable for Caps {
     }
 
     fn draw_through(&mut self, frame: &mut Through<'_>) {
-        let behind = self.behind.group(frame);
+        self.tools.fog.draw(frame, &self.group, self.count);
+        let behind = self.tools.behind.group(frame);
         let mut pass = frame.begin("caps");
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(1, &behind, &[]);
-        pass.set_vertex_buffer(0, self.buffer.slice(..));
+        pass.set_pipeline(&self.tools.pipeline);
+        pass.set_bind_group(1, &self.group, &[]);
+        pass.set_bind_group(2, &behind, &[]);
         pass.draw(0..4, 0..self.count);
     }
+}
+
+/// Layout of the drops' group: caps, neighbours, settings.
+fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let list = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let entry = |(binding, ty): (usize, wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
+        binding: binding as u32,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty,
+        count: None,
+    };
+    let entries: Vec<_> = [list, list, UNIFORM].into_iter().enumerate().map(entry).collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("caps"), entries: &entries })
 }

@@ -1,7 +1,7 @@
 //! A particle of a fluid, as it is drawn.
 
 use crate::Stage;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A particle of a fluid, as it is drawn: a ball, or flattened along a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,13 @@ impl Droplet {
     /// A ball.
     pub fn ball(place: [f64; 3], radius: f64) -> Self {
         Self { place, radius, normal: [0.0, 0.0, 1.0], flatness: 1.0, volume: 0.0, reach: radius, foam: 0.0, id: 0 }
+    }
+
+    /// Height of its upper side beside its middle by this much `[eastwards, northwards]`, m, as if it went on flat.
+    pub(super) fn level(&self, away: DVec2) -> f64 {
+        let normal = DVec3::from(self.normal);
+        let top = normal * self.flatness * self.radius;
+        self.place[2] + top.z - normal.truncate().dot(away - top.truncate()) / normal.z.max(1e-3)
     }
 
     /// As the device has it; none where a number is not finite.

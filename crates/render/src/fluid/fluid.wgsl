@@ -8,8 +8,10 @@ struct Fluid {
     colour: vec4f,
     // Half the width of the smoothing, how far depths may part, what is farther is taken for (stage units); most pixels.
     smoothing: vec4f,
-    // Exponent of the highlight.
+    // Exponent of the highlight; depth over which a film begins to be seen, m.
     surface: vec4f,
+    // West, south, east and north end of what is drawn.
+    within: vec4f,
 }
 
 @group(1) @binding(0) var<uniform> fluid: Fluid;

@@ -1,5 +1,6 @@
 // The nearest surface of all particles: its distance along the line of sight of the picture's middle.
 #import droplet
+#import fluid
 
 struct Nearest {
     @location(0) distance: f32,
@@ -19,5 +20,8 @@ fn fragment(in: Sprite) -> Nearest {
         discard;
     }
     let place = in.middle + in.offset + hit.x * direction;
+    if any(place.xy < fluid.within.xy) || any(place.xy > fluid.within.zw) {
+        discard;
+    }
     return Nearest(dot(place - view.eye.xyz, view.forward.xyz), depth_at(place));
 }

@@ -15,8 +15,13 @@
 // Refractive index of air over that of water, and what water mirrors of light that falls straight on it.
 const INDEX: f32 = 1.0 / 1.333;
 const STRAIGHT: f32 = 0.02;
-// Depth over which a film of water begins to be seen, m.
-const FILM: f32 = 0.01;
+// Light that a bed gives back that is out of sight.
+const BED: vec3f = vec3f(0.16, 0.15, 0.09);
+// How well particles cover a place in closed water: a sum of poly6 weights.
+const CLOSED: f32 = 3.1;
+// How well they cover a place (halfway out of a straight shore 1.5) where water begins to be seen, and where
+// nothing else is: shores follow this, not the rims of discs.
+const SHORE: vec2f = vec2f(0.35, 0.65);
 
 fn unfold(packed: u32) -> vec3f {
     let flat = unpack2x16snorm(packed);
@@ -28,14 +33,27 @@ fn unfold(packed: u32) -> vec3f {
 // What is behind the surface in the direction of the refracted light, where its way in water ends.
 fn seen_through(pixel: vec2i, place: vec3f, way: vec3f) -> vec3f {
     let straight = (vec2f(pixel) + 0.5) / view.frame.xy;
-    let clip = view.clip_from_world * vec4f(place + way, 1.0);
+    // Where the ground is cut off, so is the view.
+    let end = vec3f(clamp(place.xy + way.xy, fluid.within.xy, fluid.within.zw), place.z + way.z);
+    let clip = view.clip_from_world * vec4f(end, 1.0);
     let bent = clip.xy / clip.w * vec2f(0.5, -0.5) + 0.5;
     let inside = all(bent > vec2f(0.0)) && all(bent < vec2f(1.0));
     let at = vec2i(bent * view.frame.xy);
     // What stands before the water is not seen through it.
     let nearer = inside && textureLoad(behind_depth, clamp(at, vec2i(0), vec2i(view.frame.xy) - 1), 0) > depth_at(place);
     let uv = select(straight, bent, inside && !nearer);
-    return textureSampleLevel(behind_colour, linear, uv, 0.0).rgb;
+    // Past the end of the ground one would look into the water's far side, which is not drawn: its bed stands for it.
+    let depth = textureLoad(behind_depth, clamp(vec2i(uv * view.frame.xy), vec2i(0), vec2i(view.frame.xy) - 1), 0);
+    let met = world_at_pixel(uv * view.frame.xy, max(depth, 1e-6)).xy;
+    let past = any(met < fluid.within.xy) || any(met > fluid.within.zw);
+    return select(textureSampleLevel(behind_colour, linear, uv, 0.0).rgb, BED, past);
+}
+
+// Water in the line of sight, m. Beyond the border of what is drawn there are no particles whose share could be added.
+fn whole_thickness(matter: vec4f, place: vec3f) -> f32 {
+    let inside = min(place.xy - fluid.within.xy, fluid.within.zw - place.xy);
+    let beside = 1.0 - smoothstep(0.0, 2.0 * fluid.smoothing.x, min(inside.x, inside.y));
+    return matter.r * mix(1.0, clamp(CLOSED / max(matter.a, 0.1), 1.0, 4.0), beside);
 }
 
 @compute @workgroup_size(32, 2)
@@ -50,17 +68,19 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         textureStore(shaded, pixel, vec4f(0.0));
         return;
     }
+    let dry = textureLoad(behind_colour, pixel, 0).rgb;
     let uv = (vec2f(pixel) + 0.5) / view.frame.xy;
     let matter = textureSampleLevel(thickness, linear, uv, 0.0);
     let normal = unfold(textureLoad(normals, pixel, 0).r);
     let to_eye = towards_eye(place);
     let cosine = clamp(dot(normal, to_eye), 0.0, 1.0);
+    let water = whole_thickness(matter, place);
     // A film so thin that it does not close is not seen.
-    let closed = smoothstep(0.0, FILM, matter.r * cosine);
+    let closed = smoothstep(0.0, fluid.surface.y, water * cosine);
 
     let refracted = refract(-to_eye, normal, INDEX);
     let steep = max(-dot(refracted, normal), 0.1);
-    let path = matter.r * cosine / steep;
+    let path = water * cosine / steep;
     let ground = seen_through(pixel, place, refracted * path / view.frame.z);
     // The light that the ground gives back came through the water too.
     let down = max(dot(refract(-view.sun.xyz, normal, INDEX), -normal), 0.3);
@@ -78,5 +98,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 
     let foam = 1.0 - exp(-fluid.absorption.w * matter.g / max(matter.b, 1e-6));
     colour = mix(colour, matt(vec3f(0.9), normal, shine), clamp(foam * closed, 0.0, 0.95));
-    textureStore(shaded, pixel, vec4f(colour, 1.0));
+    let covered = smoothstep(SHORE.x, SHORE.y, matter.a);
+    textureStore(shaded, pixel, vec4f(mix(dry, colour, covered), 1.0));
 }

@@ -1,4 +1,4 @@
-// How much water is in a line of sight, in metres, and foam: added up over all particles.
+// How much water is in a line of sight, in metres, and foam, added up over all particles; last, how well they cover it.
 #import droplet
 
 // The length of a line of sight in water is bounded where it grazes the surface.
@@ -20,7 +20,7 @@ fn fragment(in: Sprite) -> @location(0) vec4f {
     if in.matter.x <= 0.0 {
         let hit = crossing(in, direction);
         let chord = max(hit.y - hit.x, 0.0);
-        return vec4f(view.frame.z * chord, in.matter.y * chord, chord, 0.0);
+        return vec4f(view.frame.z * chord, in.matter.y * chord, chord, select(0.0, 1.0, chord > 0.0));
     }
     // Where the line of sight meets the surface; the share of the column is the kernel's (poly6, Mueller et al. 2003).
     let cosine = dot(in.normal, direction);
@@ -28,7 +28,7 @@ fn fragment(in: Sprite) -> @location(0) vec4f {
     let place = in.offset - dot(in.normal, in.offset) / slant * direction;
     let out = dot(place, place) / (in.radius * in.radius);
     let share = pow(max(1.0 - out, 0.0), 3.0);
-    return vec4f(in.matter.x * share / abs(slant), in.matter.y * share * flecks(in, place), share, 0.0);
+    return vec4f(in.matter.x * share / abs(slant), in.matter.y * share * flecks(in, place), share, share);
 }
 
 // A pattern of specks that goes with the particle, 1 on average.

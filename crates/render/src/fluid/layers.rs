@@ -6,7 +6,7 @@ use wgpu::{TextureFormat, TextureUsages as Usage};
 
 /// Distance along the line of sight of the picture's middle; 0 where there is no fluid.
 pub(super) const DISTANCE: TextureFormat = TextureFormat::R32Float;
-/// Water, m; foam; what foam is to be divided by.
+/// Water, m; foam; what foam is to be divided by; how well particles cover the place.
 pub(super) const THICKNESS: TextureFormat = TextureFormat::Rgba16Float;
 /// A direction, packed.
 pub(super) const NORMAL: TextureFormat = TextureFormat::R32Uint;

@@ -21,6 +21,8 @@ pub struct FluidPainter {
     pub(super) shading: Filter,
     pub(super) composing: wgpu::RenderPipeline,
     pub(super) composed: wgpu::BindGroupLayout,
+    /// Of the style alone.
+    pub(super) settings: wgpu::BindGroupLayout,
     pub(super) sampler: wgpu::Sampler,
 }
 
@@ -35,7 +37,8 @@ impl FluidPainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let (gpu, view) = (renderer.gpu(), renderer.view_layout());
-        let [depth, thickness] = sprites(gpu, view);
+        let settings = layout(gpu, "fluid", ShaderStages::FRAGMENT, &[UNIFORM]);
+        let [depth, thickness] = sprites(gpu, view, &settings);
         let bilateral = shaders::module(gpu, "bilateral", include_str!("bilateral.wgsl"));
         let narrow = shaders::module(gpu, "narrow_range", include_str!("narrow_range.wgsl"));
         let normals = shaders::module(gpu, "fluid_normals", include_str!("fluid_normals.wgsl"));
@@ -60,6 +63,7 @@ impl FluidPainter {
             }
             .opaque(gpu),
             composed,
+            settings,
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("fluid"),
                 mag_filter: wgpu::FilterMode::Linear,
@@ -102,7 +106,7 @@ impl Filter {
 }
 
 /// The pipelines that draw particles: nearest depth, and thickness.
-fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
+fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
     let attributes =
         wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32, 4 => Float32x4];
     let buffers = [wgpu::VertexBufferLayout {
@@ -110,7 +114,7 @@ fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2]
         step_mode: wgpu::VertexStepMode::Instance,
         attributes: &attributes,
     }];
-    let groups = [view];
+    let groups = [view, settings];
     let recipe = |label, module| Recipe {
         label,
         module,

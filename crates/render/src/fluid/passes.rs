@@ -65,6 +65,7 @@ impl Fluid {
         depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
         pipeline: &wgpu::RenderPipeline,
     ) {
+        let settings = group(frame.gpu, "fluid", &self.painter.settings, &[self.settings.as_entire_binding()]);
         let nothing =
             wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
         let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -79,6 +80,7 @@ impl Fluid {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, frame.view, &[]);
+        pass.set_bind_group(1, &settings, &[]);
         pass.set_pipeline(pipeline);
         for (buffer, count) in &self.droplets {
             pass.set_vertex_buffer(0, buffer.slice(..));

@@ -11,8 +11,9 @@ const SAME: f64 = 1.0;
 
 /// A light of its own: the reference is of the water, not of the sky in fashion.
 const LIGHT: Light = Light {
-    sun: [2.5, 0.75],
-    sunlight: [2.2, 2.1, 1.9],
+    // Low and before the eye, so that waves glitter.
+    sun: [2.3, 0.5],
+    sunlight: [1.6, 1.5, 1.4],
     softness: 0.02,
     ambient: 0.75,
     backdrop: Backdrop::Studio { above: [0.2, 0.4, 0.8], horizon: [0.8, 0.85, 0.9], below: [0.3; 3] },
@@ -42,7 +43,7 @@ fn draw(skipped: Option<FluidPass>) -> Option<Image> {
     let renderer = Renderer::new(&gpu);
     let stage = Stage::new([-1.0, -1.0, -0.3], [1.0, 1.0, 0.5]);
     let camera = Camera::orbit(&stage, [-1.4, 0.5], 0.6, 1.6, 0.0);
-    let style = FluidStyle { absorption: [1.4, 0.5, 0.4], ..FluidStyle::water(0.05) };
+    let style = FluidStyle { absorption: [1.4, 0.5, 0.4], exponent: 60.0, ..FluidStyle::water(0.05) };
     let mut fluid = FluidPainter::new(&renderer).fluid(&gpu, &stage, style);
     fluid.skipped = skipped;
     fluid.fill(&gpu, droplets());

@@ -31,12 +31,16 @@ pub struct FluidStyle {
     pub absorption: [f32; 3],
     /// What deep water gives back of full light.
     pub colour: [f32; 3],
+    /// Depth over which a film of water begins to be seen, m: a thinner one does not close.
+    pub film: f64,
     /// Strength of the sun's highlight.
     pub highlight: f32,
     /// Its exponent: the greater, the smaller.
     pub exponent: f32,
     /// How well foam hides what is below: 0 draws none.
     pub foam: f32,
+    /// South-western and north-eastern corner, m, beyond which it is not drawn: where the ground is cut off, water is too.
+    pub within: Option<[[f64; 2]; 2]>,
 }
 
 impl FluidStyle {
@@ -50,22 +54,34 @@ impl FluidStyle {
             most_pixels: 64,
             absorption: [0.60, 0.24, 0.16],
             colour: [0.035, 0.10, 0.13],
+            film: 0.01,
             highlight: 1.2,
             exponent: 240.0,
             foam: 1.5,
+            within: None,
         }
     }
 
+    /// The same water so much more turbid, or clearer: seen so many times shallower.
+    pub fn turbid(self, times: f64) -> Self {
+        Self { absorption: self.absorption.map(|part| part * times as f32), film: self.film / times, ..self }
+    }
+
     /// `Fluid` of fluid.wgsl.
-    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 4] {
+    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 5] {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
+        let [[west, south], [east, north]] = match self.within {
+            Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
+            None => [[f32::MIN; 2], [f32::MAX; 2]],
+        };
         [
             [red, green, blue, self.foam],
             [own_red, own_green, own_blue, self.highlight],
             [width, range, rounding, self.most_pixels as f32],
-            [self.exponent, 0.0, 0.0, 0.0],
+            [self.exponent, self.film as f32, 0.0, 0.0],
+            [west, south, east, north],
         ]
     }
 }

@@ -8,13 +8,21 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Radius of the discs that the surface is drawn with, in distances between particles: they overlap.
-const DISC: f64 = 1.25;
+const DISC: f64 = 1.4;
 /// Their thickness over their width.
 const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
 const REACH: f64 = 2.0;
-/// Differences of velocity between which air begins to be trapped and is to the full, m/s.
-const TRAPPED: [f64; 2] = [0.8, 3.0];
+/// Steeper than this no water stands.
+const STEEPEST: f64 = 1.0;
+/// How often it is looked whether some does: each time what is within reach of each particle.
+const SETTLINGS: usize = 12;
+/// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
+const LEVEL: f64 = 0.02;
+/// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
+const TRAPPED: [f64; 2] = [1.2, 5.0];
+/// Sum of poly6 weights (3.1 in closed water) from which on there is foam, and from which on all of it: drops that run alone have none.
+const CLOSED: [f64; 2] = [1.6, 2.8];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
 const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
@@ -28,24 +36,37 @@ pub struct Water {
     foam: HashMap<u64, f64>,
 }
 
-/// What is known of a particle on the ground.
+/// A particle on the ground.
+#[derive(Clone, Copy)]
 struct Column {
     index: usize,
     /// Distance to its neighbours, m.
     spacing: f64,
+    /// Where it is, m.
+    at: DVec2,
+    /// Height of the surface, m, and velocity eastwards and northwards, m/s.
+    state: DVec3,
+    /// Slope of the ground `[eastwards, northwards]`, m per m.
+    ground: DVec2,
 }
 
 impl Water {
     /// Particles as they are drawn at a time, s, not before that of the last call. Those that have a column `depth` of more than 0 lie
-    /// on the ground; the others are in the air.
-    pub fn droplets(&mut self, time: f64, set: &ParticleSet) -> Vec<Droplet> {
+    /// on the ground; the others are in the air. `slope` is the ground's at a place `[eastwards, northwards]`, m per m: water without
+    /// neighbours lies along it.
+    pub fn droplets(
+        &mut self,
+        time: f64,
+        set: &ParticleSet,
+        slope: impl Fn([f64; 2]) -> [f64; 2] + Sync,
+    ) -> Vec<Droplet> {
         let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
         let deep = |index: usize| match depths {
             Some(Values::Scalar(depths)) => depths[index] > 0.0,
             _ => false,
         };
         let (ground, air): (Vec<usize>, Vec<usize>) = (0..set.len()).partition(|&index| deep(index));
-        let mut droplets = on_ground(set, &ground);
+        let mut droplets = on_ground(set, &ground, slope);
         self.keep_foam(time, &mut droplets);
         droplets.extend(air.into_iter().map(|index| in_air(set, index)));
         droplets
@@ -67,68 +88,95 @@ impl Water {
 fn in_air(set: &ParticleSet, index: usize) -> Droplet {
     let volume = set.mass[index] / DENSITY;
     let radius = (volume * 0.75 / std::f64::consts::PI).cbrt();
-    Droplet { id: set.id[index], foam: 0.3, ..Droplet::ball(set.position[index], radius) }
+    Droplet { id: set.id[index], foam: 0.15, ..Droplet::ball(set.position[index], radius) }
 }
 
 /// Of water, kg/m3.
 const DENSITY: f64 = 1000.0;
 
-fn on_ground(set: &ParticleSet, ground: &[usize]) -> Vec<Droplet> {
+fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f64; 2] + Sync) -> Vec<Droplet> {
     if ground.is_empty() {
         return Vec::new();
     }
-    let column = |index: usize| Column { index, spacing: 2.0 * set.radius[index] };
+    let column = |index: usize| {
+        let ([x, y, z], [east, north, _]) = (set.position[index], set.velocity[index]);
+        let at = DVec2::new(x, y);
+        let ground = slope([x, y]).into();
+        Column { index, spacing: 2.0 * set.radius[index], at, state: DVec3::new(z, east, north), ground }
+    };
     let mut columns: Vec<Column> = ground.iter().map(|&index| column(index)).collect();
-    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| set.position[column.index][axis]).collect() };
+    let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
     let mean = columns.iter().map(|column| column.spacing).sum::<f64>() / columns.len() as f64;
     let mut cells = Cells::default();
     let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
-    let mut droplets: Vec<Droplet> = columns.par_iter().map(|column| disc(set, &cells, &columns, column)).collect();
+    settle(&cells, &mut columns);
+    // Particles tremble, more so in scheme paper; what is seen is what they do together.
+    let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own).here, ..*own };
+    columns = columns.par_iter().map(calm).collect();
+    let mut droplets: Vec<Droplet> = columns.par_iter().map(|own| disc(set, &cells, &columns, own)).collect();
+    let foam: Vec<f64> = columns.par_iter().map(|own| foam_around(own, &cells, &columns, &droplets)).collect();
+    droplets.iter_mut().zip(foam).for_each(|(droplet, foam)| droplet.foam = foam);
     // The order of the frame, which does not depend on the cells.
     droplets.sort_unstable_by_key(|droplet| droplet.id);
     droplets
 }
 
-/// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
-fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
-    let place = DVec3::from(set.position[own.index]);
-    let velocity = DVec3::from(set.velocity[own.index]);
-    let reach = REACH * own.spacing;
-    let mut plane = Plane::default();
-    let (mut closing, mut weights) = (0.0, 0.0);
-    for near in cells.ranges(place.x, place.y, reach).flat_map(|range| &columns[range]) {
-        let away = DVec3::from(set.position[near.index]) - place;
-        let distance = away.truncate().length();
-        if distance >= reach {
-            continue;
-        }
-        plane.add((1.0 - (distance / reach).powi(2)).powi(3), away);
-        let difference = (velocity - DVec3::from(set.velocity[near.index])).truncate();
-        if distance > 0.0 && difference != DVec2::ZERO {
-            // Ihmsen, Akinci, Akinci and Teschner, Unified Spray, Foam and Air Bubbles for Particle-Based Fluids (2012), eq. 2: relative
-            // velocity, the more the straighter the two go towards each other.
-            let weight = 1.0 - distance / reach;
-            let towards = 1.0 + difference.normalize().dot(away.truncate() / distance);
-            closing += weight * difference.length() * towards;
-            weights += weight;
+/// Takes down what stands steeper than water can: where scheme paper piles particles up before a wall, it finds columns of great
+/// height. The ground's slope comes on top.
+fn settle(cells: &Cells, columns: &mut Vec<Column>) {
+    let bounded = |own: &Column, all: &[Column]| {
+        let reach = REACH * own.spacing;
+        let steepest = STEEPEST + own.ground.length();
+        let near = cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &all[range]);
+        near.map(|near| (near.state.x, near.at.distance(own.at)))
+            .filter(|(_, distance)| *distance < reach)
+            .fold(own.state.x, |height, (other, distance)| height.min(other + steepest * distance))
+    };
+    for _ in 0..SETTLINGS {
+        let heights: Vec<f64> = columns.par_iter().map(|own| bounded(own, columns)).collect();
+        let settled = columns.iter().zip(&heights).all(|(own, height)| own.state.x == *height);
+        columns.iter_mut().zip(heights).for_each(|(own, height)| own.state.x = height);
+        if settled {
+            break;
         }
     }
-    let (height, slope) = plane.fit(own.spacing);
+}
+
+/// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
+fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
+    let planes = Planes::around(own, cells, columns);
+    let fit = planes.fit(own);
+    let slope = DVec2::new(fit.east.x, fit.north.x).clamp_length_max(STEEPEST);
     let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
-    let trapped = part(if weights > 0.0 { closing / weights } else { 0.0 }, TRAPPED);
+    // How fast the water of a disc runs together.
+    let closing = -(fit.east.y + fit.north.z) * REACH * own.spacing;
+    let velocity = DVec3::from(set.velocity[own.index]);
     let radius = DISC * own.spacing;
-    let middle = place + DVec3::Z * height - normal * (FLATNESS * radius);
+    let middle = own.at.extend(fit.here.x) - normal * (FLATNESS * radius);
     Droplet {
         place: middle.into(),
         radius,
         normal: normal.into(),
         flatness: FLATNESS,
         volume: set.mass[own.index] / DENSITY,
-        reach,
-        foam: trapped * part(0.5 * velocity.length_squared(), ENERGY),
+        reach: REACH * own.spacing,
+        foam: part(closing, TRAPPED) * part(0.5 * velocity.length_squared(), ENERGY) * part(planes.weight, CLOSED),
         id: set.id[own.index],
     }
+}
+
+/// The mean foam within reach of a column: foam spreads, and single particles are not flecked.
+fn foam_around(own: &Column, cells: &Cells, columns: &[Column], droplets: &[Droplet]) -> f64 {
+    let reach = REACH * own.spacing;
+    let near = cells.ranges(own.at.x, own.at.y, reach).flatten();
+    let weighed = near.map(|near| {
+        let out = columns[near].at.distance_squared(own.at) / (reach * reach);
+        ((1.0 - out).max(0.0).powi(3), droplets[near].foam)
+    });
+    let (sum, weights) =
+        weighed.fold((0.0, 0.0), |(sum, weights), (weight, foam)| (sum + weight * foam, weights + weight));
+    sum / weights
 }
 
 /// Where a value is between two: 0 at the first, 1 at the second (Ihmsen et al. 2012, eq. 1).
@@ -136,38 +184,65 @@ fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Weighted sums for the plane z = a + b x + c y of least squares.
+/// Weighted sums for planes f = a + b x + c y of least squares, of the three numbers of a column's state at once.
 #[derive(Default)]
-struct Plane {
+struct Planes {
     weight: f64,
-    at: DVec3,
+    at: DVec2,
     xx: f64,
     xy: f64,
     yy: f64,
-    slope: DVec2,
+    state: DVec3,
+    state_x: DVec3,
+    state_y: DVec3,
 }
 
-impl Plane {
-    fn add(&mut self, weight: f64, place: DVec3) {
-        self.weight += weight;
-        self.at += weight * place;
-        self.xx += weight * place.x * place.x;
-        self.xy += weight * place.x * place.y;
-        self.yy += weight * place.y * place.y;
-        self.slope += weight * place.z * place.truncate();
+/// Planes at a column: values there, and slopes east and north.
+struct Fit {
+    here: DVec3,
+    east: DVec3,
+    north: DVec3,
+}
+
+impl Planes {
+    /// Of the columns within reach of one.
+    fn around(own: &Column, cells: &Cells, columns: &[Column]) -> Self {
+        let reach = REACH * own.spacing;
+        let mut planes = Self::default();
+        for near in cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &columns[range]) {
+            let away = near.at - own.at;
+            let out = away.length_squared() / (reach * reach);
+            if out < 1.0 {
+                // Heights over a plane along the ground, so that planes of few neighbours lie along it.
+                planes.add((1.0 - out).powi(3), away, near.state - DVec3::X * own.ground.dot(away));
+            }
+        }
+        planes
     }
 
-    /// Height at the origin and slope. With few neighbours, or all in a line, the plane is level across it: `spacing` tells what is
-    /// little.
-    fn fit(&self, spacing: f64) -> (f64, DVec2) {
-        let mean = self.at / self.weight;
-        let level = 0.004 * spacing * spacing;
-        let xx = self.xx / self.weight - mean.x * mean.x + level;
-        let xy = self.xy / self.weight - mean.x * mean.y;
-        let yy = self.yy / self.weight - mean.y * mean.y + level;
-        let z = self.slope / self.weight - mean.z * mean.truncate();
-        let slope = DVec2::new(yy * z.x - xy * z.y, xx * z.y - xy * z.x) / (xx * yy - xy * xy);
-        (mean.z - slope.dot(mean.truncate()), slope)
+    fn add(&mut self, weight: f64, away: DVec2, state: DVec3) {
+        self.weight += weight;
+        self.at += weight * away;
+        self.xx += weight * away.x * away.x;
+        self.xy += weight * away.x * away.y;
+        self.yy += weight * away.y * away.y;
+        self.state += weight * state;
+        self.state_x += weight * away.x * state;
+        self.state_y += weight * away.y * state;
+    }
+
+    /// With few neighbours, or all in a line, heights follow the ground across it, and velocities do not change.
+    fn fit(&self, own: &Column) -> Fit {
+        let (at, mean) = (self.at / self.weight, self.state / self.weight);
+        let level = LEVEL * own.spacing * own.spacing;
+        let xx = self.xx / self.weight - at.x * at.x + level;
+        let xy = self.xy / self.weight - at.x * at.y;
+        let yy = self.yy / self.weight - at.y * at.y + level;
+        let [x, y] = [self.state_x / self.weight - at.x * mean, self.state_y / self.weight - at.y * mean];
+        let determinant = xx * yy - xy * xy;
+        let (east, north) = ((yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant);
+        let here = mean - at.x * east - at.y * north;
+        Fit { here, east: east + DVec3::X * own.ground.x, north: north + DVec3::X * own.ground.y }
     }
 }
 
@@ -175,6 +250,8 @@ impl Plane {
 mod tests {
     use super::*;
     use corpuscle_model::Column as Named;
+
+    const LEVEL_GROUND: fn([f64; 2]) -> [f64; 2] = |_| [0.0; 2];
 
     /// Water 1 m deep whose surface is a tilted plane, every particle 1 m from the next, with velocities.
     fn tilted(velocity: impl Fn(f64) -> [f64; 3]) -> ParticleSet {
@@ -196,7 +273,7 @@ mod tests {
 
     #[test]
     fn discs_lie_in_the_surface() {
-        let droplets = Water::default().droplets(0.0, &tilted(|_| [0.0; 3]));
+        let droplets = Water::default().droplets(0.0, &tilted(|_| [0.0; 3]), LEVEL_GROUND);
         let middle = droplets.iter().find(|droplet| droplet.id == 210).unwrap();
         let normal = DVec3::new(-0.2, 0.1, 1.0).normalize();
         assert!(DVec3::from(middle.normal).angle_between(normal) < 0.02);
@@ -205,16 +282,40 @@ mod tests {
     }
 
     #[test]
+    fn lone_water_lies_along_the_ground() {
+        let mut set = tilted(|_| [0.0; 3]);
+        set.position.iter_mut().for_each(|place| (0..2).for_each(|k| place[k] *= 9.0));
+        let droplets = Water::default().droplets(0.0, &set, |_| [0.3, -0.4]);
+        let normal = DVec3::new(-0.3, 0.4, 1.0).normalize();
+        assert!(droplets.iter().all(|droplet| DVec3::from(droplet.normal).angle_between(normal) < 1e-6));
+    }
+
+    #[test]
+    fn what_stands_steeper_than_water_can_is_taken_down() {
+        let mut set = tilted(|_| [0.0; 3]);
+        for index in [209, 210, 229, 230] {
+            set.position[index][2] += 30.0;
+        }
+        let place = set.position.clone();
+        let level = |index: usize| 0.2 * place[index][0] - 0.1 * place[index][1];
+        let droplets = Water::default().droplets(0.0, &set, LEVEL_GROUND);
+        let piled = droplets.iter().find(|droplet| droplet.id == 209).unwrap();
+        assert!(piled.place[2] < level(209) + 2.0, "{:?}", piled.place);
+        let calm = droplets.iter().find(|droplet| droplet.id == 105).unwrap();
+        assert!((calm.place[2] - level(105)).abs() < 0.3);
+    }
+
+    #[test]
     fn foam_comes_where_water_meets_water_goes_with_it_and_fades() {
         let foam = |droplets: &[Droplet], id: u64| droplets.iter().find(|droplet| droplet.id == id).unwrap().foam;
         let mut water = Water::default();
-        let meeting = tilted(|x| [if x < 10.0 { 1.5 } else { -1.5 }, 0.0, 0.0]);
-        let droplets = water.droplets(0.0, &meeting);
+        let meeting = tilted(|x| [if x < 10.0 { 3.0 } else { -3.0 }, 0.0, 0.0]);
+        let droplets = water.droplets(0.0, &meeting, LEVEL_GROUND);
         assert!(foam(&droplets, 209) > 0.05 && foam(&droplets, 204) == 0.0);
-        let parting = tilted(|x| [if x < 10.0 { -1.5 } else { 1.5 }, 0.0, 0.0]);
-        assert!(foam(&Water::default().droplets(0.0, &parting), 209) < 0.5 * foam(&droplets, 209));
+        let parting = tilted(|x| [if x < 10.0 { -3.0 } else { 3.0 }, 0.0, 0.0]);
+        assert!(foam(&Water::default().droplets(0.0, &parting, LEVEL_GROUND), 209) < 0.5 * foam(&droplets, 209));
         let calm = tilted(|_| [0.0; 3]);
-        let later = water.droplets(LIFE, &calm);
+        let later = water.droplets(LIFE, &calm, LEVEL_GROUND);
         assert!((foam(&later, 209) / foam(&droplets, 209) - (-1f64).exp()).abs() < 1e-9);
     }
 
@@ -222,7 +323,7 @@ mod tests {
     fn what_is_in_the_air_is_a_ball_of_its_volume() {
         let mut set = tilted(|_| [0.0; 3]);
         set.columns.clear();
-        let droplets = Water::default().droplets(0.0, &set);
+        let droplets = Water::default().droplets(0.0, &set, LEVEL_GROUND);
         assert_eq!((droplets.len(), droplets[0].flatness, droplets[0].volume), (400, 1.0, 0.0));
         assert!((4.0 / 3.0 * std::f64::consts::PI * droplets[0].radius.powi(3) - 1.0).abs() < 1e-12);
     }

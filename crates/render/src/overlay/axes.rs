@@ -31,6 +31,7 @@ impl Axes {
         let out = outwards(one, other, middle, long);
         let longest = (0..3).map(|k| self.to[k] - self.from[k]).fold(0.0, f64::max);
         let (factor, unit) = axis_unit(longest, &self.unit);
+        let factor = if axis == 2 { factor * self.heights } else { factor };
         let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
         let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
         page.svg.line(one, other, "over-line");

@@ -1,10 +1,11 @@
 //! What lies over a picture: title, time, the key of colours, scale bar, axes.
 
 mod axes;
+mod borders;
+mod key;
 
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
-use corpuscle_drawing::bars::{prefix, scale_bar, value_bar};
-use corpuscle_drawing::colour::hex;
+use corpuscle_drawing::bars::{prefix, scale_bar};
 use corpuscle_drawing::png::svg_to_pixels;
 use corpuscle_drawing::svg::{Anchor, Svg};
 use corpuscle_gpu::Image;
@@ -13,8 +14,7 @@ use corpuscle_gpu::Image;
 const HEIGHT: f64 = 720.0;
 /// Space between the picture's border and what lies over it.
 const MARGIN: f64 = 26.0;
-/// Width of a bar of colours, and of a letter.
-const BAR: f64 = 240.0;
+/// Width of a letter.
 const LETTER: f64 = 7.0;
 
 /// What lies over a picture. Empty texts are left out.
@@ -26,6 +26,18 @@ pub struct Overlay {
     pub time: String,
     /// What colours mean.
     pub key: Option<Key>,
+    /// Where that is told.
+    pub key_place: KeyPlace,
+    /// What lines mean, told with the colours.
+    pub lines: Vec<(LineLook, String)>,
+    /// Something to know about the picture, in small letters in its lower right corner.
+    pub remark: String,
+    /// The sides of a flat box, and what stands in it.
+    pub borders: Vec<Border>,
+    /// Places that are marked.
+    pub marks: Vec<Mark>,
+    /// Texts at places, m.
+    pub labels: Vec<([f64; 3], String)>,
     /// A bar of a round length, with this unit (empty in reduced units), where the lens is to scale.
     pub scale_bar: Option<String>,
     /// Axes along the edges of a box.
@@ -41,6 +53,65 @@ pub enum Key {
     Kinds(Vec<(String, [u8; 3])>),
 }
 
+/// Where the key of colours and lines stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum KeyPlace {
+    /// In the lower left corner of the picture.
+    #[default]
+    Corner,
+    /// In a row below the axes.
+    Below,
+    /// In a column to the right of the axes.
+    Beside,
+}
+
+/// How a line looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineLook {
+    /// A wall.
+    Wall,
+    /// A wall at a temperature.
+    HotWall,
+    /// No wall: a dashed line.
+    Open,
+    /// A thin wall inside.
+    Partition,
+    /// A way.
+    Way,
+}
+
+/// A side of a flat box, or what stands in it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Border {
+    /// A line between two places, m, moved out of the box by half its width.
+    Line {
+        /// How it looks.
+        look: LineLook,
+        /// Where it begins and ends, m.
+        ends: [[f64; 2]; 2],
+        /// The way out of the box, of length 1; 0 inside.
+        outwards: [f64; 2],
+    },
+    /// A block that moves, with a rod.
+    Piston {
+        /// Where the face that looks into the box begins and ends, m.
+        ends: [[f64; 2]; 2],
+        /// The way out of the box, of length 1.
+        outwards: [f64; 2],
+        /// Length of the rod, m.
+        rod: f64,
+    },
+}
+
+/// A marked place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mark {
+    /// A white dot: where a way begins.
+    Start([f64; 3]),
+    /// A ring round something of this radius, m: what went the way.
+    Ring([f64; 3], f64),
+}
+
 /// Axes along the edges of a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axes {
@@ -50,6 +121,8 @@ pub struct Axes {
     pub to: [f64; 3],
     /// Unit of lengths; empty in reduced units.
     pub unit: String,
+    /// How many times larger than they are lengths along z are drawn.
+    pub heights: f64,
 }
 
 /// The page that is drawn on, in CSS pixels.
@@ -82,11 +155,15 @@ impl Overlay {
         }
         page.svg.text([MARGIN, MARGIN + 18.0], Anchor::Start, "over-title", &self.title);
         page.svg.text([page.size[0] - MARGIN, MARGIN + 18.0], Anchor::End, "over-title", &self.time);
-        match &self.key {
-            Some(Key::Values(label, table)) => draw_values(&mut page, label, table),
-            Some(Key::Kinds(kinds)) => draw_kinds(&mut page, kinds),
-            None => {}
+        borders::draw(&mut page, &self.borders);
+        self.marks.iter().for_each(|mark| borders::draw_mark(&mut page, mark));
+        for (place, label) in &self.labels {
+            if let Some([x, y]) = page.place(*place) {
+                page.svg.text([x, y + 5.0], Anchor::Middle, "over", label);
+            }
         }
+        self.draw_key(&mut page);
+        page.svg.text([page.size[0] - MARGIN, HEIGHT - MARGIN + 8.0], Anchor::End, "over-number", &self.remark);
         if let (Some(unit), Lens::Orthographic { height }) = (&self.scale_bar, camera.lens) {
             let at = [page.size[0] - MARGIN - 10.0, HEIGHT - MARGIN - 24.0];
             panel(&mut page.svg, [at[0] - 190.0, at[1] - 8.0], [200.0, 38.0]);
@@ -113,26 +190,6 @@ fn fitted(image: Image, [width, height]: [u32; 2]) -> Image {
 
 fn panel(svg: &mut Svg, place: [f64; 2], size: [f64; 2]) {
     svg.rectangle(place, size, "panel");
-}
-
-fn draw_values(page: &mut Page<'_>, label: &str, table: &ColourTable) {
-    let top = HEIGHT - MARGIN - 56.0;
-    panel(&mut page.svg, [MARGIN - 12.0, top - 12.0], [BAR + 40.0, 74.0]);
-    page.svg.text([MARGIN + 2.0, top + 4.0], Anchor::Start, "text", label);
-    let range = [f64::from(table.low), f64::from(table.high)];
-    let colour = |part: f64| table.colour(table.low + (table.high - table.low) * part as f32);
-    value_bar(&mut page.svg, range, colour, [MARGIN + 8.0, top + 14.0], BAR);
-}
-
-fn draw_kinds(page: &mut Page<'_>, kinds: &[(String, [u8; 3])]) {
-    let longest = kinds.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0) as f64;
-    let top = HEIGHT - MARGIN - 20.0 * kinds.len() as f64;
-    panel(&mut page.svg, [MARGIN - 12.0, top - 6.0], [longest * LETTER + 50.0, 20.0 * kinds.len() as f64 + 12.0]);
-    for (row, (name, colour)) in kinds.iter().enumerate() {
-        let y = top + 10.0 + 20.0 * row as f64;
-        page.svg.circles([([MARGIN + 6.0, y], 6.0)], &hex(*colour), "balls");
-        page.svg.text([MARGIN + 20.0, y + 4.0], Anchor::Start, "text", name);
-    }
 }
 
 /// What the numbers of axes are divided by, and its name, where the longest has this length.

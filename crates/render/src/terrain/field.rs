@@ -37,6 +37,93 @@ impl HeightField {
         if low <= high { [f64::from(low), f64::from(high)] } else { [0.0, 0.0] }
     }
 
+    /// Rise `[eastwards, northwards]` of the quad round a place, m per m; of the nearest for places outside, and level where there
+    /// is no ground.
+    pub fn slope_at(&self, place: [f64; 2]) -> [f64; 2] {
+        let quad = [0, 1].map(|k| {
+            let at = (place[k] - self.origin[k]) / self.cell[k];
+            (at.max(0.0) as usize).min(self.nodes[k] - 2)
+        });
+        let node =
+            |east: usize, north: usize| f64::from(self.heights[(quad[1] + north) * self.nodes[0] + quad[0] + east]);
+        let east = 0.5 * (node(1, 0) - node(0, 0) + node(1, 1) - node(0, 1)) / self.cell[0];
+        let north = 0.5 * (node(0, 1) - node(0, 0) + node(1, 1) - node(1, 0)) / self.cell[1];
+        [east, north].map(|slope| if slope.is_finite() { slope } else { 0.0 })
+    }
+
+    /// Where a node is, m.
+    pub(crate) fn place(&self, index: usize) -> [f64; 2] {
+        let at = [index % self.nodes[0], index / self.nodes[0]];
+        [0, 1].map(|k| self.origin[k] + self.cell[k] * at[k] as f64)
+    }
+
+    /// True for a quad, by its south-western node, that has heights at all four corners.
+    fn has_ground(&self, [column, row]: [usize; 2]) -> bool {
+        let first = row * self.nodes[0] + column;
+        [first, first + 1, first + self.nodes[0], first + self.nodes[0] + 1]
+            .iter()
+            .all(|index| self.heights[*index].is_finite())
+    }
+
+    /// Edges of quads with ground, beyond which there is none.
+    pub(super) fn edges(&self) -> Vec<Edge> {
+        let [columns, rows] = self.nodes;
+        let ground =
+            |column: usize, row: usize| column + 1 < columns && row + 1 < rows && self.has_ground([column, row]);
+        let mut edges = Vec::new();
+        for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
+            if !ground(column, row) {
+                continue;
+            }
+            let south_west = row * columns + column;
+            let north_west = south_west + columns;
+            let sides = [
+                (row == 0 || !ground(column, row - 1), [south_west, south_west + 1], [0.0, -1.0]),
+                (!ground(column, row + 1), [north_west, north_west + 1], [0.0, 1.0]),
+                (column == 0 || !ground(column - 1, row), [south_west, north_west], [-1.0, 0.0]),
+                (!ground(column + 1, row), [south_west + 1, north_west + 1], [1.0, 0.0]),
+            ];
+            edges.extend(sides.into_iter().filter(|side| side.0).map(|(_, nodes, outwards)| Edge { nodes, outwards }));
+        }
+        edges
+    }
+
+    /// Heights with those of the nearest nodes, by steps along rows and columns, where there are none.
+    pub(super) fn filled(&self) -> Vec<f32> {
+        let mut heights = self.heights.clone();
+        let mut front: Vec<usize> = (0..heights.len()).filter(|index| heights[*index].is_finite()).collect();
+        if front.len() == heights.len() {
+            return heights;
+        }
+        let mut next = Vec::new();
+        while !front.is_empty() {
+            for index in front.drain(..) {
+                for near in self.neighbours(index) {
+                    if !heights[near].is_finite() {
+                        heights[near] = heights[index];
+                        next.push(near);
+                    }
+                }
+            }
+            std::mem::swap(&mut front, &mut next);
+        }
+        heights
+    }
+
+    /// Nodes beside a node: west, east, south, north.
+    fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+        let [columns, rows] = self.nodes;
+        let (column, row) = (index % columns, index / columns);
+        [
+            (column > 0, index.wrapping_sub(1)),
+            (column + 1 < columns, index + 1),
+            (row > 0, index.wrapping_sub(columns)),
+            (row + 1 < rows, index + columns),
+        ]
+        .into_iter()
+        .filter_map(|(is_there, near)| is_there.then_some(near))
+    }
+
     /// Nodes as a texture's size.
     pub(super) fn size(&self) -> [u32; 2] {
         self.nodes.map(|count| count as u32)
@@ -59,9 +146,32 @@ impl HeightField {
     }
 }
 
+/// An edge at which the ground ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Edge {
+    pub nodes: [usize; 2],
+    /// The direction away from the ground.
+    pub outwards: [f32; 2],
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn ground_ends_at_its_border_and_round_what_is_missing() {
+        let whole = HeightField::sampled([0.0; 2], [4.0, 3.0], [5, 4], |x, y| x + 10.0 * y);
+        assert_eq!(whole.edges().len(), 14);
+        assert_eq!(whole.filled(), whole.heights);
+        let mut holed = whole.clone();
+        holed.heights[6] = f32::NAN;
+        // The four quads round it go, two sides of the border with each of three of them; two sides of four quads come.
+        assert_eq!(holed.edges().len(), 14);
+        assert!(holed.edges().iter().all(|edge| !edge.nodes.contains(&6)));
+        assert!(holed.filled().iter().all(|height| height.is_finite()));
+        let none = HeightField { heights: vec![f32::NAN; 20], ..whole };
+        assert_eq!((none.edges().len(), none.filled().len()), (0, 20));
+    }
 
     #[test]
     fn slopes_of_a_plane_are_the_planes() {
@@ -71,5 +181,9 @@ mod tests {
             assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{index}: {east} {north}");
         }
         assert_eq!(field.range(), [-6.25, 18.75]);
+        for place in [[1e6 + 3.0, 7.0], [1e6 + 40.0, 25.0], [0.0, 1e9]] {
+            let [east, north] = field.slope_at(place);
+            assert!((east - 0.5).abs() < 1e-5 && (north + 0.25).abs() < 1e-5, "{place:?}: {east} {north}");
+        }
     }
 }

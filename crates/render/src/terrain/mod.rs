@@ -23,6 +23,10 @@ const GRAIN: f32 = 0.35;
 pub struct Terrain {
     opaque: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    settings: Ground,
+    /// Heights and slopes.
+    shape: [wgpu::TextureView; 2],
     group: wgpu::BindGroup,
     index: wgpu::Buffer,
     field: HeightField,
@@ -74,17 +78,31 @@ impl Terrain {
             cell: [cell[0], cell[1], 0.0, GRAIN],
             nodes: [field.nodes[0] as u32, field.nodes[1] as u32, 0, 0],
         };
-        let textures =
-            [upload_heights(gpu, stage, &field)?, upload_slopes(gpu, &field)?, upload_colours(gpu, colours)?];
+        let shape = [upload_heights(gpu, stage, &field)?, upload_slopes(gpu, &field)?];
+        let colours = upload_colours(gpu, colours)?;
         Ok(Self {
             opaque: recipe.opaque(gpu),
             cast: recipe.cast(gpu, "throw_shadow"),
-            group: group(gpu, &layout, &settings, &textures),
+            group: group(gpu, &layout, &settings, &shape, &colours),
+            layout,
+            settings,
+            shape,
             index: indices(gpu, "terrain", &tiles::indices()),
             walls: Walls::new(renderer, stage, &field, base),
             field,
             tiles: None,
         })
+    }
+
+    /// Drapes another picture over the ground, shown as it is: without the grain that natural ground has.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] for more pixels a side than a texture has.
+    pub fn drape(&mut self, gpu: &Gpu, colours: &Image) -> Result<(), RenderError> {
+        self.settings.cell[3] = 0.0;
+        let colours = upload_colours(gpu, colours)?;
+        self.group = group(gpu, &self.layout, &self.settings, &self.shape, &colours);
+        Ok(())
     }
 
     fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
@@ -139,7 +157,8 @@ fn group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
     settings: &Ground,
-    [heights, slopes, colours]: &[wgpu::TextureView; 3],
+    [heights, slopes]: &[wgpu::TextureView; 2],
+    colours: &wgpu::TextureView,
 ) -> wgpu::BindGroup {
     let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("terrain"),
@@ -177,23 +196,20 @@ fn upload(
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
-/// Heights in stage coordinates; where there are none the lowest.
+/// Heights in stage coordinates; where there are none those nearby.
 fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
-    let [low, _] = field.range();
     let [x, y, _] = stage.centre().into();
-    let place = |height: f32| {
-        let height = if height.is_nan() { low } else { f64::from(height) };
-        stage.place([x, y, height]).z
-    };
-    let heights: Vec<f32> = field.heights.iter().map(|height| place(*height)).collect();
+    let place = |height: f32| stage.place([x, y, f64::from(height)]).z;
+    let heights: Vec<f32> = field.filled().into_iter().map(place).collect();
     upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
 }
 
+/// Slopes; beyond all bounds at nodes without height, so that all quads that meet there are told from the others.
 fn upload_slopes(gpu: &Gpu, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
-    let slopes: Vec<u8> = (0..field.heights.len())
-        .flat_map(|index| field.slope(index))
-        .flat_map(|slope| f16::from_f32(slope).to_le_bytes())
-        .collect();
+    let slope =
+        |index: usize| if field.heights[index].is_finite() { field.slope(index) } else { [f16::MAX.to_f32(), 0.0] };
+    let slopes: Vec<u8> =
+        (0..field.heights.len()).flat_map(slope).flat_map(|slope| f16::from_f32(slope).to_le_bytes()).collect();
     upload(gpu, "slopes", field.size(), wgpu::TextureFormat::Rg16Float, &slopes)
 }
 

@@ -61,6 +61,9 @@ fn bumps(place: vec2f) -> f32 {
     return mix(south, north, part.y);
 }
 
+// Steeper than this no ground is: a quad whose corners have no height is marked so.
+const NO_GROUND: f32 = 50.0;
+
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {
     let found = textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0);
@@ -68,6 +71,9 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
         discard;
     }
     let slope = textureSampleLevel(slopes, smooth_sampler, corner.uv, 0.0).rg;
+    if slope.x > NO_GROUND {
+        discard;
+    }
     let normal = normalize(vec3f(-slope, 1.0));
     let shine = sunshine(corner.place, normal, corner.clip.xy);
     // Grain finer than the cells, as far as pixels show it.
@@ -79,7 +85,8 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
 
 @fragment
 fn throw_shadow(corner: Corner) {
-    if textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0).a < 0.5 {
+    let missing = textureSampleLevel(slopes, smooth_sampler, corner.uv, 0.0).r > NO_GROUND;
+    if missing || textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0).a < 0.5 {
         discard;
     }
 }

@@ -1,6 +1,7 @@
-//! The sides of the block of ground.
+//! The upright sides of the block of ground.
 
 use super::HeightField;
+use super::field::Edge;
 use crate::buffer::instances;
 use crate::pipeline::Recipe;
 use crate::{Renderer, Stage, shaders};
@@ -15,7 +16,7 @@ struct Vertex {
     normal: [f32; 4],
 }
 
-/// The four upright sides.
+/// The upright sides: at the border, and round what has no heights.
 #[derive(Debug)]
 pub(super) struct Walls {
     opaque: wgpu::RenderPipeline,
@@ -64,35 +65,20 @@ impl Walls {
     }
 }
 
-/// Two triangles below each edge between border nodes that have heights.
+/// Two triangles below each edge at which the ground ends.
 fn vertices(stage: &Stage, field: &HeightField, base: f64) -> Vec<Vertex> {
-    let [columns, rows] = field.nodes;
-    let south: Vec<usize> = (0..columns).collect();
-    let west: Vec<usize> = (0..rows).map(|row| row * columns).collect();
-    let sides = [
-        (south.clone(), [0.0, -1.0]),
-        (south.iter().map(|index| index + (rows - 1) * columns).collect(), [0.0, 1.0]),
-        (west.clone(), [-1.0, 0.0]),
-        (west.iter().map(|index| index + columns - 1).collect(), [1.0, 0.0]),
-    ];
     let mut all = Vec::new();
-    for (nodes, [x, y]) in sides {
-        for pair in nodes.windows(2) {
-            if pair.iter().any(|index| field.heights[*index].is_nan()) {
-                continue;
-            }
-            let vertex = |index: usize, is_low: bool| {
-                let at = [0, 1].map(|k| field.origin[k] + field.cell[k] * [index % columns, index / columns][k] as f64);
-                let height = f64::from(field.heights[index]);
-                let [px, py, pz] = stage.place([at[0], at[1], if is_low { base } else { height }]).into();
-                let deep = if is_low { stage.length(height - base) } else { 0.0 };
-                Vertex { place: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
-            };
-            let [a, b] = [pair[0], pair[1]];
-            all.extend(
-                [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(i, low)| vertex(i, low)),
-            );
-        }
+    for Edge { nodes: [a, b], outwards: [x, y] } in field.edges() {
+        let vertex = |index: usize, is_low: bool| {
+            let [east, north] = field.place(index);
+            let height = f64::from(field.heights[index]);
+            let [px, py, pz] = stage.place([east, north, if is_low { base } else { height }]).into();
+            let deep = if is_low { stage.length(height - base) } else { 0.0 };
+            Vertex { place: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
+        };
+        all.extend(
+            [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(node, low)| vertex(node, low)),
+        );
     }
     all
 }

@@ -1,13 +1,17 @@
-//! Pictures of dew: drops on solids in a dim room, against which they show.
+//! Pictures of dew: drops on solids in a dim room, against which they show; and air round solids, where ways to keep it out are
+//! compared.
 
-use super::{Moment, Studio};
+mod section;
+
+use super::{Moment, OwnView, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_gpu::Image;
 use corpuscle_model::{ParticleSet, Surface, Values};
-use corpuscle_render::{Axes, Camera, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
+use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
 use corpuscle_scene::Dew;
 use corpuscle_scene::dew::Material;
+use section::Section;
 
 /// How far beside the way that the wet side looks the eye stands, and how high, radians; and how wide the lens is.
 const BESIDE: f64 = 0.45;
@@ -24,7 +28,30 @@ const GLASS: [u8; 3] = [232, 242, 238];
 const MATT: [u8; 3] = [150, 152, 156];
 
 /// Draws dew.
-pub(super) struct DewPicture {
+pub(super) enum DewPicture {
+    Room(Room),
+    Section(Section),
+}
+
+impl DewPicture {
+    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+        let differ = dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment);
+        match differ {
+            true => Self::Section(Section::new(studio, dew, surfaces)),
+            false => Self::Room(Room::new(studio, dew, surfaces)),
+        }
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        match self {
+            Self::Room(room) => room.draw(studio, title, moment),
+            Self::Section(section) => section.draw(studio, title, moment),
+        }
+    }
+}
+
+/// Drops on solids.
+pub(in crate::pictures) struct Room {
     stage: Stage,
     solids: Vec<Solid>,
     floor: Floor,
@@ -32,8 +59,8 @@ pub(super) struct DewPicture {
     azimuth: f64,
 }
 
-impl DewPicture {
-    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+impl Room {
+    fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
         let corner = |pick: fn(f64, f64) -> f64, side: usize, start: f64| {
             std::array::from_fn(|k| surfaces.iter().map(|surface| surface.shape.bounds[side][k]).fold(start, pick))
         };
@@ -51,8 +78,14 @@ impl DewPicture {
         Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
-        let camera = Camera::orbit(&self.stage, [self.azimuth, RAISED], FIELD_OF_VIEW, studio.aspect(), MARGIN);
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let own = OwnView {
+            direction: [self.azimuth, RAISED],
+            field_of_view: FIELD_OF_VIEW,
+            margin: MARGIN,
+            margins: [2.0 * MARGIN; 4],
+        };
+        let camera = studio.camera(&self.stage, &own, moment.frame.time);
         let light = Light::dim_room().from_azimuth(self.azimuth + SUN);
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
         let faces_eye = |cap: &&Cap| {
@@ -70,7 +103,7 @@ impl DewPicture {
         let overlay = Overlay {
             title: title.into(),
             time: format!("t = {}", text::time(moment.frame.time)),
-            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into() }),
+            axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         };
         studio.take(&self.stage, &camera, &light, &mut things, &overlay)

@@ -1,0 +1,82 @@
+//! Air round solids that are kept clear of it in different ways: seen across, to scale, air coloured by temperature.
+
+use super::{MATT, caps};
+use crate::Error;
+use crate::pictures::{Moment, Studio};
+use corpuscle_drawing::colour::{VIRIDIS, split};
+use corpuscle_drawing::text;
+use corpuscle_gpu::Image;
+use corpuscle_model::{ParticleSet, Surface, Values};
+use corpuscle_render::{
+    Axes, BallStyle, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Solid, SolidStyle, Stage,
+};
+use corpuscle_scene::Dew;
+
+/// At the left, at the right, below and above the box, parts of the picture's height.
+const MARGINS: [f64; 4] = [0.13, 0.4, 0.12, 0.095];
+/// Radius of a ball of air, part of the spacing.
+const RADIUS: f64 = 0.3;
+/// 0 °C, K.
+const ZERO_CELSIUS: f64 = 273.15;
+
+/// Draws the section.
+pub(in crate::pictures) struct Section {
+    stage: Stage,
+    solids: Vec<Solid>,
+    colours: ColourTable,
+    radius: f64,
+    /// Names of the solids, each before its solid.
+    labels: Vec<([f64; 3], String)>,
+}
+
+impl Section {
+    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+        let stage = Stage::new([0.0; 3], dew.size_m);
+        let style = SolidStyle::Opaque(MATT, 0.3);
+        let solids = surfaces.iter().map(|surface| Solid::new(&studio.renderer, &stage, &surface.shape, style));
+        let of_solids = surfaces.iter().filter_map(|surface| surface.scalar("temperature_k")).flatten();
+        let low = of_solids.map(|kelvin| kelvin - ZERO_CELSIUS).fold(dew.air.temperature_c - 1.0, f64::min);
+        let colours =
+            ColourTable { low: low as f32, high: dew.air.temperature_c as f32, colours: VIRIDIS.map(split).to_vec() };
+        let label = |surface: &Surface| {
+            let [low, high] = surface.shape.bounds;
+            (std::array::from_fn(|k| 0.5 * (low[k] + high[k])), surface.name.clone())
+        };
+        let labels = surfaces.iter().map(label).collect();
+        Self { stage, solids: solids.collect(), colours, radius: RADIUS * dew.spacing_m, labels }
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let gpu = studio.renderer.gpu();
+        let stage = self.stage;
+        let camera = Camera::front(&stage, studio.aspect(), MARGINS);
+        let sets = |name: &'static str| moment.frame.sets.iter().filter(move |set| set.name == name);
+        let air = sets("air").flat_map(|set| {
+            let temperatures = temperatures(set);
+            set.position.iter().zip(temperatures).map(|(place, kelvin)| (*place, self.radius, kelvin - ZERO_CELSIUS))
+        });
+        let style = BallStyle { gloss: 0.4, ..BallStyle::new(self.colours.clone()) };
+        let mut air = studio.balls.balls(gpu, &stage, &style, air);
+        let mut drops = studio.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
+        let overlay = Overlay {
+            title: title.into(),
+            time: format!("t = {}", text::time(moment.frame.time)),
+            key: Some(Key::Values("Temperature of the air, °C".into(), self.colours.clone())),
+            key_place: KeyPlace::Beside,
+            labels: self.labels.clone(),
+            axes: Some(Axes { from: stage.from.into(), to: stage.to.into(), unit: "m".into(), heights: 1.0 }),
+            ..Overlay::default()
+        };
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut air];
+        things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
+        things.push(&mut drops);
+        studio.take(&stage, &camera, &Light::studio().from_azimuth(-2.2), &mut things, &overlay)
+    }
+}
+
+fn temperatures(set: &ParticleSet) -> &[f64] {
+    match set.columns.iter().find(|column| column.name == "temperature").map(|column| &column.values) {
+        Some(Values::Scalar(values)) => values,
+        _ => &[],
+    }
+}

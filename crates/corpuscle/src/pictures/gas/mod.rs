@@ -1,0 +1,186 @@
+//! Pictures of a gas: to scale on paper in two dimensions, in a bright room in three.
+
+mod page;
+mod sides;
+
+use super::{Moment, OwnView, Studio};
+use crate::Error;
+use corpuscle_drawing::colour::{VIRIDIS, split};
+use corpuscle_gpu::Image;
+use corpuscle_model::{Container, Frame, ParticleSet};
+use corpuscle_record::{GasKey, gas_key};
+use corpuscle_render::{
+    BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Stage, TubeStyle, Tubes,
+};
+use corpuscle_scene::{Gas, padded};
+use sides::Plates;
+
+/// From where a box in space is seen, radians: to the right of its front, from above; and how wide the lens is.
+const DIRECTION: [f64; 2] = [-1.02, 0.36];
+/// Room for axes round the box in space, part of the picture.
+const OWN_VIEW: OwnView =
+    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.12, 0.12, 0.16, 0.09] };
+/// In the plane: at the left, at the right, below and above, parts of its height; with the key beside the box, and below it.
+const BESIDE: [f64; 4] = [0.11, 0.38, 0.095, 0.095];
+const BELOW: [f64; 4] = [0.11, 0.06, 0.16, 0.095];
+/// More entries of a key than this do not stand in a row.
+const MOST_IN_A_ROW: usize = 4;
+/// How far the sun stands to the left of the eye, radians.
+const SUN: f64 = -0.9;
+/// Least radius of a ball that is drawn, pixels of a picture 1080 pixels high, in the plane and in space; and in any picture.
+const LEAST_RADIUS: [f64; 2] = [2.4, 4.5];
+const LEAST_OF_ALL: f64 = 1.2;
+/// Balls are not enlarged beyond this part of the mean distance between them.
+const CLOSEST: f64 = 0.2;
+/// Ink of edges, and the colour of a ball's way.
+const INK: [u8; 3] = [0x46, 0x52, 0x5e];
+const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
+
+/// Draws a gas.
+pub(super) struct GasPicture {
+    gas: Gas,
+    plates: Plates,
+}
+
+/// Where the things of one picture are.
+struct View {
+    stage: Stage,
+    camera: Camera,
+    container: Container,
+    key_place: KeyPlace,
+}
+
+impl GasPicture {
+    pub(super) fn new(gas: Gas) -> Self {
+        Self { gas, plates: Plates::default() }
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+        let key = gas_key(&self.gas, moment.frame);
+        let view = self.view(studio, moment, &key);
+        let flat = self.gas.dimensions() == 2;
+        let light = if flat { Light::paper() } else { Light::studio().from_azimuth(DIRECTION[0] + SUN) };
+        let overlay = self.overlay(studio, title, moment, &key, &view);
+        let stage = &view.stage;
+        let mut balls = self.balls(studio, &view, moment, &key);
+        let ways = moment.paths.iter().map(|path| {
+            let so_far = path.times.partition_point(|time| *time <= moment.frame.time);
+            &path.points[..so_far.min(path.points.len())]
+        });
+        let mut ways = tubes(studio, stage, WAY, [2.2, 0.002], ways);
+        let mut things: Vec<&mut dyn Drawable> = Vec::new();
+        let mut edges = sides::edges(&self.gas, studio, &view);
+        let mut floor = Floor::new(&studio.renderer, stage, stage.from.z);
+        things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
+        things.push(&mut ways);
+        if !flat {
+            things.push(&mut floor);
+            things.extend(edges.iter_mut().map(|edges| edges as &mut dyn Drawable));
+            things.extend(self.plates.of(&self.gas, studio, &view, moment.frame.time));
+        }
+        studio.take(stage, &view.camera, &light, &mut things, &overlay)
+    }
+
+    /// Where it is seen from. What moves does not move the camera.
+    fn view(&self, studio: &Studio, moment: &Moment<'_>, key: &GasKey) -> View {
+        let size = padded(&self.gas.size);
+        let container = moment.container.unwrap_or(Container { from: [0.0; 3], to: size });
+        let stage = Stage::new(
+            std::array::from_fn(|k| container.from[k].min(0.0)),
+            std::array::from_fn(|k| container.to[k].max(size[k])),
+        );
+        let aspect = studio.aspect();
+        if self.gas.dimensions() > 2 {
+            let camera = studio.camera(&stage, &OWN_VIEW, moment.frame.time);
+            return View { stage, camera, container, key_place: KeyPlace::Corner };
+        }
+        let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];
+        let [below, beside] = places.map(|(key_place, margins)| View {
+            stage,
+            camera: Camera::plan(&stage, aspect, margins),
+            container,
+            key_place,
+        });
+        let many = matches!(key, GasKey::Kinds(kinds) if kinds.len() > MOST_IN_A_ROW);
+        if many || shown_height(&beside.camera) < shown_height(&below.camera) { beside } else { below }
+    }
+
+    /// The sets of balls, each in its colours.
+    fn balls(&self, studio: &Studio, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
+        let style = |number: usize| BallStyle {
+            least_radius: self.least_radius(studio, moment.frame, view) as f32,
+            ..BallStyle::new(match key {
+                GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),
+                GasKey::Speed { most, .. } => speeds(*most),
+            })
+        };
+        let speed =
+            |set: &ParticleSet, at: usize| set.velocity[at].iter().map(|along| along * along).sum::<f64>().sqrt();
+        let sets = moment.frame.sets.iter().enumerate();
+        sets.map(|(number, set)| {
+            let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], speed(set, at)));
+            studio.balls.balls(studio.renderer.gpu(), &view.stage, &style(number), balls)
+        })
+        .collect()
+    }
+
+    /// Least radius of a ball that is drawn, samples: one that can be seen, but not so large that balls run into each other.
+    fn least_radius(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
+        let dimensions = self.gas.dimensions();
+        let of_1080 = LEAST_RADIUS[usize::from(dimensions > 2)];
+        let samples = f64::from(studio.target.samples);
+        let seen = (of_1080 * f64::from(studio.target.size[1]) / 1080.0).max(LEAST_OF_ALL) * samples;
+        let room: f64 = (0..dimensions).map(|k| view.container.to[k] - view.container.from[k]).product();
+        let count = frame.sets.iter().map(ParticleSet::len).sum::<usize>().max(1) as f64;
+        let spacing = (room / count).powf(1.0 / dimensions as f64);
+        seen.min(CLOSEST * spacing / sample_height(studio, view)).max(0.5 * samples)
+    }
+
+    /// How much larger than it is the smallest ball is drawn.
+    fn enlarged(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
+        let smallest = frame.sets.iter().flat_map(|set| &set.radius).copied().fold(f64::INFINITY, f64::min);
+        (self.least_radius(studio, frame, view) * sample_height(studio, view) / smallest).max(1.0)
+    }
+}
+
+/// Height of a sample in the middle of the stage, m.
+fn sample_height(studio: &Studio, view: &View) -> f64 {
+    let tall = match view.camera.lens {
+        Lens::Orthographic { height } => height,
+        Lens::Perspective { field_of_view } => {
+            2.0 * (view.camera.eye - view.camera.target).length() * (0.5 * field_of_view).tan()
+        }
+    };
+    tall / f64::from(studio.target.size[1] * studio.target.samples)
+}
+
+/// Height of the world in a picture to scale, m.
+fn shown_height(camera: &Camera) -> f64 {
+    match camera.lens {
+        Lens::Orthographic { height } => height,
+        Lens::Perspective { .. } => f64::INFINITY,
+    }
+}
+
+/// The colours of speeds.
+fn speeds(most: f64) -> ColourTable {
+    ColourTable { low: 0.0, high: most as f32, colours: VIRIDIS.map(split).to_vec() }
+}
+
+/// Lines of a colour; `thick` is their width in pixels of a picture 1080 pixels high, and their radius as a part of the stage.
+fn tubes<'a>(
+    studio: &Studio,
+    stage: &Stage,
+    colour: [u8; 3],
+    thick: [f64; 2],
+    lines: impl IntoIterator<Item = &'a [[f64; 3]]>,
+) -> Tubes {
+    let samples = f64::from(studio.target.samples) * f64::from(studio.target.size[1]) / 1080.0;
+    let style = TubeStyle {
+        colour,
+        radius: thick[1] * stage.unit(),
+        least_radius: (0.5 * thick[0] * samples) as f32,
+        shaded: thick[1] > 0.0,
+    };
+    studio.tubes.tubes(studio.renderer.gpu(), stage, &style, lines)
+}

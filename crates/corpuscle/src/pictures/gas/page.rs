@@ -1,0 +1,88 @@
+//! What lies over the picture of a gas.
+
+use super::{GasPicture, View, sides, speeds};
+use crate::pictures::{Moment, Studio};
+use corpuscle_drawing::text;
+use corpuscle_record::GasKey;
+use corpuscle_render::{Axes, Key, LineLook, Mark, Overlay};
+use corpuscle_scene::{Axis, Units, Wall};
+
+/// Balls that are drawn larger than they are by no more than this need no remark.
+const HARDLY: f64 = 1.15;
+
+impl GasPicture {
+    pub(super) fn overlay(
+        &self,
+        studio: &Studio,
+        title: &str,
+        moment: &Moment<'_>,
+        key: &GasKey,
+        view: &View,
+    ) -> Overlay {
+        let (unit, time) = match self.gas.units {
+            Units::Si => ("m", text::any_time(moment.frame.time)),
+            Units::Reduced => ("", text::short_number(moment.frame.time)),
+        };
+        let key = match key {
+            GasKey::Kinds(kinds) => Key::Kinds(kinds.clone()),
+            GasKey::Speed { most, unit: "" } => Key::Values("Speed".into(), speeds(*most)),
+            GasKey::Speed { most, unit } => Key::Values(format!("Speed, {unit}"), speeds(*most)),
+        };
+        let flat = self.gas.dimensions() == 2;
+        Overlay {
+            title: title.into(),
+            time: format!("t = {time}"),
+            key: Some(key),
+            key_place: view.key_place,
+            lines: self.lines(moment),
+            remark: self.remark(studio, moment, view),
+            borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
+            marks: if flat { self.marks(moment) } else { Vec::new() },
+            labels: Vec::new(),
+            scale_bar: None,
+            axes: Some(Axes {
+                from: view.stage.from.into(),
+                to: view.stage.to.into(),
+                unit: unit.into(),
+                heights: 1.0,
+            }),
+        }
+    }
+
+    /// The lines that are in the picture, in words.
+    fn lines(&self, moment: &Moment<'_>) -> Vec<(LineLook, String)> {
+        let axes = Axis::ALL.into_iter().take(self.gas.dimensions());
+        let walls: Vec<&Wall> = axes.flat_map(|axis| self.gas.walls.along(axis)).collect();
+        let flat = self.gas.dimensions() == 2;
+        let followed = moment.paths.iter().any(|path| !path.points.is_empty());
+        let found = [
+            (followed, LineLook::Way, "way of one ball"),
+            (walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })), LineLook::HotWall, "wall at a temperature"),
+            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineLook::Open, "periodic side"),
+        ];
+        found.into_iter().filter(|(there, ..)| *there).map(|(_, look, name)| (look, name.into())).collect()
+    }
+
+    fn remark(&self, studio: &Studio, moment: &Moment<'_>, view: &View) -> String {
+        let enlarged = self.enlarged(studio, moment.frame, view);
+        let mut radii = moment.frame.sets.iter().flat_map(|set| &set.radius);
+        let first = radii.next();
+        let alike = radii.all(|radius| Some(radius) == first);
+        match (enlarged > HARDLY && enlarged.is_finite(), alike) {
+            (false, _) => String::new(),
+            (true, true) => format!("balls drawn {enlarged:.1} times as large as they are"),
+            (true, false) => "small balls drawn larger than they are".into(),
+        }
+    }
+
+    /// Where the way began, and the ball that goes it.
+    fn marks(&self, moment: &Moment<'_>) -> Vec<Mark> {
+        let mut marks: Vec<Mark> =
+            moment.paths.iter().filter_map(|path| path.points.first()).map(|start| Mark::Start(*start)).collect();
+        for set in &moment.frame.sets {
+            let found = set.id.iter().position(|id| Some(*id) == self.gas.follow);
+            marks.extend(found.map(|at| Mark::Ring(set.position[at], set.radius[at])));
+        }
+        marks
+    }
+}

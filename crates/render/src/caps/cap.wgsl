@@ -1,0 +1,55 @@
+// Drops as the device has them (caps/mod.rs). Group 1.
+#import view
+
+struct Cap {
+    // Middle of the covered disc, and its radius.
+    place: vec3f,
+    radius: f32,
+    // The way out of the surface, and the cap's height.
+    out: vec3f,
+    height: f32,
+    // Its neighbours: where their numbers begin, and how many.
+    first: u32,
+    count: u32,
+    unused: vec2u,
+}
+
+struct CapSettings {
+    // How far drops reach for each other.
+    neck: f32,
+    // Drops of smaller radius are fog, samples.
+    finest: f32,
+    unused: vec2f,
+}
+
+@group(1) @binding(0) var<storage, read> caps: array<Cap>;
+@group(1) @binding(1) var<storage, read> neighbours: array<u32>;
+@group(1) @binding(2) var<uniform> settings: CapSettings;
+
+// Radius of the sphere from those of the disc and the cap's height.
+fn sphere_radius(cap: Cap) -> f32 {
+    return (cap.radius * cap.radius + cap.height * cap.height) / (2.0 * cap.height);
+}
+
+fn sphere_centre(cap: Cap) -> vec3f {
+    return cap.place + (cap.height - sphere_radius(cap)) * cap.out;
+}
+
+// True for drops too small to be seen one by one.
+fn is_fine(cap: Cap) -> bool {
+    return cap.radius < settings.finest * pixel_at(cap.place);
+}
+
+// A corner of a square that faces the eye.
+fn facing_place(index: u32, middle: vec3f, reach: f32) -> vec3f {
+    let sight = ray_through(middle);
+    let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.direction.z) > 0.9);
+    let right = normalize(cross(sight.direction, aside));
+    let up = cross(right, sight.direction);
+    let corner = 2.0 * vec2f(f32(index & 1u), f32(index >> 1u)) - 1.0;
+    return middle + reach * (corner.x * right + corner.y * up);
+}
+
+fn facing_corner(index: u32, middle: vec3f, reach: f32) -> vec4f {
+    return view.clip_from_world * vec4f(facing_place(index, middle, reach), 1.0);
+}

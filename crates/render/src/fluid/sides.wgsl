@@ -1,0 +1,30 @@
+// Upright faces of water, cut off where the ground is.
+#import light
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,
+    @location(1) @interpolate(flat) normal: vec3f,
+    // Depth below the surface, in stage units.
+    @location(2) deep: f32,
+}
+
+@vertex
+fn vertex(@location(0) place: vec4f, @location(1) outwards: vec4f) -> Corner {
+    return Corner(view.clip_from_world * vec4f(place.xyz, 1.0), place.xyz, outwards.xyz, place.w);
+}
+
+@fragment
+fn fragment(corner: Corner) -> @location(0) vec4f {
+    let to_eye = towards_eye(corner.place);
+    // Those on the far side would be seen through the water.
+    if dot(corner.normal, to_eye) < 0.0 {
+        discard;
+    }
+    // Light comes from above and is lost on its way down.
+    let left = exp(-vec3f(0.5, 0.22, 0.16) * corner.deep * view.frame.z);
+    let colour = mix(vec3f(0.02, 0.075, 0.10), vec3f(0.16, 0.36, 0.38), left);
+    let fresnel = 0.6 * mirrored(dot(corner.normal, to_eye), 0.02);
+    let lit = matt(colour, vec3f(0.0, 0.0, 1.0), 0.8);
+    return vec4f(mix(lit, surroundings(reflect(-to_eye, corner.normal)), fresnel), 1.0);
+}

@@ -1,0 +1,92 @@
+//! The sides of a flat box, what stands in it, and marked places.
+
+use super::{Border, LineLook, Mark, Page};
+
+/// Thickness of a piston, width of its rod, and how far that reaches beyond its length, CSS pixels.
+const PISTON: f64 = 16.0;
+const ROD: f64 = 9.0;
+const GRIP: f64 = 10.0;
+/// Radius of a mark at least, and the space between a ring and what is in it, CSS pixels.
+const MARK: f64 = 4.5;
+const RING: f64 = 2.0;
+
+impl LineLook {
+    /// Name of its style.
+    pub(super) fn class(self) -> &'static str {
+        match self {
+            Self::Wall => "wall",
+            Self::HotWall => "wall-hot",
+            Self::Open => "wall-open",
+            Self::Partition => "partition",
+            Self::Way => "way",
+        }
+    }
+
+    /// Half its width, CSS pixels: what lies at a wall touches its edge.
+    fn half_width(self) -> f64 {
+        match self {
+            Self::Wall => 1.5,
+            Self::HotWall => 2.0,
+            Self::Open | Self::Partition | Self::Way => 0.0,
+        }
+    }
+}
+
+/// Draws them; lines last, over the ends of blocks.
+pub(super) fn draw(page: &mut Page<'_>, borders: &[Border]) {
+    for border in borders {
+        if let Border::Piston { ends, outwards, rod } = border {
+            draw_piston(page, *ends, *outwards, *rod);
+        }
+    }
+    for border in borders {
+        if let Border::Line { look, ends, outwards } = border {
+            let Some(ends) = places(page, *ends) else { continue };
+            let moved = ends.map(|end| beyond(end, *outwards, look.half_width()));
+            page.svg.line(moved[0], moved[1], look.class());
+        }
+    }
+}
+
+fn draw_piston(page: &mut Page<'_>, ends: [[f64; 2]; 2], outwards: [f64; 2], rod: f64) {
+    let middle: [f64; 2] = std::array::from_fn(|k| 0.5 * (ends[0][k] + ends[1][k]));
+    let tip = std::array::from_fn(|k| middle[k] + rod * outwards[k]);
+    let (Some(ends), Some([middle, tip])) = (places(page, ends), places(page, [middle, tip])) else { return };
+    let block = |[one, other]: [[f64; 2]; 2], depth: f64| {
+        [one, other, beyond(other, outwards, depth), beyond(one, outwards, depth)]
+    };
+    let long = (tip[0] - middle[0]).hypot(tip[1] - middle[1]).max(PISTON) + GRIP;
+    let aside = [0.5 * ROD * outwards[1], 0.5 * ROD * outwards[0]];
+    let sides = [[middle[0] - aside[0], middle[1] - aside[1]], [middle[0] + aside[0], middle[1] + aside[1]]];
+    page.svg.path(block(sides, long), true, "piston");
+    page.svg.path(block(ends, PISTON), true, "piston");
+}
+
+/// Draws a mark.
+pub(super) fn draw_mark(page: &mut Page<'_>, mark: &Mark) {
+    match mark {
+        Mark::Start(place) => {
+            if let Some(place) = page.place(*place) {
+                page.svg.circle(place, MARK, "way-start");
+            }
+        }
+        Mark::Ring(place, radius) => {
+            let beside = [place[0] + radius, place[1], place[2]];
+            if let (Some(place), Some(beside)) = (page.place(*place), page.place(beside)) {
+                let radius = (beside[0] - place[0]).hypot(beside[1] - place[1]);
+                page.svg.circle(place, (radius + RING).max(MARK), "way-end");
+            }
+        }
+    }
+}
+
+/// Two places, m, on the page.
+fn places(page: &Page<'_>, ends: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let [one, other] = ends.map(|[x, y]| page.place([x, y, 0.0]));
+    Some([one?, other?])
+}
+
+/// A place on the page moved along a direction of the world, whose y is up.
+fn beyond([x, y]: [f64; 2], [right, up]: [f64; 2], far: f64) -> [f64; 2] {
+    [x + far * right, y - far * up]
+}

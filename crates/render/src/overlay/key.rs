@@ -1,0 +1,112 @@
+//! What colours and lines mean.
+
+use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineLook, MARGIN, Overlay, Page};
+use crate::ColourTable;
+use corpuscle_drawing::bars::value_bar;
+use corpuscle_drawing::colour::hex;
+use corpuscle_drawing::svg::Anchor;
+
+/// Width of a bar of colours.
+const BAR: f64 = 230.0;
+/// Height of a row, and space between two things in one.
+const ROW: f64 = 23.0;
+const GAP: f64 = 30.0;
+/// Where a column begins to the right of the axes, and a row below them.
+const BESIDE: f64 = 40.0;
+const BELOW: f64 = 66.0;
+/// Length of a line's sample, and from there to its name.
+const SAMPLE: f64 = 24.0;
+const TO_NAME: f64 = 9.0;
+
+/// One thing that is told.
+enum Entry<'a> {
+    Values(&'a str, &'a ColourTable),
+    Kind(&'a str, [u8; 3]),
+    Line(LineLook, &'a str),
+}
+
+impl Overlay {
+    pub(super) fn draw_key(&self, page: &mut Page<'_>) {
+        let mut entries: Vec<Entry<'_>> = match &self.key {
+            Some(Key::Values(label, table)) => vec![Entry::Values(label, table)],
+            Some(Key::Kinds(kinds)) => kinds.iter().map(|(name, colour)| Entry::Kind(name, *colour)).collect(),
+            None => Vec::new(),
+        };
+        entries.extend(self.lines.iter().map(|(look, name)| Entry::Line(*look, name)));
+        if entries.is_empty() {
+            return;
+        }
+        let corner = |pick: fn(&Axes) -> [f64; 3]| self.axes.as_ref().and_then(|axes| page.place(pick(axes)));
+        match (self.key_place, corner(|axes| axes.from), corner(|axes| axes.to)) {
+            (KeyPlace::Beside, _, Some([right, top])) => draw_column(page, &entries, [right + BESIDE, top]),
+            (KeyPlace::Below, Some([left, bottom]), _) => draw_row(page, &entries, [left, bottom + BELOW]),
+            _ => draw_corner(page, &entries),
+        }
+    }
+}
+
+fn draw_corner(page: &mut Page<'_>, entries: &[Entry<'_>]) {
+    let height: f64 = entries.iter().map(Entry::height).sum();
+    let width = entries.iter().map(Entry::width).fold(0.0, f64::max);
+    let top = HEIGHT - MARGIN - height;
+    page.svg.rectangle([MARGIN - 12.0, top - 10.0], [width + 30.0, height + 16.0], "panel");
+    draw_column(page, entries, [MARGIN, top]);
+}
+
+fn draw_column(page: &mut Page<'_>, entries: &[Entry<'_>], [left, mut top]: [f64; 2]) {
+    for entry in entries {
+        entry.draw(page, [left, top], false);
+        top += entry.height();
+    }
+}
+
+fn draw_row(page: &mut Page<'_>, entries: &[Entry<'_>], [mut left, top]: [f64; 2]) {
+    for entry in entries {
+        entry.draw(page, [left, top], true);
+        left += GAP + entry.width() + if let Entry::Values(name, _) = entry { wide(name) } else { 0.0 };
+    }
+}
+
+/// Width of a name.
+fn wide(name: &str) -> f64 {
+    LETTER * name.chars().count() as f64 + TO_NAME
+}
+
+impl Entry<'_> {
+    fn height(&self) -> f64 {
+        match self {
+            Self::Values(..) => 62.0,
+            Self::Kind(..) | Self::Line(..) => ROW,
+        }
+    }
+
+    fn width(&self) -> f64 {
+        match self {
+            Self::Values(..) => BAR,
+            Self::Kind(name, _) => 14.0 + wide(name),
+            Self::Line(_, name) => SAMPLE + wide(name),
+        }
+    }
+
+    /// Draws it from a place on; in a row the name of values stands before their bar, in a column above it.
+    fn draw(&self, page: &mut Page<'_>, [left, top]: [f64; 2], in_a_row: bool) {
+        let name_at = |from: f64| [from + TO_NAME, top + 13.0];
+        match self {
+            Self::Values(label, table) => {
+                page.svg.text([left, top + 13.0], Anchor::Start, "over", label);
+                let place = if in_a_row { [left + wide(label) + 6.0, top + 2.0] } else { [left, top + 21.0] };
+                let range = [f64::from(table.low), f64::from(table.high)];
+                let colour = |part: f64| table.colour(table.low + (table.high - table.low) * part as f32);
+                value_bar(&mut page.svg, range, colour, place, BAR);
+            }
+            Self::Kind(name, colour) => {
+                page.svg.circles([([left + 7.0, top + 8.0], 7.0)], &hex(*colour), "balls");
+                page.svg.text(name_at(left + 14.0), Anchor::Start, "over", name);
+            }
+            Self::Line(look, name) => {
+                page.svg.line([left, top + 8.0], [left + SAMPLE, top + 8.0], look.class());
+                page.svg.text(name_at(left + SAMPLE), Anchor::Start, "over", name);
+            }
+        }
+    }
+}
