@@ -8,10 +8,10 @@ use corpuscle::Simulation;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
 use corpuscle::pictures::{Moment, Pictures};
-use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, write_picture};
+use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, put_into_report, write_picture};
 use corpuscle::scene::{Run, Scene};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Pictures where no times are named.
@@ -61,10 +61,19 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
         eprintln!("{}", file.display());
         drawn.push(Drawn { time_s, file });
     }
+    show_in_report(&options.run)?;
     if as_json {
         print_json(&drawn).context("cannot write the list of pictures")?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Puts what was drawn into the run's report, where it has one.
+fn show_in_report(run: &Path) -> anyhow::Result<()> {
+    if put_into_report(run).map_err(corpuscle::Error::from)? {
+        eprintln!("{} shows them", run.join("report.html").display());
+    }
+    Ok(())
 }
 
 /// Makes a film of all frames.
@@ -84,6 +93,9 @@ fn film(
     }
     let pictures = film.pictures();
     film.finish().map_err(corpuscle::Error::from)?;
+    if options.film_to.is_none() {
+        show_in_report(&options.run)?;
+    }
     let duration_s = pictures as f64 / options.rate;
     eprintln!("{}: {pictures} pictures, {duration_s} s", file.display());
     if as_json {

@@ -9,7 +9,7 @@ use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
-use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder};
+use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
 use corpuscle::{Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
@@ -37,6 +37,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let ended = simulation.run(&mut sinks, &stop, &mut |progress| bar.show(progress));
     bar.clear();
     let summary = ended.map_err(|error| came_to_grief(&error, &simulation, &recorder))?;
+    if filming.is_some() {
+        put_into_report(recorder.path()).map_err(corpuscle::Error::from)?;
+    }
     let has_frames = options.frames.is_none_or(|frames| FrameFormat::from(frames) != FrameFormat::None);
     tell(&summary, recorder.path(), has_frames);
     if as_json {

@@ -19,6 +19,8 @@ fn a_run_films_itself() {
         place.run(&arguments).expect_status(0);
         let film = place.path(format!("runs/{name}-1/film.mp4"));
         assert!(film.is_file());
+        let report = std::fs::read_to_string(place.path(format!("runs/{name}-1/report.html"))).unwrap();
+        assert!(report.contains("data:video/mp4"));
         if let Some(probed) = ffprobe::read(&film) {
             assert_eq!((probed.codec.as_str(), probed.size, probed.pictures), ("h264", [64, 48], 10), "{name}");
             assert!((probed.seconds - 0.4).abs() < 1e-3 && (probed.rate - 25.0).abs() < 1e-3, "{name}: {probed:?}");

@@ -37,6 +37,8 @@ fn a_finished_run_is_drawn_and_filmed() {
         place.run(&["render", "run", "--film", "--rate", "5", "--size", "160x90", "--json"]).expect_status(0).json();
     assert_eq!((&film["pictures"], &film["duration_s"]), (&5.into(), &1.0.into()));
     assert!(fs::metadata(place.path("run/film.mp4")).unwrap().len() > 1000);
+    let report = fs::read_to_string(place.path("run/report.html")).unwrap();
+    assert_eq!((report.matches("data:image/jpeg").count(), report.matches("data:video/mp4").count()), (5, 1));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //! [`RunFolder`] is written while a run goes on. The [`Report`] of a flood is made from the folder, at the end of the run
 //! or any time later; the [`GasReport`] and the [`DewReport`] from the folder and the model at its end.
 
+mod album;
 mod charts;
 mod checkpoint;
 mod error;
@@ -19,6 +20,7 @@ mod summary;
 mod wall_places;
 mod whole;
 
+pub use album::put_into_report;
 pub use checkpoint::Clock;
 pub use error::RecordError;
 pub use extent::{ExtentScores, compare_extent, write_extent};

@@ -60,7 +60,7 @@ fn droplet(index: usize, side: usize) -> Droplet {
     let slope = 0.06 * (0.3 * x).cos();
     Droplet {
         place: [x, y, 0.2 * (0.3 * x).sin()],
-        radius: 1.25,
+        radius: 1.4,
         normal: [-slope, 0.0, 1.0],
         flatness: 0.12,
         volume: 1.0,

@@ -6,8 +6,9 @@ use corpuscle_gpu::{Gpu, wgpu};
 /// A thing in a picture. It takes part in the passes that concern it, in this order:
 ///
 /// 1. [`Drawable::cast`], once for all things: what throws shadows draws itself as the sun sees it, depth alone.
-/// 2. [`Drawable::draw`], once for all things: what is opaque draws itself into colour and depth, over the backdrop.
-/// 3. [`Drawable::draw_through`], one thing after another: what lets light through (water, glass) draws itself over a copy of
+/// 2. [`Drawable::draw_before`], one thing after another, in lit pictures: passes into textures of its own that it needs to be drawn.
+/// 3. [`Drawable::draw`], once for all things: what is opaque draws itself into colour and depth, over the backdrop.
+/// 4. [`Drawable::draw_through`], one thing after another: what lets light through (water, glass) draws itself over a copy of
 ///    all that is behind it.
 ///
 /// Shaders begin with `#import view` (camera, places, lines of sight), `#import sky` (what is mirrored) or `#import light` (light
@@ -21,6 +22,9 @@ pub trait Drawable {
     /// perspective).
     fn cast(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
+    /// Draws what the thing needs to be drawn into textures of its own.
+    fn draw_before(&mut self, _frame: &mut Before<'_>) {}
+
     /// Draws what is opaque, with a pipeline of [`crate::COLOUR_FORMAT`] and [`crate::DEPTH_FORMAT`].
     fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
@@ -31,6 +35,18 @@ pub trait Drawable {
 
     /// Draws what lets light through, in passes of its own.
     fn draw_through(&mut self, _frame: &mut Through<'_>) {}
+}
+
+/// What a thing has to draw with before the picture is begun.
+pub struct Before<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// Where its passes go.
+    pub encoder: &'a mut wgpu::CommandEncoder,
+    /// Group 0: to be set in each pass that uses a shader with `#import view`.
+    pub view: &'a wgpu::BindGroup,
+    /// Width and height of the picture, samples.
+    pub size: [u32; 2],
 }
 
 /// What a thing that lets light through draws into, and what is behind it.

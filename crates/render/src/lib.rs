@@ -34,7 +34,7 @@ pub use camera::{Camera, Lens};
 pub use camera_path::CameraPath;
 pub use caps::{Cap, CapPainter, Caps};
 pub use colour::{ColourTable, linear};
-pub use drawable::{Drawable, Through};
+pub use drawable::{Before, Drawable, Through};
 pub use error::RenderError;
 pub use floor::Floor;
 pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};

@@ -2,6 +2,8 @@
 #import sky
 
 const SHADOW_TAPS: i32 = 16;
+// The same on what shows shadows less.
+const FEW_SHADOW_TAPS: i32 = 6;
 const GOLDEN_ANGLE: f32 = 2.39996323;
 const PI: f32 = 3.14159265;
 
@@ -13,6 +15,10 @@ fn noise(pixel: vec2f) -> f32 {
 // The part of the sun that a place sees. The edge of a shadow is as wide as the sun is seen over a typical distance; taps on
 // a spiral turned from pixel to pixel.
 fn sunshine(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+    return sunshine_by(SHADOW_TAPS, place, normal, pixel);
+}
+
+fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     let texel = 2.04 / f32(textureDimensions(sun_depth).x);
     let slant = clamp(dot(normal, view.sun.xyz), 0.0, 1.0);
     // Moved off the surface by as much as a texel's slant hides.
@@ -25,15 +31,15 @@ fn sunshine(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     let radius = max(0.08 * view.sun.w, 1.0 / f32(textureDimensions(sun_depth).x));
     let turn = 2.0 * PI * noise(pixel);
     var lit = 0.0;
-    for (var tap = 0; tap < SHADOW_TAPS; tap++) {
+    for (var tap = 0; tap < taps; tap++) {
         let angle = turn + GOLDEN_ANGLE * f32(tap);
-        let out = radius * sqrt((f32(tap) + 0.5) / f32(SHADOW_TAPS));
+        let out = radius * sqrt((f32(tap) + 0.5) / f32(taps));
         // Farther from the middle the surface may rise towards the sun.
         // Beyond the map's far end (0) all that was drawn is nearer to the sun.
         let reference = max(seen.z + 0.5 * out * sqrt(1.0 - slant * slant) / max(slant, 0.2), 0.0);
         lit += textureSampleCompareLevel(sun_depth, sun_compare, uv + out * vec2f(cos(angle), sin(angle)), reference);
     }
-    return lit / f32(SHADOW_TAPS);
+    return lit / f32(taps);
 }
 
 // Light that a matt surface of a colour gives back.

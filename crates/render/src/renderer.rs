@@ -2,7 +2,7 @@
 
 use crate::pipeline::Recipe;
 use crate::tone::Tone;
-use crate::{Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
+use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
 
 /// Draws pictures. Holds what does not change from one to the next.
@@ -56,6 +56,10 @@ impl Renderer {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if light.is_lit() {
             draw_shadows(&mut encoder, &view, things);
+            for thing in things.iter_mut() {
+                let (encoder, view, size) = (&mut encoder, &view.group, target.drawn_size());
+                thing.draw_before(&mut Before { gpu, encoder, view, size });
+            }
         }
         self.draw_opaque(&mut encoder, target, &view, things);
         for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {

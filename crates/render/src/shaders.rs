@@ -3,10 +3,12 @@
 use corpuscle_gpu::{Gpu, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 7] = [
+const LIBRARY: [(&str, &str); 9] = [
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
+    ("ball", include_str!("balls/ball.wgsl")),
+    ("ball_square", include_str!("balls/ball_square.wgsl")),
     ("cap", include_str!("caps/cap.wgsl")),
     ("droplet", include_str!("fluid/droplet.wgsl")),
     ("fluid", include_str!("fluid/fluid.wgsl")),

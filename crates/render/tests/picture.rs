@@ -283,6 +283,24 @@ fn ground_without_heights_is_cut_out_and_water_has_a_face_at_its_border() {
 }
 
 #[test]
+fn edges_are_soft_with_one_sample_a_pixel() {
+    let Some(gpu) = require_gpu("edges with one sample") else { return };
+    let table = Table { renderer: Renderer::new(&gpu), target: Target::new(&gpu, SIZE, 1).unwrap() };
+    let stage = Stage::new([0.0, 0.0, -1.0], [16.0, 9.0, 1.0]);
+    let flat = HeightField::sampled([0.0; 2], [16.0, 9.0], [9, 5], |_, _| 0.0);
+    let red = Image { width: 1, height: 1, rgba: vec![220, 0, 0, 255] };
+    let mut ground = Terrain::new(&table.renderer, &stage, flat, &red, -1.0).unwrap();
+    // From straight above, a little turned: grainy red and the sky, and between them nothing but edges.
+    let turned = Camera { up: glam::DVec3::new(0.3, 1.0, 0.0), ..Camera::plan(&stage, ASPECT, [0.2; 4]) };
+    let image = table.draw(&stage, &turned, &Light::day(), &mut [&mut ground], &Overlay::default());
+    let greens: Vec<u8> = image.rgba.chunks_exact(4).map(|pixel| pixel[1]).collect();
+    let (low, high) = (greens.iter().min().unwrap(), greens.iter().max().unwrap());
+    let part = |green: &&u8| (f64::from(**green) - f64::from(*low)) / f64::from(high - low);
+    let between = greens.iter().filter(|green| (0.35..0.85).contains(&part(green))).count();
+    assert!(between > 100, "{between}");
+}
+
+#[test]
 fn the_overlay_lies_over_the_picture_by_its_opacity() {
     let Some(Table { renderer, target }) = Table::open("the overlay") else { return };
     let stage = Stage::new([0.0; 3], [2.0, 2.0, 1.0]);

@@ -1,12 +1,18 @@
 //! Balls: shaded spheres in space, flat discs on paper. Millions of them.
 
-use crate::buffer::{instances, uniform};
-use crate::pipeline::Recipe;
-use crate::{ColourTable, Drawable, Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
+mod seen;
 
-/// Balls in one buffer at most: within the floor's 256 MiB.
-const MOST: usize = 8 << 20;
+use crate::buffer::{storage, uniform};
+use crate::pipeline::Recipe;
+use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
+use corpuscle_gpu::{Gpu, wgpu};
+use seen::{Seen, SeenPainter};
+use std::sync::Arc;
+
+/// Balls in one buffer at most: within the floor's 128 MiB.
+const MOST: usize = 6 << 20;
+/// From so many on, one before the other, they are shaded only where they are seen.
+const MANY: u32 = 20_000;
 
 /// A ball as the device has it.
 #[repr(C)]
@@ -42,6 +48,7 @@ pub struct BallPainter {
     layout: wgpu::BindGroupLayout,
     opaque: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
+    seen: Arc<SeenPainter>,
 }
 
 /// Balls of one style, on the device.
@@ -49,9 +56,11 @@ pub struct BallPainter {
 pub struct Balls {
     opaque: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
-    group: wgpu::BindGroup,
-    /// Buffers, and how many balls are in each.
-    buffers: Vec<(wgpu::Buffer, u32)>,
+    /// Groups of the shaders, and how many balls are in each.
+    parts: Vec<(wgpu::BindGroup, u32)>,
+    painter: Arc<SeenPainter>,
+    /// Which balls are seen where, in a picture of many.
+    seen: Option<Seen>,
 }
 
 impl BallPainter {
@@ -59,19 +68,15 @@ impl BallPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let layout = layout(gpu);
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32];
         let recipe = Recipe {
             label: "balls",
             module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
             groups: &[renderer.view_layout(), &layout],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: size_of::<Instance>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            }],
+            buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         };
-        Self { opaque: recipe.opaque(gpu), cast: recipe.cast(gpu, "throw_shadow"), layout }
+        let seen = SeenPainter::new(renderer, &layout).into();
+        Self { opaque: recipe.opaque(gpu), cast: recipe.cast(gpu, "throw_shadow"), layout, seen }
     }
 
     /// Balls at places with radii, m, each with the number that its colour shows. What has no finite place is left out.
@@ -88,59 +93,77 @@ impl BallPainter {
         };
         let drawn = |instance: &Instance| instance.ball.iter().all(|number| number.is_finite());
         let all: Vec<Instance> = balls.into_iter().map(instance).filter(drawn).collect();
-        let buffers = all.chunks(MOST).map(|part| (instances(gpu, "balls", part), part.len() as u32)).collect();
         let numbers = [style.colours.low, style.colours.high, style.gloss, style.least_radius];
         let settings = uniform(gpu, "balls", &numbers);
         let colours = style.colours.upload(gpu);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("balls"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: settings.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&colours) },
-            ],
-        });
-        Balls { opaque: self.opaque.clone(), cast: self.cast.clone(), group, buffers }
+        let part = |part: &[Instance]| {
+            let buffer = storage(gpu, "balls", part);
+            let resources = [
+                settings.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&colours),
+                buffer.as_entire_binding(),
+            ];
+            let entries: Vec<_> =
+                (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
+            let layout = &self.layout;
+            let descriptor = wgpu::BindGroupDescriptor { label: Some("balls"), layout, entries: &entries };
+            (gpu.device.create_bind_group(&descriptor), part.len() as u32)
+        };
+        let parts = all.chunks(MOST).map(part).collect();
+        Balls { opaque: self.opaque.clone(), cast: self.cast.clone(), parts, painter: self.seen.clone(), seen: None }
     }
 }
 
 impl Balls {
     fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(1, &self.group, &[]);
-        for (buffer, count) in &self.buffers {
-            pass.set_vertex_buffer(0, buffer.slice(..));
+        for (group, count) in &self.parts {
+            pass.set_bind_group(1, group, &[]);
             pass.draw(0..4, 0..*count);
         }
     }
 }
 
 impl Drawable for Balls {
+    fn prepare(&mut self, _gpu: &Gpu, _stage: &Stage, _camera: &Camera, _size: [u32; 2]) {
+        self.seen = None;
+    }
+
     fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {
         self.paint(pass, &self.cast);
     }
 
+    fn draw_before(&mut self, frame: &mut Before<'_>) {
+        // Numbers go by part; so many balls that there are two parts are drawn one by one.
+        if let [(group, count)] = self.parts.as_slice()
+            && *count >= MANY
+        {
+            self.seen = Some(self.painter.find(frame, group, *count));
+        }
+    }
+
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.paint(pass, &self.opaque);
+        match (&self.seen, self.parts.as_slice()) {
+            (Some(seen), [(group, _)]) => self.painter.shade(pass, group, seen),
+            _ => self.paint(pass, &self.opaque),
+        }
     }
 }
 
 fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("balls"),
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: crate::buffer::UNIFORM,
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: crate::buffer::TEXTURE,
-                count: None,
-            },
-        ],
-    })
+    let list = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let entries: Vec<_> = (0..)
+        .zip([crate::buffer::UNIFORM, crate::buffer::TEXTURE, list])
+        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty,
+            count: None,
+        })
+        .collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("balls"), entries: &entries })
 }

@@ -27,8 +27,13 @@ fn fragment(in: Sprite) -> @location(0) vec4f {
     let slant = select(-1.0, 1.0, cosine > 0.0) * max(abs(cosine), LEAST_COSINE);
     let place = in.offset - dot(in.normal, in.offset) / slant * direction;
     let out = dot(place, place) / (in.radius * in.radius);
-    let share = pow(max(1.0 - out, 0.0), 3.0);
-    return vec4f(in.matter.x * share / abs(slant), in.matter.y * share * flecks(in, place), share, share);
+    let left = max(1.0 - out, 0.0);
+    let share = left * left * left;
+    var foam = 0.0;
+    if in.matter.y > 0.0 {
+        foam = in.matter.y * share * flecks(in, place);
+    }
+    return vec4f(in.matter.x * share / abs(slant), foam, share, share);
 }
 
 // A pattern of specks that goes with the particle, 1 on average.

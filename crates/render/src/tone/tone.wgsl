@@ -41,9 +41,8 @@ fn encode(colour: vec3f) -> vec3f {
     return select(high, 12.92 * colour, colour <= vec3f(0.0031308));
 }
 
-@fragment
-fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    let pixel = vec2u(place.xy);
+// The mean of a pixel's samples.
+fn pixel_at(pixel: vec2u) -> vec3f {
     var sum = vec3f(0.0);
     for (var y = 0u; y < tone.samples; y++) {
         for (var x = 0u; x < tone.samples; x++) {
@@ -52,7 +51,57 @@ fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
             sum += select(clamp(sample, vec3f(0.0), vec3f(1.0)), press(max(sample, vec3f(0.0))), tone.pressed == 1u);
         }
     }
-    var colour = encode(sum / f32(tone.samples * tone.samples));
+    return encode(sum / f32(tone.samples * tone.samples));
+}
+
+fn brightness(colour: vec3f) -> f32 {
+    return dot(colour, vec3f(0.299, 0.587, 0.114));
+}
+
+// A pixel whose neighbours' brightness tells of an edge through it, mixed along the edge: with one sample a pixel edges are steps
+// otherwise (FXAA: Lottes 2009, the short variant, with pixels in place of samples between them).
+fn softened(pixel: vec2u) -> vec3f {
+    let last = vec2i(textureDimensions(light)) - 1;
+    let here = vec2i(pixel);
+    let own = pixel_at(pixel);
+    let north_west = brightness(pixel_at(vec2u(clamp(here + vec2i(-1, -1), vec2i(0), last))));
+    let north_east = brightness(pixel_at(vec2u(clamp(here + vec2i(1, -1), vec2i(0), last))));
+    let south_west = brightness(pixel_at(vec2u(clamp(here + vec2i(-1, 1), vec2i(0), last))));
+    let south_east = brightness(pixel_at(vec2u(clamp(here + vec2i(1, 1), vec2i(0), last))));
+    let middle = brightness(own);
+    let least = min(middle, min(min(north_west, north_east), min(south_west, south_east)));
+    let most = max(middle, max(max(north_west, north_east), max(south_west, south_east)));
+    if most - least < max(0.04, 0.1 * most) {
+        return own;
+    }
+    let slope = vec2f((south_west + south_east) - (north_west + north_east), (north_west + south_west) - (north_east + south_east));
+    let along = clamp(slope / max(min(abs(slope.x), abs(slope.y)), 1.0 / 128.0), vec2f(-4.0), vec2f(4.0));
+    let near = 0.5 * (between(pixel, along * (1.0 / 3.0 - 0.5)) + between(pixel, along * (2.0 / 3.0 - 0.5)));
+    let far = 0.5 * near + 0.25 * (between(pixel, -0.5 * along) + between(pixel, 0.5 * along));
+    let found = brightness(far);
+    return select(far, near, found < least || found > most);
+}
+
+// The picture at an offset from the middle of a pixel, mixed of the four pixels round it.
+fn between(pixel: vec2u, offset: vec2f) -> vec3f {
+    let place = vec2f(pixel) + offset;
+    let corner = floor(place);
+    let part = place - corner;
+    let last = vec2f(textureDimensions(light)) - 1.0;
+    let low = vec2u(clamp(corner, vec2f(0.0), last));
+    let high = vec2u(clamp(corner + 1.0, vec2f(0.0), last));
+    let upper = mix(pixel_at(low), pixel_at(vec2u(high.x, low.y)), part.x);
+    let lower = mix(pixel_at(vec2u(low.x, high.y)), pixel_at(high), part.x);
+    return mix(upper, lower, part.y);
+}
+
+@fragment
+fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(place.xy);
+    var colour = pixel_at(pixel);
+    if tone.samples == 1u && tone.pressed == 1u {
+        colour = softened(pixel);
+    }
     if tone.overlay == 1u {
         // Opacity is multiplied in already.
         let over = textureLoad(overlay, pixel, 0);

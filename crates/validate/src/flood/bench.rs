@@ -62,7 +62,8 @@ fn measure(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions)
         threads: if clock.device.is_some() { 0 } else { rayon::current_num_threads() },
         rate: work / clock.seconds(&flood),
         rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64 / flood.particles().len() as f64,
+        bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64
+            / flood.particles().len() as f64,
         device: clock.device,
     }))
 }

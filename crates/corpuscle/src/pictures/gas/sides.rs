@@ -11,7 +11,7 @@ use std::sync::Arc;
 const EDGE: f64 = 2.0;
 /// Colour of what is held at a temperature, and what plates let through.
 const HOT: [u8; 3] = [0xd5, 0x5e, 0x00];
-const PLATE: [u8; 3] = [186, 200, 216];
+const PLATE: [u8; 3] = [214, 223, 234];
 /// Thickness of a plate, part of the stage.
 const THICK: f64 = 0.012;
 

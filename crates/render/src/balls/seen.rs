@@ -1,0 +1,103 @@
+//! Many balls: first the number of the nearest ball is drawn for each sample, then what is seen is shaded, once.
+
+use crate::pipeline::Recipe;
+use crate::{Before, DEPTH_FORMAT, Renderer, shaders};
+use corpuscle_gpu::{texture_2d, wgpu};
+
+/// Format of the numbers.
+const NUMBERS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+
+/// The pipelines.
+#[derive(Debug)]
+pub(super) struct SeenPainter {
+    find: wgpu::RenderPipeline,
+    shade: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// Which balls are seen where in a picture.
+#[derive(Debug)]
+pub(super) struct Seen {
+    group: wgpu::BindGroup,
+}
+
+impl SeenPainter {
+    pub(super) fn new(renderer: &Renderer, balls: &wgpu::BindGroupLayout) -> Self {
+        let gpu = renderer.gpu();
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("balls seen"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Uint,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
+        });
+        let find = Recipe {
+            label: "balls numbered",
+            module: &shaders::module(gpu, "balls_numbered", include_str!("balls_numbered.wgsl")),
+            groups: &[renderer.view_layout(), balls],
+            buffers: &[],
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+        }
+        .nearest(gpu, NUMBERS);
+        let shade = Recipe {
+            label: "balls seen",
+            module: &shaders::module(gpu, "balls_seen", include_str!("balls_seen.wgsl")),
+            groups: &[renderer.view_layout(), balls, &layout],
+            buffers: &[],
+            topology: wgpu::PrimitiveTopology::TriangleList,
+        }
+        .opaque(gpu);
+        Self { find, shade, layout }
+    }
+
+    /// Finds the nearest of `count` balls for each sample.
+    pub(super) fn find(&self, frame: &mut Before<'_>, balls: &wgpu::BindGroup, count: u32) -> Seen {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = |format| {
+            let texture = texture_2d(frame.gpu, "balls seen", frame.size, format, usage);
+            texture
+                .expect("as large as the target, which is there")
+                .create_view(&wgpu::TextureViewDescriptor::default())
+        };
+        let (numbers, depth) = (texture(NUMBERS), texture(DEPTH_FORMAT));
+        let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("balls numbered"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &numbers,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations::default(),
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        pass.set_bind_group(0, frame.view, &[]);
+        pass.set_bind_group(1, balls, &[]);
+        pass.set_pipeline(&self.find);
+        pass.draw(0..4, 0..count);
+        let group = frame.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("balls seen"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&numbers) }],
+        });
+        Seen { group }
+    }
+
+    /// Shades what was found.
+    pub(super) fn shade(&self, pass: &mut wgpu::RenderPass<'_>, balls: &wgpu::BindGroup, seen: &Seen) {
+        pass.set_pipeline(&self.shade);
+        pass.set_bind_group(1, balls, &[]);
+        pass.set_bind_group(2, &seen.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
