@@ -1,18 +1,22 @@
 //! `corpuscle bench`.
 
-use crate::args::BenchOptions;
+use crate::args::{Backend, BenchOptions};
 use crate::output::{number, print, print_json};
-use crate::refusal::check_backend;
 use crate::select::select;
+use corpuscle::gpu::Gpu;
 use corpuscle_validate::{Rate, benches};
 use std::process::ExitCode;
 
 /// Measures rates and prints them as they come.
 pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> {
-    check_backend(options.backend)?;
-    let with = corpuscle_validate::BenchOptions { quick: options.quick };
+    let gpu = if options.backend == Backend::Gpu { Some(Gpu::open().map_err(corpuscle::Error::from)?) } else { None };
+    let with = corpuscle_validate::BenchOptions { quick: options.quick, gpu };
     let mut rates = Vec::new();
     for bench in select(benches(), |bench| bench.name, &options.names)? {
+        if with.gpu.is_some() && !bench.name.starts_with("flood/") {
+            eprintln!("{} left out: it computes on the CPU only", bench.name);
+            continue;
+        }
         for rate in (bench.run)(&with) {
             let line = line(&rate);
             if as_json {
@@ -32,9 +36,10 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
 /// A rate as people read it.
 fn line(rate: &Rate) -> String {
     let Rate { name, particles, dimensions, threads, rate_unit, .. } = rate;
+    let on = rate.device.clone().unwrap_or_else(|| format!("{threads} threads"));
     let packing = rate.packing.map(|packing| format!(", packing {packing}")).unwrap_or_default();
     format!(
-        "{name:28} {:>11} {rate_unit}  ({particles} particles, {dimensions}D{packing}, {threads} threads, {} bytes a particle)\n",
+        "{name:28} {:>11} {rate_unit}  ({particles} particles, {dimensions}D{packing}, {on}, {} bytes a particle)\n",
         number(rate.rate),
         number(rate.bytes_per_particle)
     )

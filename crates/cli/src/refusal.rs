@@ -1,6 +1,5 @@
 //! Errors that are the input's fault.
 
-use crate::args::Backend;
 use std::fmt;
 
 /// Something asked for that cannot be done: exit status 2.
@@ -32,14 +31,6 @@ pub fn in_words(error: &anyhow::Error) -> String {
         so_far if so_far.contains(&cause) => told,
         so_far => format!("{so_far}: {cause}"),
     })
-}
-
-/// Refuses a backend that is not there.
-pub fn check_backend(backend: Backend) -> anyhow::Result<()> {
-    match backend {
-        Backend::Auto | Backend::Cpu => Ok(()),
-        Backend::Gpu => Err(refuse("this build has no GPU backend yet; use --backend cpu, or leave it out")),
-    }
 }
 
 #[cfg(test)]

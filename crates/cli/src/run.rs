@@ -1,14 +1,14 @@
 //! `corpuscle run`.
 
-use crate::args::RunOptions;
+use crate::args::{Backend, RunOptions};
 use crate::interrupt::stop_on_interrupt;
 use crate::look::picture_settings;
 use crate::output::{duration, number, print_json, rate};
 use crate::progress::Bar;
-use crate::refusal::check_backend;
 use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
+use corpuscle::model::ModelError;
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
 use corpuscle::{Filming, Recorder, Simulation, Sink};
 use std::path::Path;
@@ -18,12 +18,14 @@ use std::sync::atomic::AtomicBool;
 
 /// Runs a scene, or goes on with an interrupted run.
 pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
-    check_backend(options.backend)?;
     let stop = stop_on_interrupt()?;
     let (mut simulation, mut recorder) = match &options.resume {
         Some(folder) => Recorder::resume(folder)?,
         None => start(options, &stop)?,
     };
+    if options.backend == Backend::Gpu {
+        simulation.use_gpu()?;
+    }
     for warning in simulation.warnings() {
         eprintln!("warning: {warning}");
     }
@@ -83,6 +85,9 @@ fn came_to_grief(error: &corpuscle::Error, simulation: &Simulation, recorder: &R
     let (time, folder) = (number(simulation.model().time()), recorder.path().display());
     let ended = format!("the run ended at t = {time}");
     match error {
+        corpuscle::Error::Model(ModelError::Device(error)) if recorder.can_resume() => {
+            anyhow!("{ended}: {error}; go on on the CPU with `corpuscle run --resume {folder} --backend cpu`")
+        }
         corpuscle::Error::Record(error) if recorder.can_resume() => {
             anyhow!("{ended}: {error}; then go on with `corpuscle run --resume {folder}`")
         }

@@ -1,8 +1,8 @@
 //! `corpuscle validate`.
 
-use crate::args::ValidateOptions;
+use crate::args::{Backend, ValidateOptions};
 use crate::output::{number, print, print_json};
-use crate::refusal::check_backend;
+use crate::refusal::refuse;
 use crate::select::select;
 use corpuscle_record::{ValidatedCase, ValidatedMeasure, ValidationReport};
 use corpuscle_validate::{Options, Row, cases};
@@ -10,7 +10,9 @@ use std::process::ExitCode;
 
 /// Runs cases and prints their rows as they come.
 pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<ExitCode> {
-    check_backend(options.backend)?;
+    if options.backend == Backend::Gpu {
+        return Err(refuse("the cases are computed on the CPU only so far; use --backend cpu, or leave it out"));
+    }
     let data = std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into);
     let with = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
     let mut report = options.report.as_deref().map(ValidationReport::create).transpose()?;

@@ -24,6 +24,10 @@ pub enum Error {
     /// The run's folder.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// The graphics card that was to compute.
+    #[cfg(feature = "gpu")]
+    #[error(transparent)]
+    Gpu(#[from] corpuscle_gpu::GpuError),
     /// The pictures.
     #[cfg(feature = "pictures")]
     #[error(transparent)]
@@ -60,7 +64,9 @@ impl Error {
             Self::Film(error) => {
                 !matches!(error, corpuscle_film::FilmError::Write { .. } | corpuscle_film::FilmError::Encoder { .. })
             }
-            Self::Model(error) => !matches!(error, ModelError::Breakdown { .. }),
+            Self::Model(error) => !matches!(error, ModelError::Breakdown { .. } | ModelError::Device(_)),
+            #[cfg(feature = "gpu")]
+            Self::Gpu(_) => true,
             Self::Record(error) => !matches!(
                 error,
                 RecordError::Write { .. }

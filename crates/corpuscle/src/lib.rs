@@ -32,7 +32,7 @@ mod sink;
 pub use corpuscle_fetch as fetch;
 #[cfg(feature = "film")]
 pub use corpuscle_film as film;
-#[cfg(feature = "pictures")]
+#[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
 pub use corpuscle_record as record;

@@ -7,6 +7,8 @@ use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
 use corpuscle_terrain::Terrain;
+#[cfg(feature = "gpu")]
+use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,6 +28,22 @@ impl Simulation {
     /// As [`Simulation::open`].
     pub fn open_to_restore(scene: Scene, folder: &Path) -> Result<Self, Error> {
         Self::open_with(scene, folder, Flood::to_restore)
+    }
+
+    /// Lets the graphics card take the steps from here on, in single precision.
+    ///
+    /// # Errors
+    /// Where there is no card, or it cannot compute this scene: nothing has changed then.
+    #[cfg(feature = "gpu")]
+    pub fn use_gpu(&mut self) -> Result<(), Error> {
+        let name = self.model().name();
+        let model: &mut dyn Any = self.model_mut();
+        let Some(flood) = model.downcast_mut::<Flood>() else {
+            let what = format!("the model {name} computes on the CPU only: leave `--backend gpu` out");
+            return Err(ModelError::Setup(what).into());
+        };
+        let gpu = corpuscle_gpu::Gpu::open()?;
+        Ok(flood.use_card(gpu)?)
     }
 
     fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {

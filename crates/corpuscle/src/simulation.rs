@@ -174,7 +174,7 @@ impl Simulation {
         let is_gas = self.scene.gas().is_some();
         Summary {
             model: model.name().into(),
-            backend: "cpu".into(),
+            backend: model.backend().into(),
             version: env!("CARGO_PKG_VERSION").into(),
             status,
             particles: model.particles(),

@@ -2,6 +2,8 @@
 
 mod exchange;
 mod model;
+#[cfg(feature = "gpu")]
+mod on_card;
 mod open;
 mod regulate;
 mod step;
@@ -51,6 +53,9 @@ pub struct Flood {
     renewals: Vec<Renewal>,
     /// The time shown, s; up to one step after the state's.
     shown: f64,
+    /// The card that takes the steps, where one does.
+    #[cfg(feature = "gpu")]
+    card: Option<crate::card::Card>,
 }
 
 /// Everything that changes.

@@ -11,7 +11,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Places tried for each new particle; the lowest surface is taken.
-const TRIES: usize = 12;
+pub(crate) const TRIES: usize = 12;
 
 /// A discharge into the water.
 #[derive(Debug, Clone)]
@@ -20,6 +20,27 @@ pub(crate) struct Source {
     /// Discharge over time, m3/s.
     pub discharge: Table,
     pub velocity: [f64; 2],
+}
+
+impl Source {
+    /// The times from `from` to `until` at which another `volume` m3 has come, with `owed` m3 at the start.
+    #[cfg(feature = "gpu")]
+    pub fn times(&self, owed: f64, volume: f64, from: f64, until: f64) -> Vec<f64> {
+        let come = |time: f64| owed + self.discharge.integral(from, time);
+        let count = (come(until) / volume).floor().max(0.0) as usize;
+        let mut earliest = from;
+        let time = |number: usize| {
+            let (mut low, mut high) = (earliest, until);
+            // To a billionth of the span.
+            for _ in 0..30 {
+                let middle = 0.5 * (low + high);
+                *if come(middle) >= number as f64 * volume { &mut high } else { &mut low } = middle;
+            }
+            earliest = low;
+            high
+        };
+        (1..=count).map(time).collect()
+    }
 }
 
 /// New particles: what they are like, and whom to ask where they fit.
@@ -121,18 +142,22 @@ impl Nursery<'_> {
 
     /// Of some places in `zone` the one where the surface stands lowest.
     fn lowest(&self, zone: &Zone, stream: u64, may_be_outside: bool) -> [f64; 2] {
+        let tried = self.places(zone, stream, may_be_outside).map(|[x, y]| (self.surface(x, y), [x, y]));
+        tried.into_iter().fold((f64::INFINITY, [0.0; 2]), |best, tried| if tried.0 < best.0 { tried } else { best }).1
+    }
+
+    /// Places in `zone`, drawn at random for what has the number `stream`.
+    pub fn places(&self, zone: &Zone, stream: u64, may_be_outside: bool) -> [[f64; 2]; TRIES] {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(stream);
         let bounds = self.edges.bounds;
-        let places = (0..TRIES).map(|_| {
+        std::array::from_fn(|_| {
             let [x, y] = zone.any(&mut random);
             if may_be_outside {
                 return [x, y];
             }
             [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max)]
-        });
-        let tried = places.map(|[x, y]| (self.surface(x, y), [x, y]));
-        tried.fold((f64::INFINITY, [0.0; 2]), |best, tried| if tried.0 < best.0 { tried } else { best }).1
+        })
     }
 
     /// Height of the water's surface by the plain kernel sum: low where particles leave a gap.

@@ -7,6 +7,8 @@
 
 mod arrangement;
 mod balanced;
+#[cfg(feature = "gpu")]
+mod card;
 mod density;
 mod edges;
 mod falling;

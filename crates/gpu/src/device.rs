@@ -1,6 +1,7 @@
 //! Choice of a device.
 
 use crate::GpuError;
+use std::sync::{Arc, OnceLock};
 
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,6 +23,27 @@ pub struct Gpu {
     pub name: String,
     /// A card, or a program in its place.
     pub kind: GpuKind,
+    faults: Faults,
+}
+
+/// The first thing that went wrong on a device, which tells of it when it likes.
+#[derive(Debug, Clone, Default)]
+struct Faults(Arc<OnceLock<String>>);
+
+impl Faults {
+    /// Listens to a device.
+    fn of(device: &wgpu::Device) -> Self {
+        let faults = Self::default();
+        let (of_calls, of_loss) = (faults.clone(), faults.clone());
+        device.on_uncaptured_error(Arc::new(move |error| of_calls.note(error.to_string())));
+        device.set_device_lost_callback(move |_, reason| of_loss.note(format!("it was lost ({reason})")));
+        faults
+    }
+
+    fn note(&self, what: String) {
+        // What goes wrong later follows from it.
+        let _ = self.0.set(what);
+    }
 }
 
 impl Gpu {
@@ -49,14 +71,15 @@ impl Gpu {
             let info = adapter.get_info();
             let request = wgpu::DeviceDescriptor {
                 label: Some("corpuscle"),
-                required_limits: wgpu::Limits::default(),
+                required_limits: limits(&adapter.limits()),
                 ..wgpu::DeviceDescriptor::default()
             };
             match adapter.request_device(&request).await {
                 Ok((device, queue)) => {
                     let software = info.device_type == wgpu::DeviceType::Cpu;
                     let kind = if software { GpuKind::Software } else { GpuKind::Card };
-                    return Ok(Self { device, queue, name: info.name, kind });
+                    let faults = Faults::of(&device);
+                    return Ok(Self { device, queue, name: info.name, kind, faults });
                 }
                 Err(error) => refused = GpuError::Refused { name: info.name, reason: error.to_string() },
             }
@@ -64,9 +87,35 @@ impl Gpu {
         Err(refused)
     }
 
+    /// Whether nothing has gone wrong so far. A device tells late: ask again after reading something back.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`] with what went wrong first.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match self.faults.0.get() {
+            None => Ok(()),
+            Some(reason) => Err(GpuError::Lost { name: self.name.clone(), reason: reason.clone() }),
+        }
+    }
+
+    /// Largest memory that a shader can see as one piece, bytes.
+    pub fn most_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
+    }
+
     /// Largest width and height of a texture, pixels.
     pub fn most_pixels(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d
+    }
+}
+
+/// The portable floor, but as much memory as there is.
+fn limits(most: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
+        max_buffer_size: most.max_buffer_size,
+        ..wgpu::Limits::default()
     }
 }
 

@@ -32,8 +32,33 @@ pub enum GpuError {
         /// Largest width and height, pixels.
         most: u32,
     },
+    /// More memory in one piece than the device gives.
+    #[error(
+        "{what} take {} MB, and the graphics device {name} gives {} MB in one piece; take fewer particles or larger cells, or `--backend cpu`",
+        bytes.div_ceil(1_000_000), most / 1_000_000
+    )]
+    Memory {
+        /// Name of the device.
+        name: String,
+        /// What the memory is for.
+        what: &'static str,
+        /// Asked for, bytes.
+        bytes: u64,
+        /// To be had, bytes.
+        most: u64,
+    },
+    /// More particles or cells than threads.
+    #[error(
+        "{count} particles or cells are more than the {most} that a graphics device goes through at once; take fewer, or `--backend cpu`"
+    )]
+    TooMany {
+        /// Asked for.
+        count: usize,
+        /// To be had.
+        most: usize,
+    },
     /// The device was lost, or gave no answer.
-    #[error("the graphics device {name} gave no picture back: {reason}")]
+    #[error("the graphics device {name} gave no answer: {reason}")]
     Lost {
         /// Name of the device.
         name: String,

@@ -1,17 +1,25 @@
-//! The graphics card: which one, within which limits, pictures off screen and back, shaders joined from pieces.
+//! The graphics card: which one, within which limits, memory and programs on it, sorting into cells, pictures off screen and back,
+//! shaders joined from pieces.
 //!
 //! Everything here keeps to the portable floor, so that the same shaders run in a browser: WebGPU's default limits (8 storage
-//! buffers a stage, 256 threads a group, 65535 groups a dimension, 128 MiB a binding), no optional feature.
+//! buffers a stage, 256 threads a group, 65535 groups a dimension), no optional feature. Of memory as much is asked for as the device
+//! has to give: 128 MiB a binding at least.
 
+mod buffer;
 mod device;
 mod error;
 mod image;
+mod kernel;
 mod shader;
+mod sort;
 mod texture;
 
+pub use buffer::{read, storage, uniform};
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;
+pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
 pub use shader::{ShaderLibrary, join};
+pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use texture::{read_rgba8, texture_2d};
 pub use wgpu;

@@ -1,5 +1,6 @@
 //! Textures to draw into, and back to main memory.
 
+use crate::buffer::map;
 use crate::{Gpu, GpuError, Image};
 
 /// A texture of `size` `[width, height]`, pixels.
@@ -50,14 +51,7 @@ pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError>
         texture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
-    let lost = |reason: String| GpuError::Lost { name: gpu.name.clone(), reason };
-    let (done, answer) = std::sync::mpsc::channel();
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        let _ = done.send(result);
-    });
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
-    answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
-    let bytes = buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))?;
+    let bytes = map(gpu, &buffer)?;
     let rgba = bytes.chunks_exact(row as usize).flat_map(|line| &line[..4 * width as usize]).copied().collect();
     Ok(Image { width, height, rgba })
 }

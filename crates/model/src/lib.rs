@@ -20,6 +20,7 @@ pub use map::Map;
 pub use path::Path;
 pub use surface::{Distance, SolidShape, Surface};
 
+use std::any::Any;
 use std::sync::atomic::AtomicBool;
 
 /// What can go wrong while a model runs. The text says what happened, when, and what to do.
@@ -38,6 +39,9 @@ pub enum ModelError {
     /// The scene asks for something that cannot be set up.
     #[error("{0}")]
     Setup(String),
+    /// The device that computes gave up: lost, or out of memory.
+    #[error("{0}")]
+    Device(String),
     /// A saved state that does not fit this scene or this version.
     #[error("the checkpoint cannot be used: {0}")]
     Checkpoint(String),
@@ -48,9 +52,14 @@ pub enum ModelError {
 /// The model steps at its own pace. The state that it shows at the time asked for is read between two steps
 /// (dense output), so when it is looked at never changes the physics: the same scene gives the same bits
 /// whatever the frame or gauge period.
-pub trait Model: Send {
+pub trait Model: Any + Send {
     /// The model's name as written in a scene: `flood`, `gas` or `dew`.
     fn name(&self) -> &'static str;
+
+    /// Where it computes: `cpu` or `gpu`.
+    fn backend(&self) -> &'static str {
+        "cpu"
+    }
 
     /// The time the model shows now, s. Exactly the time last asked of [`Model::advance_to`].
     fn time(&self) -> f64;

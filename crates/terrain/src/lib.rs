@@ -33,5 +33,6 @@ pub use raster::{
     MapBox, Raster, RasterField, Survey, Window, read_raster, read_raster_part, survey, write_geotiff, write_raster,
 };
 pub use summary::{Summary, summarize};
+pub use surface::GroundPatches;
 pub use system::ReferenceSystem;
 pub use terrain::Terrain;

@@ -6,6 +6,7 @@
 //! property of Bernstein polynomials): the surface never over- or undershoots the data, makes no pits and no bumps of
 //! its own, and is exact for a plane.
 
+use crate::Bounds;
 use bytemuck::{Pod, Zeroable};
 use corpuscle_lanes::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
@@ -23,6 +24,52 @@ struct Node {
     slope_y: f64,
     slope_x: f64,
     twist: f64,
+}
+
+/// A smooth surface as the nodes of its bicubic Hermite patches, in single precision.
+#[derive(Debug, Clone)]
+pub struct GroundPatches {
+    /// Height above the level asked for, m, and its derivatives along y, along x and along both, m per cell; row by row from the
+    /// south-west.
+    pub nodes: Vec<[f32; 4]>,
+    /// Nodes in a row, and rows.
+    pub size: [usize; 2],
+    /// Place of the first node in model coordinates, m.
+    pub corner: [f64; 2],
+    /// Nodes per metre along x and y.
+    pub per_metre: [f64; 2],
+}
+
+/// Nodes of a formula's patches, along each side of a cell of its maps.
+const NODES_A_CELL: f64 = 4.0;
+
+/// Nodes along a side at most.
+const MOST_NODES: f64 = 4096.0;
+
+impl GroundPatches {
+    /// Patches through a formula, which gives height and slope at a place, over `bounds`.
+    pub(crate) fn of_function(
+        bounds: Bounds,
+        cell: [f64; 2],
+        level: f64,
+        ground: &(impl Fn(f64, f64) -> (f64, [f64; 2]) + Sync),
+    ) -> Self {
+        let lengths = bounds.size();
+        let patches =
+            [0, 1].map(|axis| (NODES_A_CELL * lengths[axis] / cell[axis]).ceil().clamp(1.0, MOST_NODES - 1.0));
+        let [dx, dy] = [0, 1].map(|axis| lengths[axis] / patches[axis]);
+        let size = patches.map(|patches| patches as usize + 1);
+        let node = |index: usize| {
+            let (x, y) = (bounds.x_min + dx * (index % size[0]) as f64, bounds.y_min + dy * (index / size[0]) as f64);
+            let (height, [east, north]) = ground(x, y);
+            // The twist is the slope along y, followed along x.
+            let [before, after] = [x - 1e-3 * dx, x + 1e-3 * dx].map(|x| x.clamp(bounds.x_min, bounds.x_max));
+            let twist = (ground(after, y).1[1] - ground(before, y).1[1]) / (after - before);
+            [height - level, north * dy, east * dx, twist * dx * dy].map(|value| value as f32)
+        };
+        let nodes = (0..size[0] * size[1]).into_par_iter().with_min_len(4096).map(node).collect();
+        Self { nodes, size, corner: [bounds.x_min, bounds.y_min], per_metre: [1.0 / dx, 1.0 / dy] }
+    }
 }
 
 /// A smooth surface through heights on a regular grid.
@@ -53,6 +100,18 @@ impl Surface {
             patches: [columns + 1, rows + 1],
             corner: [first[0] - cell[0], first[1] - cell[1]],
             per_metre: [1.0 / cell[0], 1.0 / cell[1]],
+        }
+    }
+
+    /// The nodes for a device that has single precision only: heights above `level`.
+    pub(crate) fn patches_above(&self, level: f64) -> GroundPatches {
+        let above =
+            |node: &Node| [node.height - level, node.slope_y, node.slope_x, node.twist].map(|value| value as f32);
+        GroundPatches {
+            nodes: self.nodes.par_iter().with_min_len(4096).map(above).collect(),
+            size: [self.stride, self.patches[1] + 1],
+            corner: self.corner,
+            per_metre: self.per_metre,
         }
     }
 

@@ -15,8 +15,11 @@ pub struct Rate {
     /// Part of space that particles fill (gas).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<f64>,
-    /// Threads used.
+    /// Threads used; 0 on a graphics card.
     pub threads: usize,
+    /// The graphics card, where it computes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
     /// The rate, all threads together.
     pub rate: f64,
     /// What is counted: `particle_steps_per_s`.
@@ -41,6 +44,8 @@ pub struct Bench {
 pub struct BenchOptions {
     /// Less time for each, for a quick look: the figures scatter more.
     pub quick: bool,
+    /// The graphics card to compute on; else the CPU.
+    pub gpu: Option<corpuscle_gpu::Gpu>,
 }
 
 /// All benches.

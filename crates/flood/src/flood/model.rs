@@ -24,6 +24,11 @@ impl Model for Flood {
         "flood"
     }
 
+    #[cfg(feature = "gpu")]
+    fn backend(&self) -> &'static str {
+        if self.card.is_some() { "gpu" } else { "cpu" }
+    }
+
     fn time(&self) -> f64 {
         self.shown
     }
@@ -41,6 +46,10 @@ impl Model for Flood {
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.card.is_some() {
+            return self.advance_on_card(time, stop);
+        }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -164,6 +173,8 @@ impl Model for Flood {
         (self.shown, self.state) = (shown, state);
         self.surroundings.time = self.state.time;
         self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+        #[cfg(feature = "gpu")]
+        self.send_to_card().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())
     }
 }

@@ -25,6 +25,19 @@ const DRY_DEPTH: f64 = 0.05;
 /// Smoothing length in Table 1 of scheme paper, over the root of the volume of its particles, m^(-1/2).
 const TABLE_1_SMOOTHING: f64 = 2.66;
 
+/// The numbers of scheme balanced in water of `depth` m, whose particles have smoothing length `h`, m.
+pub(super) fn balanced_parameters(flood: &Settings, depth: f64, h: f64) -> balanced::Parameters {
+    let shallow = (flood.gravity_m_per_s2 * DRY_DEPTH * depth).sqrt();
+    balanced::Parameters {
+        gravity: flood.gravity_m_per_s2,
+        eta: flood.balanced.smoothing,
+        largest_h: flood.balanced.largest_smoothing * h,
+        viscosity: flood.balanced.viscosity,
+        cfl: flood.balanced.cfl,
+        longest_step: flood.balanced.cfl * h / shallow,
+    }
+}
+
 impl Flood {
     /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what
     /// relative paths refer to.
@@ -88,15 +101,7 @@ impl Flood {
         let (scheme, h): (Box<dyn Scheme>, f64) = match flood.scheme {
             SchemeName::Balanced => {
                 let h = flood.balanced.smoothing * spacing;
-                let shallow = (flood.gravity_m_per_s2 * DRY_DEPTH * depth).sqrt();
-                let parameters = balanced::Parameters {
-                    gravity: flood.gravity_m_per_s2,
-                    eta: flood.balanced.smoothing,
-                    largest_h: flood.balanced.largest_smoothing * h,
-                    viscosity: flood.balanced.viscosity,
-                    cfl: flood.balanced.cfl,
-                    longest_step: flood.balanced.cfl * h / shallow,
-                };
+                let parameters = balanced_parameters(flood, depth, h);
                 (Box::new(Balanced::new(parameters)), h)
             }
             SchemeName::Paper => {
@@ -163,6 +168,8 @@ impl Flood {
             of_blocks: Vec::new(),
             renewals: Vec::new(),
             shown: 0.0,
+            #[cfg(feature = "gpu")]
+            card: None,
         };
         Ok(model)
     }

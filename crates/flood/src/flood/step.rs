@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in
 /// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
-const CELL_OVER_H_BALANCED: f64 = 1.2;
+pub(super) const CELL_OVER_H_BALANCED: f64 = 1.2;
 
 /// The same for scheme paper, whose particles look as far as they reach themselves.
 const CELL_OVER_H_PAPER: f64 = 1.4;
@@ -194,9 +194,14 @@ impl Flood {
         }
     }
 
-    fn check(&self, step: f64) -> Result<(), ModelError> {
+    /// A time step below this means that the computation has broken down, s.
+    pub(super) fn shortest_step(&self) -> f64 {
+        1e-9 * self.spacing
+    }
+
+    pub(super) fn check(&self, step: f64) -> Result<(), ModelError> {
         let next = self.state.time_step;
-        if next.is_finite() && next > 1e-9 * self.spacing {
+        if next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
         Err(ModelError::Breakdown {

@@ -77,6 +77,7 @@ fn measure(name: &str, side: usize, seconds: f64) -> Result<Rate, ModelError> {
         rate: (dew.particle_steps() - before) as f64 / start.elapsed().as_secs_f64(),
         rate_unit: "particle_steps_per_s".into(),
         bytes_per_particle: dew.bytes() as f64 / dew.air().len() as f64,
+        device: None,
     })
 }
 

@@ -31,34 +31,72 @@ pub(crate) const BENCHES: &[Bench] = &[
 /// Seconds of wall-clock time measured.
 const MEASURED: f64 = 10.0;
 
+/// Steps between two looks at the clock: on a card more, as each look brings the water back.
+const STEPS: u32 = 2;
+const STEPS_ON_CARD: u32 = 64;
+
 fn rate(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Vec<Rate> {
-    let measured = if options.quick { 0.2 * MEASURED } else { MEASURED };
-    measure(name, scheme, particles, measured).into_iter().collect()
+    measure(name, scheme, particles, options).unwrap_or_default().into_iter().collect()
 }
 
-fn measure(name: &str, scheme: Scheme, particles: usize, seconds: f64) -> Result<Rate, ModelError> {
+/// The rate; none where the card does not compute this scheme.
+fn measure(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
+    let seconds = if options.quick { 0.2 * MEASURED } else { MEASURED };
     let mut flood = waves(scheme, particles)?;
+    let Some(mut clock) = Clock::start(&mut flood, options) else { return Ok(None) };
     let stop = AtomicBool::new(false);
-    let ahead = |flood: &mut Flood, steps: u32| {
-        let time = flood.time() + f64::from(steps) * flood.time_step();
-        flood.advance_to(time, &stop)
-    };
-    ahead(&mut flood, 3)?;
-    let (start, before) = (Instant::now(), flood.particle_steps());
-    while start.elapsed().as_secs_f64() < seconds {
-        ahead(&mut flood, 2)?;
+    let steps = if clock.device.is_some() { STEPS_ON_CARD } else { STEPS };
+    let ahead = |flood: &mut Flood| flood.advance_to(flood.time() + f64::from(steps) * flood.time_step(), &stop);
+    ahead(&mut flood)?;
+    let before = flood.particle_steps();
+    clock.restart(&flood);
+    while clock.seconds(&flood) < seconds {
+        ahead(&mut flood)?;
     }
     let work = (flood.particle_steps() - before) as f64;
-    Ok(Rate {
+    Ok(Some(Rate {
         name: name.into(),
         particles: flood.particles().len(),
         dimensions: 2,
         packing: None,
-        threads: rayon::current_num_threads(),
-        rate: work / start.elapsed().as_secs_f64(),
+        threads: if clock.device.is_some() { 0 } else { rayon::current_num_threads() },
+        rate: work / clock.seconds(&flood),
         rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: flood.bytes() as f64 / flood.particles().len() as f64,
-    })
+        bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64
+            / flood.particles().len() as f64,
+        device: clock.device,
+    }))
+}
+
+/// Time spent on steps: the wall clock's, or what a card says.
+struct Clock {
+    device: Option<String>,
+    began: Instant,
+    before: f64,
+}
+
+impl Clock {
+    /// Has the card take the steps, where one is to; none where it cannot, which it tells.
+    fn start(flood: &mut Flood, options: &BenchOptions) -> Option<Self> {
+        let device = options.gpu.as_ref().map(|gpu| gpu.name.clone());
+        if let Some(gpu) = &options.gpu
+            && let Err(error) = flood.use_card(gpu.clone())
+        {
+            eprintln!("left out: {error}");
+            return None;
+        }
+        Some(Self { device, began: Instant::now(), before: 0.0 })
+    }
+
+    fn restart(&mut self, flood: &Flood) {
+        self.began = Instant::now();
+        self.before = flood.seconds_on_card().unwrap_or(0.0);
+    }
+
+    fn seconds(&self, flood: &Flood) -> f64 {
+        let on_card = flood.seconds_on_card().map(|busy| busy - self.before);
+        on_card.unwrap_or_else(|| self.began.elapsed().as_secs_f64())
+    }
 }
 
 /// Water a metre deep, 1 m apart, with friction, waving over ground with a relief of its own.

@@ -67,6 +67,7 @@ fn measure<const D: usize>(name: &str, count: usize, packing: f64, seconds: f64)
         rate: (gas.collisions() - before) as f64 / start.elapsed().as_secs_f64(),
         rate_unit: "collisions_per_s".into(),
         bytes_per_particle: gas.bytes() as f64 / count as f64,
+        device: None,
     })
 }
 

@@ -1,0 +1,117 @@
+// What the kernels of the flood share: numbers of the run, particles, and what the host learns of a step.
+
+struct Parameters {
+    // West, east, south, north side of the ground, m from its centre.
+    bounds: vec4f,
+    // What the sides do: OPEN, WALL or PERIODIC.
+    rules: vec4u,
+    // South-west corner of the cells, m; their size, m, and its inverse.
+    grid_corner: vec2f,
+    cell: f32,
+    per_cell: f32,
+    columns: u32,
+    rows: u32,
+    // Cells over which the longest reach spreads.
+    farthest: u32,
+    friction: u32,
+    // South-west node of the ground, m; nodes per metre; patches between them.
+    ground_corner: vec2f,
+    ground_per_metre: vec2f,
+    ground_patches: vec2u,
+    // Manning's n, Chezy's C or the friction slope over the velocity.
+    roughness: f32,
+    gravity: f32,
+    // Smoothing length over particle distance, and the largest, m.
+    eta: f32,
+    largest_h: f32,
+    viscosity: f32,
+    cfl: f32,
+    // Time step where nothing moves, and the one at which the run has broken down, s.
+    longest_step: f32,
+    shortest_step: f32,
+    // Volume, m3, and smoothing length, m, of a new particle.
+    new_volume: f32,
+    new_h: f32,
+}
+
+const OPEN = 0u;
+const WALL = 1u;
+const PERIODIC = 2u;
+
+// A column of water; `outside` is 0 for one inside, or the side over which it has left, from 1.
+struct Particle {
+    place: vec2f,
+    velocity: vec2f,
+    acceleration: vec2f,
+    volume: f32,
+    weight: f32,
+    h: f32,
+    next_h: f32,
+    depth: f32,
+    ground: f32,
+    ground_slope: vec2f,
+    id: u32,
+    outside: u32,
+}
+
+// A sum that does not forget what is small (Kahan 1965): the sum and what it lacks.
+struct Account {
+    sum: f32,
+    lacking: f32,
+}
+
+struct Status {
+    // These two first: the sort reads them.
+    particles: u32,
+    cells: u32,
+    halted: u32,
+    steps: u32,
+    // Particle-steps, low and high half.
+    particle_steps: vec2u,
+    // The next step, s; and time since the host last spoke, s, with that at which to halt.
+    step: f32,
+    until: f32,
+    elapsed: Account,
+    // Water that went out and came in, m3; momentum over density that went and came, m4/s.
+    outflow: Account,
+    inflow: Account,
+    momentum_lost: Account,
+    momentum_gained: Account,
+    // Force from outside at the last evaluation, m4/s2.
+    from_outside: vec2f,
+    mean_h: f32,
+    // Time since the host last spoke at which the maps are looked at: the step that passes it is the last.
+    look: f32,
+    // Corners of the water.
+    low: vec2f,
+    high: vec2f,
+    // Particles that are to come, and how many of them have.
+    births: u32,
+    born: u32,
+}
+
+const GOING = 0u;
+const ARRIVED = 1u;
+const BROKEN = 2u;
+// The host has said until when to go on.
+const SPOKEN = 3u;
+
+// What a group of threads sums up over its particles: in the drift, and after the forces.
+struct Partial {
+    outflow: f32,
+    inflow: f32,
+    booked_in_drift: f32,
+    booked_in_kick: f32,
+    from_outside: vec2f,
+    longest_step: f32,
+    sum_of_h: f32,
+    low: vec2f,
+    high: vec2f,
+}
+
+fn add(account: ptr<function, Account>, value: f32) {
+    let more = value - (*account).lacking;
+    let sum = (*account).sum + more;
+    (*account).lacking = (sum - (*account).sum) - more;
+    (*account).sum = sum;
+}

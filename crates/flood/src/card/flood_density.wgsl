@@ -1,0 +1,79 @@
+// How many particles stand here, so how deep the water is, and the ground under it. Twin of `density.rs` and of `find_depths` and
+// `fill_columns` in `balanced/mod.rs`.
+#import flood_columns
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> reaches: array<f32>;
+// Place, weight and reach of each.
+@group(0) @binding(4) var<storage, read> sites: array<vec4f>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(6) var<storage, read_write> columns: array<Column>;
+@group(0) @binding(7) var nodes: texture_2d<f32>;
+
+// Number density, that of particles like this one, and how the first changes with h.
+fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
+    let per_h = 1.0 / h;
+    let own = spline(0.0, per_h);
+    var number = 0.0;
+    var weighted = 0.0;
+    var r_slope = 0.0;
+    let mirrors = mirrors_round(parameters, place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, parameters);
+        let truth = behind(mirror, place);
+        let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);
+        if !sees(mirror, parameters, place, reach) {
+            continue;
+        }
+        let cells = cells_round(parameters, truth, reach);
+        for (var row = cells.y; row <= cells.w; row++) {
+            let line = row * parameters.columns;
+            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+                let site = sites[j];
+                let there = shown(mirror, site.xy);
+                let r = max(distance(there, place), 2e-12 * h);
+                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
+                    continue;
+                }
+                let w = spline(r, per_h);
+                number += w;
+                weighted += w * site.z;
+                r_slope += r * spline_slope(r, per_h);
+            }
+        }
+    }
+    number += own;
+    return vec3f(number, own + weighted / weight, (r_slope - 2.0 * number) / h);
+}
+
+// The smoothing length for which n = (eta / h)^2, by one Newton step from h, kept within a fifth of it.
+fn next_h(h: f32, number: f32, slope_in_h: f32) -> f32 {
+    let residual = number * h * h - parameters.eta * parameters.eta;
+    let slope = slope_in_h * h * h + 2.0 * number * h;
+    var change = h;
+    if slope > 1e-6 * number * h {
+        change = -residual / slope;
+    }
+    return min(h + clamp(change, -0.2 * h, 0.2 * h), parameters.largest_h);
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= status.particles {
+        return;
+    }
+    var particle = particles[i];
+    let density = densities(i, particle.place, particle.weight, particle.h);
+    let ground = ground_under(parameters, nodes, particle.place);
+    particle.depth = particle.volume * density.y;
+    particle.next_h = next_h(particle.h, density.x, density.z);
+    particle.ground = ground.x;
+    particle.ground_slope = ground.yz;
+    particles[i] = particle;
+    let ahead = particle.velocity + 0.5 * status.step * particle.acceleration;
+    let surface = particle.ground + particle.depth;
+    columns[i] = Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h);
+}

@@ -1,0 +1,110 @@
+// Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for.
+#import flood_card
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read_write> status: Status;
+@group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
+// Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group.
+@group(0) @binding(3) var<storage, read_write> groups: array<u32>;
+
+const FAR = 3.0e38;
+
+var<workgroup> sums: array<Partial, 256>;
+
+fn joined(a: Partial, b: Partial) -> Partial {
+    return Partial(
+        a.outflow + b.outflow,
+        a.inflow + b.inflow,
+        a.booked_in_drift + b.booked_in_drift,
+        a.booked_in_kick + b.booked_in_kick,
+        a.from_outside + b.from_outside,
+        min(a.longest_step, b.longest_step),
+        a.sum_of_h + b.sum_of_h,
+        min(a.low, b.low),
+        max(a.high, b.high),
+    );
+}
+
+// Books what the groups have summed up.
+fn book(all: Partial) {
+    var outflow = status.outflow;
+    var inflow = status.inflow;
+    var elapsed = status.elapsed;
+    add(&outflow, all.outflow);
+    add(&inflow, all.inflow);
+    add(&elapsed, status.step);
+    // The force over the step by its means at both ends.
+    let push = 0.5 * status.step * (status.from_outside + all.from_outside);
+    let bookings = array(all.booked_in_drift, all.booked_in_kick, push.x, push.y);
+    var lost = status.momentum_lost;
+    var gained = status.momentum_gained;
+    for (var k = 0u; k < 4u; k++) {
+        add(&lost, max(-bookings[k], 0.0));
+        add(&gained, max(bookings[k], 0.0));
+    }
+    status.momentum_lost = lost;
+    status.momentum_gained = gained;
+    status.outflow = outflow;
+    status.inflow = inflow;
+    status.elapsed = elapsed;
+    status.from_outside = all.from_outside;
+    status.steps += 1u;
+    let low = status.particle_steps.x + status.particles;
+    status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
+    status.step = min(all.longest_step, parameters.longest_step);
+    status.mean_h = all.sum_of_h / f32(max(status.particles, 1u));
+    status.low = all.low;
+    status.high = all.high;
+}
+
+fn decide() {
+    if !(status.step > parameters.shortest_step) {
+        status.halted = BROKEN;
+    } else if status.elapsed.sum + status.step > status.until || status.elapsed.sum >= status.look {
+        status.halted = ARRIVED;
+    } else {
+        status.halted = GOING;
+    }
+    let is_going = status.halted == GOING;
+    let counts = array(
+        (status.particles + 255u) / 256u,
+        (status.cells + 255u) / 256u,
+        (status.cells + 1023u) / 1024u,
+        1u,
+    );
+    for (var slot = 0u; slot < 4u; slot++) {
+        groups[3u * slot] = select(0u, counts[slot], is_going);
+        groups[3u * slot + 1u] = 1u;
+        groups[3u * slot + 2u] = 1u;
+    }
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    var own = Partial(0.0, 0.0, 0.0, 0.0, vec2f(0.0), FAR, 0.0, vec2f(FAR), vec2f(-FAR));
+    if status.halted == GOING {
+        for (var group = thread; group < groups[0]; group += 256u) {
+            own = joined(own, partials[group]);
+            // Births may call for one more group than there was in the drift.
+            partials[group].outflow = 0.0;
+            partials[group].inflow = 0.0;
+            partials[group].booked_in_drift = 0.0;
+        }
+    }
+    sums[thread] = own;
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] = joined(sums[thread], sums[thread + half]);
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        if status.halted == GOING {
+            book(sums[0]);
+        }
+        if status.halted == GOING || status.halted == SPOKEN {
+            decide();
+        }
+    }
+}

@@ -1,0 +1,112 @@
+// Who is near: cells to look through, and images of particles beyond the edges.
+//
+// Images are not stored as the CPU's are: who stands near an edge looks once more from where it would stand in the mirror, and turns
+// what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are.
+#import flood_card
+
+struct Mirror {
+    // The image of a place p stands at sign * p + shift.
+    sign: vec2f,
+    shift: vec2f,
+    // Beyond which side along x and y it stands: -1, 0 or 1.
+    beyond: vec2f,
+    // Whether it shows the water itself, over a periodic side, or what is not there.
+    is_water: bool,
+    is_there: bool,
+}
+
+const MIRRORS = 9u;
+
+// How many of them there are to look into: amid the water the first alone.
+fn mirrors_round(parameters: Parameters, place: vec2f) -> u32 {
+    let farthest = 2.0 * parameters.largest_h;
+    let is_amid = all(place - farthest > parameters.bounds.xz) && all(place + farthest < parameters.bounds.yw);
+    return select(MIRRORS, 1u, is_amid);
+}
+
+// How far from an edge a particle has an image, in reaches.
+const IMAGE_MARGIN = 1.5;
+
+// Sign, shift and whether there are images beyond one side of an axis.
+fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
+    if beyond == 0 {
+        return vec3f(1.0, 0.0, 1.0);
+    }
+    let rule = select(rules.y, rules.x, beyond < 0);
+    if rule == PERIODIC {
+        return vec3f(1.0, f32(beyond) * (high - low), 1.0);
+    }
+    if rule == WALL {
+        return vec3f(-1.0, 2.0 * select(high, low, beyond < 0), 1.0);
+    }
+    return vec3f(1.0, 0.0, 0.0);
+}
+
+// The mirror of a number below MIRRORS, 0 being none.
+fn mirror(number: u32, parameters: Parameters) -> Mirror {
+    let beyond = vec2i(i32((number + 1u) % 3u), i32(((number + 3u) / 3u) % 3u)) - 1;
+    let x = along(beyond.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.xy);
+    let y = along(beyond.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.zw);
+    let is_water = x.x > 0.0 && y.x > 0.0;
+    return Mirror(vec2f(x.x, y.x), vec2f(x.y, y.y), vec2f(beyond), is_water, x.z * y.z > 0.0);
+}
+
+// Where what the mirror shows at `place` stands in truth.
+fn behind(mirror: Mirror, place: vec2f) -> vec2f {
+    return mirror.sign * (place - mirror.shift);
+}
+
+// Where the mirror shows what stands at `place`.
+fn shown(mirror: Mirror, place: vec2f) -> vec2f {
+    return mirror.sign * place + mirror.shift;
+}
+
+// Whether the mirror shows anything within `reach` of a place.
+fn sees(mirror: Mirror, parameters: Parameters, place: vec2f, reach: f32) -> bool {
+    if !mirror.is_there {
+        return false;
+    }
+    let truth = behind(mirror, place);
+    let bounds = parameters.bounds;
+    return all(mirror.beyond == vec2f(0.0))
+        || (all(truth + reach >= bounds.xz) && all(truth - reach <= bounds.yw));
+}
+
+// Whether a particle whose image stands at `place` has one: not too far from the edge.
+fn has_image(mirror: Mirror, parameters: Parameters, place: vec2f, reach: f32) -> bool {
+    let bounds = parameters.bounds;
+    let out = max(bounds.xz - place, place - bounds.yw);
+    let near = (out >= vec2f(0.0)) & (out < vec2f(IMAGE_MARGIN * reach));
+    return all(near | (mirror.beyond == vec2f(0.0)));
+}
+
+// First and last column and row of the cells within `reach` of a place.
+fn cells_round(parameters: Parameters, place: vec2f, reach: f32) -> vec4u {
+    let last = vec2u(parameters.columns, parameters.rows) - 1u;
+    let low = max((place - reach - parameters.grid_corner) * parameters.per_cell, vec2f(0.0));
+    let high = max((place + reach - parameters.grid_corner) * parameters.per_cell, vec2f(0.0));
+    return vec4u(min(vec2u(low), last), min(vec2u(high), last));
+}
+
+fn cell_at(parameters: Parameters, place: vec2f) -> u32 {
+    let cell = cells_round(parameters, place, 0.0);
+    return cell.y * parameters.columns + cell.x;
+}
+
+// Cubic spline (Monaghan & Lattanzio 1985) as in the crate sph: W(r, h), 1/m2.
+const SIGMA = 10.0 / (28.0 * 3.14159265358979);
+
+fn spline(r: f32, per_h: f32) -> f32 {
+    let q = r * per_h;
+    let outer = max(2.0 - q, 0.0);
+    let inner = max(1.0 - q, 0.0);
+    return (outer * outer * outer - 4.0 * inner * inner * inner) * (per_h * per_h * SIGMA);
+}
+
+// -dW/dr, 1/m3.
+fn spline_slope(r: f32, per_h: f32) -> f32 {
+    let q = r * per_h;
+    let outer = max(2.0 - q, 0.0);
+    let inner = max(1.0 - q, 0.0);
+    return (outer * outer - 4.0 * inner * inner) * (per_h * per_h * per_h * (3.0 * SIGMA));
+}

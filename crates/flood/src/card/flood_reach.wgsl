@@ -1,0 +1,27 @@
+// How far a particle in each cell must look to find all that reach it. Twin of `Cells::set_reach` in the crate sph.
+#import flood_card
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read> along_rows: array<f32>;
+@group(0) @binding(2) var<storage, read_write> reaches: array<f32>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let cell = id.x;
+    if cell >= parameters.columns * parameters.rows {
+        return;
+    }
+    let row = cell / parameters.columns;
+    let column = cell % parameters.columns;
+    let first = row - min(row, parameters.farthest);
+    let last = min(row + parameters.farthest, parameters.rows - 1u);
+    var longest = 0.0;
+    for (var other = first; other <= last; other++) {
+        let reach = along_rows[other * parameters.columns + column];
+        let apart = max(row, other) - min(row, other);
+        if reach > longest && reach >= f32(max(apart, 1u) - 1u) * parameters.cell {
+            longest = reach;
+        }
+    }
+    reaches[cell] = longest;
+}

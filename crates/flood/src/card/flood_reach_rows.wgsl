@@ -1,0 +1,26 @@
+// The longest reach that touches each cell from its own row. Twin of `Cells::set_reach` in the crate sph.
+#import flood_card
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read> own: array<f32>;
+@group(0) @binding(2) var<storage, read_write> along_rows: array<f32>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let cell = id.x;
+    if cell >= parameters.columns * parameters.rows {
+        return;
+    }
+    let column = cell % parameters.columns;
+    let first = column - min(column, parameters.farthest);
+    let last = min(column + parameters.farthest, parameters.columns - 1u);
+    var longest = 0.0;
+    for (var other = first; other <= last; other++) {
+        let reach = own[cell - column + other];
+        let apart = max(column, other) - min(column, other);
+        if reach > longest && apart <= u32(reach * parameters.per_cell) + 1u {
+            longest = reach;
+        }
+    }
+    along_rows[cell] = longest;
+}

@@ -1,0 +1,96 @@
+// First-order exact slopes of surface and velocity. Twin of `balanced/gradients.rs`.
+#import flood_columns
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> reaches: array<f32>;
+@group(0) @binding(4) var<storage, read> columns: array<Column>;
+@group(0) @binding(5) var<storage, read> particles: array<Particle>;
+@group(0) @binding(6) var<storage, read_write> slopes: array<Slopes>;
+@group(0) @binding(7) var nodes: texture_2d<f32>;
+
+// Difference of surface over depth, or of velocity over wave speed, at which water counts as moving.
+const REST = 0.05;
+// Difference of surface over that of the ground at which water counts as tilted.
+const TILT = 0.6;
+// Trace of the moment matrix from which a particle is in company.
+const COMPANY = 0.4;
+
+// Inverse of the moment matrix (xx, xy, yy), made invertible where the neighbours stand in a line or are missing.
+fn renormalisation(moment: vec3f) -> vec3f {
+    var m = moment;
+    let trace = m.x + m.z;
+    if m.x * m.z - m.y * m.y <= 0.02 * trace * trace || trace <= 0.2 {
+        let more = 0.1 * max(trace, 0.1);
+        m.x += more;
+        m.z += more;
+    }
+    return vec3f(m.z, -m.y, m.x) / (m.x * m.z - m.y * m.y);
+}
+
+fn turned(b: vec3f, v: vec2f) -> vec2f {
+    return vec2f(b.x * v.x + b.y * v.y, b.y * v.x + b.z * v.y);
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= status.particles {
+        return;
+    }
+    let own = columns[i];
+    let h = 1.0 / own.per_h;
+    var moment = vec3f(0.0);
+    var surface = vec2f(0.0);
+    var u = vec2f(0.0);
+    var v = vec2f(0.0);
+    var surface_step = 0.0;
+    var velocity_step = 0.0;
+    var ground_step = 0.0;
+    let mirrors = mirrors_round(parameters, own.place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, parameters);
+        let truth = behind(mirror, own.place);
+        let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);
+        if !sees(mirror, parameters, own.place, reach) {
+            continue;
+        }
+        let cells = cells_round(parameters, truth, reach);
+        for (var row = cells.y; row <= cells.w; row++) {
+            let line = row * parameters.columns;
+            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+                let near = columns[j];
+                let there = shown(mirror, near.place);
+                let e = there - own.place;
+                let r = max(length(e), 2e-12 * h);
+                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / near.per_h)) {
+                    continue;
+                }
+                // The gradient of W at i is slope / r * e.
+                let weight = spline_slope(r, own.per_h) / r * near.area * e;
+                moment += vec3f(weight.x * e.x, weight.x * e.y, weight.y * e.y);
+                var ds = near.surface - own.surface;
+                if k > 0u {
+                    ds += step_up(mirror, parameters, nodes, near.place);
+                }
+                let dv = mirror.sign * near.velocity - own.velocity;
+                surface += weight * ds;
+                u += weight * dv.x;
+                v += weight * dv.y;
+                surface_step = max(surface_step, abs(ds));
+                ground_step = max(ground_step, abs(ds - (near.depth - own.depth)));
+                velocity_step = max(velocity_step, dot(dv, dv));
+            }
+        }
+    }
+    let b = renormalisation(moment);
+    let wave = sqrt(parameters.gravity * own.depth);
+    let unrest = max(surface_step / own.depth, sqrt(velocity_step) / wave) / REST;
+    let tilt = surface_step / max(TILT * ground_step, 1e-12 * own.depth);
+    let calm = min(unrest, tilt);
+    let alone = max(1.0 - (moment.x + moment.z) / COMPANY, 0.0);
+    let particle = particles[i];
+    let outside = select(0.0, 1.0, particle.outside > 0u);
+    slopes[i] = Slopes(b, exp(-calm * calm), turned(b, surface), particle.ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
+}

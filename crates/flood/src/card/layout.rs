@@ -1,0 +1,177 @@
+//! Numbers as the shaders see them: `flood_card.wgsl` and `flood_columns.wgsl` have the same in the same order.
+
+use super::Birth;
+use crate::inflow::TRIES;
+use crate::particle::Particle;
+use bytemuck::{Pod, Zeroable};
+
+/// Numbers of the run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Parameters {
+    /// West, east, south, north, m from the centre.
+    pub bounds: [f32; 4],
+    pub rules: [u32; 4],
+    pub grid_corner: [f32; 2],
+    pub cell: f32,
+    pub per_cell: f32,
+    pub columns: u32,
+    pub rows: u32,
+    pub farthest: u32,
+    pub friction: u32,
+    pub ground_corner: [f32; 2],
+    pub ground_per_metre: [f32; 2],
+    pub ground_patches: [u32; 2],
+    pub roughness: f32,
+    pub gravity: f32,
+    pub eta: f32,
+    pub largest_h: f32,
+    pub viscosity: f32,
+    pub cfl: f32,
+    pub longest_step: f32,
+    pub shortest_step: f32,
+    pub new_volume: f32,
+    pub new_h: f32,
+}
+
+/// What the sides do.
+pub(super) const OPEN: u32 = 0;
+pub(super) const WALL: u32 = 1;
+pub(super) const PERIODIC: u32 = 2;
+
+/// How the ground slows the water.
+pub(super) const SMOOTH: u32 = 0;
+pub(super) const MANNING: u32 = 1;
+pub(super) const CHEZY: u32 = 2;
+pub(super) const LINEAR: u32 = 3;
+
+/// What the host learns, and says.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Status {
+    pub particles: u32,
+    pub cells: u32,
+    pub halted: u32,
+    pub steps: u32,
+    pub particle_steps: [u32; 2],
+    pub step: f32,
+    pub until: f32,
+    /// Sums with what they lack.
+    pub elapsed: [f32; 2],
+    pub outflow: [f32; 2],
+    pub inflow: [f32; 2],
+    pub momentum_lost: [f32; 2],
+    pub momentum_gained: [f32; 2],
+    pub from_outside: [f32; 2],
+    pub mean_h: f32,
+    pub look: f32,
+    pub low: [f32; 2],
+    pub high: [f32; 2],
+    pub births: u32,
+    pub born: u32,
+}
+
+/// Values of [`Status::halted`]: broken down; and the host has said until when to go on.
+pub(super) const BROKEN: u32 = 2;
+pub(super) const SPOKEN: u32 = 3;
+
+/// A particle, its place from the centre and its ground above the level that heights are counted from.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardParticle {
+    pub place: [f32; 2],
+    pub velocity: [f32; 2],
+    pub acceleration: [f32; 2],
+    pub volume: f32,
+    pub weight: f32,
+    pub h: f32,
+    pub next_h: f32,
+    pub depth: f32,
+    pub ground: f32,
+    pub ground_slope: [f32; 2],
+    pub id: u32,
+    pub outside: u32,
+}
+
+/// Only their size matters here, and where the slopes of the surface stand.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Slopes {
+    pub renormalisation: [f32; 3],
+    pub rest: f32,
+    pub surface: [f32; 2],
+    pub others: [f32; 10],
+}
+
+/// A particle that is to come.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardBirth {
+    pub time: f32,
+    pub id: u32,
+    pub velocity: [f32; 2],
+    pub places: [[f32; 2]; TRIES],
+}
+
+/// Bytes of a `Column` and of a `Partial`.
+pub(super) type Column = [f32; 8];
+pub(super) type Partial = [f32; 12];
+
+/// Where the shaders count from, in model coordinates: single precision has some 7 digits, which are not to be spent on the place of
+/// the whole.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Origin {
+    pub centre: [f64; 2],
+    pub level: f64,
+}
+
+impl Origin {
+    pub fn to_card(self, particle: &Particle) -> CardParticle {
+        CardParticle {
+            place: [particle.x - self.centre[0], particle.y - self.centre[1]].map(|value| value as f32),
+            velocity: [particle.u, particle.v].map(|value| value as f32),
+            acceleration: [particle.ax, particle.ay].map(|value| value as f32),
+            volume: particle.volume as f32,
+            weight: particle.weight as f32,
+            h: particle.h as f32,
+            next_h: particle.next_h as f32,
+            depth: particle.depth as f32,
+            ground: (particle.ground - self.level) as f32,
+            ground_slope: particle.ground_slope.map(|value| value as f32),
+            id: particle.id as u32,
+            outside: particle.outside.map_or(0, |side| u32::from(side) + 1),
+        }
+    }
+
+    pub fn birth(self, birth: &Birth) -> CardBirth {
+        CardBirth {
+            time: birth.time as f32,
+            id: birth.id as u32,
+            velocity: birth.velocity.map(|value| value as f32),
+            places: birth.places.map(|place| [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)),
+        }
+    }
+
+    pub fn to_host(self, particle: &CardParticle, slopes: &Slopes) -> Particle {
+        let wide = |pair: [f32; 2]| pair.map(f64::from);
+        let ([x, y], [u, v], [ax, ay]) = (wide(particle.place), wide(particle.velocity), wide(particle.acceleration));
+        Particle {
+            x: x + self.centre[0],
+            y: y + self.centre[1],
+            u,
+            v,
+            ax,
+            ay,
+            volume: f64::from(particle.volume),
+            weight: f64::from(particle.weight),
+            h: f64::from(particle.h),
+            next_h: f64::from(particle.next_h),
+            depth: f64::from(particle.depth),
+            ground: f64::from(particle.ground) + self.level,
+            ground_slope: wide(particle.ground_slope),
+            surface_slope: wide(slopes.surface),
+            outside: particle.outside.checked_sub(1).map(|side| side as u8),
+            id: u64::from(particle.id),
+        }
+    }
+}

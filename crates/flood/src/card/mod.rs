@@ -1,0 +1,357 @@
+//! The flood on the graphics card: twins of scheme balanced's passes, in single precision, that leave the water where it is.
+//!
+//! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it.
+
+mod ground;
+mod layout;
+mod tasks;
+
+use crate::balanced;
+use crate::edges::EdgeRule;
+use crate::friction::{Coefficient, Roughness};
+use crate::inflow::TRIES;
+use crate::particle::Particle;
+use crate::scheme::Surroundings;
+use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
+use corpuscle_scene::Friction;
+use corpuscle_terrain::Bounds;
+use layout::{CardParticle, Origin, Parameters, Slopes, Status};
+use std::time::Instant;
+use tasks::Tasks;
+
+/// Size of a cell over the mean smoothing length, as on the CPU.
+const CELL_OVER_H: f64 = 1.2;
+
+/// The cells are laid out anew after so many steps; in between the host reads no more than it must.
+const LAID_OUT: u64 = 64;
+
+/// Cells a particle, and at least: what the sort goes through beside the particles.
+const CELLS_A_PARTICLE: usize = 4;
+const FEWEST_CELLS: usize = 65_536;
+
+/// A batch of steps takes about so long at most, s: then the host looks whether it is to stop.
+const BATCH: f64 = 0.2;
+
+/// Water on a card.
+#[derive(Debug)]
+pub(crate) struct Card {
+    gpu: Gpu,
+    tasks: Tasks,
+    parameters: Parameters,
+    origin: Origin,
+    bounds: Bounds,
+    status: Status,
+    /// Particles and cells that there is room for.
+    room: usize,
+    most_cells: usize,
+    /// Steps in all, to lay the cells out at the same ones however often the host looks.
+    steps: u64,
+    /// Steps in a batch.
+    batch: u32,
+    /// Whether the host has not the state that is here.
+    ahead: bool,
+    /// Time spent on steps, s.
+    busy: f64,
+}
+
+/// A particle that is to come, at the one of some places where the surface then stands lowest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Birth {
+    /// Time from now, s.
+    pub time: f64,
+    pub id: u64,
+    pub velocity: [f64; 2],
+    pub places: [[f64; 2]; TRIES],
+}
+
+/// Births that the card can be told of at once.
+pub(crate) const MOST_BIRTHS: usize = 16_384;
+
+/// What a batch of steps did.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Progress {
+    pub steps: u64,
+    pub particle_steps: u64,
+    pub elapsed: f64,
+    /// The next step, s.
+    pub step: f64,
+    /// Volumes, m3, and momentum over density, m4/s.
+    pub outflow: f64,
+    pub inflow: f64,
+    pub momentum_lost: f64,
+    pub momentum_gained: f64,
+    pub from_outside: [f64; 2],
+    pub mean_h: f64,
+    /// How many of the births have been.
+    pub born: usize,
+    /// Whether the next step is too short to go on.
+    pub broken: bool,
+}
+
+impl Progress {
+    /// Nothing yet; `step` is the next one.
+    pub fn none(step: f64) -> Self {
+        Self {
+            steps: 0,
+            particle_steps: 0,
+            elapsed: 0.0,
+            step,
+            outflow: 0.0,
+            inflow: 0.0,
+            momentum_lost: 0.0,
+            momentum_gained: 0.0,
+            from_outside: [0.0; 2],
+            mean_h: 0.0,
+            born: 0,
+            broken: false,
+        }
+    }
+
+    /// With what was done after it.
+    pub fn and(self, later: Self) -> Self {
+        Self {
+            steps: self.steps + later.steps,
+            particle_steps: self.particle_steps + later.particle_steps,
+            elapsed: self.elapsed + later.elapsed,
+            outflow: self.outflow + later.outflow,
+            inflow: self.inflow + later.inflow,
+            momentum_lost: self.momentum_lost + later.momentum_lost,
+            momentum_gained: self.momentum_gained + later.momentum_gained,
+            born: self.born + later.born,
+            ..later
+        }
+    }
+}
+
+impl Card {
+    /// Room for `count` particles amid `surroundings`; new ones hold `volume` m3 and begin with the smoothing length `h`, m.
+    pub fn new(
+        gpu: Gpu,
+        count: usize,
+        surroundings: &Surroundings,
+        scheme: &balanced::Parameters,
+        roughness: &Roughness,
+        shortest_step: f64,
+        [volume, h]: [f64; 2],
+    ) -> Result<Self, GpuError> {
+        let bounds = surroundings.edges.bounds;
+        let origin = Origin {
+            centre: bounds.centre(),
+            level: surroundings.terrain.height(bounds.centre()[0], bounds.centre()[1]),
+        };
+        let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
+        let (friction, roughness) = friction(roughness);
+        let from_centre = |place: [f64; 2]| [0, 1].map(|axis| (place[axis] - origin.centre[axis]) as f32);
+        let [west, south] = from_centre([bounds.x_min, bounds.y_min]);
+        let [east, north] = from_centre([bounds.x_max, bounds.y_max]);
+        let parameters = Parameters {
+            bounds: [west, east, south, north],
+            rules: surroundings.edges.rules.each_ref().map(rule),
+            friction,
+            roughness,
+            ground_corner: from_centre(patches.corner),
+            ground_per_metre: patches.per_metre.map(|value| value as f32),
+            ground_patches: patches.size.map(|nodes| nodes as u32 - 1),
+            gravity: scheme.gravity as f32,
+            eta: scheme.eta as f32,
+            largest_h: scheme.largest_h as f32,
+            viscosity: scheme.viscosity as f32,
+            cfl: scheme.cfl as f32,
+            longest_step: scheme.longest_step as f32,
+            shortest_step: shortest_step as f32,
+            new_volume: volume as f32,
+            new_h: h as f32,
+            ..Parameters::default()
+        };
+        let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
+        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes)?;
+        let status = Status::default();
+        Ok(Self {
+            gpu,
+            room: count,
+            tasks,
+            parameters,
+            origin,
+            bounds,
+            status,
+            most_cells,
+            steps: 0,
+            batch: 4,
+            ahead: false,
+            busy: 0.0,
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
+    }
+
+    /// Wall-clock time spent on steps, s.
+    pub fn busy(&self) -> f64 {
+        self.busy
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.tasks.bytes
+    }
+
+    /// Particles that there is room for.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
+    /// Hands the water over; `step` is the next step, `from_outside` the force at the last evaluation.
+    pub fn send(&mut self, particles: &[Particle], step: f64, from_outside: [f64; 2]) {
+        let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
+        self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
+        let corners = |pick: fn(f32, f32) -> f32, none: f32| {
+            [0, 1].map(|axis| sent.iter().map(|particle| particle.place[axis]).fold(none, pick))
+        };
+        let sum_of_h: f64 = particles.iter().map(|particle| particle.next_h).sum();
+        self.status = Status {
+            particles: sent.len() as u32,
+            step: step as f32,
+            from_outside: from_outside.map(|value| value as f32),
+            mean_h: (sum_of_h / particles.len().max(1) as f64) as f32,
+            low: corners(f32::min, f32::MAX),
+            high: corners(f32::max, -f32::MAX),
+            ..Status::default()
+        };
+        (self.steps, self.ahead) = (0, false);
+    }
+
+    /// Brings the water back, where there is any news of it.
+    pub fn fetch(&mut self, particles: &mut Vec<Particle>) -> Result<(), GpuError> {
+        if !self.ahead {
+            return Ok(());
+        }
+        let count = self.status.particles as usize;
+        let sent: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, count)?;
+        let slopes: Vec<Slopes> = read(&self.gpu, &self.tasks.slopes, count)?;
+        particles.clear();
+        particles.extend(sent.iter().zip(&slopes).map(|(particle, slopes)| self.origin.to_host(particle, slopes)));
+        self.ahead = false;
+        Ok(())
+    }
+
+    /// Whether the room may not do for `births` more until it is time to ask again; none where it is not time to.
+    pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
+        let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
+        self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+    }
+
+    /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.
+    pub fn advance(&mut self, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
+        if self.steps.is_multiple_of(LAID_OUT) {
+            self.lay_out()?;
+        }
+        let births: Vec<_> = births.iter().map(|birth| self.origin.birth(birth)).collect();
+        self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
+        let to_layout = LAID_OUT - self.steps % LAID_OUT;
+        let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
+        let count = planned.min(self.batch).min(to_layout as u32);
+        self.status = Status {
+            halted: layout::SPOKEN,
+            steps: 0,
+            particle_steps: [0; 2],
+            until: until as f32,
+            look: look as f32,
+            births: births.len() as u32,
+            born: 0,
+            elapsed: [0.0; 2],
+            outflow: [0.0; 2],
+            inflow: [0.0; 2],
+            momentum_lost: [0.0; 2],
+            momentum_gained: [0.0; 2],
+            ..self.status
+        };
+        let began = Instant::now();
+        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.tasks.steps(&mut pass, count);
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        let took = began.elapsed().as_secs_f64();
+        self.busy += took;
+        self.batch =
+            if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) }.min(LAID_OUT as u32);
+        self.steps += u64::from(self.status.steps);
+        self.ahead |= self.status.steps > 0;
+        Ok(self.progress())
+    }
+
+    fn progress(&self) -> Progress {
+        let Status { steps, particle_steps: [low, high], step, halted, mean_h, .. } = self.status;
+        let total = |[sum, lacking]: [f32; 2]| f64::from(sum) - f64::from(lacking);
+        Progress {
+            steps: u64::from(steps),
+            particle_steps: (u64::from(high) << 32) + u64::from(low),
+            elapsed: total(self.status.elapsed),
+            step: f64::from(step),
+            outflow: total(self.status.outflow),
+            inflow: total(self.status.inflow),
+            momentum_lost: total(self.status.momentum_lost),
+            momentum_gained: total(self.status.momentum_gained),
+            from_outside: self.status.from_outside.map(f64::from),
+            mean_h: f64::from(mean_h),
+            born: self.status.born as usize,
+            broken: halted == layout::BROKEN,
+        }
+    }
+
+    /// Lays the cells over the water as it stands, as [`corpuscle_sph::Cells`] does.
+    fn lay_out(&mut self) -> Result<(), GpuError> {
+        let Status { low, high, mean_h, particles, .. } = self.status;
+        let any = particles > 0;
+        let [low, high] = [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
+        let smallest = if any { CELL_OVER_H * f64::from(mean_h) } else { self.bounds.size()[0] };
+        let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
+        let most = (self.most_cells - 1) as f64;
+        let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);
+        let mut cell = smallest;
+        while columns_and_rows(cell).iter().product::<f64>() > most {
+            cell *= 1.1;
+        }
+        let [columns, rows] = columns_and_rows(cell).map(|number| number as u32);
+        self.parameters = Parameters {
+            grid_corner: low.map(|value| value as f32),
+            cell: cell as f32,
+            per_cell: (1.0 / cell) as f32,
+            columns,
+            rows,
+            farthest: (2.0 * f64::from(self.parameters.largest_h) / cell) as u32 + 1,
+            ..self.parameters
+        };
+        // One more cell holds what has left.
+        self.status.cells = columns * rows + 1;
+        self.gpu.queue.write_buffer(&self.tasks.parameters, 0, bytemuck::bytes_of(&self.parameters));
+        self.tasks.arrange(&self.gpu, &Status { step: 0.0, ..self.status });
+        let arranged: Status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        self.status.particles = arranged.particles;
+        Ok(())
+    }
+}
+
+fn rule(rule: &EdgeRule) -> u32 {
+    match rule {
+        EdgeRule::Wall => layout::WALL,
+        EdgeRule::Periodic => layout::PERIODIC,
+        EdgeRule::Open | EdgeRule::Stage(_) => layout::OPEN,
+    }
+}
+
+fn friction(roughness: &Roughness) -> (u32, f32) {
+    let (kind, value) = match roughness {
+        Roughness::Manning(Coefficient::Even(0.0)) => (layout::SMOOTH, 0.0),
+        Roughness::Manning(Coefficient::Even(n)) => (layout::MANNING, *n),
+        Roughness::Other(Friction::Chezy(c)) => (layout::CHEZY, *c),
+        Roughness::Other(Friction::Linear(slope)) => (layout::LINEAR, *slope),
+        Roughness::Manning(_) => (layout::SMOOTH, 0.0),
+    };
+    (kind, value as f32)
+}

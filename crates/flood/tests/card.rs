@@ -1,0 +1,244 @@
+//! The flood on the graphics card does what the flood on the processor does.
+
+use corpuscle_flood::{Flood, Particle};
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{FloodScene, Scene};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// A dam breaks in a channel that goes round: walls, periodic sides, friction, deep and shallow water.
+const DAM: &str = r#"
+run.until_s = 60
+terrain.plane = { extent = { length_m = 120, width_m = 20, cell_m = 2 }, slope_east = 0.01 }
+[flood]
+spacing_m = 1
+spacing_depth_m = 4
+manning = 0.02
+edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
+[[flood.water]]
+depth_m = 4
+polygon = [[0, 0], [60, 0], [60, 20], [0, 20]]
+[[flood.water]]
+depth_m = 0.5
+polygon = [[60, 0], [120, 0], [120, 20], [60, 20]]
+"#;
+
+/// Water that runs over rough ground and out of the scene.
+const VALLEY: &str = r#"
+run.until_s = 60
+terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
+[flood]
+spacing_m = 3
+spacing_depth_m = 1
+friction.chezy = 40
+[[flood.water]]
+depth_m = 1.5
+polygon = [[100, 60], [300, 60], [300, 140], [100, 140]]
+"#;
+
+/// A lake over a hill, with a dry island.
+const LAKE: &str = r#"
+run.until_s = 60
+terrain.bump = { extent = { length_m = 100, width_m = 100, cell_m = 1 }, height_m = 8, width_m = 10 }
+[flood]
+spacing_m = 2
+spacing_depth_m = 6
+manning = 0
+edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
+[[flood.water]]
+level_m = 6
+"#;
+
+/// A river runs into a valley over dry ground.
+const RIVER: &str = r#"
+run.until_s = 60
+terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
+[flood]
+spacing_m = 3
+spacing_depth_m = 1
+manning = 0.03
+[[flood.water]]
+depth_m = 0.5
+polygon = [[100, 80], [200, 80], [200, 120], [100, 120]]
+[[flood.inflow]]
+name = "river"
+at = [40, 100]
+discharge_m3_per_s = [[0, 40], [60, 200]]
+"#;
+
+fn parse(text: &str) -> FloodScene {
+    let mut scene = Scene::parse(text, "test", &[]).unwrap();
+    scene.resolve_defaults();
+    scene.flood().unwrap().clone()
+}
+
+fn open(text: &str) -> Flood {
+    let scene = parse(text);
+    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+    Flood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+}
+
+fn on_card(text: &str, gpu: &Gpu) -> Flood {
+    let mut flood = open(text);
+    flood.use_card(gpu.clone()).unwrap();
+    flood
+}
+
+fn step(flood: &mut Flood, count: usize) {
+    for _ in 0..count {
+        // A little more than a step, lest rounding take it for less.
+        flood.advance_to(flood.time() + 1.000_001 * flood.time_step(), &AtomicBool::new(false)).unwrap();
+    }
+}
+
+fn go(flood: &mut Flood, time: f64) {
+    flood.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+fn by_id(flood: &Flood) -> Vec<Particle> {
+    let mut particles = flood.particles().to_vec();
+    particles.sort_unstable_by_key(|particle| particle.id);
+    particles
+}
+
+/// Largest differences over all particles: place, m; velocity, m/s; depth, m.
+fn differences(a: &Flood, b: &Flood) -> [f64; 3] {
+    let (a, b) = (by_id(a), by_id(b));
+    assert_eq!(a.len(), b.len());
+    let mut most = [0.0_f64; 3];
+    for (a, b) in a.iter().zip(&b) {
+        assert_eq!((a.id, a.outside), (b.id, b.outside));
+        let apart = [(a.x - b.x).hypot(a.y - b.y), (a.u - b.u).hypot(a.v - b.v), (a.depth - b.depth).abs()];
+        most = [0, 1, 2].map(|k| most[k].max(apart[k]));
+    }
+    most
+}
+
+/// Root mean square of the difference of two maps of depth where either is wet, m.
+fn apart_on_the_map(a: &Flood, b: &Flood) -> f64 {
+    let depths = |flood: &Flood| flood.maps().into_iter().find(|map| map.name == "depth").unwrap().values;
+    let pairs =
+        depths(a).into_iter().zip(depths(b)).map(|(a, b)| [a, b].map(|depth| if depth.is_nan() { 0.0 } else { depth }));
+    let wet: Vec<f64> =
+        pairs.filter(|depths| depths.iter().any(|depth| *depth > 0.0)).map(|[a, b]| f64::from(a - b).powi(2)).collect();
+    (wet.iter().sum::<f64>() / wet.len() as f64).sqrt()
+}
+
+#[test]
+fn particle_by_particle_as_on_the_processor() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    for (name, text) in [("dam", DAM), ("valley", VALLEY), ("lake", LAKE), ("river", RIVER)] {
+        let (mut host, mut card) = (open(text), on_card(text, &gpu));
+        for (steps, most) in [(1, 3e-5), (9, 1e-4)] {
+            step(&mut host, steps);
+            step(&mut card, steps);
+            let apart = differences(&host, &card);
+            assert!(apart.iter().all(|apart| *apart < most), "{name} after {} steps: {apart:?}", host.steps());
+            assert!((card.time_step() / host.time_step() - 1.0).abs() < 1e-4);
+        }
+    }
+}
+
+/// After many steps particles that stood at a threshold have gone their own ways; the water as a whole has not.
+#[test]
+fn totals_and_maps_as_on_the_processor() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    for (name, text) in [("dam", DAM), ("valley", VALLEY), ("river", RIVER)] {
+        let (mut host, mut card) = (open(text), on_card(text, &gpu));
+        let end = 8.0;
+        go(&mut host, end);
+        go(&mut card, end);
+        assert_eq!(card.time(), end);
+        assert!(card.steps().abs_diff(host.steps()) <= 1 && card.steps() > 30, "{name}: {} steps", card.steps());
+        assert!(apart_on_the_map(&host, &card) < 2e-3, "{name}: {}", apart_on_the_map(&host, &card));
+        let [host, card] = [host, card].map(|flood| flood.ledger().balances);
+        for (host, card) in host.iter().zip(&card) {
+            let scale = host.initial.abs() + host.inflow.abs() + host.outflow.abs();
+            for (host, card) in [(host.outflow, card.outflow), (host.now, card.now)] {
+                assert!((host - card).abs() < 2e-3 * scale, "{name}, {host} against {card}");
+            }
+            assert!(card.relative_error().abs() < 1e-6, "{name}, {}: {}", card.quantity, card.relative_error());
+        }
+    }
+}
+
+#[test]
+fn a_lake_stays_at_rest() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let mut card = on_card(LAKE, &gpu);
+    go(&mut card, 20.0);
+    assert!(card.steps() > 100);
+    let fastest = card.particles().iter().map(Particle::speed).fold(0.0, f64::max);
+    assert!(fastest < 1e-4, "{fastest} m/s");
+}
+
+/// How often something looks changes nothing but the rounding of the time asked for.
+#[test]
+fn when_it_is_looked_at_does_not_matter() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let (mut once, mut often) = (on_card(DAM, &gpu), on_card(DAM, &gpu));
+    go(&mut once, 6.0);
+    (1..=20).for_each(|k| go(&mut often, 0.3 * f64::from(k)));
+    assert_eq!(by_id(&once), by_id(&often));
+}
+
+#[test]
+fn a_state_goes_from_card_to_processor_and_back() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let mut first = on_card(DAM, &gpu);
+    go(&mut first, 1.0);
+    let saved = first.save();
+    let mut host = open(DAM);
+    host.restore(&saved).unwrap();
+    let mut card = on_card(DAM, &gpu);
+    card.restore(&saved).unwrap();
+    assert_eq!(by_id(&host), by_id(&card));
+    go(&mut host, 2.0);
+    go(&mut card, 2.0);
+    assert!(differences(&host, &card).iter().all(|apart| *apart < 1e-3));
+}
+
+#[test]
+fn no_particle_and_one_particle_go_too() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    for (depth, polygon, count) in
+        [("1e-9", "[[1, 1], [2, 1], [2, 2], [1, 2]]", 0), ("1", "[[6, 6], [7, 6], [7, 7], [6, 7]]", 1)]
+    {
+        let text = format!(
+            "run.until_s = 9\nterrain.plane = {{ extent = {{ length_m = 40, width_m = 30, cell_m = 1 }}, slope_east = -0.1 }}\n\
+             [flood]\nspacing_m = 1\nspacing_depth_m = 1\nwater = [{{ depth_m = {depth}, polygon = {polygon} }}]"
+        );
+        let (mut host, mut card) = (open(&text), on_card(&text, &gpu));
+        assert_eq!(host.particles().len(), count, "{text}");
+        go(&mut host, 3.0);
+        go(&mut card, 3.0);
+        assert_eq!(card.time(), 3.0);
+        assert!(differences(&host, &card).iter().all(|apart| *apart < 1e-4));
+    }
+}
+
+#[test]
+fn a_lost_card_ends_with_an_error_and_the_state_of_before() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let mut flood = on_card(DAM, &gpu);
+    go(&mut flood, 1.0);
+    let before = by_id(&flood);
+    gpu.device.destroy();
+    let error = flood.advance_to(2.0, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, ModelError::Device(_)) && error.to_string().contains(&gpu.name), "{error}");
+    let mut host = open(DAM);
+    host.restore(&flood.save()).unwrap();
+    assert_eq!(by_id(&host), before);
+    go(&mut host, 2.0);
+}
+
+#[test]
+fn what_is_not_there_yet_is_refused_by_name() {
+    let Some(gpu) = require_gpu("the flood on the card") else { return };
+    let mut flood = open(&VALLEY.replace("friction.chezy = 40", "rain.intensity_mm_per_h = 50"));
+    let error = flood.use_card(gpu).unwrap_err().to_string();
+    assert!(error.contains("[flood.rain]") && error.contains("--backend cpu"), "{error}");
+}

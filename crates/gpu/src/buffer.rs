@@ -1,0 +1,68 @@
+//! Memory of the device.
+
+use crate::{Gpu, GpuError};
+use bytemuck::{NoUninit, Pod};
+use wgpu::BufferUsages;
+
+/// Memory for shaders to work on, filled with zeros; it can be written and read from outside. At least one element long, as no
+/// device binds nothing.
+///
+/// # Errors
+/// [`GpuError::Memory`] where it is more than one binding of the device holds.
+pub fn storage<T>(gpu: &Gpu, label: &'static str, length: usize) -> Result<wgpu::Buffer, GpuError> {
+    let bytes = (length.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+    let most = gpu.most_bytes();
+    if bytes > most {
+        return Err(GpuError::Memory { name: gpu.name.clone(), what: label, bytes, most });
+    }
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | BufferUsages::INDIRECT;
+    let buffer = buffer(gpu, label, bytes, usage);
+    gpu.check()?;
+    Ok(buffer)
+}
+
+/// Numbers that shaders read and nothing but the host changes.
+pub fn uniform<T: NoUninit>(gpu: &Gpu, label: &'static str, value: &T) -> wgpu::Buffer {
+    let bytes = size_of::<T>().next_multiple_of(16) as u64;
+    let buffer = buffer(gpu, label, bytes, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(value));
+    buffer
+}
+
+/// Reads the first `length` elements back. Waits for the device.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub fn read<T: Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, length: usize) -> Result<Vec<T>, GpuError> {
+    if length == 0 {
+        return Ok(Vec::new());
+    }
+    let bytes = (length * size_of::<T>()) as u64;
+    let copy =
+        self::buffer(gpu, "read back", bytes.next_multiple_of(4), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes.next_multiple_of(4));
+    gpu.queue.submit([encoder.finish()]);
+    let mapped = map(gpu, &copy)?;
+    Ok(bytemuck::pod_collect_to_vec(&mapped[..bytes as usize]))
+}
+
+/// What a buffer of usage `MAP_READ` holds. Waits for the device.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub(crate) fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, GpuError> {
+    let lost = |reason: String| GpuError::Lost { name: gpu.name.clone(), reason };
+    let (done, answer) = std::sync::mpsc::channel();
+    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+        let _ = done.send(result);
+    });
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
+    gpu.check()?;
+    answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
+    buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))
+}
+
+fn buffer(gpu: &Gpu, label: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}

@@ -1,0 +1,80 @@
+//! Programs that compute.
+
+use crate::{Gpu, ShaderLibrary, join};
+
+/// Threads in a group of every kernel that has one thread for each particle or cell.
+pub const THREADS: u32 = 256;
+
+/// Groups in one dimension at most (WebGPU's own limit).
+pub const MOST_GROUPS: u32 = 65_535;
+
+/// A compute shader, whose entry is `main` and whose bindings are all in group 0, numbered from 0.
+#[derive(Debug)]
+pub struct Kernel {
+    name: &'static str,
+    pipeline: wgpu::ComputePipeline,
+}
+
+/// A kernel with what it works on.
+#[derive(Debug)]
+pub struct Task {
+    pipeline: wgpu::ComputePipeline,
+    bindings: wgpu::BindGroup,
+}
+
+impl Kernel {
+    /// Compiles the shader `text`, joined from its pieces.
+    ///
+    /// # Panics
+    /// Where a piece is missing from `library` or the shader is wrong, which a test of all shaders finds.
+    pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
+        let joined = join(name, text, library).expect("a test joins every shader");
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(joined.into()),
+        });
+        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            module: &module,
+            entry_point: Some("main"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { name, pipeline }
+    }
+
+    /// Gives it what it works on, in the order of its bindings.
+    pub fn on(&self, gpu: &Gpu, resources: &[wgpu::BindingResource<'_>]) -> Task {
+        let entries: Vec<_> = resources
+            .iter()
+            .enumerate()
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding as u32, resource: resource.clone() })
+            .collect();
+        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.name),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Task { pipeline: self.pipeline.clone(), bindings }
+    }
+}
+
+impl Task {
+    /// Does it with so many groups of threads.
+    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, groups: u32) {
+        self.set(pass);
+        pass.dispatch_workgroups(groups, 1, 1);
+    }
+
+    /// Does it with as many groups as the three numbers at `slot` of `groups` say, each slot being 12 bytes: the device itself decides.
+    pub fn run_as_told(&self, pass: &mut wgpu::ComputePass<'_>, groups: &wgpu::Buffer, slot: u64) {
+        self.set(pass);
+        pass.dispatch_workgroups_indirect(groups, 12 * slot);
+    }
+
+    fn set(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bindings, &[]);
+    }
+}

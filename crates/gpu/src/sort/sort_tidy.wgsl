@@ -1,0 +1,28 @@
+// Orders the few particles of each cell by their keys, by insertion. (Software Vulkan goes through a loop 65535 times at most: there
+// some 350 particles of one cell are put in order, and what more there are stays as it came.)
+#import sort_groups
+
+@group(0) @binding(0) var<storage, read> sizes: Sizes;
+@group(0) @binding(1) var<storage, read> start: array<u32>;
+@group(0) @binding(2) var<storage, read> keys: array<u32>;
+@group(0) @binding(3) var<storage, read_write> order: array<u32>;
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) thread: vec3u) {
+    let cell = thread.x;
+    if cell >= sizes.cells {
+        return;
+    }
+    let first = start[cell];
+    let end = start[cell + 1u];
+    for (var next = first + 1u; next < end; next++) {
+        let particle = order[next];
+        let key = keys[particle];
+        var place = next;
+        while place > first && keys[order[place - 1u]] > key {
+            order[place] = order[place - 1u];
+            place -= 1u;
+        }
+        order[place] = particle;
+    }
+}
