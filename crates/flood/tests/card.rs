@@ -26,6 +26,18 @@ depth_m = 0.5
 polygon = [[60, 0], [120, 0], [120, 20], [60, 20]]
 "#;
 
+/// Water that runs down a slope without end.
+const SLOPE: &str = r#"
+run.until_s = 60
+terrain.plane = { extent = { length_m = 30, width_m = 20, cell_m = 2 }, slope_east = -0.05, slope_north = 0.02 }
+[flood]
+spacing_m = 1
+spacing_depth_m = 1
+manning = 0.03
+edges = { west = "periodic", east = "periodic", south = "periodic", north = "periodic" }
+water = [{ depth_m = 1, velocity_m_per_s = [1, 0] }]
+"#;
+
 /// Water that runs over rough ground and out of the scene.
 const VALLEY: &str = r#"
 run.until_s = 60
@@ -130,7 +142,7 @@ fn apart_on_the_map(a: &Flood, b: &Flood) -> f64 {
 #[test]
 fn particle_by_particle_as_on_the_processor() {
     let Some(gpu) = require_gpu("the flood on the card") else { return };
-    for (name, text) in [("dam", DAM), ("valley", VALLEY), ("lake", LAKE), ("river", RIVER)] {
+    for (name, text) in [("dam", DAM), ("slope", SLOPE), ("valley", VALLEY), ("lake", LAKE), ("river", RIVER)] {
         let (mut host, mut card) = (open(text), on_card(text, &gpu));
         for (steps, most) in [(1, 3e-5), (9, 1e-4)] {
             step(&mut host, steps);

@@ -40,11 +40,20 @@ fn refinement() -> Result<Vec<Row>, ModelError> {
     let (spacing, refined) = (2.0, Some(Refinement::default()));
     let broken = |refinement| dam_break::run_to_end(spacing, 0.0, refinement);
     let (plain, fine) = (broken(None)?, broken(refined)?);
+    let work = |fine: &Flood, plain: &Flood| fine.particle_steps() as f64 / plain.particle_steps() as f64;
+    let dam_work = work(&fine, &plain);
     let ledger = fine.ledger();
     let [without, with] = [&plain, &fine].map(|flood| sheet(flood, 14.0 * spacing));
     let plane = Plane::STEADY;
     let (plain, fine) = (plane.run(1.0, None)?, plane.run(1.0, refined)?);
+    let rain_work = work(&fine, &plain);
     let [dry_rain, fine_rain] = [&plain, &fine].map(|flood| plane.error_of_samples(flood));
+    let coarse = 2.0 * spacing;
+    let sheet_of_coarse = |refinement| {
+        let flood = dam_break::run_to_end(coarse, 0.0, refinement)?;
+        Ok::<_, ModelError>(sheet(&flood, 14.0 * coarse).depth)
+    };
+    let [coarse_without, coarse_with] = [sheet_of_coarse(None)?, sheet_of_coarse(refined)?];
     let at_most = |measure, value: f64, unit, bound| Row::at_most(name, measure, value, unit, bound);
     let gain = |measure, without: f64, with: f64, bound| Row::at_least(name, measure, without / with, "", bound);
     Ok(vec![
@@ -52,11 +61,22 @@ fn refinement() -> Result<Vec<Row>, ModelError> {
         at_most("ritter_sheet_velocity_error", with.velocity, "m/s", 0.1),
         at_most("ritter_sheet_strip_error", with.strips, "", 0.08),
         at_most("ritter_front_error", with.front, "m", 6.0),
+        at_most("ritter_work", dam_work, "", 1.3),
+        gain("ritter_front_gain", without.front, with.front, 4.0),
         gain("ritter_sheet_depth_gain", without.depth, with.depth, 1.3),
         gain("ritter_sheet_velocity_gain", without.velocity, with.velocity, 2.0),
         gain("ritter_sheet_strip_gain", without.strips, with.strips, 4.0),
         at_most("ritter_water_relative_error", ledger.balances[0].relative_error().abs(), "", 1e-12),
         at_most("ritter_momentum_relative_error", ledger.balances[1].relative_error().abs(), "", 1e-12),
+        Row::beside(
+            name,
+            "ritter_sheet_depth_error_4m",
+            coarse_with,
+            "",
+            coarse_without,
+            "the sheet's depth without splitting: at 4 m the halvings disturb it more than their closeness helps",
+        ),
+        at_most("rain_work", rain_work, "", 4.5),
         at_most("rain_depth_error", fine_rain, "", 0.06),
         gain("rain_depth_gain", dry_rain, fine_rain, 4.0),
         at_most("rain_outflow_error", plane.error_of_outflow(&fine).abs(), "", 0.01),
