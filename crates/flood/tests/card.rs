@@ -81,6 +81,30 @@ at = [40, 100]
 discharge_m3_per_s = [[0, 40], [60, 200]]
 "#;
 
+/// A dam breaks before two houses, one of them round.
+const HOUSES: &str = r#"
+run.until_s = 60
+terrain.plane = { extent = { length_m = 80, width_m = 30, cell_m = 2 }, slope_east = -0.01 }
+[flood]
+spacing_m = 1
+spacing_depth_m = 2
+manning = 0.02
+edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
+[[flood.water]]
+depth_m = 2
+polygon = [[0, 0], [30, 0], [30, 30], [0, 30]]
+[[flood.water]]
+depth_m = 0.3
+polygon = [[30, 0], [80, 0], [80, 30], [30, 30]]
+velocity_m_per_s = [0.5, 0.2]
+[[flood.obstacle]]
+name = "house"
+polygon = [[36, 8], [42, 10], [40, 18], [34, 16]]
+[[flood.obstacle]]
+name = "tower"
+circle = { centre = [38, 23], radius_m = 2 }
+"#;
+
 fn parse(text: &str) -> FloodScene {
     let mut scene = Scene::parse(text, "test", &[]).unwrap();
     scene.resolve_defaults();
@@ -142,7 +166,9 @@ fn apart_on_the_map(a: &Flood, b: &Flood) -> f64 {
 #[test]
 fn particle_by_particle_as_on_the_processor() {
     let Some(gpu) = require_gpu("the flood on the card") else { return };
-    for (name, text) in [("dam", DAM), ("slope", SLOPE), ("valley", VALLEY), ("lake", LAKE), ("river", RIVER)] {
+    for (name, text) in
+        [("dam", DAM), ("slope", SLOPE), ("valley", VALLEY), ("lake", LAKE), ("river", RIVER), ("houses", HOUSES)]
+    {
         let (mut host, mut card) = (open(text), on_card(text, &gpu));
         for (steps, most) in [(1, 3e-5), (9, 1e-4)] {
             step(&mut host, steps);
@@ -175,6 +201,49 @@ fn totals_and_maps_as_on_the_processor() {
             assert!(card.relative_error().abs() < 1e-6, "{name}, {}: {}", card.quantity, card.relative_error());
         }
     }
+}
+
+/// The force on a house, its sum over time, and what is put back to its walls.
+#[test]
+fn houses_are_pushed_as_on_the_processor() {
+    let Some(gpu) = require_gpu("houses on the card") else { return };
+    let (mut host, mut card) = (open(HOUSES), on_card(HOUSES, &gpu));
+    for time in [1.5, 3.0] {
+        go(&mut host, time);
+        go(&mut card, time);
+    }
+    let columns = host.gauge_columns();
+    let rows = [&host, &card].map(Flood::gauge_row);
+    let pushes = columns
+        .iter()
+        .enumerate()
+        .filter(|(_, column)| column.quantity.starts_with("force") || column.quantity.starts_with("impulse"));
+    let pushes: Vec<_> = pushes.collect();
+    assert_eq!(pushes.len(), 8);
+    let largest = |quantity: &str| {
+        let of_it = pushes.iter().filter(|(_, column)| column.quantity.starts_with(quantity));
+        of_it.map(|(number, _)| rows[0][*number].abs()).fold(0.0, f64::max)
+    };
+    for (number, column) in &pushes {
+        let scale = largest(&column.quantity[..5]);
+        let [host, card] = [rows[0][*number], rows[1][*number]];
+        assert!(
+            scale > 1e3 && (host - card).abs() < 2e-3 * scale,
+            "{} {}: {host} against {card}",
+            column.gauge,
+            column.quantity
+        );
+    }
+    assert!(host.put_back().abs_diff(card.put_back()) <= 2, "{} against {}", host.put_back(), card.put_back());
+    let in_tower = |particle: &&Particle| (particle.x - 38.0).hypot(particle.y - 23.0) < 1.99;
+    assert_eq!(card.particles().iter().filter(in_tower).count(), 0);
+    // Handed over anew, impulses go on.
+    let mut again = on_card(HOUSES, &gpu);
+    again.restore(&card.save()).unwrap();
+    let before = again.gauge_row();
+    go(&mut again, 3.3);
+    let (number, _) = pushes.iter().find(|(_, column)| column.quantity == "impulse_east").unwrap();
+    assert!(again.gauge_row()[*number] > before[*number] && before[*number] == rows[1][*number]);
 }
 
 #[test]

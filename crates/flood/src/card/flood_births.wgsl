@@ -45,10 +45,10 @@ fn deep(particle: Particle, place: vec2f) -> f32 {
 // Height of the surface by the plain kernel sum: low where particles leave a gap.
 fn surface(place: vec2f, now: Turn) -> f32 {
     var height = ground_at(parameters, nodes, place).x;
-    let cells = cells_round(parameters, place, 2.0 * parameters.new_h);
+    let cells = cells_round(parameters.grid, place, 2.0 * parameters.new_h);
     // The particles stand in the order of the last sort, in cells that they have drifted away from but little.
     for (var row = cells.y; row <= cells.w; row++) {
-        let line = row * parameters.columns;
+        let line = row * parameters.grid.columns;
         for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
             height += deep(particles[j], place);
         }
@@ -76,7 +76,7 @@ fn bear(birth: Birth, now: Turn) {
     particle.next_h = parameters.new_h;
     particle.id = birth.id;
     particles[now.particles] = particle;
-    let cell = cell_at(parameters, place);
+    let cell = cell_at(parameters.grid, place);
     places[now.particles] = vec2u(cell, atomicAdd(&counts[cell], 1u));
     keys[now.particles] = birth.id;
     var inflow = status.inflow;

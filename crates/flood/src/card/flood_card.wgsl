@@ -1,23 +1,31 @@
 // What the kernels of the flood share: numbers of the run, particles, and what the host learns of a step.
 
+// Square cells: their south-west corner, m, size, m, and its inverse. No columns: there is nothing in them.
+struct Grid {
+    corner: vec2f,
+    cell: f32,
+    per_cell: f32,
+    columns: u32,
+    rows: u32,
+    unused: vec2f,
+}
+
 struct Parameters {
     // West, east, south, north side of the ground, m from its centre.
     bounds: vec4f,
     // What the sides do: OPEN, WALL or PERIODIC.
     rules: vec4u,
-    // South-west corner of the cells, m; their size, m, and its inverse.
-    grid_corner: vec2f,
-    cell: f32,
-    per_cell: f32,
-    columns: u32,
-    rows: u32,
-    // Cells over which the longest reach spreads.
-    farthest: u32,
-    friction: u32,
+    // The cells of the particles, of the boundary particles of obstacles, and by which outlines of obstacles are found.
+    grid: Grid,
+    walls: Grid,
+    outlines: Grid,
     // South-west node of the ground, m; nodes per metre; patches between them.
     ground_corner: vec2f,
     ground_per_metre: vec2f,
     ground_patches: vec2u,
+    // Cells over which the longest reach spreads.
+    farthest: u32,
+    friction: u32,
     // Manning's n, Chezy's C or the friction slope over the velocity.
     roughness: f32,
     gravity: f32,
@@ -29,9 +37,11 @@ struct Parameters {
     // Time step where nothing moves, and the one at which the run has broken down, s.
     longest_step: f32,
     shortest_step: f32,
-    // Volume, m3, and smoothing length, m, of a new particle.
+    // Volume, m3, and smoothing length, m, of a new particle; distance of particles, m.
     new_volume: f32,
     new_h: f32,
+    spacing: f32,
+    obstacles: u32,
 }
 
 const OPEN = 0u;

@@ -1,6 +1,6 @@
 // How many particles stand here, so how deep the water is, and the ground under it. Twin of `density.rs` and of `find_depths` and
 // `fill_columns` in `balanced/mod.rs`.
-#import flood_columns
+#import flood_walls
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
@@ -10,7 +10,9 @@
 @group(0) @binding(4) var<storage, read> sites: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(6) var<storage, read_write> columns: array<Column>;
-@group(0) @binding(7) var nodes: texture_2d<f32>;
+@group(0) @binding(7) var<storage, read> wall_start: array<u32>;
+@group(0) @binding(8) var<storage, read> walls: array<WallSite>;
+@group(0) @binding(9) var nodes: texture_2d<f32>;
 
 // Number density, that of particles like this one, and how the first changes with h.
 fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
@@ -23,13 +25,13 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, place);
-        let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);
+        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
         if !sees(mirror, parameters, place, reach) {
             continue;
         }
-        let cells = cells_round(parameters, truth, reach);
+        let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
-            let line = row * parameters.columns;
+            let line = row * parameters.grid.columns;
             for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
                 let site = sites[j];
                 let there = shown(mirror, site.xy);
@@ -46,6 +48,34 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     }
     number += own;
     return vec3f(number, own + weighted / weight, (r_slope - 2.0 * number) / h);
+}
+
+// What obstacles cover of the kernel at a place, and how that changes with h. Twin of `Obstacles::coverage`.
+fn coverage(place: vec2f, h: f32) -> vec2f {
+    if !is_near(parameters.walls, place, 2.0 * h) {
+        return vec2f(0.0);
+    }
+    var part = 0.0;
+    var r_slope = 0.0;
+    let cells = cells_round(parameters.walls, place, 2.0 * h);
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.walls.columns;
+        for (var k = wall_start[line + cells.x]; k < wall_start[line + cells.z + 1u]; k++) {
+            let r = distance(walls[k].place, place);
+            part += walls[k].area * spline(r, 1.0 / h);
+            r_slope += walls[k].area * r * spline_slope(r, 1.0 / h);
+        }
+    }
+    if part > MOST_COVERED {
+        return vec2f(MOST_COVERED, 0.0);
+    }
+    return vec2f(part, (r_slope - 2.0 * part) / h);
+}
+
+// Densities as they are where obstacles cover a part of the kernel: the water that is seen stands for what is not.
+fn beside(density: vec3f, covered: vec2f) -> vec3f {
+    let seen = 1.0 - covered.x;
+    return vec3f(density.xy / seen, density.z / seen + density.x * covered.y / (seen * seen));
 }
 
 // The smoothing length for which n = (eta / h)^2, by one Newton step from h, kept within a fifth of it.
@@ -66,14 +96,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var particle = particles[i];
-    let density = densities(i, particle.place, particle.weight, particle.h);
+    let seen = densities(i, particle.place, particle.weight, particle.h);
+    let density = beside(seen, coverage(particle.place, particle.h));
     let ground = ground_under(parameters, nodes, particle.place);
     particle.depth = particle.volume * density.y;
     particle.next_h = next_h(particle.h, density.x, density.z);
     particle.ground = ground.x;
     particle.ground_slope = ground.yz;
-    particles[i] = particle;
     let ahead = particle.velocity + 0.5 * status.step * particle.acceleration;
+    // From here on it holds what obstacles push.
+    particle.acceleration = vec2f(0.0);
+    particles[i] = particle;
     let surface = particle.ground + particle.depth;
     columns[i] = Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h);
 }

@@ -9,6 +9,7 @@
 @group(0) @binding(3) var<storage, read> reaches: array<f32>;
 @group(0) @binding(4) var<storage, read> columns: array<Column>;
 @group(0) @binding(5) var<storage, read> slopes: array<Slopes>;
+// Their accelerations are the push of obstacles.
 @group(0) @binding(6) var<storage, read> sorted: array<Particle>;
 @group(0) @binding(7) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
@@ -59,13 +60,13 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, own.place);
-        let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);
+        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
         if !sees(mirror, parameters, own.place, reach) {
             continue;
         }
-        let cells = cells_round(parameters, truth, reach);
+        let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
-            let line = row * parameters.columns;
+            let line = row * parameters.grid.columns;
             for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
                 var near = columns[j];
                 let there = shown(mirror, near.place);
@@ -125,7 +126,8 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     }
     let volume = own.depth * own.area;
     let slide = -gravity * sloped.ground * sloped.alone;
-    return Force(slide - force / volume, slide * volume - from_outside);
+    let pushed = sorted[i].acceleration;
+    return Force(slide - (force + pushed) / volume, slide * volume - from_outside - pushed);
 }
 
 // Inner parts of what a group sums up.

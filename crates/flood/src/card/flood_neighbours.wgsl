@@ -81,16 +81,22 @@ fn has_image(mirror: Mirror, parameters: Parameters, place: vec2f, reach: f32) -
 }
 
 // First and last column and row of the cells within `reach` of a place.
-fn cells_round(parameters: Parameters, place: vec2f, reach: f32) -> vec4u {
-    let last = vec2u(parameters.columns, parameters.rows) - 1u;
-    let low = max((place - reach - parameters.grid_corner) * parameters.per_cell, vec2f(0.0));
-    let high = max((place + reach - parameters.grid_corner) * parameters.per_cell, vec2f(0.0));
+fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
+    let last = vec2u(grid.columns, grid.rows) - 1u;
+    let low = max((place - reach - grid.corner) * grid.per_cell, vec2f(0.0));
+    let high = max((place + reach - grid.corner) * grid.per_cell, vec2f(0.0));
     return vec4u(min(vec2u(low), last), min(vec2u(high), last));
 }
 
-fn cell_at(parameters: Parameters, place: vec2f) -> u32 {
-    let cell = cells_round(parameters, place, 0.0);
-    return cell.y * parameters.columns + cell.x;
+fn cell_at(grid: Grid, place: vec2f) -> u32 {
+    let cell = cells_round(grid, place, 0.0);
+    return cell.y * grid.columns + cell.x;
+}
+
+// Whether cells come within `reach` of a place.
+fn is_near(grid: Grid, place: vec2f, reach: f32) -> bool {
+    let high = grid.corner + grid.cell * vec2f(vec2u(grid.columns, grid.rows));
+    return grid.columns > 0u && all(place + reach >= grid.corner) && all(place - reach <= high);
 }
 
 // Cubic spline (Monaghan & Lattanzio 1985) as in the crate sph: W(r, h), 1/m2.

@@ -8,18 +8,18 @@
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let cell = id.x;
-    if cell >= parameters.columns * parameters.rows {
+    if cell >= parameters.grid.columns * parameters.grid.rows {
         return;
     }
-    let row = cell / parameters.columns;
-    let column = cell % parameters.columns;
+    let row = cell / parameters.grid.columns;
+    let column = cell % parameters.grid.columns;
     let first = row - min(row, parameters.farthest);
-    let last = min(row + parameters.farthest, parameters.rows - 1u);
+    let last = min(row + parameters.farthest, parameters.grid.rows - 1u);
     var longest = 0.0;
     for (var other = first; other <= last; other++) {
-        let reach = along_rows[other * parameters.columns + column];
+        let reach = along_rows[other * parameters.grid.columns + column];
         let apart = max(row, other) - min(row, other);
-        if reach > longest && reach >= f32(max(apart, 1u) - 1u) * parameters.cell {
+        if reach > longest && reach >= f32(max(apart, 1u) - 1u) * parameters.grid.cell {
             longest = reach;
         }
     }

@@ -9,7 +9,7 @@
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let cell = id.x;
-    if cell >= parameters.columns * parameters.rows {
+    if cell >= parameters.grid.columns * parameters.grid.rows {
         return;
     }
     var longest = 0.0;

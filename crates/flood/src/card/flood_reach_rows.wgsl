@@ -8,17 +8,17 @@
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let cell = id.x;
-    if cell >= parameters.columns * parameters.rows {
+    if cell >= parameters.grid.columns * parameters.grid.rows {
         return;
     }
-    let column = cell % parameters.columns;
+    let column = cell % parameters.grid.columns;
     let first = column - min(column, parameters.farthest);
-    let last = min(column + parameters.farthest, parameters.columns - 1u);
+    let last = min(column + parameters.farthest, parameters.grid.columns - 1u);
     var longest = 0.0;
     for (var other = first; other <= last; other++) {
         let reach = own[cell - column + other];
         let apart = max(column, other) - min(column, other);
-        if reach > longest && apart <= u32(reach * parameters.per_cell) + 1u {
+        if reach > longest && apart <= u32(reach * parameters.grid.per_cell) + 1u {
             longest = reach;
         }
     }

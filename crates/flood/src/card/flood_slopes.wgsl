@@ -1,5 +1,5 @@
 // First-order exact slopes of surface and velocity. Twin of `balanced/gradients.rs`.
-#import flood_columns
+#import flood_walls
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
@@ -8,7 +8,9 @@
 @group(0) @binding(4) var<storage, read> columns: array<Column>;
 @group(0) @binding(5) var<storage, read> particles: array<Particle>;
 @group(0) @binding(6) var<storage, read_write> slopes: array<Slopes>;
-@group(0) @binding(7) var nodes: texture_2d<f32>;
+@group(0) @binding(7) var<storage, read> wall_start: array<u32>;
+@group(0) @binding(8) var<storage, read> walls: array<WallSite>;
+@group(0) @binding(9) var nodes: texture_2d<f32>;
 
 // Difference of surface over depth, or of velocity over wave speed, at which water counts as moving.
 const REST = 0.05;
@@ -33,6 +35,32 @@ fn turned(b: vec3f, v: vec2f) -> vec2f {
     return vec2f(b.x * v.x + b.y * v.y, b.y * v.x + b.z * v.y);
 }
 
+// What walls add to the moment matrix, and the largest difference between the velocity and its mirror image beyond a wall. They take part
+// in the areas that the particle shares, but not in its slopes: what water does along a wall goes on there.
+fn of_walls(own: Column) -> vec4f {
+    let h = 1.0 / own.per_h;
+    if !is_near(parameters.walls, own.place, 2.0 * h) {
+        return vec4f(0.0);
+    }
+    var sum = vec4f(0.0);
+    let cells = cells_round(parameters.walls, own.place, 2.0 * h);
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.walls.columns;
+        for (var k = wall_start[line + cells.x]; k < wall_start[line + cells.z + 1u]; k++) {
+            let site = walls[k];
+            let e = site.place - own.place;
+            let r = length(e);
+            if r >= 2.0 * h {
+                continue;
+            }
+            let weight = site.area * spline_slope(r, own.per_h) / max(r, 1e-9 * h);
+            sum += vec4f(weight * vec3f(e.x * e.x, e.x * e.y, e.y * e.y), 0.0);
+            sum.w = max(sum.w, 2.0 * abs(dot(own.velocity, site.normal)));
+        }
+    }
+    return sum;
+}
+
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
@@ -52,13 +80,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, own.place);
-        let reach = max(reaches[cell_at(parameters, truth)], 2.0 * h);
+        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
         if !sees(mirror, parameters, own.place, reach) {
             continue;
         }
-        let cells = cells_round(parameters, truth, reach);
+        let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
-            let line = row * parameters.columns;
+            let line = row * parameters.grid.columns;
             for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
                 let near = columns[j];
                 let there = shown(mirror, near.place);
@@ -86,11 +114,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let b = renormalisation(moment);
     let wave = sqrt(parameters.gravity * own.depth);
-    let unrest = max(surface_step / own.depth, sqrt(velocity_step) / wave) / REST;
+    let of_walls = of_walls(own);
+    let all = moment + of_walls.xyz;
+    let unrest = max(surface_step / own.depth, max(sqrt(velocity_step), of_walls.w) / wave) / REST;
     let tilt = surface_step / max(TILT * ground_step, 1e-12 * own.depth);
     let calm = min(unrest, tilt);
-    let alone = max(1.0 - (moment.x + moment.z) / COMPANY, 0.0);
+    let alone = max(1.0 - (all.x + all.z) / COMPANY, 0.0);
     let particle = particles[i];
     let outside = select(0.0, 1.0, particle.outside > 0u);
-    slopes[i] = Slopes(b, exp(-calm * calm), turned(b, surface), particle.ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
+    var of_areas = b;
+    if any(of_walls.xyz != vec3f(0.0)) {
+        of_areas = renormalisation(all);
+    }
+    slopes[i] = Slopes(of_areas, exp(-calm * calm), turned(b, surface), particle.ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
 }

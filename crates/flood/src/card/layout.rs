@@ -5,6 +5,18 @@ use crate::inflow::TRIES;
 use crate::particle::Particle;
 use bytemuck::{Pod, Zeroable};
 
+/// Square cells; no columns: there is nothing in them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Grid {
+    pub corner: [f32; 2],
+    pub cell: f32,
+    pub per_cell: f32,
+    pub columns: u32,
+    pub rows: u32,
+    pub unused: [f32; 2],
+}
+
 /// Numbers of the run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -12,16 +24,14 @@ pub(super) struct Parameters {
     /// West, east, south, north, m from the centre.
     pub bounds: [f32; 4],
     pub rules: [u32; 4],
-    pub grid_corner: [f32; 2],
-    pub cell: f32,
-    pub per_cell: f32,
-    pub columns: u32,
-    pub rows: u32,
-    pub farthest: u32,
-    pub friction: u32,
+    pub grid: Grid,
+    pub walls: Grid,
+    pub outlines: Grid,
     pub ground_corner: [f32; 2],
     pub ground_per_metre: [f32; 2],
     pub ground_patches: [u32; 2],
+    pub farthest: u32,
+    pub friction: u32,
     pub roughness: f32,
     pub gravity: f32,
     pub eta: f32,
@@ -32,6 +42,8 @@ pub(super) struct Parameters {
     pub shortest_step: f32,
     pub new_volume: f32,
     pub new_h: f32,
+    pub spacing: f32,
+    pub obstacles: u32,
 }
 
 /// What the sides do.
@@ -113,6 +125,34 @@ pub(super) struct CardBirth {
     pub places: [[f32; 2]; TRIES],
 }
 
+/// A boundary particle.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct WallSite {
+    pub place: [f32; 2],
+    pub normal: [f32; 2],
+    pub area: f32,
+    pub obstacle: u32,
+    pub unused: [f32; 2],
+}
+
+/// Where particles may touch an obstacle, the force on it now, and its sum over time with what that lacks.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct OnObstacle {
+    pub low: [f32; 2],
+    pub high: [f32; 2],
+    pub force: [f32; 2],
+    pub impulse: [[f32; 2]; 2],
+    pub unused: [f32; 2],
+}
+
+/// What a `vec3f` takes in an array.
+pub(super) type Push = [f32; 4];
+
+/// The part of a particle's volume times m/s that impulses of particles put back are counted in.
+pub(super) const KNOCK: f64 = 1e-4;
+
 /// Bytes of a `Column` and of a `Partial`.
 pub(super) type Column = [f32; 8];
 pub(super) type Partial = [f32; 12];
@@ -126,9 +166,14 @@ pub(super) struct Origin {
 }
 
 impl Origin {
+    /// A place from the centre.
+    pub fn from_centre(self, place: [f64; 2]) -> [f32; 2] {
+        [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)
+    }
+
     pub fn to_card(self, particle: &Particle) -> CardParticle {
         CardParticle {
-            place: [particle.x - self.centre[0], particle.y - self.centre[1]].map(|value| value as f32),
+            place: self.from_centre([particle.x, particle.y]),
             velocity: [particle.u, particle.v].map(|value| value as f32),
             acceleration: [particle.ax, particle.ay].map(|value| value as f32),
             volume: particle.volume as f32,
@@ -148,7 +193,7 @@ impl Origin {
             time: birth.time as f32,
             id: birth.id as u32,
             velocity: birth.velocity.map(|value| value as f32),
-            places: birth.places.map(|place| [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)),
+            places: birth.places.map(|place| self.from_centre(place)),
         }
     }
 

@@ -5,6 +5,7 @@
 mod ground;
 mod layout;
 mod tasks;
+mod walls;
 
 use crate::balanced;
 use crate::edges::EdgeRule;
@@ -15,9 +16,10 @@ use crate::scheme::Surroundings;
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
 use corpuscle_scene::Friction;
 use corpuscle_terrain::Bounds;
-use layout::{CardParticle, Origin, Parameters, Slopes, Status};
+use layout::{CardParticle, Grid, OnObstacle, Origin, Parameters, Slopes, Status};
 use std::time::Instant;
 use tasks::Tasks;
+use walls::Walls;
 
 /// Size of a cell over the mean smoothing length, as on the CPU.
 const CELL_OVER_H: f64 = 1.2;
@@ -37,6 +39,7 @@ const BATCH: f64 = 0.2;
 pub(crate) struct Card {
     gpu: Gpu,
     tasks: Tasks,
+    walls: Walls,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -52,6 +55,8 @@ pub(crate) struct Card {
     ahead: bool,
     /// Time spent on steps, s.
     busy: f64,
+    /// Impulses on obstacles, and particles put back, before the water was handed over.
+    done_before: (Vec<[f64; 2]>, u64),
 }
 
 /// A particle that is to come, at the one of some places where the surface then stands lowest.
@@ -66,6 +71,20 @@ pub(crate) struct Birth {
 
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
+
+/// Water to be handed over.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Water<'a> {
+    pub particles: &'a [Particle],
+    /// The next step, s.
+    pub step: f64,
+    /// Forces at the last evaluation: from outside, and on each obstacle, m4/s2.
+    pub from_outside: [f64; 2],
+    pub on_obstacles: &'a [[f64; 2]],
+    /// Forces on obstacles summed over time so far, m4/s, and how often a particle was put back.
+    pub impulses: &'a [[f64; 2]],
+    pub put_back: u64,
+}
 
 /// What a batch of steps did.
 #[derive(Debug, Clone, Copy)]
@@ -132,7 +151,7 @@ impl Card {
         scheme: &balanced::Parameters,
         roughness: &Roughness,
         shortest_step: f64,
-        [volume, h]: [f64; 2],
+        [volume, h, spacing]: [f64; 3],
     ) -> Result<Self, GpuError> {
         let bounds = surroundings.edges.bounds;
         let origin = Origin {
@@ -141,12 +160,16 @@ impl Card {
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
         let (friction, roughness) = friction(roughness);
-        let from_centre = |place: [f64; 2]| [0, 1].map(|axis| (place[axis] - origin.centre[axis]) as f32);
+        let from_centre = |place| origin.from_centre(place);
+        let walls = Walls::new(&gpu, &surroundings.obstacles, origin, 2.0 * scheme.largest_h)?;
         let [west, south] = from_centre([bounds.x_min, bounds.y_min]);
         let [east, north] = from_centre([bounds.x_max, bounds.y_max]);
         let parameters = Parameters {
             bounds: [west, east, south, north],
             rules: surroundings.edges.rules.each_ref().map(rule),
+            walls: walls.grid,
+            outlines: walls.outlines_grid,
+            obstacles: walls.count as u32,
             friction,
             roughness,
             ground_corner: from_centre(patches.corner),
@@ -161,15 +184,17 @@ impl Card {
             shortest_step: shortest_step as f32,
             new_volume: volume as f32,
             new_h: h as f32,
+            spacing: spacing as f32,
             ..Parameters::default()
         };
         let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
-        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes)?;
+        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes, &walls)?;
         let status = Status::default();
         Ok(Self {
             gpu,
             room: count,
             tasks,
+            walls,
             parameters,
             origin,
             bounds,
@@ -179,6 +204,7 @@ impl Card {
             batch: 4,
             ahead: false,
             busy: 0.0,
+            done_before: (Vec::new(), 0),
         })
     }
 
@@ -202,8 +228,11 @@ impl Card {
         self.room
     }
 
-    /// Hands the water over; `step` is the next step, `from_outside` the force at the last evaluation.
-    pub fn send(&mut self, particles: &[Particle], step: f64, from_outside: [f64; 2]) {
+    /// Hands the water over.
+    pub fn send(&mut self, water: &Water<'_>) {
+        let Water { particles, step, from_outside, on_obstacles, impulses, put_back } = *water;
+        self.walls.begin(&self.gpu, on_obstacles);
+        self.done_before = (impulses.to_vec(), put_back);
         let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
         self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
@@ -240,6 +269,21 @@ impl Card {
     pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
         let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
         self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+    }
+
+    /// What was done to obstacles: the force on each now, its sum over time, and how many particles were put back to their walls.
+    pub fn on_obstacles(&self) -> Result<(Vec<[f64; 2]>, Vec<[f64; 2]>, u64), GpuError> {
+        let count = self.walls.count;
+        let pushed: Vec<OnObstacle> = read(&self.gpu, &self.walls.on_obstacles, count)?;
+        let knocks: Vec<i32> = read(&self.gpu, &self.walls.knocks, 2 * count + 1)?;
+        let knock = layout::KNOCK * f64::from(self.parameters.new_volume);
+        let impulse = |number: usize, axis: usize| {
+            let [sum, lacking] = pushed[number].impulse[axis].map(f64::from);
+            self.done_before.0[number][axis] + sum - lacking + knock * f64::from(knocks[2 * number + axis])
+        };
+        let impulses = (0..count).map(|number| [0, 1].map(|axis| impulse(number, axis))).collect();
+        let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();
+        Ok((forces, impulses, self.done_before.1 + knocks[2 * count] as u64))
     }
 
     /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.
@@ -318,15 +362,15 @@ impl Card {
             cell *= 1.1;
         }
         let [columns, rows] = columns_and_rows(cell).map(|number| number as u32);
-        self.parameters = Parameters {
-            grid_corner: low.map(|value| value as f32),
+        self.parameters.grid = Grid {
+            corner: low.map(|value| value as f32),
             cell: cell as f32,
             per_cell: (1.0 / cell) as f32,
             columns,
             rows,
-            farthest: (2.0 * f64::from(self.parameters.largest_h) / cell) as u32 + 1,
-            ..self.parameters
+            unused: [0.0; 2],
         };
+        self.parameters.farthest = (2.0 * f64::from(self.parameters.largest_h) / cell) as u32 + 1;
         // One more cell holds what has left.
         self.status.cells = columns * rows + 1;
         self.gpu.queue.write_buffer(&self.tasks.parameters, 0, bytemuck::bytes_of(&self.parameters));

@@ -1,6 +1,7 @@
 //! The passes of a step, each with what it works on.
 
 use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Slopes, Status};
+use super::walls::Walls;
 use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, sort_blocks, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
@@ -10,6 +11,8 @@ const LIBRARY: &[(&str, &str)] = &[
     ("flood_ground", include_str!("flood_ground.wgsl")),
     ("flood_neighbours", include_str!("flood_neighbours.wgsl")),
     ("flood_columns", include_str!("flood_columns.wgsl")),
+    ("flood_walls", include_str!("flood_walls.wgsl")),
+    ("flood_outlines", include_str!("flood_outlines.wgsl")),
 ];
 
 /// Slots of the numbers of groups: see `flood_finish.wgsl`.
@@ -36,6 +39,10 @@ pub(super) struct Tasks {
     reach: Task,
     density: Task,
     gradients: Task,
+    /// What obstacles do, where there are any.
+    push: Option<Task>,
+    on_obstacles: Option<Task>,
+    obstacles: u32,
     forces: Task,
     finish: Task,
 }
@@ -48,6 +55,7 @@ impl Tasks {
         cells: usize,
         most_births: usize,
         nodes: &wgpu::TextureView,
+        walls: &Walls,
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
@@ -65,7 +73,8 @@ impl Tasks {
         let along_rows = storage::<f32>(gpu, along_rows, cells)?;
         let reaches = storage::<f32>(gpu, reaches, cells)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
-        let of_particles = [&particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
+        let pushes = if walls.count > 0 { Walls::pushes(gpu, count)? } else { storage::<[f32; 4]>(gpu, "pushes", 0)? };
+        let of_particles = [&pushes, &particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
         let of_cells = [&own, &along_rows, &reaches, &sort.counts, &sort.places, &sort.start, &sort.order];
         let bytes = of_particles.into_iter().chain(of_cells).map(wgpu::Buffer::size).sum();
         let task = |name, text, buffers: &[&wgpu::Buffer], nodes: Option<&wgpu::TextureView>| {
@@ -82,7 +91,7 @@ impl Tasks {
         Ok(Self {
             drift: shader!(
                 "flood_drift",
-                [parameters, status, particles, sort.counts, sort.places, keys, partials],
+                [parameters, status, particles, sort.counts, sort.places, keys, partials, walls.outlines, walls.knocks],
                 none
             ),
             bear: shader!(
@@ -96,14 +105,25 @@ impl Tasks {
             reach: shader!("flood_reach", [parameters, along_rows, reaches], none),
             density: shader!(
                 "flood_density",
-                [parameters, status, sort.start, reaches, sites, sorted, columns],
+                [parameters, status, sort.start, reaches, sites, sorted, columns, walls.start, walls.sites],
                 ground
             ),
             gradients: shader!(
                 "flood_slopes",
-                [parameters, status, sort.start, reaches, columns, sorted, slopes],
+                [parameters, status, sort.start, reaches, columns, sorted, slopes, walls.start, walls.sites],
                 ground
             ),
+            push: (walls.count > 0).then(|| {
+                shader!(
+                    "flood_push",
+                    [parameters, status, columns, slopes, walls.start, walls.sites, sorted, pushes],
+                    none
+                )
+            }),
+            on_obstacles: (walls.count > 0).then(|| {
+                shader!("flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles], none)
+            }),
+            obstacles: walls.count as u32,
             forces: shader!(
                 "flood_forces",
                 [parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials],
@@ -158,6 +178,10 @@ impl Tasks {
         self.reach.run_as_told(pass, groups, SLOTS.cells);
         self.density.run_as_told(pass, groups, SLOTS.particles);
         self.gradients.run_as_told(pass, groups, SLOTS.particles);
+        if let (Some(push), Some(on_obstacles)) = (&self.push, &self.on_obstacles) {
+            push.run_as_told(pass, groups, SLOTS.particles);
+            on_obstacles.run(pass, self.obstacles);
+        }
         self.forces.run_as_told(pass, groups, SLOTS.particles);
         self.finish.run(pass, 1);
     }

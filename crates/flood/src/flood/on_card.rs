@@ -2,7 +2,7 @@
 
 use super::step::CELL_OVER_H_BALANCED;
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, Progress};
+use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Water};
 use crate::friction::{Coefficient, Roughness};
 use crate::inflow::Source;
 use corpuscle_gpu::{Gpu, GpuError};
@@ -49,7 +49,7 @@ impl Flood {
         let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let count = self.state.particles.len();
         let room = if self.sources.is_empty() { count } else { 2 * count + MOST_BIRTHS };
-        let new = [self.volume, self.h];
+        let new = [self.volume, self.h, self.spacing];
         let card = Card::new(gpu, room, &self.surroundings, &scheme, &self.roughness, self.shortest_step(), new)?;
         self.card = Some(card);
         self.send_to_card()
@@ -65,7 +65,6 @@ impl Flood {
             (!self.structures.is_empty(), "[[flood.outflow]], [[flood.stage]] or [[flood.link]]"),
             (!self.state.falling.is_empty(), "water that falls (block)"),
             (self.surroundings.edges.holds_level(), "an edge with a stage"),
-            (self.surroundings.obstacles.any(), "[[flood.obstacle]]"),
             (rasters, "Manning's n by a raster or [flood.land_use]"),
         ];
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
@@ -73,14 +72,16 @@ impl Flood {
 
     /// Hands the state to the card, and takes more room there if there is too little.
     pub(super) fn send_to_card(&mut self) -> Result<(), GpuError> {
-        let State { particles, time_step, external, .. } = &self.state;
+        let State { particles, time_step, external, on_obstacles, impulses, put_back, .. } = &self.state;
+        let water =
+            Water { particles, step: *time_step, from_outside: *external, on_obstacles, impulses, put_back: *put_back };
         match &mut self.card {
             Some(card) if card.room() < particles.len() => {
                 let gpu = card.gpu();
                 self.open_card(gpu)
             }
             Some(card) => {
-                card.send(particles, *time_step, *external);
+                card.send(&water);
                 Ok(())
             }
             None => Ok(()),
@@ -148,6 +149,8 @@ impl Flood {
         }
         if let Some(card) = self.card.as_mut().filter(|_| done.steps > 0) {
             card.fetch(&mut self.state.particles)?;
+            let state = &mut self.state;
+            (state.on_obstacles, state.impulses, state.put_back) = card.on_obstacles()?;
             (self.state.owed, self.state.next_id) = (owed, next_id);
             self.book(&done);
             self.arrange();

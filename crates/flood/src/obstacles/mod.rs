@@ -53,6 +53,24 @@ impl Obstacles {
         Self { names, outlines, sites }
     }
 
+    /// The boundary particles.
+    #[cfg(feature = "gpu")]
+    pub fn sites(&self) -> &[Site] {
+        self.sites.all()
+    }
+
+    /// The outlines.
+    #[cfg(feature = "gpu")]
+    pub fn outlines(&self) -> &[Outline] {
+        &self.outlines.all
+    }
+
+    /// The cells by which outlines are found: their corner, size, m, columns, and the outlines near each.
+    #[cfg(feature = "gpu")]
+    pub fn outlines_by_cell(&self) -> Option<([f64; 2], f64, usize, &[Vec<u32>])> {
+        self.outlines.by_cell()
+    }
+
     /// Whether there are any.
     pub fn any(&self) -> bool {
         !self.outlines.all.is_empty()

@@ -102,6 +102,12 @@ impl Outlines {
         new
     }
 
+    /// The cells: their corner, size, m, columns, and the outlines near each.
+    #[cfg(feature = "gpu")]
+    pub fn by_cell(&self) -> Option<([f64; 2], f64, usize, &[Vec<u32>])> {
+        self.bounds.map(|bounds| ([bounds.x_min, bounds.y_min], self.size, self.columns, &*self.near))
+    }
+
     /// The outlines that may be near a place.
     pub fn near(&self, [x, y]: [f64; 2]) -> &[u32] {
         match self.bounds {

@@ -79,6 +79,12 @@ impl Sites {
     }
 
     /// All of them.
+    #[cfg(feature = "gpu")]
+    pub fn all(&self) -> &[Site] {
+        &self.all
+    }
+
+    /// All of them, to be changed.
     pub fn all_mut(&mut self) -> &mut [Site] {
         &mut self.all
     }
