@@ -167,13 +167,13 @@ pub(super) struct Origin {
 
 impl Origin {
     /// A place from the centre.
-    pub fn from_centre(self, place: [f64; 2]) -> [f32; 2] {
+    pub fn relative(self, place: [f64; 2]) -> [f32; 2] {
         [0, 1].map(|axis| (place[axis] - self.centre[axis]) as f32)
     }
 
     pub fn to_card(self, particle: &Particle) -> CardParticle {
         CardParticle {
-            place: self.from_centre([particle.x, particle.y]),
+            place: self.relative([particle.x, particle.y]),
             velocity: [particle.u, particle.v].map(|value| value as f32),
             acceleration: [particle.ax, particle.ay].map(|value| value as f32),
             volume: particle.volume as f32,
@@ -193,7 +193,7 @@ impl Origin {
             time: birth.time as f32,
             id: birth.id as u32,
             velocity: birth.velocity.map(|value| value as f32),
-            places: birth.places.map(|place| self.from_centre(place)),
+            places: birth.places.map(|place| self.relative(place)),
         }
     }
 

@@ -55,8 +55,8 @@ pub(crate) struct Card {
     ahead: bool,
     /// Time spent on steps, s.
     busy: f64,
-    /// Impulses on obstacles, and particles put back, before the water was handed over.
-    done_before: (Vec<[f64; 2]>, u64),
+    /// As it was when the water was handed over.
+    done_before: DoneToObstacles,
 }
 
 /// A particle that is to come, at the one of some places where the surface then stands lowest.
@@ -83,6 +83,17 @@ pub(crate) struct Water<'a> {
     pub on_obstacles: &'a [[f64; 2]],
     /// Forces on obstacles summed over time so far, m4/s, and how often a particle was put back.
     pub impulses: &'a [[f64; 2]],
+    pub put_back: u64,
+}
+
+/// What the water has done to obstacles.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct DoneToObstacles {
+    /// Force on each now, over the density of water, m4/s2.
+    pub forces: Vec<[f64; 2]>,
+    /// Its sum over time, m4/s.
+    pub impulses: Vec<[f64; 2]>,
+    /// How often a particle was put back to a wall.
     pub put_back: u64,
 }
 
@@ -160,10 +171,9 @@ impl Card {
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
         let (friction, roughness) = friction(roughness);
-        let from_centre = |place| origin.from_centre(place);
         let walls = Walls::new(&gpu, &surroundings.obstacles, origin, 2.0 * scheme.largest_h)?;
-        let [west, south] = from_centre([bounds.x_min, bounds.y_min]);
-        let [east, north] = from_centre([bounds.x_max, bounds.y_max]);
+        let [west, south] = origin.relative([bounds.x_min, bounds.y_min]);
+        let [east, north] = origin.relative([bounds.x_max, bounds.y_max]);
         let parameters = Parameters {
             bounds: [west, east, south, north],
             rules: surroundings.edges.rules.each_ref().map(rule),
@@ -172,7 +182,7 @@ impl Card {
             obstacles: walls.count as u32,
             friction,
             roughness,
-            ground_corner: from_centre(patches.corner),
+            ground_corner: origin.relative(patches.corner),
             ground_per_metre: patches.per_metre.map(|value| value as f32),
             ground_patches: patches.size.map(|nodes| nodes as u32 - 1),
             gravity: scheme.gravity as f32,
@@ -204,7 +214,7 @@ impl Card {
             batch: 4,
             ahead: false,
             busy: 0.0,
-            done_before: (Vec::new(), 0),
+            done_before: DoneToObstacles::default(),
         })
     }
 
@@ -232,7 +242,7 @@ impl Card {
     pub fn send(&mut self, water: &Water<'_>) {
         let Water { particles, step, from_outside, on_obstacles, impulses, put_back } = *water;
         self.walls.begin(&self.gpu, on_obstacles);
-        self.done_before = (impulses.to_vec(), put_back);
+        self.done_before = DoneToObstacles { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
         self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
@@ -271,19 +281,19 @@ impl Card {
         self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
     }
 
-    /// What was done to obstacles: the force on each now, its sum over time, and how many particles were put back to their walls.
-    pub fn on_obstacles(&self) -> Result<(Vec<[f64; 2]>, Vec<[f64; 2]>, u64), GpuError> {
+    /// What was done to obstacles.
+    pub fn on_obstacles(&self) -> Result<DoneToObstacles, GpuError> {
         let count = self.walls.count;
         let pushed: Vec<OnObstacle> = read(&self.gpu, &self.walls.on_obstacles, count)?;
         let knocks: Vec<i32> = read(&self.gpu, &self.walls.knocks, 2 * count + 1)?;
         let knock = layout::KNOCK * f64::from(self.parameters.new_volume);
         let impulse = |number: usize, axis: usize| {
             let [sum, lacking] = pushed[number].impulse[axis].map(f64::from);
-            self.done_before.0[number][axis] + sum - lacking + knock * f64::from(knocks[2 * number + axis])
+            self.done_before.impulses[number][axis] + sum - lacking + knock * f64::from(knocks[2 * number + axis])
         };
         let impulses = (0..count).map(|number| [0, 1].map(|axis| impulse(number, axis))).collect();
         let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();
-        Ok((forces, impulses, self.done_before.1 + knocks[2 * count] as u64))
+        Ok(DoneToObstacles { forces, impulses, put_back: self.done_before.put_back + knocks[2 * count] as u64 })
     }
 
     /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.

@@ -1,7 +1,7 @@
 //! Obstacles as the shaders have them: boundary particles in cells, outlines as lists of sides, rectangles round them.
 
 use super::layout::{Grid, OnObstacle, Origin, Push, WallSite};
-use crate::obstacles::Obstacles;
+use crate::obstacles::{Obstacles, OutlineCells};
 use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
 use corpuscle_terrain::Bounds;
 
@@ -86,7 +86,7 @@ fn sites(obstacles: &Obstacles, origin: Origin, reach: f64) -> (Grid, Vec<u32>, 
     let mut sites: Vec<WallSite> = all
         .iter()
         .map(|site| WallSite {
-            place: origin.from_centre([site.x, site.y]),
+            place: origin.relative([site.x, site.y]),
             normal: site.normal.map(|along| along as f32),
             area: site.area as f32,
             obstacle: site.obstacle as u32,
@@ -102,12 +102,13 @@ fn sites(obstacles: &Obstacles, origin: Origin, reach: f64) -> (Grid, Vec<u32>, 
 fn grid(low: [f64; 2], high: [f64; 2], size: f64, origin: Origin) -> Grid {
     let [columns, rows] = [0, 1].map(|axis| ((high[axis] - low[axis]) / size) as u32 + 1);
     let (cell, per_cell) = (size as f32, (1.0 / size) as f32);
-    Grid { corner: origin.from_centre(low), cell, per_cell, columns, rows, unused: [0.0; 2] }
+    Grid { corner: origin.relative(low), cell, per_cell, columns, rows, unused: [0.0; 2] }
 }
 
 /// The outlines as `flood_outlines.wgsl` tells.
 fn outlines(obstacles: &Obstacles, origin: Origin) -> (Grid, Vec<u32>) {
-    let Some((low, size, columns, near)) = obstacles.outlines_by_cell() else { return (Grid::default(), vec![0; 4]) };
+    let Some(cells) = obstacles.outlines_by_cell() else { return (Grid::default(), vec![0; 4]) };
+    let OutlineCells { corner: low, size, columns, near } = cells;
     let rows = near.len() / columns;
     let high = [columns, rows].map(|number| (number as f64 - 0.5) * size);
     let grid = grid(low, [low[0] + high[0], low[1] + high[1]], size, origin);
@@ -119,7 +120,7 @@ fn outlines(obstacles: &Obstacles, origin: Origin) -> (Grid, Vec<u32>) {
     let mut ranges = Vec::new();
     for outline in obstacles.outlines() {
         for corner in outline.sides().flatten() {
-            sides.extend(origin.from_centre(corner).map(f32::to_bits));
+            sides.extend(origin.relative(corner).map(f32::to_bits));
         }
         let end = (sides_from + sides.len()) as u32 / 4;
         ranges.push([outline.obstacle as u32, first_side, end]);
@@ -150,8 +151,8 @@ fn rectangle(obstacles: &Obstacles, number: usize, origin: Origin, reach: f64) -
         return OnObstacle::default();
     };
     OnObstacle {
-        low: origin.from_centre([bounds.x_min - reach, bounds.y_min - reach]),
-        high: origin.from_centre([bounds.x_max + reach, bounds.y_max + reach]),
+        low: origin.relative([bounds.x_min - reach, bounds.y_min - reach]),
+        high: origin.relative([bounds.x_max + reach, bounds.y_max + reach]),
         ..OnObstacle::default()
     }
 }

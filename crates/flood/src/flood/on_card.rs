@@ -150,7 +150,8 @@ impl Flood {
         if let Some(card) = self.card.as_mut().filter(|_| done.steps > 0) {
             card.fetch(&mut self.state.particles)?;
             let state = &mut self.state;
-            (state.on_obstacles, state.impulses, state.put_back) = card.on_obstacles()?;
+            let pushed = card.on_obstacles()?;
+            (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.owed, self.state.next_id) = (owed, next_id);
             self.book(&done);
             self.arrange();

@@ -10,6 +10,8 @@ mod shapes;
 mod sites;
 
 pub(crate) use open::open;
+#[cfg(feature = "gpu")]
+pub(crate) use outline::OutlineCells;
 pub(crate) use outline::{Outline, Outlines};
 pub use shapes::obstacle_shapes;
 pub(crate) use sites::{Site, Sites};
@@ -65,9 +67,9 @@ impl Obstacles {
         &self.outlines.all
     }
 
-    /// The cells by which outlines are found: their corner, size, m, columns, and the outlines near each.
+    /// The cells by which outlines are found, where there are any.
     #[cfg(feature = "gpu")]
-    pub fn outlines_by_cell(&self) -> Option<([f64; 2], f64, usize, &[Vec<u32>])> {
+    pub fn outlines_by_cell(&self) -> Option<OutlineCells<'_>> {
         self.outlines.by_cell()
     }
 

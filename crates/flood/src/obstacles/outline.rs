@@ -77,6 +77,19 @@ pub(crate) struct Outlines {
     near: Vec<Vec<u32>>,
 }
 
+/// The cells by which outlines are found.
+#[cfg(feature = "gpu")]
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OutlineCells<'a> {
+    /// South-west corner, m.
+    pub corner: [f64; 2],
+    /// Size of a cell, m.
+    pub size: f64,
+    pub columns: usize,
+    /// Outlines near each cell, row by row.
+    pub near: &'a [Vec<u32>],
+}
+
 /// Most cells of the grid by which outlines are found.
 const MOST_CELLS: f64 = 1e6;
 
@@ -102,10 +115,12 @@ impl Outlines {
         new
     }
 
-    /// The cells: their corner, size, m, columns, and the outlines near each.
+    /// The cells by which they are found, where there are any.
     #[cfg(feature = "gpu")]
-    pub fn by_cell(&self) -> Option<([f64; 2], f64, usize, &[Vec<u32>])> {
-        self.bounds.map(|bounds| ([bounds.x_min, bounds.y_min], self.size, self.columns, &*self.near))
+    pub fn by_cell(&self) -> Option<OutlineCells<'_>> {
+        let corner = |bounds: Bounds| [bounds.x_min, bounds.y_min];
+        let Self { bounds, size, columns, near, .. } = self;
+        bounds.map(|bounds| OutlineCells { corner: corner(bounds), size: *size, columns: *columns, near })
     }
 
     /// The outlines that may be near a place.
