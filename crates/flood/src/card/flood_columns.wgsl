@@ -29,6 +29,14 @@ struct Slopes {
     unused: f32,
 }
 
+// The depth in which two particles push each other, at most, over the smaller of theirs.
+const SHARED = 3.0;
+
+// A vector multiplied by a symmetric matrix.
+fn turned(matrix: vec3f, vector: vec2f) -> vec2f {
+    return vec2f(dot(matrix.xy, vector), dot(matrix.yz, vector));
+}
+
 // How much higher the water and its ground stand in the image over a periodic side.
 fn step_up(mirror: Mirror, parameters: Parameters, nodes: texture_2d<f32>, place: vec2f) -> f32 {
     var higher = 0.0;

@@ -15,9 +15,6 @@
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
 
-// The depth in which two particles push each other, at most, over the smaller of theirs.
-const SHARED = 3.0;
-
 struct Force {
     acceleration: vec2f,
     // From what is not of this water, over its density, m4/s2.
@@ -32,21 +29,17 @@ fn limited(a: f32, b: f32) -> f32 {
     return sign(a) * min(2.0 * min(abs(a), abs(b)), 0.5 * abs(a + b));
 }
 
-fn turn_matrix(b: vec3f, v: vec2f) -> vec2f {
-    return vec2f(b.x * v.x + b.y * v.y, b.y * v.x + b.z * v.y);
-}
-
 // Slopes as a mirror shows them.
 fn mirrored(slope: Slopes, mirror: Mirror) -> Slopes {
-    var turned = slope;
+    var shown = slope;
     let crossed = mirror.sign.x * mirror.sign.y;
-    turned.renormalisation.y *= crossed;
-    turned.surface *= mirror.sign;
-    turned.ground *= mirror.sign;
-    turned.u *= vec2f(1.0, crossed);
-    turned.v *= vec2f(crossed, 1.0);
-    turned.outside = select(1.0, slope.outside, mirror.is_water);
-    return turned;
+    shown.renormalisation.y *= crossed;
+    shown.surface *= mirror.sign;
+    shown.ground *= mirror.sign;
+    shown.u *= vec2f(1.0, crossed);
+    shown.v *= vec2f(crossed, 1.0);
+    shown.outside = select(1.0, slope.outside, mirror.is_water);
+    return shown;
 }
 
 fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
@@ -85,7 +78,7 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
 
                 // Pair area A = V_i V_j [B_i grad W(h_i) + B_j grad W(h_j)], antisymmetric in i and j.
                 let b = spline_slope(r, own.per_h) * sloped.renormalisation + spline_slope(r, near.per_h) * slope.renormalisation;
-                let area = turn_matrix(b, e) * (near.area * own.area * per_r);
+                let area = turned(b, e) * (near.area * own.area * per_r);
 
                 // Reconstruction to the middle, surface and velocity along the pair (positive from i to j).
                 let surface_step = near.surface - own.surface;

@@ -12,8 +12,6 @@
 // The push of walls alone on each, and from 1 the number of the obstacle that is nearest; 0 for none.
 @group(0) @binding(7) var<storage, read_write> pushes: array<vec3f>;
 
-const SHARED = 3.0;
-
 fn half_way(slope: vec2f, e: vec2f) -> f32 {
     return 0.5 * dot(slope, e);
 }
@@ -49,7 +47,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 let r = max(apart, 1e-9 * h);
                 // A = V_i V_k 2 B_i grad W(h_i): the mirror of a particle has its B and its h.
                 let areas = 2.0 * own.area * site.area * spline_slope(r, own.per_h) / r;
-                let area = areas * vec2f(b.x * e.x + b.y * e.y, b.y * e.x + b.z * e.y);
+                let area = areas * turned(b, e);
                 let surface = own.surface + clamp(half_way(sloped.surface, e), -own.depth, own.depth);
                 let middle = max(ground + half_way(sloped.ground, e), own.surface - SHARED * own.depth);
                 let depth = max(surface - middle, 1e-6 * own.depth);

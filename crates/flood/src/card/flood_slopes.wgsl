@@ -31,10 +31,6 @@ fn renormalisation(moment: vec3f) -> vec3f {
     return vec3f(m.z, -m.y, m.x) / (m.x * m.z - m.y * m.y);
 }
 
-fn turned(b: vec3f, v: vec2f) -> vec2f {
-    return vec2f(b.x * v.x + b.y * v.y, b.y * v.x + b.z * v.y);
-}
-
 // What walls add to the moment matrix, and the largest difference between the velocity and its mirror image beyond a wall. They take part
 // in the areas that the particle shares, but not in its slopes: what water does along a wall goes on there.
 fn of_walls(own: Column) -> vec4f {
