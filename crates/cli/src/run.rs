@@ -20,12 +20,9 @@ use std::sync::atomic::AtomicBool;
 pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let stop = stop_on_interrupt()?;
     let (mut simulation, mut recorder) = match &options.resume {
-        Some(folder) => Recorder::resume(folder)?,
+        Some(folder) => resume(folder, options.backend)?,
         None => start(options, &stop)?,
     };
-    if options.backend == Backend::Gpu {
-        simulation.use_gpu()?;
-    }
     for warning in simulation.warnings() {
         eprintln!("warning: {warning}");
     }
@@ -67,10 +64,26 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
     }
 }
 
+fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Recorder)> {
+    let (mut simulation, recorder) = Recorder::resume(folder)?;
+    compute_on(backend, &mut simulation)?;
+    Ok((simulation, recorder))
+}
+
+/// Has the steps taken where they are asked for.
+fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpuscle::Error> {
+    match backend {
+        Backend::Auto | Backend::Cpu => Ok(()),
+        Backend::Gpu => simulation.use_gpu(),
+    }
+}
+
 fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simulation, Recorder)> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
     fetch_for(&named.scene, stop)?;
-    let simulation = Simulation::open(named.scene, &named.folder)?;
+    let mut simulation = Simulation::open(named.scene, &named.folder)?;
+    // Before there is a folder: what is refused leaves none behind.
+    compute_on(options.backend, &mut simulation)?;
     let folder = match &options.output {
         Some(folder) => folder.clone(),
         None => next_run_folder(Path::new("runs"), &named.short_name).map_err(corpuscle::Error::from)?,
