@@ -5,8 +5,8 @@
 pub enum GpuError {
     /// No card and no software in its place.
     #[error(
-        "there is no graphics card to draw with, nor software in its place: no Vulkan, Metal or Direct3D 12 device was found. \
-         Everything but the 3D pictures works without. For pictures install the driver of the card, or Mesa's software Vulkan: \
+        "there is no graphics card, nor software in its place: no Vulkan, Metal or Direct3D 12 device was found. \
+         Everything but the 3D pictures and `--backend gpu` works without. For those install the driver of the card, or Mesa's software Vulkan: \
          `apt-get install mesa-vulkan-drivers` on Debian and Ubuntu, `dnf install mesa-vulkan-drivers` on Fedora"
     )]
     NoDevice,
