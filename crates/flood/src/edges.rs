@@ -39,6 +39,23 @@ pub struct EdgeRules {
     pub rules: [EdgeRule; 4],
 }
 
+/// How near particles come to walls. A column of water has a width; and in the corner of two walls a particle would meet its three
+/// images in one point, where no smoothing length is short enough and no pressure drives it out again.
+#[derive(Debug, Clone, Copy)]
+pub struct BeforeWalls {
+    /// Smoothing length over particle distance.
+    pub eta: f64,
+    /// Distance of particles in water of the depth that goes with their volume, m. 0 lets them come as near as they like.
+    pub spacing: f64,
+}
+
+impl BeforeWalls {
+    /// A quarter of the distance of particles, m, for a particle with a smoothing length.
+    pub fn of(self, h: f64) -> f64 {
+        0.25 * self.spacing.min(h / self.eta)
+    }
+}
+
 impl EdgeRules {
     /// The rule that an image follows along x, if it stands beyond the west or east side.
     pub fn along_x(&self, image: Image) -> Option<&EdgeRule> {
@@ -76,8 +93,39 @@ impl EdgeRules {
     }
 
     /// Puts a place that has left through a periodic side back in, and one beyond a wall back before it; names the side
-    /// over which it has left otherwise.
-    pub fn keep(&self, place: &mut [f64; 2], velocity: &mut [f64; 2]) -> Option<u8> {
+    /// over which it has left otherwise. Before walls it stands `off` m at least (see
+    /// [`BeforeWalls`]).
+    pub fn keep(&self, place: &mut [f64; 2], velocity: &mut [f64; 2], off: f64) -> Option<u8> {
+        let side = self.keep_in(place, velocity);
+        for axis in 0..2 {
+            let [low, high] = self.between_walls(axis, off);
+            if place[axis] < low && side.is_none() {
+                (place[axis], velocity[axis]) = (low, velocity[axis].max(0.0));
+            } else if place[axis] > high && side.is_none() {
+                (place[axis], velocity[axis]) = (high, velocity[axis].min(0.0));
+            }
+        }
+        side
+    }
+
+    /// Whether a place is inside, and at least `off` m before the walls.
+    pub fn hold(&self, place: [f64; 2], off: f64) -> bool {
+        let within = |axis: usize| {
+            let [low, high] = self.between_walls(axis, off);
+            (low..=high).contains(&place[axis])
+        };
+        self.bounds.contains(place[0], place[1]) && within(0) && within(1)
+    }
+
+    /// What is at least `off` m before the walls along an axis.
+    fn between_walls(&self, axis: usize, off: f64) -> [f64; 2] {
+        let (low, high) = [(self.bounds.x_min, self.bounds.x_max), (self.bounds.y_min, self.bounds.y_max)][axis];
+        let off = off.min(0.5 * (high - low));
+        let before = |side: usize| if self.rules[2 * axis + side] == EdgeRule::Wall { off } else { 0.0 };
+        [low + before(0), high - before(1)]
+    }
+
+    fn keep_in(&self, place: &mut [f64; 2], velocity: &mut [f64; 2]) -> Option<u8> {
         let mut left = None;
         let bounds = [(self.bounds.x_min, self.bounds.x_max), (self.bounds.y_min, self.bounds.y_max)];
         for axis in 0..2 {
@@ -171,10 +219,13 @@ mod tests {
         let velocity = [3.0, 1.0];
         let keep = |rule, place: [f64; 2]| {
             let (mut place, mut velocity) = (place, velocity);
-            let kept = rules(rule).keep(&mut place, &mut velocity);
+            let kept = rules(rule).keep(&mut place, &mut velocity, 0.25);
             (kept, place, velocity)
         };
         assert_eq!(keep(EdgeRule::Wall, [10.5, 1.0]), (None, [9.5, 1.0], [-3.0, 1.0]));
+        assert_eq!(keep(EdgeRule::Wall, [9.9, 1.0]), (None, [9.75, 1.0], [0.0, 1.0]));
+        assert_eq!(keep(EdgeRule::Wall, [0.1, 1.0]), (None, [0.25, 1.0], velocity));
+        assert_eq!(keep(EdgeRule::Open, [9.9, 1.0]), (None, [9.9, 1.0], velocity));
         assert_eq!(keep(EdgeRule::Periodic, [10.5, 1.0]), (None, [0.5, 1.0], velocity));
         assert_eq!(keep(EdgeRule::Open, [10.5, 1.0]).0, Some(1));
     }

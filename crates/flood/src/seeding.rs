@@ -5,7 +5,7 @@
 
 use crate::arrangement::Arrangement;
 use crate::density::{Densities, Density};
-use crate::edges::EdgeRules;
+use crate::edges::{BeforeWalls, EdgeRules};
 use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_sph::kernel::cubic_spline;
@@ -25,6 +25,16 @@ const LONGEST_SHIFT: f64 = 0.1;
 /// and such a particle would stand out wherever it goes.
 const LARGEST_VOLUME: f64 = 2.0;
 
+/// Towards a shore particles stand no further apart than this many spacings, however shallow the water, ...
+const SHORE_DISTANCE: f64 = 1.5;
+
+/// ... as in water at least this many times as deep as the ground rises over one spacing. Chosen so that lakes on rough ground
+/// lie still (`a_lake_between_rough_hills_lies_still`): with 3 they move twice as fast, with 1 ten times.
+const SHORE_RISE: f64 = 9.0;
+
+/// How far beyond the shore the glass goes on, in `SHORE_DISTANCE` spacings.
+const BEYOND_SHORE: f64 = 4.0;
+
 /// A body of water to be filled with particles.
 pub struct Body<'a> {
     /// Depth of the water at a place, m; 0 or less where there is none. Goes on beyond `inside` where the ground does,
@@ -36,6 +46,12 @@ pub struct Body<'a> {
     pub within: Bounds,
     /// Volume of a particle, m3.
     pub volume: f64,
+    /// Distance of particles in water of the depth that goes with their volume, m.
+    pub spacing: f64,
+    /// How near they come to walls.
+    pub before_walls: BeforeWalls,
+    /// Whether particles stand closer towards shores than their volume asks for.
+    pub fine_shores: bool,
     /// Smoothing length over particle distance.
     pub eta: f64,
     /// Largest smoothing length, m.
@@ -54,11 +70,28 @@ impl Body<'_> {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
             self.relax(&arrangement, &mut particles, edges);
         }
+        particles.retain(|particle| (self.depth)(particle.x, particle.y) > self.shallowest);
         // Obstacles are cut out of the glass, so that water stands before their walls as close as elsewhere.
         particles.retain(|particle| !obstacles.hold([particle.x, particle.y]));
         self.settle_smoothing(&mut arrangement, &mut particles, &mut spare, edges, obstacles);
         particles.retain(|particle| (self.inside)(particle.x, particle.y));
         particles
+    }
+
+    /// Depth for which the glass is made, m. Particles that follow the depth alone stand far apart at a shore, where the ground
+    /// within reach of one rises by many times its depth, and water there never calms. And with nothing beyond the shore, those
+    /// that stand further out push them together there. So the glass is fine on rising ground near a shore, and goes on
+    /// some way over the land; that part of it is taken out at last.
+    fn glass_depth(&self, x: f64, y: f64) -> f64 {
+        let depth = (self.depth)(x, y);
+        let shallow = self.volume / (SHORE_DISTANCE * self.spacing).powi(2);
+        if depth >= shallow || !self.fine_shores {
+            return depth;
+        }
+        let near = |dx: f64, dy: f64| (self.depth)(x + dx * self.spacing, y + dy * self.spacing);
+        let rise = (near(0.5, 0.0) - near(-0.5, 0.0)).hypot(near(0.0, 0.5) - near(0.0, -0.5));
+        let to_shore = -depth / rise.max(f64::MIN_POSITIVE);
+        if to_shore < BEYOND_SHORE * SHORE_DISTANCE { depth.max(shallow.min(SHORE_RISE * rise)) } else { depth }
     }
 
     fn smoothing(&self, depth: f64) -> f64 {
@@ -84,7 +117,7 @@ impl Body<'_> {
             for column in 0..cells[0] {
                 let x = low[0] + (column as f64 + 0.5) * size[0];
                 let y = low[1] + (row as f64 + 0.5) * size[1];
-                let depth = (self.depth)(x, y);
+                let depth = self.glass_depth(x, y);
                 let wanted = if depth > self.shallowest { depth * size[0] * size[1] / self.volume } else { 0.0 };
                 let sum = wanted + error[column + 1];
                 let put = sum > 0.5 && wanted > 0.0;
@@ -145,15 +178,21 @@ impl Body<'_> {
             let shift = [push_x, push_y].map(|push| -0.2 * h * h * push);
             let clip = (longest / shift[0].hypot(shift[1]).max(1e-300)).min(1.0);
             let mut place = [particle.x + clip * shift[0], particle.y + clip * shift[1]];
-            if edges.keep(&mut place, &mut [0.0; 2]).is_some() {
+            if edges.keep(&mut place, &mut [0.0; 2], self.before_walls.of(h)).is_some() {
                 return;
             }
-            let depth = (self.depth)(place[0], place[1]);
+            let depth = self.glass_depth(place[0], place[1]);
             if depth > self.shallowest {
                 [particle.x, particle.y] = place;
                 particle.h = self.smoothing(depth);
             }
         });
+    }
+
+    fn keep_off_walls(&self, particle: &mut Particle, edges: &EdgeRules) {
+        let mut place = [particle.x, particle.y];
+        edges.keep(&mut place, &mut [0.0; 2], self.before_walls.of(particle.h));
+        [particle.x, particle.y] = place;
     }
 
     /// Finds the smoothing lengths that go with the arrangement, and gives each particle the volume d / n that makes the
@@ -177,6 +216,7 @@ impl Body<'_> {
                 let density = densities[place as usize].beside(covered);
                 particle.h = density.next_h(particle.h, self.eta).min(self.largest_h);
                 particle.next_h = particle.h;
+                self.keep_off_walls(particle, edges);
                 particle.depth = (self.depth)(particle.x, particle.y);
                 particle.volume = (particle.depth / density.number).min(LARGEST_VOLUME * self.volume);
                 particle.weight = self.volume;

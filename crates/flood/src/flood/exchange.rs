@@ -17,12 +17,13 @@ impl Flood {
     pub(super) fn lose(&mut self) {
         let edges = &self.surroundings.edges;
         let gravity = self.settings.gravity_m_per_s2;
+        let before_walls = self.before_walls();
         let State { particles, water, momentum, .. } = &mut self.state;
         particles.retain_mut(|particle| {
             let before = [particle.u, particle.v];
             let mut place = [particle.x, particle.y];
             let mut velocity = before;
-            let side = edges.keep(&mut place, &mut velocity);
+            let side = edges.keep(&mut place, &mut velocity, before_walls.of(particle.h));
             [particle.x, particle.y] = place;
             [particle.u, particle.v] = velocity;
             let carried = |velocity: [f64; 2]| DENSITY * particle.volume * (velocity[0] + velocity[1]);

@@ -2,6 +2,7 @@
 
 use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
+use crate::edges::BeforeWalls;
 use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
@@ -174,6 +175,11 @@ impl Flood {
         Ok(model)
     }
 
+    pub(super) fn before_walls(&self) -> BeforeWalls {
+        let spacing = if self.settings.scheme == SchemeName::Balanced { self.spacing } else { 0.0 };
+        BeforeWalls { eta: self.settings.balanced.smoothing, spacing }
+    }
+
     /// Fills in the water at the start.
     fn fill(&mut self, bodies: &[InitialWater]) {
         let flood = &self.settings;
@@ -185,6 +191,9 @@ impl Flood {
                 inside: &*body.inside,
                 within: body.within,
                 volume: self.volume,
+                spacing: self.spacing,
+                before_walls: self.before_walls(),
+                fine_shores: flood.scheme == SchemeName::Balanced,
                 eta,
                 largest_h: flood.balanced.largest_smoothing * eta * self.spacing,
                 shallowest: flood.wet_depth_m,

@@ -41,9 +41,9 @@ impl Flood {
     }
 
     /// Gives the particles the smoothing lengths that they have come to need, and the cells their size; whether all the
-    /// particles are still inside.
+    /// particles are still inside, and not too near a wall.
     pub(super) fn renew(&mut self) -> bool {
-        let edges = &self.surroundings.edges;
+        let (edges, before_walls) = (&self.surroundings.edges, self.before_walls());
         let State { particles, sizes, .. } = &mut self.state;
         let weight = particles.first().map(|particle| particle.weight);
         let renew_block = |particles: &mut [Particle]| {
@@ -51,7 +51,8 @@ impl Flood {
             for particle in particles {
                 particle.h = particle.next_h;
                 block.sum_of_h += particle.h;
-                block.inside &= particle.outside.is_none() && edges.bounds.contains(particle.x, particle.y);
+                block.inside &=
+                    particle.outside.is_none() && edges.hold([particle.x, particle.y], before_walls.of(particle.h));
                 block.even &= Some(particle.weight) == weight;
             }
             block
