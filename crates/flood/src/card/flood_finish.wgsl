@@ -7,7 +7,32 @@
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
+// Zones, structures and tables: see `works.rs`.
+@group(0) @binding(4) var<storage, read> works: array<u32>;
+
 const FAR = 3.0e38;
+
+// Where `works` says where the levels of the sides are.
+const LEVELS = 12u;
+
+fn work(at: u32) -> f32 {
+    return bitcast<f32>(works[at]);
+}
+
+// The level of a side at a time since the host last spoke, by the rows that the host has told.
+fn level_at(side: u32, time: f32) -> f32 {
+    let window = works[LEVELS + side];
+    if window == 0u {
+        return 0.0;
+    }
+    let last = works[window] - 1u;
+    var row = window + 1u;
+    for (var k = 1u; k < last && work(row + 2u) <= time; k++) {
+        row += 2u;
+    }
+    let part = (time - work(row)) / (work(row + 2u) - work(row));
+    return work(row + 1u) + clamp(part, 0.0, 1.0) * (work(row + 3u) - work(row + 1u));
+}
 
 var<workgroup> sums: array<Partial, 256>;
 
@@ -16,6 +41,8 @@ fn joined(a: Partial, b: Partial) -> Partial {
         a.outflow + b.outflow,
         a.inflow + b.inflow,
         a.booked_in_drift + b.booked_in_drift,
+        a.gained_at_edges + b.gained_at_edges,
+        a.lost_at_edges + b.lost_at_edges,
         a.booked_in_kick + b.booked_in_kick,
         a.from_outside + b.from_outside,
         min(a.longest_step, b.longest_step),
@@ -35,10 +62,10 @@ fn book(all: Partial) {
     add(&elapsed, status.step);
     // The force over the step by its means at both ends.
     let push = 0.5 * status.step * (status.from_outside + all.from_outside);
-    let bookings = array(all.booked_in_drift, all.booked_in_kick, push.x, push.y);
+    let bookings = array(all.booked_in_drift, all.gained_at_edges, -all.lost_at_edges, all.booked_in_kick, push.x, push.y);
     var lost = status.momentum_lost;
     var gained = status.momentum_gained;
-    for (var k = 0u; k < 4u; k++) {
+    for (var k = 0u; k < 6u; k++) {
         add(&lost, max(-bookings[k], 0.0));
         add(&gained, max(bookings[k], 0.0));
     }
@@ -65,6 +92,10 @@ fn decide() {
     } else {
         status.halted = GOING;
     }
+    for (var side = 0u; side < 4u; side++) {
+        status.stages[side] = level_at(side, status.elapsed.sum);
+        status.next_stages[side] = level_at(side, status.elapsed.sum + status.step);
+    }
     let is_going = status.halted == GOING;
     let counts = array(
         (status.particles + 255u) / 256u,
@@ -81,13 +112,11 @@ fn decide() {
 
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    var own = Partial(0.0, 0.0, 0.0, 0.0, vec2f(0.0), FAR, 0.0, vec2f(FAR), vec2f(-FAR));
+    var own = Partial(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2f(0.0), FAR, 0.0, vec2f(FAR), vec2f(-FAR));
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += 256u) {
             own = joined(own, partials[group]);
-            // Births may call for one more group than there was in the drift.
-            partials[group].outflow = 0.0;
-            partials[group].inflow = 0.0;
+            // Births may call for more groups than there were in the drift.
             partials[group].booked_in_drift = 0.0;
         }
     }

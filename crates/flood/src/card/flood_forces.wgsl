@@ -14,6 +14,7 @@
 @group(0) @binding(7) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
+@group(0) @binding(10) var rough: texture_2d<f32>;
 
 struct Force {
     acceleration: vec2f,
@@ -152,6 +153,7 @@ fn joined(a: Sums, b: Sums) -> Sums {
 fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force: Force) -> Sums {
     let place = (*particle).place;
     let h = (*particle).next_h;
+    (*particle).surface_slope = sloped.surface;
     if (*particle).outside > 0u {
         (*particle).acceleration = vec2f(0.0);
         return Sums(0.0, h, vec2f(0.0), FAR, place, place);
@@ -161,7 +163,7 @@ fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force:
     let pull = sqrt((*particle).h * length(force.acceleration));
     let longest = parameters.cfl * (*particle).h / max(sloped.wave_speed + squeeze, pull);
     let velocity = (*particle).velocity + 0.5 * status.step * force.acceleration;
-    let factor = slowed(parameters, velocity, (*particle).depth, 0.5 * status.step);
+    let factor = slowed(parameters, roughness_at(parameters, rough, place), velocity, (*particle).depth, 0.5 * status.step);
     (*particle).velocity = factor * velocity;
     let booked = (*particle).volume * (velocity.x + velocity.y) * (factor - 1.0);
     // What is not a number must not be lost in a minimum: it ends the run.

@@ -1,4 +1,5 @@
-// Brings the particles into the order of their cells; those in the last, which have left, are out of the count.
+// Brings the particles into the order of their cells, with the smoothing lengths that they have come to need; those in the last cell,
+// which have left, are out of the count.
 #import flood_card
 
 @group(0) @binding(0) var<storage, read_write> status: Status;
@@ -14,7 +15,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     let left = start[status.cells - 1u];
     if i < left {
-        let particle = particles[order[i]];
+        var particle = particles[order[i]];
+        // Where nothing moves, particles are only laid out anew.
+        if status.step > 0.0 {
+            particle.h = particle.next_h;
+        }
         sorted[i] = particle;
         sites[i] = vec4f(particle.place, particle.weight, 2.0 * particle.h);
     }

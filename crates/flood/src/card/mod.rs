@@ -6,20 +6,24 @@ mod ground;
 mod layout;
 mod tasks;
 mod walls;
+mod works;
 
 use crate::balanced;
 use crate::edges::EdgeRule;
-use crate::friction::{Coefficient, Roughness};
-use crate::inflow::TRIES;
+use crate::friction::Roughness;
+use crate::inflow::Source;
 use crate::particle::Particle;
 use crate::scheme::Surroundings;
+use crate::structures::{Flows, Structures};
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
-use corpuscle_scene::Friction;
-use corpuscle_terrain::Bounds;
-use layout::{CardParticle, Grid, OnObstacle, Origin, Parameters, Slopes, Status};
+use corpuscle_terrain::{Bounds, Terrain};
+use layout::{CardBirth, CardParticle, Grid, OnObstacle, Origin, Parameters, Status};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::time::Instant;
 use tasks::Tasks;
 use walls::Walls;
+use works::Works;
 
 /// Size of a cell over the mean smoothing length, as on the CPU.
 const CELL_OVER_H: f64 = 1.2;
@@ -40,6 +44,7 @@ pub(crate) struct Card {
     gpu: Gpu,
     tasks: Tasks,
     walls: Walls,
+    works: Works,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -59,14 +64,29 @@ pub(crate) struct Card {
     done_before: DoneToObstacles,
 }
 
-/// A particle that is to come, at the one of some places where the surface then stands lowest.
+/// A particle that is to come from a source.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Birth {
     /// Time from now, s.
     pub time: f64,
-    pub id: u64,
+    pub source: usize,
     pub velocity: [f64; 2],
-    pub places: [[f64; 2]; TRIES],
+}
+
+/// What the water moves in, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    pub surroundings: &'a Surroundings,
+    pub scheme: &'a balanced::Parameters,
+    pub roughness: &'a Roughness,
+    pub sources: &'a [Source],
+    pub structures: &'a Structures,
+    pub seed: u64,
+    pub shortest_step: f64,
+    /// Volume, m3, smoothing length, m, and distance, m, of new particles.
+    pub volume: f64,
+    pub h: f64,
+    pub spacing: f64,
 }
 
 /// Births that the card can be told of at once.
@@ -84,6 +104,10 @@ pub(crate) struct Water<'a> {
     /// Forces on obstacles summed over time so far, m4/s, and how often a particle was put back.
     pub impulses: &'a [[f64; 2]],
     pub put_back: u64,
+    /// Steps so far.
+    pub steps: u64,
+    pub next_id: u64,
+    pub flows: &'a Flows,
 }
 
 /// What the water has done to obstacles.
@@ -112,8 +136,9 @@ pub(crate) struct Progress {
     pub momentum_gained: f64,
     pub from_outside: [f64; 2],
     pub mean_h: f64,
-    /// How many of the births have been.
+    /// How many of the births have been, and the identity of the next new particle.
     pub born: usize,
+    pub next_id: u64,
     /// Whether the next step is too short to go on.
     pub broken: bool,
 }
@@ -133,6 +158,7 @@ impl Progress {
             from_outside: [0.0; 2],
             mean_h: 0.0,
             born: 0,
+            next_id: 0,
             broken: false,
         }
     }
@@ -154,34 +180,26 @@ impl Progress {
 }
 
 impl Card {
-    /// Room for `count` particles amid `surroundings`; new ones hold `volume` m3 and begin with the smoothing length `h`, m.
-    pub fn new(
-        gpu: Gpu,
-        count: usize,
-        surroundings: &Surroundings,
-        scheme: &balanced::Parameters,
-        roughness: &Roughness,
-        shortest_step: f64,
-        [volume, h, spacing]: [f64; 3],
-    ) -> Result<Self, GpuError> {
+    /// Room for `count` particles.
+    pub fn new(gpu: Gpu, count: usize, setting: &Setting<'_>) -> Result<Self, GpuError> {
+        let &Setting { surroundings, scheme, roughness, sources, structures, .. } = setting;
         let bounds = surroundings.edges.bounds;
         let origin = Origin {
             centre: bounds.centre(),
             level: surroundings.terrain.height(bounds.centre()[0], bounds.centre()[1]),
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
-        let (friction, roughness) = friction(roughness);
         let walls = Walls::new(&gpu, &surroundings.obstacles, origin, 2.0 * scheme.largest_h)?;
+        let works = Works::new(&gpu, surroundings, sources, structures, origin, setting.h)?;
         let [west, south] = origin.relative([bounds.x_min, bounds.y_min]);
         let [east, north] = origin.relative([bounds.x_max, bounds.y_max]);
-        let parameters = Parameters {
+        let mut parameters = Parameters {
             bounds: [west, east, south, north],
             rules: surroundings.edges.rules.each_ref().map(rule),
+            key: bytemuck::cast(ChaCha8Rng::seed_from_u64(setting.seed).get_seed()),
             walls: walls.grid,
             outlines: walls.outlines_grid,
             obstacles: walls.count as u32,
-            friction,
-            roughness,
             ground_corner: origin.relative(patches.corner),
             ground_per_metre: patches.per_metre.map(|value| value as f32),
             ground_patches: patches.size.map(|nodes| nodes as u32 - 1),
@@ -191,20 +209,23 @@ impl Card {
             viscosity: scheme.viscosity as f32,
             cfl: scheme.cfl as f32,
             longest_step: scheme.longest_step as f32,
-            shortest_step: shortest_step as f32,
-            new_volume: volume as f32,
-            new_h: h as f32,
-            spacing: spacing as f32,
+            shortest_step: setting.shortest_step as f32,
+            new_volume: setting.volume as f32,
+            new_h: setting.h as f32,
+            spacing: setting.spacing as f32,
+            smoothing: 1.0,
             ..Parameters::default()
         };
+        let rough = ground::roughness(&gpu, roughness, bounds, origin, &mut parameters)?;
         let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
-        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes, &walls)?;
+        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, [&nodes, &rough], &walls, &works)?;
         let status = Status::default();
         Ok(Self {
             gpu,
             room: count,
             tasks,
             walls,
+            works,
             parameters,
             origin,
             bounds,
@@ -240,8 +261,9 @@ impl Card {
 
     /// Hands the water over.
     pub fn send(&mut self, water: &Water<'_>) {
-        let Water { particles, step, from_outside, on_obstacles, impulses, put_back } = *water;
+        let Water { particles, step, from_outside, on_obstacles, impulses, put_back, .. } = *water;
         self.walls.begin(&self.gpu, on_obstacles);
+        self.works.begin(&self.gpu, water.flows);
         self.done_before = DoneToObstacles { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
         self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
@@ -256,21 +278,23 @@ impl Card {
             mean_h: (sum_of_h / particles.len().max(1) as f64) as f32,
             low: corners(f32::min, f32::MAX),
             high: corners(f32::max, -f32::MAX),
+            next_id: water.next_id as u32,
+            steps_before: water.steps as u32,
             ..Status::default()
         };
         (self.steps, self.ahead) = (0, false);
     }
 
     /// Brings the water back, where there is any news of it.
-    pub fn fetch(&mut self, particles: &mut Vec<Particle>) -> Result<(), GpuError> {
+    pub fn fetch(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
         let count = self.status.particles as usize;
         let sent: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, count)?;
-        let slopes: Vec<Slopes> = read(&self.gpu, &self.tasks.slopes, count)?;
         particles.clear();
-        particles.extend(sent.iter().zip(&slopes).map(|(particle, slopes)| self.origin.to_host(particle, slopes)));
+        particles.extend(sent.iter().map(|particle| self.origin.to_host(particle)));
+        ground::complete(particles, terrain);
         self.ahead = false;
         Ok(())
     }
@@ -279,6 +303,11 @@ impl Card {
     pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
         let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
         self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+    }
+
+    /// What outflows and links owe and lead.
+    pub fn flows(&self, flows: &mut Flows) -> Result<(), GpuError> {
+        self.works.flows(&self.gpu, flows)
     }
 
     /// What was done to obstacles.
@@ -296,18 +325,28 @@ impl Card {
         Ok(DoneToObstacles { forces, impulses, put_back: self.done_before.put_back + knocks[2 * count] as u64 })
     }
 
-    /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.
-    pub fn advance(&mut self, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
+    /// Takes some steps from the time `now` s, up to `until` s from there or to the first after `look` s, while `births` come, the earliest
+    /// first.
+    pub fn advance(&mut self, now: f64, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
         }
-        let births: Vec<_> = births.iter().map(|birth| self.origin.birth(birth)).collect();
+        let births: Vec<_> = births
+            .iter()
+            .map(|birth| CardBirth {
+                velocity: birth.velocity.map(|along| along as f32),
+                time: birth.time as f32,
+                zone: self.works.sources[birth.source],
+            })
+            .collect();
+        self.works.tell(&self.gpu, now, (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step));
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
         let count = planned.min(self.batch).min(to_layout as u32);
         self.status = Status {
             halted: layout::SPOKEN,
+            steps_before: self.status.steps_before.wrapping_add(self.status.steps),
             steps: 0,
             particle_steps: [0; 2],
             until: until as f32,
@@ -354,6 +393,7 @@ impl Card {
             from_outside: self.status.from_outside.map(f64::from),
             mean_h: f64::from(mean_h),
             born: self.status.born as usize,
+            next_id: u64::from(self.status.next_id),
             broken: halted == layout::BROKEN,
         }
     }
@@ -395,17 +435,7 @@ fn rule(rule: &EdgeRule) -> u32 {
     match rule {
         EdgeRule::Wall => layout::WALL,
         EdgeRule::Periodic => layout::PERIODIC,
-        EdgeRule::Open | EdgeRule::Stage(_) => layout::OPEN,
+        EdgeRule::Open => layout::OPEN,
+        EdgeRule::Stage(_) => layout::STAGE,
     }
-}
-
-fn friction(roughness: &Roughness) -> (u32, f32) {
-    let (kind, value) = match roughness {
-        Roughness::Manning(Coefficient::Even(0.0)) => (layout::SMOOTH, 0.0),
-        Roughness::Manning(Coefficient::Even(n)) => (layout::MANNING, *n),
-        Roughness::Other(Friction::Chezy(c)) => (layout::CHEZY, *c),
-        Roughness::Other(Friction::Linear(slope)) => (layout::LINEAR, *slope),
-        Roughness::Manning(_) => (layout::SMOOTH, 0.0),
-    };
-    (kind, value as f32)
 }

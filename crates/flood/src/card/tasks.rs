@@ -2,6 +2,7 @@
 
 use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Slopes, Status};
 use super::walls::Walls;
+use super::works::Works;
 use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, sort_blocks, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
@@ -13,6 +14,9 @@ const LIBRARY: &[(&str, &str)] = &[
     ("flood_columns", include_str!("flood_columns.wgsl")),
     ("flood_walls", include_str!("flood_walls.wgsl")),
     ("flood_outlines", include_str!("flood_outlines.wgsl")),
+    ("flood_places", include_str!("flood_places.wgsl")),
+    ("flood_water", include_str!("flood_water.wgsl")),
+    ("flood_laws", include_str!("flood_laws.wgsl")),
 ];
 
 /// Slots of the numbers of groups: see `flood_finish.wgsl`.
@@ -24,15 +28,19 @@ pub(super) struct Tasks {
     pub parameters: wgpu::Buffer,
     pub status: wgpu::Buffer,
     pub particles: wgpu::Buffer,
-    pub slopes: wgpu::Buffer,
     pub births: wgpu::Buffer,
     /// Bytes held.
     pub bytes: u64,
     sorted: wgpu::Buffer,
     groups: wgpu::Buffer,
     sort: CellSort,
+    /// Water beyond sides held at levels, and structures, where there are any.
+    carry: Option<Task>,
+    regulate: Option<Task>,
     drift: Task,
-    bear: Task,
+    /// Where water comes in.
+    bear: Option<Task>,
+    leave: Task,
     reorder: Task,
     reach_own: Task,
     reach_rows: Task,
@@ -47,6 +55,42 @@ pub(super) struct Tasks {
     finish: Task,
 }
 
+/// What a shader works on.
+enum Resource<'a> {
+    Buffer(&'a wgpu::Buffer),
+    Texture(&'a wgpu::TextureView),
+    /// The shader leaves it alone.
+    Unused,
+}
+
+impl<'a> Resource<'a> {
+    fn binding(&self) -> Option<wgpu::BindingResource<'a>> {
+        match *self {
+            Self::Buffer(buffer) => Some(buffer.as_entire_binding()),
+            Self::Texture(texture) => Some(wgpu::BindingResource::TextureView(texture)),
+            Self::Unused => None,
+        }
+    }
+}
+
+impl<'a> From<&'a wgpu::Buffer> for Resource<'a> {
+    fn from(buffer: &'a wgpu::Buffer) -> Self {
+        Self::Buffer(buffer)
+    }
+}
+
+impl From<&()> for Resource<'_> {
+    fn from((): &()) -> Self {
+        Self::Unused
+    }
+}
+
+impl<'a> From<&'a wgpu::TextureView> for Resource<'a> {
+    fn from(texture: &'a wgpu::TextureView) -> Self {
+        Self::Texture(texture)
+    }
+}
+
 impl Tasks {
     /// For so many particles, cells, and births between two words of the host, at most.
     pub fn new(
@@ -54,8 +98,9 @@ impl Tasks {
         count: usize,
         cells: usize,
         most_births: usize,
-        nodes: &wgpu::TextureView,
+        [nodes, rough]: [&wgpu::TextureView; 2],
         walls: &Walls,
+        works: &Works,
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
@@ -77,63 +122,76 @@ impl Tasks {
         let of_particles = [&pushes, &particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
         let of_cells = [&own, &along_rows, &reaches, &sort.counts, &sort.places, &sort.start, &sort.order];
         let bytes = of_particles.into_iter().chain(of_cells).map(wgpu::Buffer::size).sum();
-        let task = |name, text, buffers: &[&wgpu::Buffer], nodes: Option<&wgpu::TextureView>| {
-            let buffers = buffers.iter().map(|buffer| buffer.as_entire_binding());
-            let resources: Vec<_> = buffers.chain(nodes.map(wgpu::BindingResource::TextureView)).collect();
-            Kernel::new(gpu, name, text, LIBRARY).on(gpu, &resources)
+        let task = |name, text, resources: &[Resource<'_>]| {
+            Kernel::new(gpu, name, text, LIBRARY).on_those(gpu, resources.iter().map(Resource::binding))
         };
         macro_rules! shader {
-            ($name:literal, [$($buffer:expr),*], $nodes:expr) => {
-                task($name, include_str!(concat!($name, ".wgsl")), &[$(&$buffer),*], $nodes)
+            ($name:literal, [$($resource:expr),*]) => {
+                task($name, include_str!(concat!($name, ".wgsl")), &[$(Resource::from(&$resource)),*])
             };
         }
-        let (none, ground) = (None, Some(nodes));
+        let has_walls = walls.count > 0;
+        let comes_in = !works.sources.is_empty() || works.holds_level;
         Ok(Self {
+            carry: works.holds_level.then(|| {
+                shader!(
+                    "flood_carry",
+                    [parameters, status, particles, sort.start, (), *nodes, reaches, walls.start, walls.sites]
+                )
+            }),
             drift: shader!(
                 "flood_drift",
-                [parameters, status, particles, sort.counts, sort.places, keys, partials, walls.outlines, walls.knocks],
-                none
+                [parameters, status, particles, walls.outlines, walls.knocks, partials, *rough]
             ),
-            bear: shader!(
-                "flood_births",
-                [parameters, status, particles, sort.start, sort.counts, sort.places, keys, births, groups],
-                ground
-            ),
-            reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites], none),
-            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own], none),
-            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows], none),
-            reach: shader!("flood_reach", [parameters, along_rows, reaches], none),
+            regulate: works.has_structures.then(|| {
+                shader!(
+                    "flood_regulate",
+                    [
+                        parameters,
+                        status,
+                        particles,
+                        sort.start,
+                        works.buffer,
+                        *nodes,
+                        reaches,
+                        walls.start,
+                        walls.sites
+                    ]
+                )
+            }),
+            bear: comes_in.then(|| {
+                shader!(
+                    "flood_births",
+                    [parameters, status, particles, sort.start, works.buffer, *nodes, births, groups]
+                )
+            }),
+            leave: shader!("flood_leave", [parameters, status, particles, sort.counts, sort.places, keys, partials]),
+            reorder: shader!("flood_reorder", [status, sort.start, sort.order, particles, sorted, sites]),
+            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
+            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),
+            reach: shader!("flood_reach", [parameters, along_rows, reaches]),
             density: shader!(
                 "flood_density",
-                [parameters, status, sort.start, reaches, sites, sorted, columns, walls.start, walls.sites],
-                ground
+                [parameters, status, sort.start, reaches, sites, sorted, columns, walls.start, walls.sites, *nodes]
             ),
             gradients: shader!(
                 "flood_slopes",
-                [parameters, status, sort.start, reaches, columns, sorted, slopes, walls.start, walls.sites],
-                ground
+                [parameters, status, sort.start, reaches, columns, sorted, slopes, walls.start, walls.sites, *nodes]
             ),
-            push: (walls.count > 0).then(|| {
-                shader!(
-                    "flood_push",
-                    [parameters, status, columns, slopes, walls.start, walls.sites, sorted, pushes],
-                    none
-                )
+            push: has_walls.then(|| {
+                shader!("flood_push", [parameters, status, columns, slopes, walls.start, walls.sites, sorted, pushes])
             }),
-            on_obstacles: (walls.count > 0).then(|| {
-                shader!("flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles], none)
-            }),
+            on_obstacles: has_walls
+                .then(|| shader!("flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles])),
             obstacles: walls.count as u32,
             forces: shader!(
                 "flood_forces",
-                [parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials],
-                ground
+                [parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials, *nodes, *rough]
             ),
-            finish: shader!("flood_finish", [parameters, status, partials, groups], none),
+            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer]),
             parameters,
             status,
             particles,
-            slopes,
             births,
             bytes,
             sorted,
@@ -159,23 +217,34 @@ impl Tasks {
         gpu.queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&groups));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        self.drift.run_as_told(&mut pass, &self.groups, SLOTS.particles);
-        self.sort.sort(&mut pass, &self.groups, SLOTS);
-        self.reorder.run_as_told(&mut pass, &self.groups, SLOTS.particles);
+        self.leave.run_as_told(&mut pass, &self.groups, SLOTS.particles);
+        self.sort(&mut pass);
         drop(pass);
         encoder.copy_buffer_to_buffer(&self.sorted, 0, &self.particles, 0, self.particles.size());
         gpu.queue.submit([encoder.finish()]);
     }
 
-    fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
+    /// Sorts what has counted itself, and finds how far each cell must look.
+    fn sort(&self, pass: &mut wgpu::ComputePass<'_>) {
         let groups = &self.groups;
-        self.drift.run_as_told(pass, groups, SLOTS.particles);
-        self.bear.run(pass, 1);
         self.sort.sort(pass, groups, SLOTS);
         self.reorder.run_as_told(pass, groups, SLOTS.particles);
         self.reach_own.run_as_told(pass, groups, SLOTS.cells);
         self.reach_rows.run_as_told(pass, groups, SLOTS.cells);
         self.reach.run_as_told(pass, groups, SLOTS.cells);
+    }
+
+    fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let groups = &self.groups;
+        if let Some(carry) = &self.carry {
+            carry.run_as_told(pass, groups, SLOTS.particles);
+        }
+        self.drift.run_as_told(pass, groups, SLOTS.particles);
+        for task in [&self.regulate, &self.bear].into_iter().flatten() {
+            task.run(pass, 1);
+        }
+        self.leave.run_as_told(pass, groups, SLOTS.particles);
+        self.sort(pass);
         self.density.run_as_told(pass, groups, SLOTS.particles);
         self.gradients.run_as_told(pass, groups, SLOTS.particles);
         if let (Some(push), Some(on_obstacles)) = (&self.push, &self.on_obstacles) {

@@ -2,8 +2,7 @@
 
 use super::step::CELL_OVER_H_BALANCED;
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Water};
-use crate::friction::{Coefficient, Roughness};
+use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Water};
 use crate::inflow::Source;
 use corpuscle_gpu::{Gpu, GpuError};
 use corpuscle_model::{ExactSum, ModelError};
@@ -48,33 +47,51 @@ impl Flood {
         let depth = self.volume / (self.spacing * self.spacing);
         let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let count = self.state.particles.len();
-        let room = if self.sources.is_empty() { count } else { 2 * count + MOST_BIRTHS };
-        let new = [self.volume, self.h, self.spacing];
-        let card = Card::new(gpu, room, &self.surroundings, &scheme, &self.roughness, self.shortest_step(), new)?;
+        let comes_in =
+            !self.sources.is_empty() || !self.structures.held.is_empty() || self.surroundings.edges.holds_level();
+        let room = if comes_in { 2 * count + MOST_BIRTHS } else { count };
+        let setting = Setting {
+            surroundings: &self.surroundings,
+            scheme: &scheme,
+            roughness: &self.roughness,
+            sources: &self.sources,
+            structures: &self.structures,
+            seed: self.seed,
+            shortest_step: self.shortest_step(),
+            volume: self.volume,
+            h: self.h,
+            spacing: self.spacing,
+        };
+        let card = Card::new(gpu, room, &setting)?;
         self.card = Some(card);
         self.send_to_card()
     }
 
     /// What this flood has that there is no twin of on the card.
     fn missing_on_card(&self) -> Vec<&'static str> {
-        let rasters = matches!(self.roughness, Roughness::Manning(Coefficient::Raster(_) | Coefficient::Classes(..)));
         let all = [
             (self.settings.scheme == SchemeName::Paper, "flood.scheme = \"paper\""),
             (self.refinement.is_some(), "[flood.refinement]"),
             (self.ground.is_some(), "[flood.rain] or [flood.infiltration]"),
-            (!self.structures.is_empty(), "[[flood.outflow]], [[flood.stage]] or [[flood.link]]"),
             (!self.state.falling.is_empty(), "water that falls (block)"),
-            (self.surroundings.edges.holds_level(), "an edge with a stage"),
-            (rasters, "Manning's n by a raster or [flood.land_use]"),
         ];
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
     /// Hands the state to the card, and takes more room there if there is too little.
     pub(super) fn send_to_card(&mut self) -> Result<(), GpuError> {
-        let State { particles, time_step, external, on_obstacles, impulses, put_back, .. } = &self.state;
-        let water =
-            Water { particles, step: *time_step, from_outside: *external, on_obstacles, impulses, put_back: *put_back };
+        let State { particles, on_obstacles, impulses, flows, .. } = &self.state;
+        let water = Water {
+            particles,
+            step: self.state.time_step,
+            from_outside: self.state.external,
+            on_obstacles,
+            impulses,
+            put_back: self.state.put_back,
+            steps: self.state.steps,
+            next_id: self.state.next_id,
+            flows,
+        };
         match &mut self.card {
             Some(card) if card.room() < particles.len() => {
                 let gpu = card.gpu();
@@ -129,18 +146,16 @@ impl Flood {
     fn advance_to_look(&mut self, time: f64, look: f64, stop: &AtomicBool) -> Result<Progress, GpuError> {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
-        let (mut owed, mut next_id) = (self.state.owed.clone(), self.state.next_id);
+        let mut owed = self.state.owed.clone();
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
-            let births = self.births(&owed, next_id, now, time.min(look + LONGEST_AHEAD * done.step));
+            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
             let Some(card) = &mut self.card else { break };
-            let of_card: Vec<Birth> = births.iter().map(|(_, birth)| *birth).collect();
-            let progress = card.advance(time - now, look - now, &of_card)?;
+            let progress = card.advance(now, time - now, look - now, &births)?;
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
-            births[..progress.born].iter().for_each(|(source, _)| owed[*source].add(-self.volume));
-            next_id += progress.born as u64;
+            births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
             done = done.and(progress);
             let lacks_room = card.lacks_room(|horizon| most_births(&self.sources, &owed, self.volume, now, horizon));
             if progress.steps == 0 || done.broken || lacks_room || stop.load(Ordering::Relaxed) {
@@ -148,33 +163,29 @@ impl Flood {
             }
         }
         if let Some(card) = self.card.as_mut().filter(|_| done.steps > 0) {
-            card.fetch(&mut self.state.particles)?;
             let state = &mut self.state;
+            card.fetch(&mut state.particles, &self.surroundings.terrain)?;
+            card.flows(&mut state.flows)?;
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
-            (self.state.owed, self.state.next_id) = (owed, next_id);
+            (self.state.owed, self.state.next_id) = (owed, done.next_id);
             self.book(&done);
             self.arrange();
         }
         Ok(done)
     }
 
-    /// The particles that the sources bring from `now` to `until`, the earliest first, each with the number of its source.
-    fn births(&self, owed: &[ExactSum], next_id: u64, now: f64, until: f64) -> Vec<(usize, Birth)> {
+    /// The particles that the sources bring from `now` to `until`, the earliest first.
+    fn births(&self, owed: &[ExactSum], now: f64, until: f64) -> Vec<Birth> {
         let sources = self.sources.iter().zip(owed).enumerate();
-        let times = sources.flat_map(|(number, (source, owed))| {
-            source.times(owed.value(), self.volume, now, until).into_iter().map(move |time| (time, number))
+        let births = sources.flat_map(|(number, (source, owed))| {
+            let times = source.times(owed.value(), self.volume, now, until);
+            times.into_iter().map(move |time| Birth { time: time - now, source: number, velocity: source.velocity })
         });
-        let mut times: Vec<(f64, usize)> = times.collect();
-        times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        times.truncate(MOST_BIRTHS);
-        let nursery = self.nursery();
-        let birth = |((time, number), id): ((f64, usize), u64)| {
-            let Source { zone, velocity, .. } = &self.sources[number];
-            let places = nursery.places(zone, id, false);
-            (number, Birth { time: time - now, id, velocity: *velocity, places })
-        };
-        times.into_iter().zip(next_id..).map(birth).collect()
+        let mut births: Vec<Birth> = births.collect();
+        births.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
+        births.truncate(MOST_BIRTHS);
+        births
     }
 
     fn book(&mut self, progress: &Progress) {
