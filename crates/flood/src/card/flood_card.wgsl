@@ -50,8 +50,39 @@ struct Parameters {
     rough_cells: vec2u,
     // Support of the sampling kernel over that of the scheme.
     smoothing: f32,
-    unused: f32,
+    // Where the rows of the rain are told, m/s over s; 0 where it does not rain.
+    rain: u32,
+    // Cells of the ground that rain falls on: per metre, how many, their area, m2, and the depth at which their film becomes a particle, m.
+    patches_per_metre: vec2f,
+    patches: vec2u,
+    patch_area: f32,
+    film: f32,
+    // Smoothing length of a particle that comes of a film, m.
+    drop_h: f32,
+    // BALANCED or PAPER.
+    scheme: u32,
+    // The part of a step's acceleration that comes before the particles move, and their reach over their smoothing length.
+    before: f32,
+    reach_over_h: f32,
+    // Particles in the air at the start, and the longest step while any are, s.
+    in_air: u32,
+    fall_step: f32,
+    // Of scheme paper, in its own units.
+    rest_density: f32,
+    gas_constant: f32,
+    paper_viscosity: f32,
+    clips_pressure: u32,
+    control: u32,
+    control_strength: f32,
+    control_square: f32,
+    // Smoothing length at the start, and the largest, m.
+    first_h: f32,
+    widest_h: f32,
+    unused: vec2f,
 }
+
+const BALANCED = 0u;
+const PAPER = 1u;
 
 const OPEN = 0u;
 const WALL = 1u;
@@ -112,9 +143,9 @@ struct Status {
     // The identity of the next new particle, and steps before the host last spoke (the lowest 32 bits).
     next_id: u32,
     steps_before: u32,
-    // Particles in the air, and 1 where rain and infiltration are due in this step.
+    // Particles in the air.
     falling: u32,
-    is_wetting: u32,
+    spare: u32,
     // Levels of sides held at one, above the level that heights are counted from, m: at the beginning of the step and at its end.
     stages: vec4f,
     next_stages: vec4f,

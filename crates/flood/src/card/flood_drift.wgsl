@@ -92,11 +92,12 @@ fn moved(particle: ptr<function, Particle>) -> f32 {
         (*particle).acceleration = vec2f(0.0);
     }
     let volume = (*particle).volume;
-    var velocity = (*particle).velocity + 0.5 * status.step * (*particle).acceleration;
+    let pushed = parameters.before * status.step;
+    var velocity = (*particle).velocity + pushed * (*particle).acceleration;
     var booked = 0.0;
-    if is_inside {
+    if is_inside && pushed > 0.0 {
         let roughness = roughness_at(parameters, rough, (*particle).place);
-        let factor = slowed(parameters, roughness, velocity, (*particle).depth, 0.5 * status.step);
+        let factor = slowed(parameters, roughness, velocity, (*particle).depth, pushed);
         booked = volume * sum(velocity) * (factor - 1.0);
         velocity *= factor;
     }

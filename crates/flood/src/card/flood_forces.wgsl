@@ -2,6 +2,7 @@
 // `take_over` in `balanced/mod.rs` and of the second push in `flood/step.rs`.
 #import flood_columns
 #import flood_friction
+#import flood_sums
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
@@ -124,31 +125,6 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     return Force(slide - (force + pushed) / volume, slide * volume - from_outside - pushed);
 }
 
-// Inner parts of what a group sums up.
-struct Sums {
-    booked: f32,
-    sum_of_h: f32,
-    from_outside: vec2f,
-    longest: f32,
-    low: vec2f,
-    high: vec2f,
-}
-
-const FAR = 3.0e38;
-
-var<workgroup> sums: array<Sums, 256>;
-
-fn joined(a: Sums, b: Sums) -> Sums {
-    return Sums(
-        a.booked + b.booked,
-        a.sum_of_h + b.sum_of_h,
-        a.from_outside + b.from_outside,
-        min(a.longest, b.longest),
-        min(a.low, b.low),
-        max(a.high, b.high),
-    );
-}
-
 // Accelerates a particle; what it adds to the sums.
 fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force: Force) -> Sums {
     let place = (*particle).place;
@@ -177,7 +153,7 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let i = id.x;
-    sums[thread] = Sums(0.0, 0.0, vec2f(0.0), FAR, vec2f(FAR), vec2f(-FAR));
+    sums[thread] = NOTHING;
     if i < status.particles {
         let own = columns[i];
         let sloped = slopes[i];
@@ -185,15 +161,8 @@ fn main(
         sums[thread] = pushed(&particle, own, sloped, on_one(i, own, sloped));
         particles[i] = particle;
     }
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = summed(thread);
     if thread == 0u {
-        let all = sums[0];
         partials[group.x].booked_in_kick = all.booked;
         partials[group.x].from_outside = all.from_outside;
         partials[group.x].longest_step = all.longest;

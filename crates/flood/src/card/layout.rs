@@ -48,8 +48,31 @@ pub(super) struct Parameters {
     pub rough_per_metre: [f32; 2],
     pub rough_cells: [u32; 2],
     pub smoothing: f32,
-    pub unused: f32,
+    pub rain: u32,
+    pub patches_per_metre: [f32; 2],
+    pub patches: [u32; 2],
+    pub patch_area: f32,
+    pub film: f32,
+    pub drop_h: f32,
+    pub scheme: u32,
+    pub before: f32,
+    pub reach_over_h: f32,
+    pub in_air: u32,
+    pub fall_step: f32,
+    pub rest_density: f32,
+    pub gas_constant: f32,
+    pub paper_viscosity: f32,
+    pub clips_pressure: u32,
+    pub control: u32,
+    pub control_strength: f32,
+    pub control_square: f32,
+    pub first_h: f32,
+    pub widest_h: f32,
+    pub unused: [f32; 3],
 }
+
+/// Scheme paper.
+pub(super) const PAPER: u32 = 1;
 
 /// What the sides do.
 pub(super) const OPEN: u32 = 0;
@@ -91,7 +114,7 @@ pub(super) struct Status {
     pub next_id: u32,
     pub steps_before: u32,
     pub falling: u32,
-    pub is_wetting: u32,
+    pub spare: u32,
     pub stages: [f32; 4],
     pub next_stages: [f32; 4],
     pub rained: [f32; 2],
@@ -131,6 +154,20 @@ pub(super) struct CardBirth {
     pub zone: u32,
 }
 
+/// A particle in the air.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardDrop {
+    pub place: [f32; 2],
+    pub velocity: [f32; 2],
+    pub z: f32,
+    pub w: f32,
+    pub volume: f32,
+    pub h: f32,
+    pub id: u32,
+    pub is_up: u32,
+}
+
 /// A boundary particle.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -139,7 +176,9 @@ pub(super) struct WallSite {
     pub normal: [f32; 2],
     pub area: f32,
     pub obstacle: u32,
-    pub unused: [f32; 2],
+    /// Its area as scheme paper has it, m2.
+    pub volume: f32,
+    pub unused: f32,
 }
 
 /// Where particles may touch an obstacle, the force on it now, and its sum over time with what that lacks.
@@ -152,6 +191,22 @@ pub(super) struct OnObstacle {
     pub impulse: [[f32; 2]; 2],
     pub unused: [f32; 2],
 }
+
+/// A cell of the ground that rain falls on.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Patch {
+    pub film: f32,
+    pub factor: f32,
+    pub soaked: [f32; 2],
+    pub law: u32,
+    pub gain: f32,
+    pub demand: f32,
+    pub is_deep: u32,
+}
+
+/// The parts of a metre in which the ground counts what it takes of particles.
+pub(super) const DEPTH: f64 = 1e10;
 
 /// What a `vec3f` takes in an array.
 pub(super) type Push = [f32; 4];

@@ -2,20 +2,26 @@
 //!
 //! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it.
 
+mod air;
 mod ground;
 mod layout;
 mod tasks;
 mod walls;
+mod weather;
 mod works;
 
 use crate::balanced;
 use crate::edges::EdgeRule;
+use crate::falling::Falling;
 use crate::friction::Roughness;
 use crate::inflow::Source;
 use crate::particle::Particle;
+use crate::rain::{Ground, Intensity, Wetness};
 use crate::scheme::Surroundings;
 use crate::structures::{Flows, Structures};
+use air::Air;
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
+use corpuscle_scene::Paper;
 use corpuscle_terrain::{Bounds, Terrain};
 use layout::{CardBirth, CardParticle, Grid, OnObstacle, Origin, Parameters, Status};
 use rand::SeedableRng;
@@ -23,10 +29,14 @@ use rand_chacha::ChaCha8Rng;
 use std::time::Instant;
 use tasks::Tasks;
 use walls::Walls;
+use weather::Weather;
 use works::Works;
 
-/// Size of a cell over the mean smoothing length, as on the CPU.
-const CELL_OVER_H: f64 = 1.2;
+/// Size of a cell over the mean reach, as on the CPU in scheme balanced.
+const CELL_OVER_REACH: f64 = 0.6;
+
+/// The same in scheme paper.
+const CELL_OVER_REACH_PAPER: f64 = 1.4;
 
 /// The cells are laid out anew after so many steps; in between the host reads no more than it must.
 const LAID_OUT: u64 = 64;
@@ -45,6 +55,8 @@ pub(crate) struct Card {
     tasks: Tasks,
     walls: Walls,
     works: Works,
+    weather: Option<Weather>,
+    air: Option<Air>,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -78,9 +90,16 @@ pub(crate) struct Birth {
 pub(crate) struct Setting<'a> {
     pub surroundings: &'a Surroundings,
     pub scheme: &'a balanced::Parameters,
+    /// Scheme paper in its place, and its smoothing length at the start is `h`.
+    pub paper: Option<&'a Paper>,
+    /// Particles in the air.
+    pub falling: usize,
+    /// The longest step while any are, s.
+    pub fall_step: f64,
     pub roughness: &'a Roughness,
     pub sources: &'a [Source],
     pub structures: &'a Structures,
+    pub ground: Option<&'a Ground>,
     pub seed: u64,
     pub shortest_step: f64,
     /// Volume, m3, smoothing length, m, and distance, m, of new particles.
@@ -104,10 +123,13 @@ pub(crate) struct Water<'a> {
     /// Forces on obstacles summed over time so far, m4/s, and how often a particle was put back.
     pub impulses: &'a [[f64; 2]],
     pub put_back: u64,
-    /// Steps so far.
+    /// Time, s, and steps so far.
+    pub time: f64,
     pub steps: u64,
     pub next_id: u64,
     pub flows: &'a Flows,
+    pub wetness: &'a Wetness,
+    pub falling: &'a [Falling],
 }
 
 /// What the water has done to obstacles.
@@ -134,6 +156,8 @@ pub(crate) struct Progress {
     pub inflow: f64,
     pub momentum_lost: f64,
     pub momentum_gained: f64,
+    pub rained: f64,
+    pub infiltrated: f64,
     pub from_outside: [f64; 2],
     pub mean_h: f64,
     /// How many of the births have been, and the identity of the next new particle.
@@ -155,6 +179,8 @@ impl Progress {
             inflow: 0.0,
             momentum_lost: 0.0,
             momentum_gained: 0.0,
+            rained: 0.0,
+            infiltrated: 0.0,
             from_outside: [0.0; 2],
             mean_h: 0.0,
             born: 0,
@@ -173,6 +199,8 @@ impl Progress {
             inflow: self.inflow + later.inflow,
             momentum_lost: self.momentum_lost + later.momentum_lost,
             momentum_gained: self.momentum_gained + later.momentum_gained,
+            rained: self.rained + later.rained,
+            infiltrated: self.infiltrated + later.infiltrated,
             born: self.born + later.born,
             ..later
         }
@@ -182,15 +210,20 @@ impl Progress {
 impl Card {
     /// Room for `count` particles.
     pub fn new(gpu: Gpu, count: usize, setting: &Setting<'_>) -> Result<Self, GpuError> {
-        let &Setting { surroundings, scheme, roughness, sources, structures, .. } = setting;
+        let &Setting { surroundings, scheme, roughness, sources, structures, ground, .. } = setting;
         let bounds = surroundings.edges.bounds;
         let origin = Origin {
             centre: bounds.centre(),
             level: surroundings.terrain.height(bounds.centre()[0], bounds.centre()[1]),
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
-        let walls = Walls::new(&gpu, &surroundings.obstacles, origin, 2.0 * scheme.largest_h)?;
-        let works = Works::new(&gpu, surroundings, sources, structures, origin, setting.h)?;
+        let farthest = setting.paper.map_or(2.0 * scheme.largest_h, |paper| paper.largest_smoothing * setting.h);
+        let walls = Walls::new(&gpu, &surroundings.obstacles, origin, farthest)?;
+        let rain = ground.and_then(|ground| match &ground.intensity {
+            Intensity::Table(table) => Some(table),
+            Intensity::None | Intensity::Function(_) => None,
+        });
+        let works = Works::new(&gpu, surroundings, sources, structures, rain, origin, setting.h)?;
         let [west, south] = origin.relative([bounds.x_min, bounds.y_min]);
         let [east, north] = origin.relative([bounds.x_max, bounds.y_max]);
         let mut parameters = Parameters {
@@ -214,11 +247,38 @@ impl Card {
             new_h: setting.h as f32,
             spacing: setting.spacing as f32,
             smoothing: 1.0,
+            before: 0.5,
+            reach_over_h: 2.0,
+            in_air: setting.falling as u32,
+            fall_step: setting.fall_step as f32,
+            rain: works.rain,
             ..Parameters::default()
         };
+        if let Some(paper) = setting.paper {
+            tell_of_paper(&mut parameters, paper, setting.h);
+        }
         let rough = ground::roughness(&gpu, roughness, bounds, origin, &mut parameters)?;
+        let mut weather = None;
+        if let Some(ground) = ground {
+            weather = Some(Weather::new(&gpu, ground, count, scheme.eta, &mut parameters)?);
+        }
+        if setting.paper.is_some() {
+            parameters.drop_h = setting.h as f32;
+        }
+        let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
         let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
-        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, [&nodes, &rough], &walls, &works)?;
+        let tasks = Tasks::new(
+            &gpu,
+            count,
+            most_cells,
+            MOST_BIRTHS,
+            [&nodes, &rough],
+            &walls,
+            &works,
+            weather.as_ref(),
+            air.as_ref(),
+            setting.paper.is_some(),
+        )?;
         let status = Status::default();
         Ok(Self {
             gpu,
@@ -226,6 +286,8 @@ impl Card {
             tasks,
             walls,
             works,
+            weather,
+            air,
             parameters,
             origin,
             bounds,
@@ -259,11 +321,22 @@ impl Card {
         self.room
     }
 
+    /// Particles in the air that there is room for.
+    pub fn room_in_air(&self) -> usize {
+        self.air.as_ref().map_or(0, |air| air.room)
+    }
+
     /// Hands the water over.
     pub fn send(&mut self, water: &Water<'_>) {
         let Water { particles, step, from_outside, on_obstacles, impulses, put_back, .. } = *water;
         self.walls.begin(&self.gpu, on_obstacles);
         self.works.begin(&self.gpu, water.flows);
+        if let Some(weather) = &self.weather {
+            weather.begin(&self.gpu, water.wetness);
+        }
+        if let Some(air) = &self.air {
+            air.begin(&self.gpu, water.falling, self.origin);
+        }
         self.done_before = DoneToObstacles { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
         self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
@@ -280,6 +353,8 @@ impl Card {
             high: corners(f32::max, -f32::MAX),
             next_id: water.next_id as u32,
             steps_before: water.steps as u32,
+            falling: water.falling.len() as u32,
+            wetted: (water.wetness.until - water.time) as f32,
             ..Status::default()
         };
         (self.steps, self.ahead) = (0, false);
@@ -302,12 +377,31 @@ impl Card {
     /// Whether the room may not do for `births` more until it is time to ask again; none where it is not time to.
     pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
         let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
-        self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+        self.steps.is_multiple_of(LAID_OUT)
+            && (self.status.particles + self.status.falling) as usize + births(horizon) > self.room
     }
 
     /// What outflows and links owe and lead.
     pub fn flows(&self, flows: &mut Flows) -> Result<(), GpuError> {
         self.works.flows(&self.gpu, flows)
+    }
+
+    /// Water in the air.
+    pub fn falling(&self, falling: &mut Vec<Falling>) -> Result<(), GpuError> {
+        self.air.as_ref().map_or(Ok(()), |air| air.fetch(&self.gpu, falling, self.origin))
+    }
+
+    /// What stands on the ground and in it at the time `now`, s.
+    pub fn wetness(&self, now: f64, wetness: &mut Wetness) -> Result<(), GpuError> {
+        let Some(weather) = &self.weather else { return Ok(()) };
+        wetness.until = now + f64::from(self.status.wetted) - self.elapsed();
+        weather.fetch(&self.gpu, wetness)
+    }
+
+    /// Time since the host last spoke, s.
+    fn elapsed(&self) -> f64 {
+        let [sum, lacking] = self.status.elapsed.map(f64::from);
+        sum - lacking
     }
 
     /// What was done to obstacles.
@@ -339,7 +433,9 @@ impl Card {
                 zone: self.works.sources[birth.source],
             })
             .collect();
-        self.works.tell(&self.gpu, now, (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step));
+        let wetted = f64::from(self.status.wetted) - self.elapsed();
+        let since = if self.weather.is_some() { -wetted } else { 0.0 };
+        self.works.tell(&self.gpu, now, since, (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step));
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
@@ -354,6 +450,9 @@ impl Card {
             births: births.len() as u32,
             born: 0,
             elapsed: [0.0; 2],
+            wetted: wetted as f32,
+            rained: [0.0; 2],
+            infiltrated: [0.0; 2],
             outflow: [0.0; 2],
             inflow: [0.0; 2],
             momentum_lost: [0.0; 2],
@@ -390,6 +489,8 @@ impl Card {
             inflow: total(self.status.inflow),
             momentum_lost: total(self.status.momentum_lost),
             momentum_gained: total(self.status.momentum_gained),
+            rained: total(self.status.rained),
+            infiltrated: total(self.status.infiltrated),
             from_outside: self.status.from_outside.map(f64::from),
             mean_h: f64::from(mean_h),
             born: self.status.born as usize,
@@ -402,8 +503,17 @@ impl Card {
     fn lay_out(&mut self) -> Result<(), GpuError> {
         let Status { low, high, mean_h, particles, .. } = self.status;
         let any = particles > 0;
-        let [low, high] = [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
-        let smallest = if any { CELL_OVER_H * f64::from(mean_h) } else { self.bounds.size()[0] };
+        let over_reach = if self.parameters.scheme == layout::PAPER { CELL_OVER_REACH_PAPER } else { CELL_OVER_REACH };
+        let cell_over_h = over_reach * f64::from(self.parameters.reach_over_h);
+        let [mut low, mut high] =
+            [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
+        let mut smallest = if any { cell_over_h * f64::from(mean_h) } else { self.bounds.size()[0] };
+        if self.weather.is_some() || self.status.falling > 0 {
+            // Drops fall anywhere.
+            let [west, east, south, north] = self.parameters.bounds.map(f64::from);
+            (low, high) = ([low[0].min(west), low[1].min(south)], [high[0].max(east), high[1].max(north)]);
+            smallest = if any { smallest } else { cell_over_h * f64::from(self.parameters.new_h) };
+        }
         let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
         let most = (self.most_cells - 1) as f64;
         let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);
@@ -438,4 +548,28 @@ fn rule(rule: &EdgeRule) -> u32 {
         EdgeRule::Open => layout::OPEN,
         EdgeRule::Stage(_) => layout::STAGE,
     }
+}
+
+/// What the shaders of scheme paper must know; `h` is the smoothing length at the start, m.
+fn tell_of_paper(parameters: &mut Parameters, paper: &Paper, h: f64) {
+    let widest = paper.largest_smoothing * h;
+    *parameters = Parameters {
+        scheme: layout::PAPER,
+        before: 0.0,
+        reach_over_h: 1.0,
+        smoothing: 0.5,
+        // A kernel reaches twice that far.
+        largest_h: (0.5 * widest) as f32,
+        longest_step: paper.time_step_s as f32,
+        rest_density: paper.density_kg_per_m3 as f32,
+        gas_constant: paper.gas_constant as f32,
+        paper_viscosity: paper.viscosity as f32,
+        clips_pressure: u32::from(paper.clip_negative_pressure),
+        control: u32::from(paper.control_force),
+        control_strength: paper.control_strength as f32,
+        control_square: paper.control_square as f32,
+        first_h: h as f32,
+        widest_h: widest as f32,
+        ..*parameters
+    };
 }

@@ -4,6 +4,7 @@
 use super::layout::Origin;
 use crate::edges::EdgeRule;
 use crate::hydraulics::Law;
+use crate::infiltration::MM_PER_H;
 use crate::inflow::Source;
 use crate::scheme::Surroundings;
 use crate::structures::{Flow, Flows, Structures};
@@ -33,8 +34,9 @@ struct Window {
     /// Where it stands among the numbers.
     at: usize,
     table: Table,
-    /// What is taken off each value.
+    /// What is taken off each value, and what it is multiplied by.
     less: f64,
+    times: f64,
 }
 
 /// Everything that water comes from and goes to.
@@ -43,6 +45,8 @@ pub(super) struct Works {
     pub buffer: wgpu::Buffer,
     /// The zone of each source.
     pub sources: Vec<u32>,
+    /// Where the rows of the rain are told; 0 where it does not rain.
+    pub rain: u32,
     pub has_structures: bool,
     pub holds_level: bool,
     windows: Vec<Window>,
@@ -56,6 +60,7 @@ impl Works {
         surroundings: &Surroundings,
         sources: &[Source],
         structures: &Structures,
+        rain: Option<&Table>,
         origin: Origin,
         h: f64,
     ) -> Result<Self, GpuError> {
@@ -66,11 +71,12 @@ impl Works {
         let sources = sources.iter().map(|source| list.zone(&source.zone)).collect();
         list.sides(h);
         list.structures(structures);
+        let rain = rain.map_or(0, |intensity| list.window(intensity, 0.0, MM_PER_H));
         let List { numbers, windows, .. } = list;
         let buffer = storage::<u32>(gpu, "zones and structures", numbers.len())?;
         gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&numbers));
         let (has_structures, holds_level) = (!structures.is_empty(), surroundings.edges.holds_level());
-        Ok(Self { buffer, sources, has_structures, holds_level, windows, flows })
+        Ok(Self { buffer, sources, rain, has_structures, holds_level, windows, flows })
     }
 
     /// Says what outflows and links owe.
@@ -97,13 +103,14 @@ impl Works {
         Ok(())
     }
 
-    /// Tells of what tables say from `now` s on for `horizon` s.
-    pub fn tell(&self, gpu: &Gpu, now: f64, horizon: f64) {
-        for Window { at, table, less } in &self.windows {
-            let rows = window(table, now, horizon);
+    /// Tells of what tables say from `since` s before the time `now`, s, to `horizon` s after it.
+    pub fn tell(&self, gpu: &Gpu, now: f64, since: f64, horizon: f64) {
+        for Window { at, table, less, times } in &self.windows {
+            let rows = window(table, now - since, since + horizon);
             let mut numbers = vec![rows.len() as u32];
-            numbers
-                .extend(rows.iter().flat_map(|[time, value]| [*time as f32, (value - less) as f32].map(f32::to_bits)));
+            numbers.extend(rows.iter().flat_map(|[time, value]| {
+                [time - since, times * (value - less)].map(|number| (number as f32).to_bits())
+            }));
             gpu.queue.write_buffer(&self.buffer, 4 * *at as u64, bytemuck::cast_slice(&numbers));
         }
     }
@@ -183,9 +190,9 @@ impl List<'_> {
         [first, rows.len() as u32]
     }
 
-    fn window(&mut self, table: &Table, less: f64) -> u32 {
+    fn window(&mut self, table: &Table, less: f64, times: f64) -> u32 {
         let at = self.end();
-        self.windows.push(Window { at: at as usize, table: table.clone(), less });
+        self.windows.push(Window { at: at as usize, table: table.clone(), less, times });
         self.numbers.resize(self.numbers.len() + 1 + 2 * WINDOW, 0);
         at
     }
@@ -197,7 +204,7 @@ impl List<'_> {
         for (side, length) in [height, height, width, width].into_iter().enumerate() {
             if let EdgeRule::Stage(level) = &edges.rules[side] {
                 self.numbers[STRIPS + side] = (length / (3.0 * h)).ceil().max(1.0) as u32;
-                self.numbers[LEVELS + side] = self.window(level, self.origin.level);
+                self.numbers[LEVELS + side] = self.window(level, self.origin.level, 1.0);
             }
         }
     }
@@ -213,7 +220,7 @@ impl List<'_> {
         }
         for held in held {
             let zone = self.zone(&held.zone);
-            records[1].extend([zone, self.window(&held.level, level)]);
+            records[1].extend([zone, self.window(&held.level, level, 1.0)]);
         }
         for link in links {
             let ends = [0, 1].map(|end| self.zone(&link.ends[end]));
