@@ -33,6 +33,23 @@ fn keep(value: f32, low: f32, high: f32, low_rule: u32, high_rule: u32) -> vec3f
     return vec3f(value, 1.0, select(2.0, 1.0, is_low));
 }
 
+// How near a particle comes to walls, m. Twin of `BeforeWalls::of` in `edges.rs`.
+fn before_walls(h: f32) -> f32 {
+    return select(0.25 * min(parameters.spacing, h / parameters.eta), 0.0, parameters.scheme == PAPER);
+}
+
+// A coordinate that is too near a wall, and its velocity, put off it: both, as they then are.
+fn put_off(value: f32, velocity: f32, low: f32, high: f32, low_rule: u32, high_rule: u32, off: f32) -> vec2f {
+    let before = min(off, 0.5 * (high - low));
+    if low_rule == WALL && value < low + before {
+        return vec2f(low + before, max(velocity, 0.0));
+    }
+    if high_rule == WALL && value > high - before {
+        return vec2f(high - before, min(velocity, 0.0));
+    }
+    return vec2f(value, velocity);
+}
+
 fn sum(pair: vec2f) -> f32 {
     return pair.x + pair.y;
 }
@@ -49,6 +66,16 @@ fn kept(particle: ptr<function, Particle>) -> vec3f {
     let before = sum(velocity);
     velocity *= vec2f(x.y, y.y);
     let side = select(u32(x.z), 2u + u32(y.z), y.z > 0.0);
+    var now = vec2f(x.x, y.x);
+    if side == 0u {
+        let bounds = parameters.bounds;
+        let rules = parameters.rules;
+        let off = before_walls((*particle).next_h);
+        let along_x = put_off(now.x, velocity.x, bounds.x, bounds.y, rules.x, rules.y, off);
+        let along_y = put_off(now.y, velocity.y, bounds.z, bounds.w, rules.z, rules.w, off);
+        now = vec2f(along_x.x, along_y.x);
+        velocity = vec2f(along_x.y, along_y.y);
+    }
     if was_inside && side == 0u {
         booked.z = volume * (sum(velocity) - before);
     } else if was_inside {
@@ -61,7 +88,7 @@ fn kept(particle: ptr<function, Particle>) -> vec3f {
         booked.y = volume;
         booked.z = volume * sum(velocity);
     }
-    (*particle).place = vec2f(x.x, y.x);
+    (*particle).place = now;
     (*particle).velocity = velocity;
     (*particle).outside = side;
     return booked;
