@@ -423,10 +423,12 @@ fn a_lake_stays_at_rest() {
 #[test]
 fn when_it_is_looked_at_does_not_matter() {
     let Some(gpu) = require_gpu("the flood on the card") else { return };
-    let (mut once, mut often) = (on_card(DAM, &gpu), on_card(DAM, &gpu));
-    go(&mut once, 6.0);
-    (1..=20).for_each(|k| go(&mut often, 0.3 * f64::from(k)));
-    assert_eq!(by_id(&once), by_id(&often));
+    for text in [DAM, RAIN, TIDE] {
+        let (mut once, mut often) = (on_card(text, &gpu), on_card(text, &gpu));
+        go(&mut once, 6.0);
+        (1..=20).for_each(|k| go(&mut often, 0.3 * f64::from(k)));
+        assert_eq!(by_id(&once), by_id(&often));
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 struct Birth {
     velocity: vec2f,
-    // Since the host last spoke, s.
+    // By the clock, s.
     time: f32,
     zone: u32,
 }
@@ -42,7 +42,7 @@ fn pour(thread: u32) {
             let is_going = status.halted == GOING && turn.birth < status.births;
             let room = turn.particles < arrayLength(&particles);
             turn.is_due = 0u;
-            if is_going && room && births[turn.birth].time <= status.elapsed.sum + status.step {
+            if is_going && room && births[turn.birth].time <= status.clock.sum + status.step {
                 turn.is_due = 1u;
             }
         }

@@ -149,11 +149,13 @@ struct Status {
     // Levels of sides held at one, above the level that heights are counted from, m: at the beginning of the step and at its end.
     stages: vec4f,
     next_stages: vec4f,
-    // Rain and what has soaked in, m3, and when it last did, s since the host last spoke.
+    // Rain and what has soaked in, m3, and when it last did by the clock, s.
     rained: Account,
     infiltrated: Account,
     wetted: f32,
-    unused: array<f32, 3>,
+    unused: f32,
+    // Time since the cells were last laid out, s: that of all tables, as how often the host speaks must not matter.
+    clock: Account,
 }
 
 const GOING = 0u;

@@ -55,7 +55,7 @@ fn book(rained: f32, given: f32, infiltrated: f32, momentum: f32) {
     all.rained = rain;
     all.infiltrated = lost;
     book_momentum(&all, -momentum);
-    all.wetted = all.elapsed.sum;
+    all.wetted = all.clock.sum;
     status = all;
 }
 

@@ -23,7 +23,7 @@ fn work(at: u32) -> f32 {
     return bitcast<f32>(works[at]);
 }
 
-// The level of a side at a time since the host last spoke, by the rows that the host has told.
+// The level of a side at a time of the clock, by the rows that the host has told.
 fn level_at(side: u32, time: f32) -> f32 {
     let window = works[LEVELS + side];
     if window == 0u {
@@ -64,6 +64,9 @@ fn book(all: Partial) {
     add(&outflow, all.outflow);
     add(&inflow, all.inflow);
     add(&elapsed, status.step);
+    var clock = status.clock;
+    add(&clock, status.step);
+    status.clock = clock;
     // The force over the step by its means at both ends, in scheme paper by that at its end.
     let mean = select(0.5 * (status.from_outside + all.from_outside), all.from_outside, parameters.scheme == PAPER);
     let push = status.step * mean;
@@ -101,8 +104,8 @@ fn decide() {
         status.halted = GOING;
     }
     for (var side = 0u; side < 4u; side++) {
-        status.stages[side] = level_at(side, status.elapsed.sum);
-        status.next_stages[side] = level_at(side, status.elapsed.sum + status.step);
+        status.stages[side] = level_at(side, status.clock.sum);
+        status.next_stages[side] = level_at(side, status.clock.sum + status.step);
     }
     let is_going = status.halted == GOING;
     let ground = parameters.patches.x * parameters.patches.y;

@@ -231,7 +231,7 @@ fn let_out(number: u32, thread: u32) {
 fn hold(number: u32, thread: u32) {
     let held = works[FIRSTS + 1u] + HELD * number;
     let zone = works[held];
-    let level = in_table(works[held + 1u] + 1u, works[works[held + 1u]], status.elapsed.sum);
+    let level = in_table(works[held + 1u] + 1u, works[works[held + 1u]], status.clock.sum);
     let lacks = missing_in(zone, level, thread);
     if thread == 0u {
         now.found.x = lacks;

@@ -29,7 +29,7 @@ fn rain_fallen() -> f32 {
         return 0.0;
     }
     let begin = status.wetted;
-    let end = status.elapsed.sum;
+    let end = status.clock.sum;
     var sum = 0.0;
     for (var k = 1u; k < works[window]; k++) {
         let left = work_pair(window + 2u * k - 1u);
@@ -103,7 +103,7 @@ fn demand(law: vec4f, soaked: f32, step: f32) -> f32 {
 // Rain less what is handed to particles, and what soaks in of the film, m3.
 fn wet(cell: u32) -> vec2f {
     let area = parameters.patch_area;
-    let step = status.elapsed.sum - status.wetted;
+    let step = status.clock.sum - status.wetted;
     var own = ground[cell];
     var soaked = own.soaked;
     add(&soaked, f32(tallies[2u * cell + 1u]) / DEPTH);

@@ -120,7 +120,8 @@ pub(super) struct Status {
     pub rained: [f32; 2],
     pub infiltrated: [f32; 2],
     pub wetted: f32,
-    pub unused: [f32; 3],
+    pub unused: f32,
+    pub clock: [f32; 2],
 }
 
 /// Values of [`Status::halted`]: broken down; and the host has said until when to go on.

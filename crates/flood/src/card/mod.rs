@@ -66,6 +66,9 @@ pub(crate) struct Card {
     most_cells: usize,
     /// Steps in all, to lay the cells out at the same ones however often the host looks.
     steps: u64,
+    /// The time that the clock of the device counts from, s, and how long before that it last rained, s.
+    clock_began: f64,
+    dry_before: f64,
     /// Steps in a batch.
     batch: u32,
     /// Whether the host has not the state that is here.
@@ -294,6 +297,8 @@ impl Card {
             status,
             most_cells,
             steps: 0,
+            clock_began: 0.0,
+            dry_before: 0.0,
             batch: 4,
             ahead: false,
             busy: 0.0,
@@ -357,7 +362,7 @@ impl Card {
             wetted: (water.wetness.until - water.time) as f32,
             ..Status::default()
         };
-        (self.steps, self.ahead) = (0, false);
+        (self.steps, self.ahead, self.clock_began) = (0, false, water.time);
     }
 
     /// Brings the water back, where there is any news of it.
@@ -391,17 +396,11 @@ impl Card {
         self.air.as_ref().map_or(Ok(()), |air| air.fetch(&self.gpu, falling, self.origin))
     }
 
-    /// What stands on the ground and in it at the time `now`, s.
-    pub fn wetness(&self, now: f64, wetness: &mut Wetness) -> Result<(), GpuError> {
+    /// What stands on the ground and in it.
+    pub fn wetness(&self, wetness: &mut Wetness) -> Result<(), GpuError> {
         let Some(weather) = &self.weather else { return Ok(()) };
-        wetness.until = now + f64::from(self.status.wetted) - self.elapsed();
+        wetness.until = self.clock_began + f64::from(self.status.wetted);
         weather.fetch(&self.gpu, wetness)
-    }
-
-    /// Time since the host last spoke, s.
-    fn elapsed(&self) -> f64 {
-        let [sum, lacking] = self.status.elapsed.map(f64::from);
-        sum - lacking
     }
 
     /// What was done to obstacles.
@@ -424,18 +423,21 @@ impl Card {
     pub fn advance(&mut self, now: f64, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
+            let [sum, lacking] = self.status.clock;
+            self.status.wetted -= sum - lacking;
+            self.status.clock = [0.0; 2];
+            (self.clock_began, self.dry_before) = (now, -f64::from(self.status.wetted).min(0.0));
         }
         let births: Vec<_> = births
             .iter()
             .map(|birth| CardBirth {
                 velocity: birth.velocity.map(|along| along as f32),
-                time: birth.time as f32,
+                time: (birth.time + now - self.clock_began) as f32,
                 zone: self.works.sources[birth.source],
             })
             .collect();
-        let wetted = f64::from(self.status.wetted) - self.elapsed();
-        let since = if self.weather.is_some() { -wetted } else { 0.0 };
-        self.works.tell(&self.gpu, now, since, (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step));
+        let horizon = (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step);
+        self.works.tell(&self.gpu, self.clock_began, self.dry_before, horizon);
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
@@ -450,7 +452,6 @@ impl Card {
             births: births.len() as u32,
             born: 0,
             elapsed: [0.0; 2],
-            wetted: wetted as f32,
             rained: [0.0; 2],
             infiltrated: [0.0; 2],
             outflow: [0.0; 2],

@@ -192,7 +192,7 @@ impl Flood {
             card.fetch(&mut state.particles, &self.surroundings.terrain)?;
             card.flows(&mut state.flows)?;
             card.falling(&mut state.falling)?;
-            card.wetness(began + done.elapsed, &mut state.wetness)?;
+            card.wetness(&mut state.wetness)?;
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.owed, self.state.next_id) = (owed, done.next_id);
