@@ -12,7 +12,7 @@ use crate::plots::Plots;
 use crate::touch::{self, Touched};
 use crate::transport::{Pressed, Transport};
 use crate::{Screen, files, style};
-use corpuscle::scene::{Builtin, Scene, Units};
+use corpuscle::scene::{Builtin, Scene, SceneError, Units};
 use egui::{Context, Frame, Key, Margin, Panel, RichText, ScrollArea, Ui, vec2};
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -41,6 +41,23 @@ pub struct Source {
     pub folder: PathBuf,
     /// What was changed in it: paths of values, and the values.
     pub changes: Vec<(String, String)>,
+}
+
+impl Source {
+    /// The scene with its changes.
+    ///
+    /// # Errors
+    /// Where the text or a change is refused.
+    pub fn scene(&self) -> Result<Scene, SceneError> {
+        let written = Scene::parse(&self.text, &self.name, &[])?;
+        if self.changes.is_empty() {
+            return Ok(written);
+        }
+        // What has a default is written out, so that every value has its place.
+        let mut whole = written;
+        whole.resolve_defaults();
+        Scene::parse(&whole.to_toml()?, &self.name, &self.changes)
+    }
 }
 
 impl From<Builtin> for Source {
@@ -156,7 +173,7 @@ impl Window {
     /// Opens a scene.
     pub fn open(&mut self, source: Source) {
         self.fault = None;
-        match Scene::parse(&source.text, &source.name, &source.changes) {
+        match source.scene() {
             Ok(scene) => {
                 self.physics.ask(Command::Open(Box::new(scene), source.folder.clone()));
                 self.awaited = Some(Awaited::Scene(source));
@@ -387,7 +404,8 @@ impl Window {
 
     fn save_scene(&mut self) {
         let Some(open) = &self.open else { return };
-        let changed = Scene::parse(&open.source.text, &open.source.name, open.parameters.changes());
+        let changes = open.parameters.changes().to_vec();
+        let changed = Source { changes, ..open.source.clone() }.scene();
         let text = changed.map_err(|error| error.to_string()).and_then(|mut scene| {
             scene.resolve_paths(&open.source.folder);
             scene.to_toml().map_err(|error| error.to_string())

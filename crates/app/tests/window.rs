@@ -56,7 +56,7 @@ fn a_gas_is_heated_and_its_parameters_wait_for_a_restart() {
 fn a_flood_and_dew_are_opened_and_play() {
     let Some(mut stage) = stage("flood and dew in the window") else { return };
     for (title, name, least) in [("A lake at rest over a hill", "flood", 1e-3), ("A cold pane", "dew", 1e-3)] {
-        stage.click(title);
+        stage.choose(title);
         let plays = |window: &corpuscle_app::Window| {
             !window.is_waiting() && window.snapshot().is_some_and(|snapshot| snapshot.frame.time > least)
         };

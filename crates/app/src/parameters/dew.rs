@@ -31,13 +31,14 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
     for side in ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"] {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let path = format!("dew.faces.{side}.inflow.velocity_m_per_s.{axis}");
-            builder.number(
-                path,
-                &format!("Wind at {side} along {name}"),
-                "m/s",
-                [-2.0, 2.0],
-                "Velocity of the air that comes in here",
-            );
+            let range = match (side.starts_with(name), side.ends_with("min")) {
+                (false, _) => [-2.0, 2.0],
+                // Into the box.
+                (true, true) => [0.01, 2.0],
+                (true, false) => [-2.0, -0.01],
+            };
+            let hint = "Velocity of the air that comes in here";
+            builder.number(path, &format!("Wind at {side} along {name}"), "m/s", range, hint);
         }
     }
     for number in 0..dew.fan.len() {
@@ -92,5 +93,5 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
             "How air is kept out of solids",
             Control::Choice(TREATMENTS),
         )
-        .scaled("dew.spacing_m", "Distance of particles", "m", "Half of it: eight times the particles");
+        .between("dew.spacing_m", "Distance of particles", "m", [0.5, 2.0], "Half of it: eight times the particles");
 }

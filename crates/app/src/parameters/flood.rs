@@ -31,7 +31,7 @@ pub(super) fn parameters(builder: &mut Builder<'_>, flood: &Flood) {
         .number(
             "flood.manning",
             "Manning's n",
-            "s/m^⅓",
+            "s/m^(1/3)",
             [0.0, 0.15],
             "Roughness: 0 for none, 0.03 for grass, 0.1 for woods",
         )

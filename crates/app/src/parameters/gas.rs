@@ -3,7 +3,8 @@
 use super::{Builder, Control};
 use crate::physics::Change;
 use corpuscle::ByHand;
-use corpuscle::scene::{Axis, Gas, Wall};
+use corpuscle::scene::{Axis, Gas, Species, Wall};
+use std::f64::consts::PI;
 
 /// Ways to move a gas on, as a scene writes them; the step of the last is set apart.
 const METHODS: &[(&str, &str)] = &[
@@ -15,19 +16,23 @@ const STARTS: &[(&str, &str)] = &[("anywhere", "\"random\""), ("on a lattice", "
 const SPEEDS: &[(&str, &str)] = &[("after Maxwell", "\"maxwell\""), ("all the same", "\"equal\"")];
 
 pub(super) fn parameters(builder: &mut Builder<'_>, gas: &Gas) {
+    // The ball that is followed must be there.
+    let least = gas.follow.map_or(1.0, |ball| ball as f64 + 1.0);
     for (number, species) in gas.species.iter().enumerate() {
         let path = |key: &str| format!("gas.species.{number}.{key}");
-        let most = (10.0 * species.count.unwrap_or_default() as f64).clamp(100.0, 1e6);
+        let room = room(gas, species);
+        let most = (species.count.unwrap_or_default() as f64 * room.min(10.0)).floor().clamp(least, 1e6);
+        let wider = room.powf(1.0 / gas.dimensions() as f64).min(10.0);
         builder
             .group(format!("Balls: {}", species.name))
-            .add(path("count"), "Number", "", "Number of balls", Control::Whole([1.0, most]))
+            .add(path("count"), "Number", "", "Number of balls", Control::Whole([least, most]))
             .scaled(
                 path("temperature"),
                 "Temperature at the start",
                 "",
                 "How fast they begin: the mean energy of a ball",
             )
-            .scaled(path("radius"), "Radius", "", "Radius of a ball")
+            .between(path("radius"), "Radius", "", [0.1 * wider.min(1.0), wider], "Radius of a ball")
             .scaled(path("mass"), "Mass", "", "Mass of a ball")
             .add(path("speeds"), "Speeds at the start", "", "How speeds are spread at first", Control::Choice(SPEEDS))
             .add(path("start"), "Places at the start", "", "Where balls begin", Control::Choice(STARTS));
@@ -86,6 +91,24 @@ pub(super) fn parameters(builder: &mut Builder<'_>, gas: &Gas) {
             }
         }
     }
+}
+
+/// Packing up to which balls are offered more room or company, shared by all species; far below what can be set up.
+const FULL: [f64; 2] = [0.6, 0.42];
+
+/// How many times more volume the balls of a species may fill.
+fn room(gas: &Gas, species: &Species) -> f64 {
+    let box_volume: f64 = gas.size.iter().product();
+    let own =
+        species.region.as_ref().map(|region| region.from.iter().zip(&region.to).map(|(from, to)| to - from).product());
+    let volume = own.unwrap_or(box_volume);
+    let ball = match gas.dimensions() {
+        2 => PI * species.radius.powi(2),
+        _ => 4.0 / 3.0 * PI * species.radius.powi(3),
+    };
+    let filled = species.count.map_or(species.packing.unwrap_or(1.0), |count| count as f64 * ball / volume);
+    let full = FULL[usize::from(gas.dimensions() > 2)] / gas.species.len() as f64;
+    (full / filled).max(1.0)
 }
 
 /// The wall that a path names, as its axis and its end.

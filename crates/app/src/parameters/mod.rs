@@ -93,10 +93,22 @@ impl Builder<'_> {
 
     /// A number above 0 from a tenth of what it is to ten times as much.
     fn scaled(&mut self, path: impl Into<String>, name: &str, unit: &'static str, hint: &'static str) -> &mut Self {
+        self.between(path, name, unit, [0.1, 10.0], hint)
+    }
+
+    /// A number above 0 in a range that is told in parts of what it is.
+    fn between(
+        &mut self,
+        path: impl Into<String>,
+        name: &str,
+        unit: &'static str,
+        parts: [f64; 2],
+        hint: &'static str,
+    ) -> &mut Self {
         let path = path.into();
         match value_at(self.document, &path).and_then(as_number).filter(|value| *value > 0.0) {
             Some(value) => {
-                let range = [0.1 * value, 10.0 * value];
+                let range = parts.map(|part| part * value);
                 self.add(path, name, unit, hint, Control::Number { range, logarithmic: true })
             }
             None => self,
@@ -375,11 +387,13 @@ fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Source;
     use corpuscle::scene::BUILTIN;
 
     /// Every value that is offered can be set through its path, to the ends of its range or another choice.
     #[test]
     fn every_parameter_of_every_scene_can_be_changed() {
+        let mut refused = Vec::new();
         for builtin in BUILTIN {
             let scene = Scene::parse(builtin.text, builtin.name, &[]).unwrap();
             let parameters = Parameters::new(&scene, Vec::new());
@@ -392,12 +406,15 @@ mod tests {
                     Control::Choice(choices) => choices.iter().map(|(_, written)| (*written).to_owned()).collect(),
                 };
                 for value in values {
-                    let change = [(parameter.path.clone(), value.clone())];
-                    let changed = Scene::parse(builtin.text, builtin.name, &change);
-                    assert!(changed.is_ok(), "{} {} = {value}: {:?}", builtin.name, parameter.path, changed.err());
+                    let changes = vec![(parameter.path.clone(), value.clone())];
+                    let changed = Source { changes, ..Source::from(*builtin) }.scene();
+                    if let Err(error) = changed {
+                        refused.push(format!("{} {} = {value}: {error}", builtin.name, parameter.path));
+                    }
                 }
             }
         }
+        assert!(refused.is_empty(), "{}", refused.join("\n"));
     }
 
     #[test]

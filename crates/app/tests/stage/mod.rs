@@ -115,6 +115,13 @@ impl Stage {
         self.harness.step();
     }
 
+    /// Chooses a scene by its title, wherever in its list it stands, as a screen reader does.
+    pub fn choose(&mut self, title: &str) {
+        self.harness.get_by_role_and_label(Role::Button, title).click_accesskit();
+        self.harness.step();
+        self.harness.step();
+    }
+
     /// True where something is called so.
     pub fn has(&self, name: &str) -> bool {
         self.harness.query_all_by_label(name).next().is_some()
