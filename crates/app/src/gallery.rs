@@ -137,7 +137,7 @@ impl Entry {
             ui.painter().galley(text.min, title, Color32::PLACEHOLDER);
             ui.painter().galley(below, sentence, Color32::PLACEHOLDER);
         }
-        response.on_hover_text(&self.sentence)
+        response
     }
 
     fn ground(&self, ui: &Ui, rect: Rect, response: &Response, open: bool) {

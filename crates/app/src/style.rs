@@ -23,6 +23,8 @@ const QUIET: [Color32; 2] = [Color32::from_rgb(0x5d, 0x68, 0x74), Color32::from_
 /// Sets letters and both themes; which of them is shown follows the system.
 pub fn set_up(context: &Context) {
     context.set_fonts(fonts());
+    // Where the system does not say: light shows better on a wall.
+    context.options_mut(|options| options.fallback_theme = Theme::Light);
     for (number, theme) in [Theme::Light, Theme::Dark].into_iter().enumerate() {
         context.style_mut_of(theme, |style| set_theme(style, number));
     }

@@ -323,6 +323,8 @@ impl Window {
                 ui.label(RichText::new("Particle physics to look at and to touch while it runs.").size(15.0).weak());
                 ui.add_space(6.0);
                 self.told_fault(ui);
+                // Beside the bar that scrolls.
+                ui.set_max_width(ui.available_width() - 16.0);
                 chosen = self.gallery.cards(ui);
                 ui.add_space(40.0);
             });

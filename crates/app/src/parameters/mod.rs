@@ -298,6 +298,9 @@ impl Parameters {
     }
 }
 
+/// Width of a number beside its slider, points.
+const VALUE: f32 = 92.0;
+
 /// A slider with its number beside it; true where it was changed.
 fn slider(
     ui: &mut Ui,
@@ -311,7 +314,7 @@ fn slider(
     let before = *number;
     let range = [range[0].min(before), range[1].max(before)];
     ui.horizontal(|ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 96.0).max(60.0);
+        ui.spacing_mut().slider_width = (ui.available_width() - VALUE - 12.0).max(60.0);
         let mut slider = Slider::new(number, range[0]..=range[1]).logarithmic(logarithmic).show_value(false);
         if whole {
             slider = slider.integer();
@@ -331,7 +334,7 @@ fn slider(
         if !unit.is_empty() {
             typed = typed.suffix(format!(" {unit}"));
         }
-        let typed = ui.add(typed);
+        let typed = ui.add_sized([VALUE, 24.0], typed);
         typed.widget_info(|| WidgetInfo { label: Some(name.into()), ..WidgetInfo::drag_value(true, before) });
     });
     *number != before
