@@ -65,7 +65,7 @@ mod tests {
         assert!((away.length() - 0.5 * far).abs() < 1e-9);
         assert!((away.y.atan2(away.x) - 1.3).abs() < 1e-9 && ((away.z / away.length()).asin() - 0.6).abs() < 1e-9);
         assert_eq!(moved.target, camera.target + DVec3::X);
-        assert_eq!(Hand::default().moved(camera).eye.distance(camera.eye) < 1e-9, true);
+        assert!(Hand::default().moved(camera).eye.distance(camera.eye) < 1e-9);
         // Never over the top.
         let over = Hand { turn: [0.0, 9.0], ..Hand::default() }.moved(camera);
         assert!(over.eye.z < over.target.z + far && over.eye.is_finite());

@@ -9,6 +9,8 @@ use corpuscle_gpu::{Gpu, wgpu};
 use seen::{Seen, SeenPainter};
 use std::sync::Arc;
 
+/// Corners that are drawn for a ball: two triangles.
+const CORNERS: u32 = 6;
 /// Balls in one buffer at most: within the floor's 128 MiB.
 const MOST: usize = 6 << 20;
 /// From so many on, one before the other, they are shaded only where they are seen.
@@ -91,7 +93,7 @@ impl BallPainter {
             module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            topology: wgpu::PrimitiveTopology::TriangleList,
         };
         let seen = SeenPainter::new(renderer, &layout).into();
         Self {
@@ -150,7 +152,7 @@ impl Balls {
         pass.set_pipeline(pipeline);
         for (group, count) in &self.parts {
             pass.set_bind_group(1, group, &[]);
-            pass.draw(0..4, 0..*count);
+            pass.draw(0..CORNERS * count, 0..1);
         }
     }
 }
