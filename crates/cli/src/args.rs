@@ -32,6 +32,9 @@ pub enum Command {
     Run(RunOptions),
     /// Draw pictures of a finished run into its folder
     Render(RenderOptions),
+    /// Open the window: look at a scene and touch it while it runs
+    #[cfg(feature = "window")]
+    View(ViewOptions),
     /// List the built-in scenes, show one, or copy one to edit
     Scenes(ScenesOptions),
     /// Say what would be run: sizes, memory, time step, warnings
@@ -231,6 +234,20 @@ pub struct RenderOptions {
     pub samples: u32,
     #[command(flatten)]
     pub look: LookOptions,
+}
+
+#[cfg(feature = "window")]
+#[derive(Debug, Args)]
+pub struct ViewOptions {
+    /// A built-in scene (`corpuscle scenes` lists them), a TOML file, or the folder of a run [default: the first page]
+    #[arg(value_name = "SCENE|RUN")]
+    pub what: Option<String>,
+    /// Change a value of the scene, as in `--set flood.scheme=paper`; rows of lists are counted from 0
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, requires = "what")]
+    pub set: Vec<(String, String)>,
+    /// Play for so many seconds, tell how many pictures there were in a second, and close
+    #[arg(long, value_name = "S", hide = true, requires = "what")]
+    pub measure: Option<f64>,
 }
 
 #[derive(Debug, Args)]

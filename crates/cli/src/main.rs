@@ -18,6 +18,8 @@ mod select;
 mod suggestion;
 mod terrain;
 mod validate;
+#[cfg(feature = "window")]
+mod view;
 
 use anyhow::Context;
 use args::{Arguments, Command};
@@ -42,6 +44,8 @@ fn dispatch(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     match &arguments.command {
         Command::Run(options) => run::run(options, arguments.json),
         Command::Render(options) => render::render(options, arguments.json),
+        #[cfg(feature = "window")]
+        Command::View(options) => view::view(options),
         Command::Scenes(options) => scenes::scenes(options, arguments.json),
         Command::Check(options) => check::check(options, arguments.json),
         Command::Validate(options) => validate::validate(options, arguments.json),

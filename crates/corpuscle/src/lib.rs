@@ -32,6 +32,7 @@ mod sink;
 pub use corpuscle_fetch as fetch;
 #[cfg(feature = "film")]
 pub use corpuscle_film as film;
+pub use corpuscle_gas::ByHand;
 #[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;

@@ -3,6 +3,7 @@
 
 pub mod bars;
 pub mod colour;
+pub mod fonts;
 pub mod png;
 pub mod style;
 pub mod svg;

@@ -1,5 +1,6 @@
 //! PNG: pictures from pixels, and from SVG with the fonts that come along.
 
+use crate::fonts::{REGULAR, SEMI_BOLD};
 use crate::svg::Figure;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -13,8 +14,8 @@ const PIXELS: f32 = 1.6;
 /// The only fonts, so that a picture is the same on every machine.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut fonts = Database::new();
-    fonts.load_font_data(include_bytes!("../fonts/Inter-Regular.otf").to_vec());
-    fonts.load_font_data(include_bytes!("../fonts/Inter-SemiBold.otf").to_vec());
+    fonts.load_font_data(REGULAR.to_vec());
+    fonts.load_font_data(SEMI_BOLD.to_vec());
     Arc::new(fonts)
 });
 

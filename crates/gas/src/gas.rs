@@ -2,13 +2,17 @@
 
 mod advance;
 mod build;
+mod by_hand;
 mod model;
 mod observe;
 mod state;
 
+pub use by_hand::ByHand;
+
 use crate::measure::Measures;
 use crate::method::Mover;
 use crate::setup::{Schedule, Setup};
+use by_hand::HandTally;
 
 /// Hard balls in a box, from collision to collision.
 ///
@@ -34,6 +38,8 @@ pub struct Gas<const D: usize> {
     /// Path and number of its ends at the last check of the balls' room.
     checked: (f64, u64),
     si: bool,
+    /// What a hand gave and took.
+    hand: HandTally,
 }
 
 /// Balls of one name.

@@ -21,7 +21,7 @@ pub mod theory;
 mod world;
 
 pub use error::SetupError;
-pub use gas::Gas;
+pub use gas::{ByHand, Gas};
 pub use measure::Estimate;
 pub use method::{Nearest, With};
 pub use scene::open;

@@ -65,26 +65,38 @@ impl Gpu {
         description.flags = wgpu::InstanceFlags::empty();
         let instance = wgpu::Instance::new(description);
         let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
-        adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+        adapters.sort_by_key(Self::rank);
         let mut refused = GpuError::NoDevice;
         for adapter in adapters {
-            let info = adapter.get_info();
-            let request = wgpu::DeviceDescriptor {
-                label: Some("corpuscle"),
-                required_limits: limits(&adapter.limits()),
-                ..wgpu::DeviceDescriptor::default()
-            };
-            match adapter.request_device(&request).await {
-                Ok((device, queue)) => {
-                    let software = info.device_type == wgpu::DeviceType::Cpu;
-                    let kind = if software { GpuKind::Software } else { GpuKind::Card };
-                    let faults = Faults::of(&device);
-                    return Ok(Self { device, queue, name: info.name, kind, faults });
-                }
-                Err(error) => refused = GpuError::Refused { name: info.name, reason: error.to_string() },
+            match adapter.request_device(&Self::request(&adapter)).await {
+                Ok((device, queue)) => return Ok(Self::of(&adapter, device, queue)),
+                Err(error) => refused = GpuError::Refused { name: adapter.get_info().name, reason: error.to_string() },
             }
         }
         Err(refused)
+    }
+
+    /// A device that somebody else opened with [`Gpu::request`], such as a window's.
+    pub fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let info = adapter.get_info();
+        let software = info.device_type == wgpu::DeviceType::Cpu;
+        let kind = if software { GpuKind::Software } else { GpuKind::Card };
+        let faults = Faults::of(&device);
+        Self { device, queue, name: info.name, kind, faults }
+    }
+
+    /// What a device is asked for: the portable floor, and as much memory as there is.
+    pub fn request(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        wgpu::DeviceDescriptor {
+            label: Some("corpuscle"),
+            required_limits: limits(&adapter.limits()),
+            ..wgpu::DeviceDescriptor::default()
+        }
+    }
+
+    /// The order in which adapters are tried, the smallest first.
+    pub fn rank(adapter: &wgpu::Adapter) -> u8 {
+        rank(adapter.get_info().device_type)
     }
 
     /// Whether nothing has gone wrong so far. A device tells late: ask again after reading something back.

@@ -29,7 +29,7 @@ mod tone;
 mod tubes;
 mod view;
 
-pub use balls::{BallPainter, BallStyle, Balls};
+pub use balls::{BallPainter, BallStyle, Balls, Shading};
 pub use camera::{Camera, Lens};
 pub use camera_path::CameraPath;
 pub use caps::{Cap, CapPainter, Caps};
@@ -39,7 +39,7 @@ pub use error::RenderError;
 pub use floor::Floor;
 pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use light::{Backdrop, Light};
-pub use overlay::{Axes, Border, Key, KeyPlace, LineLook, Mark, Overlay};
+pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineLook, Mark, Overlay};
 pub use renderer::Renderer;
 pub use solids::{Solid, SolidStyle};
 pub use stage::Stage;

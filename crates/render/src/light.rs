@@ -15,6 +15,8 @@ pub struct Light {
     pub ambient: f32,
     /// What is behind everything, and is mirrored.
     pub backdrop: Backdrop,
+    /// Whether things throw shadows in sunlight.
+    pub shadows: bool,
 }
 
 /// What is behind everything.
@@ -47,13 +49,15 @@ pub enum Backdrop {
 impl Light {
     /// A clear afternoon.
     pub fn day() -> Self {
-        Self { sun: [2.5, 0.75], sunlight: [2.3, 2.15, 1.9], softness: 0.02, ambient: 0.75, backdrop: Backdrop::Sky }
+        let (sun, sunlight) = ([2.5, 0.75], [2.3, 2.15, 1.9]);
+        Self { sun, sunlight, softness: 0.02, ambient: 0.75, backdrop: Backdrop::Sky, shadows: true }
     }
 
     /// A bright room.
     pub fn studio() -> Self {
         let backdrop = Backdrop::Studio { above: [0.92, 0.95, 1.0], horizon: [0.97; 3], below: [0.62, 0.63, 0.65] };
-        Self { sun: [2.3, 0.95], sunlight: [1.75, 1.72, 1.66], softness: 0.05, ambient: 0.8, backdrop }
+        let (sun, sunlight) = ([2.3, 0.95], [1.75, 1.72, 1.66]);
+        Self { sun, sunlight, softness: 0.05, ambient: 0.8, backdrop, shadows: true }
     }
 
     /// A room with dark walls and a window: what is clear shows best against it.
@@ -68,15 +72,39 @@ impl Light {
         Self { sun: [azimuth as f32, self.sun[1]], ..self }
     }
 
+    /// The same without shadows: much less to draw.
+    pub fn without_shadows(self) -> Self {
+        Self { shadows: false, ..self }
+    }
+
     /// White paper.
     pub fn paper() -> Self {
-        Self { backdrop: Backdrop::Paper([1.0; 3]), ..Self::studio() }
+        Self::paper_of([1.0; 3])
+    }
+
+    /// Paper of a colour, linear.
+    pub fn paper_of(colour: [f32; 3]) -> Self {
+        Self { backdrop: Backdrop::Paper(colour), ..Self::studio() }
     }
 
     /// The direction towards the sun.
     pub fn towards_sun(&self) -> Vec3 {
         let [azimuth, height] = self.sun;
         Vec3::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin())
+    }
+
+    /// The colour that stands for the backdrop where that is not drawn: of paper, or at the horizon.
+    pub(crate) fn plain_backdrop(&self) -> [f32; 3] {
+        match self.backdrop {
+            Backdrop::Sky => [0.66, 0.77, 0.90],
+            Backdrop::Studio { horizon, .. } | Backdrop::Room { horizon, .. } => horizon,
+            Backdrop::Paper(colour) => colour,
+        }
+    }
+
+    /// True where the sun's depth map is needed.
+    pub fn throws_shadows(&self) -> bool {
+        self.is_lit() && self.shadows
     }
 
     /// True where things are lit, not drawn in plain colours.

@@ -23,6 +23,11 @@ impl Recipe<'_> {
         self.build(gpu, "fragment", Some(COLOUR_FORMAT.into()), Some(wgpu::CompareFunction::GreaterEqual))
     }
 
+    /// The same with another fragment entry point.
+    pub(crate) fn opaque_by(&self, gpu: &Gpu, entry: &str) -> wgpu::RenderPipeline {
+        self.build(gpu, entry, Some(COLOUR_FORMAT.into()), Some(wgpu::CompareFunction::GreaterEqual))
+    }
+
     /// A pipeline that draws into the sun's depth map; `entry` is its fragment entry point.
     pub(crate) fn cast(&self, gpu: &Gpu, entry: &str) -> wgpu::RenderPipeline {
         self.build(gpu, entry, None, Some(wgpu::CompareFunction::GreaterEqual))
@@ -31,6 +36,11 @@ impl Recipe<'_> {
     /// A pipeline that draws into colours of a format, without depth.
     pub(crate) fn flat(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
         self.build(gpu, "fragment", Some(format.into()), None)
+    }
+
+    /// The same with another fragment entry point.
+    pub(crate) fn flat_by(&self, gpu: &Gpu, entry: &str, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
+        self.build(gpu, entry, Some(format.into()), None)
     }
 
     /// A pipeline that draws into colours of a format, and keeps what is nearest.

@@ -54,18 +54,20 @@ impl Renderer {
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size());
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
-        if light.is_lit() {
+        if light.throws_shadows() {
             draw_shadows(&mut encoder, &view, things);
+        }
+        if light.is_lit() {
             for thing in things.iter_mut() {
                 let (encoder, view, size) = (&mut encoder, &view.group, target.drawn_size());
                 thing.draw_before(&mut Before { gpu, encoder, view, size });
             }
         }
-        self.draw_opaque(&mut encoder, target, &view, things);
+        self.draw_opaque(&mut encoder, target, &view, light, things);
         for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {
             draw_through(gpu, &mut encoder, target, &view, *thing);
         }
-        self.tone.draw(gpu, &mut encoder, target, light.is_lit(), overlay);
+        self.tone.draw(gpu, &mut encoder, target, [light.is_lit(), !light.throws_shadows()], overlay);
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -82,6 +84,7 @@ impl Renderer {
         encoder: &mut wgpu::CommandEncoder,
         target: &Target,
         view: &View,
+        light: &Light,
         things: &[&mut dyn Drawable],
     ) {
         let [colour, depth] = [&target.colour, &target.depth].map(whole);
@@ -91,16 +94,24 @@ impl Renderer {
                 view: &colour,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations::default(),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(behind(light)), store: wgpu::StoreOp::Store },
             })],
             depth_stencil_attachment: Some(cleared(&depth)),
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &view.group, &[]);
-        pass.set_pipeline(&self.backdrop);
-        pass.draw(0..3, 0..1);
+        if light.throws_shadows() {
+            pass.set_pipeline(&self.backdrop);
+            pass.draw(0..3, 0..1);
+        }
         things.iter().for_each(|thing| thing.draw(&mut pass));
     }
+}
+
+/// The one colour behind everything, where the backdrop is not drawn.
+fn behind(light: &Light) -> wgpu::Color {
+    let [r, g, b] = light.plain_backdrop().map(f64::from);
+    wgpu::Color { r, g, b, a: 1.0 }
 }
 
 /// The sun's depth map.

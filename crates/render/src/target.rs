@@ -46,8 +46,13 @@ impl Target {
             depth: texture("depth", DEPTH_FORMAT, into)?,
             behind_colour: texture("colour behind", COLOUR_FORMAT, behind)?,
             behind_depth: texture("depth behind", DEPTH_FORMAT, behind)?,
-            picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, Usage::RENDER_ATTACHMENT | Usage::COPY_SRC)?,
+            picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, into)?,
         })
+    }
+
+    /// The finished picture on the device, to be shown there: sRGB bytes, as `Rgba8Unorm`.
+    pub fn picture_view(&self) -> wgpu::TextureView {
+        self.picture.create_view(&wgpu::TextureViewDescriptor::default())
     }
 
     /// Width and height in samples: of everything but the finished picture.

@@ -66,7 +66,7 @@ impl View {
             frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
             ..seen
         };
-        let pixels = if light.is_lit() { SHADOW_PIXELS } else { 1 };
+        let pixels = if light.throws_shadows() { SHADOW_PIXELS } else { 1 };
         let shadow = depth_map(gpu, pixels);
         let nothing = depth_map(gpu, 1);
         Self { group: group(gpu, layout, &seen, &shadow), sun_group: group(gpu, layout, &from_sun, &nothing), shadow }

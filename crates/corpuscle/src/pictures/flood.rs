@@ -1,15 +1,15 @@
 //! Pictures of a flood: water on the block of ground.
 
 use super::look::{self, DepthClasses};
-use super::{GroundLook, Moment, OwnView, Studio};
+use super::{GroundLook, Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
+use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
 use corpuscle_flood::obstacle_shapes;
-use corpuscle_gpu::Image;
-use corpuscle_model::ParticleSet;
+use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
-    Axes, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, KeyPlace, Lens, Light, Overlay, Solid,
-    SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
+    Axes, BallStyle, Balls, ColourTable, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, KeyPlace, Lens,
+    Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -31,6 +31,8 @@ const HIGH_ENOUGH: f64 = 7.0;
 /// of centimetres is muddy, and would not be seen otherwise.
 const CLEAR: f64 = 1.5;
 const TURBID: [f64; 2] = [0.4, 20.0];
+/// Colours of shallow to deep water in the simple look.
+const BLUES: [u32; 4] = [0x00bfe3f7, 0x006fb5e8, 0x001d6fbd, 0x000a2d63];
 /// Colour of buildings.
 const WALLS: [u8; 3] = [206, 196, 184];
 
@@ -48,6 +50,8 @@ pub(super) struct FloodPicture {
     turbid: f64,
     /// Where depth is drawn as a map has it, its classes.
     depth: Option<DepthClasses>,
+    /// The colours of depth in the simple look.
+    blues: ColourTable,
     /// How many times higher than they are heights are drawn.
     heights: f64,
 }
@@ -92,27 +96,35 @@ impl FloodPicture {
             fluid: None,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
             depth: (look == GroundLook::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
+            blues: ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() },
             heights,
         })
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let gpu = studio.renderer.gpu();
         let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
         let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
-        let light = Light::day().from_azimuth(DIRECTION[0] + SUN);
+        let light = studio.lit(Light::day().from_azimuth(DIRECTION[0] + SUN));
         let sets: Vec<ParticleSet> =
             moment.frame.sets.iter().filter(|set| !set.is_empty()).map(|set| raised(set, self.heights)).collect();
         let overlay = self.overlay(studio, title, moment, is_plan);
         if let Some(depth) = &self.depth {
             self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
         }
+        let mut discs: Vec<Balls> = match studio.look {
+            Look::Simple if self.depth.is_none() => sets.iter().map(|set| self.discs(studio, set)).collect(),
+            _ => Vec::new(),
+        };
+        let quick = studio.look == Look::Simple;
+        self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
-        if !is_plan {
+        if !is_plan && !quick {
             things.push(&mut self.floor);
         }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
-        if self.depth.is_none() && !sets.is_empty() {
+        things.extend(discs.iter_mut().map(|set| set as &mut dyn Drawable));
+        if self.depth.is_none() && studio.look == Look::Full && !sets.is_empty() {
             let radii = || sets.iter().flat_map(|set| &set.radius);
             let mean = radii().sum::<f64>() / radii().count() as f64;
             let within = Some([self.stage.from, self.stage.to].map(|corner| [corner.x, corner.y]));
@@ -128,7 +140,19 @@ impl FloodPicture {
             fluid.fill(gpu, droplets);
             things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
         }
-        studio.take(&self.stage, &camera, &light, &mut things, &overlay)
+        studio.take(&self.stage, &camera, &light, &mut things, overlay)
+    }
+
+    /// Particles as balls, coloured by depth as maps are.
+    fn discs(&self, studio: &Studio, set: &ParticleSet) -> Balls {
+        let style = BallStyle { shading: Shading::Matt, ..BallStyle::new(self.blues.clone()) };
+        let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
+        let depth = |at: usize| match depths {
+            Some(Values::Scalar(depths)) => depths[at],
+            _ => 0.0,
+        };
+        let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], depth(at)));
+        studio.balls.balls(studio.renderer.gpu(), &self.stage, &style, balls)
     }
 
     fn overlay(&self, studio: &Studio, title: &str, moment: &Moment<'_>, is_plan: bool) -> Overlay {
@@ -138,10 +162,13 @@ impl FloodPicture {
             to[2] = from[2];
         }
         let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
+        let blues = || Key::Values("Depth, m".into(), self.blues.clone());
+        let simple = (studio.look == Look::Simple).then(blues);
+        let key = self.depth.as_ref().map(|depth| Key::Kinds(depth.key())).or(simple);
         Overlay {
             title: title.into(),
             time: if self.heights == 1.0 { time } else { format!("{time}, heights × {}", self.heights) },
-            key: self.depth.as_ref().map(|depth| Key::Kinds(depth.key())),
+            key,
             scale_bar: Some("m".into()),
             axes: studio.shows_all().then(axes),
             key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },

@@ -3,7 +3,9 @@
 mod dew;
 mod flood;
 mod gas;
+mod hand;
 mod look;
+mod show;
 mod viewpoint;
 
 use crate::{Error, Simulation};
@@ -17,7 +19,9 @@ use corpuscle_scene::ModelScene;
 use dew::DewPicture;
 use flood::FloodPicture;
 use gas::GasPicture;
+pub use hand::Hand;
 pub use look::GroundLook;
+pub use show::{Look, Shown};
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
 
@@ -70,6 +74,13 @@ struct Studio {
     fluids: FluidPainter,
     target: Target,
     stations: Vec<Station>,
+    /// How the camera was moved by hand.
+    hand: Hand,
+    look: Look,
+    /// What a drawing lies on, linear light.
+    paper: [f32; 3],
+    /// True where texts and lines are drawn into the picture; false where whoever shows it draws them.
+    overlaid: bool,
 }
 
 /// What is drawn.
@@ -86,8 +97,16 @@ impl Pictures {
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
     pub fn open(simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
         let gpu = Gpu::open().map_err(RenderError::from)?;
-        let renderer = Renderer::new(&gpu);
-        let target = Target::new(&gpu, settings.size, settings.samples)?;
+        Self::open_on(&gpu, simulation, settings)
+    }
+
+    /// The same on a device that is open already.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the pictures are larger than it can hold.
+    pub fn open_on(gpu: &Gpu, simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
+        let renderer = Renderer::new(gpu);
+        let target = Target::new(gpu, settings.size, settings.samples)?;
         let scene = simulation.scene();
         let viewpoints = settings.viewpoints.into_iter();
         let stations = match simulation.terrain() {
@@ -97,7 +116,8 @@ impl Pictures {
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
         let fluids = FluidPainter::new(&renderer);
-        let studio = Studio { renderer, balls, tubes, caps, fluids, target, stations };
+        let (hand, look, paper, overlaid) = (Hand::default(), Look::Full, [1.0; 3], true);
+        let studio = Studio { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid };
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
             ModelScene::Dew(dew) => {
@@ -127,10 +147,16 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the device was lost.
     pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
-        match &mut self.subject {
-            Subject::Gas(gas) => gas.draw(&self.studio, &self.title, moment),
-            Subject::Dew(dew) => dew.draw(&self.studio, &self.title, moment),
-            Subject::Flood(flood) => flood.draw(&self.studio, &self.title, moment),
+        self.still(moment, &Hand::default())
+    }
+}
+
+impl Subject {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+        match self {
+            Self::Gas(gas) => gas.draw(studio, title, moment),
+            Self::Dew(dew) => dew.draw(studio, title, moment),
+            Self::Flood(flood) => flood.draw(studio, title, moment),
         }
     }
 }
@@ -142,17 +168,22 @@ impl Studio {
         f64::from(width) / f64::from(height)
     }
 
-    /// Draws things with their overlay, and reads the picture back.
+    /// Light as the look has it.
+    fn lit(&self, light: Light) -> Light {
+        if self.look == Look::Full { light } else { light.without_shadows() }
+    }
+
+    /// Draws things, with their overlay if it is wanted in the picture.
     fn take(
         &self,
         stage: &Stage,
         camera: &Camera,
         light: &Light,
         things: &mut [&mut dyn Drawable],
-        overlay: &Overlay,
-    ) -> Result<Image, Error> {
-        let overlay = overlay.image(stage, camera, self.target.size)?;
-        self.renderer.draw(&self.target, stage, camera, light, things, Some(&overlay));
-        Ok(self.renderer.read(&self.target)?)
+        overlay: Overlay,
+    ) -> Result<Shown, Error> {
+        let image = if self.overlaid { Some(overlay.image(stage, camera, self.target.size)?) } else { None };
+        self.renderer.draw(&self.target, stage, camera, light, things, image.as_ref());
+        Ok(Shown { stage: *stage, camera: *camera, on_paper: !light.is_lit(), overlay })
     }
 }

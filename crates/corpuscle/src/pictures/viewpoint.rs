@@ -66,12 +66,13 @@ impl Studio {
     pub(super) fn camera(&self, stage: &Stage, own: &OwnView, time: f64) -> Camera {
         let stations = self.stations.iter().map(|station| (station.time, self.seen_from(stage, own, station)));
         let still = || self.seen_from(stage, own, &Station::plain((0.0, Viewpoint::default())));
-        CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time))
+        self.hand.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
     }
 
     /// True where the whole stage is in the picture whatever the time, so that axes along its edges are.
     pub(super) fn shows_all(&self) -> bool {
-        self.stations.iter().all(|station| station.viewpoint.zoom <= 1.0 && station.target.is_none())
+        let whole = |station: &Station| station.viewpoint.zoom <= 1.0 && station.target.is_none();
+        self.hand.zoom <= 1.5 && self.stations.iter().all(whole)
     }
 
     fn seen_from(&self, stage: &Stage, own: &OwnView, station: &Station) -> Camera {
@@ -80,7 +81,7 @@ impl Studio {
             Some([bearing, height]) => [(90.0 - bearing).to_radians(), height.to_radians()],
             None => own.direction,
         };
-        let whole = match viewpoint.plan {
+        let whole = match viewpoint.plan || self.hand.plan {
             true => Camera::plan(stage, self.aspect(), own.margins),
             false => Camera::orbit(stage, direction, own.field_of_view, self.aspect(), own.margin),
         };

@@ -158,12 +158,7 @@ impl<const D: usize> Gas<D> {
         match due {
             Due::Knot(wall) => self.bend_wall(wall, time),
             Due::Lift => {
-                self.lifted = true;
-                if let Some(number) = self.partition {
-                    let wall = &mut self.mover.world_mut().walls[number];
-                    (wall.present, wall.bends) = (false, wall.bends.wrapping_add(1));
-                    self.mover.wall_bent(number);
-                }
+                self.lift();
             }
             Due::Reverse => {
                 self.reversed = true;
@@ -173,6 +168,16 @@ impl<const D: usize> Gas<D> {
                 self.next_look += 1;
                 self.look(time);
             }
+        }
+    }
+
+    /// The partition is taken away now.
+    pub(super) fn lift(&mut self) {
+        self.lifted = true;
+        if let Some(number) = self.partition {
+            let wall = &mut self.mover.world_mut().walls[number];
+            (wall.present, wall.bends) = (false, wall.bends.wrapping_add(1));
+            self.mover.wall_bent(number);
         }
     }
 

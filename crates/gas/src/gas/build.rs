@@ -54,6 +54,7 @@ impl<const D: usize> Gas<D> {
             shown: 0.0,
             checked: (0.0, 0),
             si: false,
+            hand: Default::default(),
         };
         gas.initial = [gas.energy(), gas.momentum().iter().sum()];
         Ok(gas)
@@ -116,7 +117,7 @@ impl<const D: usize> Setup<D> {
     }
 
     /// Speeds up to which histograms go, for each set: some thermal speeds at the temperature of the whole.
-    fn largest_speeds(&self, sets: &[Set], world: &World<D>) -> Vec<f64> {
+    pub(super) fn largest_speeds(&self, sets: &[Set], world: &World<D>) -> Vec<f64> {
         let energy: f64 = (0..world.balls.len())
             .map(|ball| 0.5 * world.mass(ball) * world.balls[ball].velocity.iter().map(|v| v * v).sum::<f64>())
             .sum();

@@ -110,9 +110,10 @@ impl<const D: usize> Gas<D> {
 
     fn energy_balance(&self) -> Balance {
         let world = self.mover.world();
-        let gained = world.wall_tallies.iter().map(|tally| tally.gained.value()).sum();
+        let gained: f64 = world.wall_tallies.iter().map(|tally| tally.gained.value()).sum();
         let lost: f64 = world.wall_tallies.iter().map(|tally| tally.lost.value()).sum();
-        let outflow = lost + world.tally.dissipated.value();
+        let gained = gained + self.hand.gained.value();
+        let outflow = lost + world.tally.dissipated.value() + self.hand.lost.value();
         let quantity = if self.si { "energy_J" } else { "energy" };
         Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy() }
     }
@@ -124,6 +125,7 @@ impl<const D: usize> Gas<D> {
         for tally in &world.wall_tallies {
             book(-tally.momentum.value() + tally.dragged.value());
         }
+        book(self.hand.momentum.value());
         let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
         world.field.gravity.iter().for_each(|gravity| book(mass * gravity * self.shown));
         let now: f64 = self.momentum().iter().sum();

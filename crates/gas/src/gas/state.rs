@@ -1,6 +1,7 @@
 //! Keeping the whole state, to the bit, and taking it back.
 
 use super::Gas;
+use super::by_hand::HandTally;
 use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
@@ -24,6 +25,7 @@ struct State {
     initial: [f64; 2],
     shown: f64,
     checked: (f64, u64),
+    hand: HandTally,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -74,6 +76,7 @@ impl<const D: usize> Gas<D> {
             initial: self.initial,
             shown: self.shown,
             checked: self.checked,
+            hand: self.hand,
         };
         postcard::to_stdvec(&state).unwrap_or_default()
     }
@@ -103,7 +106,7 @@ impl<const D: usize> Gas<D> {
         }
         (self.lifted, self.reversed, self.next_look) = (state.lifted, state.reversed, state.next_look);
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
-        self.checked = state.checked;
+        (self.checked, self.hand) = (state.checked, state.hand);
         Ok(())
     }
 }

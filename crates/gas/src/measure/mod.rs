@@ -63,6 +63,12 @@ impl Measures {
         }
     }
 
+    /// Averages begin anew, with histograms up to other speeds; what was seen over time stays.
+    pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
+        let samples = std::mem::take(&mut self.samples);
+        *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };
+    }
+
     /// Takes in what the gas is like now.
     pub fn look<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
         let mut sample = snapshot.sample.clone();

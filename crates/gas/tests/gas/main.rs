@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod agreement;
+mod by_hand;
 mod common;
 mod exactness;
 mod measured;

@@ -9,6 +9,8 @@ use corpuscle_gpu::{Gpu, wgpu};
 use seen::{Seen, SeenPainter};
 use std::sync::Arc;
 
+/// Corners that are drawn for a ball: two triangles.
+const CORNERS: u32 = 6;
 /// Balls in one buffer at most: within the floor's 128 MiB.
 const MOST: usize = 6 << 20;
 /// From so many on, one before the other, they are shaded only where they are seen.
@@ -24,6 +26,18 @@ struct Instance {
     value: f32,
 }
 
+/// How much work balls may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// As the light has it: glazed with shadows, or discs on paper.
+    #[default]
+    Full,
+    /// Matt, without shadows.
+    Matt,
+    /// Discs with a rim, whatever the light.
+    Discs,
+}
+
 /// How balls look.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallStyle {
@@ -31,6 +45,8 @@ pub struct BallStyle {
     pub colours: ColourTable,
     /// How much the surface shines: 0 matt, 1 glazed.
     pub gloss: f32,
+    /// How much work they may be.
+    pub shading: Shading,
     /// Smaller balls are drawn with this radius, samples, so that none falls between pixels.
     pub least_radius: f32,
 }
@@ -38,7 +54,7 @@ pub struct BallStyle {
 impl BallStyle {
     /// Glazed balls of the colours of a table.
     pub fn new(colours: ColourTable) -> Self {
-        Self { colours, gloss: 1.0, least_radius: 0.75 }
+        Self { colours, gloss: 1.0, shading: Shading::Full, least_radius: 0.75 }
     }
 }
 
@@ -47,6 +63,8 @@ impl BallStyle {
 pub struct BallPainter {
     layout: wgpu::BindGroupLayout,
     opaque: wgpu::RenderPipeline,
+    matt: wgpu::RenderPipeline,
+    discs: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
     seen: Arc<SeenPainter>,
 }
@@ -59,6 +77,8 @@ pub struct Balls {
     /// Groups of the shaders, and how many balls are in each.
     parts: Vec<(wgpu::BindGroup, u32)>,
     painter: Arc<SeenPainter>,
+    /// True where shading takes no more than finding out what is seen.
+    quick: bool,
     /// Which balls are seen where, in a picture of many.
     seen: Option<Seen>,
 }
@@ -73,10 +93,17 @@ impl BallPainter {
             module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            topology: wgpu::PrimitiveTopology::TriangleList,
         };
         let seen = SeenPainter::new(renderer, &layout).into();
-        Self { opaque: recipe.opaque(gpu), cast: recipe.cast(gpu, "throw_shadow"), layout, seen }
+        Self {
+            opaque: recipe.opaque(gpu),
+            matt: recipe.opaque_by(gpu, "fragment_matt"),
+            discs: recipe.opaque_by(gpu, "fragment_discs"),
+            cast: recipe.cast(gpu, "throw_shadow"),
+            layout,
+            seen,
+        }
     }
 
     /// Balls at places with radii, m, each with the number that its colour shows. What has no finite place is left out.
@@ -110,7 +137,13 @@ impl BallPainter {
             (gpu.device.create_bind_group(&descriptor), part.len() as u32)
         };
         let parts = all.chunks(MOST).map(part).collect();
-        Balls { opaque: self.opaque.clone(), cast: self.cast.clone(), parts, painter: self.seen.clone(), seen: None }
+        let opaque = match style.shading {
+            Shading::Full => &self.opaque,
+            Shading::Matt => &self.matt,
+            Shading::Discs => &self.discs,
+        };
+        let quick = style.shading != Shading::Full;
+        Balls { opaque: opaque.clone(), cast: self.cast.clone(), parts, painter: self.seen.clone(), quick, seen: None }
     }
 }
 
@@ -119,7 +152,7 @@ impl Balls {
         pass.set_pipeline(pipeline);
         for (group, count) in &self.parts {
             pass.set_bind_group(1, group, &[]);
-            pass.draw(0..4, 0..*count);
+            pass.draw(0..CORNERS * count, 0..1);
         }
     }
 }
@@ -137,6 +170,7 @@ impl Drawable for Balls {
         // Numbers go by part; so many balls that there are two parts are drawn one by one.
         if let [(group, count)] = self.parts.as_slice()
             && *count >= MANY
+            && !self.quick
         {
             self.seen = Some(self.painter.find(frame, group, *count));
         }

@@ -42,7 +42,7 @@ impl SeenPainter {
             module: &shaders::module(gpu, "balls_numbered", include_str!("balls_numbered.wgsl")),
             groups: &[renderer.view_layout(), balls],
             buffers: &[],
-            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            topology: wgpu::PrimitiveTopology::TriangleList,
         }
         .nearest(gpu, NUMBERS);
         let shade = Recipe {
@@ -84,7 +84,7 @@ impl SeenPainter {
         pass.set_bind_group(0, frame.view, &[]);
         pass.set_bind_group(1, balls, &[]);
         pass.set_pipeline(&self.find);
-        pass.draw(0..4, 0..count);
+        pass.draw(0..super::CORNERS * count, 0..1);
         let group = frame.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("balls seen"),
             layout: &self.layout,

@@ -17,6 +17,7 @@ const LIGHT: Light = Light {
     softness: 0.02,
     ambient: 0.75,
     backdrop: Backdrop::Studio { above: [0.2, 0.4, 0.8], horizon: [0.8, 0.85, 0.9], below: [0.3; 3] },
+    shadows: true,
 };
 
 /// Shallow water with waves round a sunken and a dry ball, foam on a part of it, and a drop in the air.

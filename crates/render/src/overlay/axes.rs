@@ -1,6 +1,7 @@
 //! Axes along the edges of a box.
 
-use super::{Axes, LETTER, Page, axis_unit};
+use super::{Axes, LETTER, Page, Sheet, axis_unit};
+use crate::{Camera, Stage};
 use corpuscle_drawing::bars::label;
 use corpuscle_drawing::svg::Anchor;
 use corpuscle_drawing::ticks;
@@ -13,20 +14,47 @@ const NAME: f64 = 24.0;
 const STEP: f64 = 46.0;
 const MOST_STEPS: f64 = 8.0;
 
+/// An axis as it lies on a page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisOnPage {
+    /// The edge that it runs along.
+    pub line: [[f64; 2]; 2],
+    /// Its ticks, each from the edge outwards, with its number and where that stands.
+    pub ticks: Vec<([[f64; 2]; 2], [f64; 2], String)>,
+    /// Its name with the unit, and where that stands.
+    pub name: ([f64; 2], String),
+    /// Which part of numbers and name stands there; their baseline is a little below.
+    pub anchor: Anchor,
+}
+
 impl Axes {
     /// Draws the axes on the edges where they hide nothing.
     pub(super) fn draw(&self, page: &mut Page<'_>) {
-        (0..3).filter(|axis| self.to[*axis] > self.from[*axis]).for_each(|axis| self.draw_axis(page, axis));
+        for axis in self.on_page(page.stage, page.camera, page.size) {
+            page.svg.line(axis.line[0], axis.line[1], "over-line");
+            for ([from, to], [x, y], number) in &axis.ticks {
+                page.svg.line(*from, *to, "over-line");
+                page.svg.text([*x, y + 4.0], axis.anchor, "over-number", number);
+            }
+            let ([x, y], name) = &axis.name;
+            page.svg.text([*x, y + 4.0], axis.anchor, "over", name);
+        }
     }
 
-    fn draw_axis(&self, page: &mut Page<'_>, axis: usize) {
-        let Some([start, end]) = self.edge(page, axis) else { return };
-        let ends = [page.place(start), page.place(end)];
-        let middle = page.place(std::array::from_fn(|k| 0.5 * (self.from[k] + self.to[k])));
-        let ([Some(one), Some(other)], Some(middle)) = (ends, middle) else { return };
+    /// The axes on a page of `size`, of which texts take some 12 units a line: on the edges where they hide nothing.
+    pub fn on_page(&self, stage: &Stage, camera: &Camera, size: [f64; 2]) -> Vec<AxisOnPage> {
+        let sheet = Sheet { stage, camera, size };
+        let axes = (0..3).filter(|axis| self.to[*axis] > self.from[*axis]);
+        axes.filter_map(|axis| self.axis_on_page(&sheet, axis)).collect()
+    }
+
+    fn axis_on_page(&self, page: &Sheet<'_>, axis: usize) -> Option<AxisOnPage> {
+        let [start, end] = self.edge(page, axis)?;
+        let [one, other] = [page.place(start)?, page.place(end)?];
+        let middle = page.place(std::array::from_fn(|k| 0.5 * (self.from[k] + self.to[k])))?;
         let long = (other[0] - one[0]).hypot(other[1] - one[1]);
         if long < STEP {
-            return;
+            return None;
         }
         let out = outwards(one, other, middle, long);
         let longest = (0..3).map(|k| self.to[k] - self.from[k]).fold(0.0, f64::max);
@@ -34,28 +62,27 @@ impl Axes {
         let factor = if axis == 2 { factor * self.heights } else { factor };
         let [low, high] = [self.from[axis] / factor, self.to[axis] / factor];
         let step = ticks::step(high - low, (long / STEP).min(MOST_STEPS) as usize);
-        page.svg.line(one, other, "over-line");
         let mut widest = 0.0_f64;
+        let mut on_edge = Vec::new();
         for value in ticks::multiples(low, high, step) {
             let mut point = start;
             point[axis] = value * factor;
-            let Some([x, y]) = page.place(point) else { continue };
-            page.svg.line([x, y], [x + TICK * out[0], y + TICK * out[1]], "over-line");
-            let at = [x + NUMBER * out[0], y + NUMBER * out[1] + 4.0];
+            let Some(at) = page.place(point) else { continue };
+            let away = |far: f64| [at[0] + far * out[0], at[1] + far * out[1]];
             let text = label(value, step);
             widest = widest.max(LETTER * text.chars().count() as f64);
-            page.svg.text(at, anchor(out), "over-number", &text);
+            on_edge.push(([at, away(TICK)], away(NUMBER), text));
         }
         let name = ["x", "y", "z"][axis];
         let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
         let away = NUMBER + NAME + if anchor(out) == Anchor::Middle { 0.0 } else { widest - 12.0 };
-        let at = [0, 1].map(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
-        page.svg.text([at[0], at[1] + 4.0], anchor(out), "over", &name);
+        let at = std::array::from_fn(|k| 0.5 * (one[k] + other[k]) + away * out[k]);
+        Some(AxisOnPage { line: [one, other], ticks: on_edge, name: (at, name), anchor: anchor(out) })
     }
 
     /// Ends of the edge for an axis: in the plane that at the bottom or on the left; in space on the bottom face the one nearer to
     /// the eye, and upright the one farthest left.
-    fn edge(&self, page: &Page<'_>, axis: usize) -> Option<[[f64; 3]; 2]> {
+    fn edge(&self, page: &Sheet<'_>, axis: usize) -> Option<[[f64; 3]; 2]> {
         let flat = self.from[2] == self.to[2];
         let edges = (0..8_usize).filter(|bits| bits >> axis & 1 == 0).map(|bits| {
             let start: [f64; 3] = std::array::from_fn(|k| if bits >> k & 1 == 1 { self.to[k] } else { self.from[k] });

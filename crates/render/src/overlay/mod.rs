@@ -4,6 +4,8 @@ mod axes;
 mod borders;
 mod key;
 
+pub use axes::AxisOnPage;
+
 use crate::{Camera, ColourTable, Lens, RenderError, Stage};
 use corpuscle_drawing::bars::{prefix, scale_bar};
 use corpuscle_drawing::png::svg_to_pixels;
@@ -133,12 +135,26 @@ struct Page<'a> {
     camera: &'a Camera,
 }
 
-impl Page<'_> {
+/// Where things are on a page.
+struct Sheet<'a> {
+    size: [f64; 2],
+    stage: &'a Stage,
+    camera: &'a Camera,
+}
+
+impl Sheet<'_> {
     /// Where a place of the world, m, is on the page.
     fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let [width, height] = self.size;
         let [x, y] = self.camera.project(self.stage, width / height, point)?;
         Some([x * width, y * height])
+    }
+}
+
+impl Page<'_> {
+    /// Where a place of the world, m, is on the page.
+    fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
+        Sheet { size: self.size, stage: self.stage, camera: self.camera }.place(point)
     }
 }
 

@@ -22,6 +22,9 @@ const GRAIN: f32 = 0.35;
 #[derive(Debug)]
 pub struct Terrain {
     opaque: wgpu::RenderPipeline,
+    plain: wgpu::RenderPipeline,
+    /// True where it is drawn without shadows and grain.
+    quick: bool,
     cast: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     settings: Ground,
@@ -82,6 +85,8 @@ impl Terrain {
         let colours = upload_colours(gpu, colours)?;
         Ok(Self {
             opaque: recipe.opaque(gpu),
+            plain: recipe.opaque_by(gpu, "fragment_plain"),
+            quick: false,
             cast: recipe.cast(gpu, "throw_shadow"),
             group: group(gpu, &layout, &settings, &shape, &colours),
             layout,
@@ -103,6 +108,11 @@ impl Terrain {
         let colours = upload_colours(gpu, colours)?;
         self.group = group(gpu, &self.layout, &self.settings, &self.shape, &colours);
         Ok(())
+    }
+
+    /// Whether it is drawn without shadows and grain from now on: much less work.
+    pub fn draw_quickly(&mut self, quick: bool) {
+        self.quick = quick;
     }
 
     fn paint(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
@@ -127,7 +137,7 @@ impl Drawable for Terrain {
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
-        self.paint(pass, &self.opaque);
+        self.paint(pass, if self.quick { &self.plain } else { &self.opaque });
         self.walls.draw(pass);
     }
 }

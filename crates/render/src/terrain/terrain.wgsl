@@ -83,6 +83,17 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     return vec4f(matt(found.rgb * grain, normal, shine), 1.0);
 }
 
+// The same without shadows and grain.
+@fragment
+fn fragment_plain(corner: Corner) -> @location(0) vec4f {
+    let found = textureSampleLevel(colours, smooth_sampler, corner.uv, 0.0);
+    let slope = textureSampleLevel(slopes, smooth_sampler, corner.uv, 0.0).rg;
+    if found.a < 0.5 || slope.x > NO_GROUND {
+        discard;
+    }
+    return vec4f(matt(found.rgb, normalize(vec3f(-slope, 1.0)), 1.0), 1.0);
+}
+
 @fragment
 fn throw_shadow(corner: Corner) {
     let missing = textureSampleLevel(slopes, smooth_sampler, corner.uv, 0.0).r > NO_GROUND;

@@ -95,6 +95,14 @@ fn between(pixel: vec2u, offset: vec2f) -> vec3f {
     return mix(upper, lower, part.y);
 }
 
+// One sample a pixel as it is, without softened edges and without an overlay. An entry point of its own: software in place of a card
+// computes both sides of every branch.
+@fragment
+fn fragment_plain(@builtin(position) place: vec4f) -> @location(0) vec4f {
+    let sample = max(textureLoad(light, vec2u(place.xy), 0).rgb, vec3f(0.0));
+    return vec4f(encode(select(min(sample, vec3f(1.0)), press(sample), tone.pressed == 1u)), 1.0);
+}
+
 @fragment
 fn fragment(@builtin(position) place: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(place.xy);

@@ -3,10 +3,9 @@
 
 mod section;
 
-use super::{Moment, OwnView, Studio};
+use super::{Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::text;
-use corpuscle_gpu::Image;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
 use corpuscle_scene::Dew;
@@ -42,7 +41,7 @@ impl DewPicture {
         }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         match self {
             Self::Room(room) => room.draw(studio, title, moment),
             Self::Section(section) => section.draw(studio, title, moment),
@@ -78,7 +77,7 @@ impl Room {
         Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
     }
 
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let own = OwnView {
             direction: [self.azimuth, RAISED],
             field_of_view: FIELD_OF_VIEW,
@@ -86,7 +85,7 @@ impl Room {
             margins: [2.0 * MARGIN; 4],
         };
         let camera = studio.camera(&self.stage, &own, moment.frame.time);
-        let light = Light::dim_room().from_azimuth(self.azimuth + SUN);
+        let light = studio.lit(Light::dim_room().from_azimuth(self.azimuth + SUN));
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
         let faces_eye = |cap: &&Cap| {
             let eye: [f64; 3] = camera.eye.into();
@@ -106,7 +105,7 @@ impl Room {
             axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         };
-        studio.take(&self.stage, &camera, &light, &mut things, &overlay)
+        studio.take(&self.stage, &camera, &light, &mut things, overlay)
     }
 }
 

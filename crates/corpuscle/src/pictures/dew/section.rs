@@ -2,13 +2,12 @@
 
 use super::{MATT, caps};
 use crate::Error;
-use crate::pictures::{Moment, Studio};
+use crate::pictures::{Look, Moment, Shown, Studio};
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
-use corpuscle_gpu::Image;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{
-    Axes, BallStyle, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Solid, SolidStyle, Stage,
+    Axes, BallStyle, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Shading, Solid, SolidStyle, Stage,
 };
 use corpuscle_scene::Dew;
 
@@ -46,16 +45,17 @@ impl Section {
         Self { stage, solids: solids.collect(), colours, radius: RADIUS * dew.spacing_m, labels }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let gpu = studio.renderer.gpu();
         let stage = self.stage;
-        let camera = Camera::front(&stage, studio.aspect(), MARGINS);
+        let camera = studio.hand.moved(Camera::front(&stage, studio.aspect(), MARGINS));
         let sets = |name: &'static str| moment.frame.sets.iter().filter(move |set| set.name == name);
         let air = sets("air").flat_map(|set| {
             let temperatures = temperatures(set);
             set.position.iter().zip(temperatures).map(|(place, kelvin)| (*place, self.radius, kelvin - ZERO_CELSIUS))
         });
-        let style = BallStyle { gloss: 0.4, ..BallStyle::new(self.colours.clone()) };
+        let shading = if studio.look == Look::Simple { Shading::Matt } else { Shading::Full };
+        let style = BallStyle { gloss: 0.4, shading, ..BallStyle::new(self.colours.clone()) };
         let mut air = studio.balls.balls(gpu, &stage, &style, air);
         let mut drops = studio.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
         let overlay = Overlay {
@@ -70,7 +70,7 @@ impl Section {
         let mut things: Vec<&mut dyn Drawable> = vec![&mut air];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut drops);
-        studio.take(&stage, &camera, &Light::studio().from_azimuth(-2.2), &mut things, &overlay)
+        studio.take(&stage, &camera, &studio.lit(Light::studio().from_azimuth(-2.2)), &mut things, overlay)
     }
 }
 

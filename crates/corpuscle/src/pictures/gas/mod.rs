@@ -3,14 +3,13 @@
 mod page;
 mod sides;
 
-use super::{Moment, OwnView, Studio};
+use super::{Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
-use corpuscle_gpu::Image;
 use corpuscle_model::{Container, Frame, ParticleSet};
 use corpuscle_record::{GasKey, gas_key};
 use corpuscle_render::{
-    BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Stage, TubeStyle, Tubes,
+    BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Shading, Stage, TubeStyle, Tubes,
 };
 use corpuscle_scene::{Gas, padded};
 use sides::Plates;
@@ -23,6 +22,8 @@ const OWN_VIEW: OwnView =
 /// In the plane: at the left, at the right, below and above, parts of its height; with the key beside the box, and below it.
 const BESIDE: [f64; 4] = [0.11, 0.38, 0.095, 0.095];
 const BELOW: [f64; 4] = [0.11, 0.06, 0.16, 0.095];
+/// The same where whoever shows the picture puts the key above the box.
+const IN_WINDOW: [f64; 4] = [0.12, 0.05, 0.12, 0.11];
 /// More entries of a key than this do not stand in a row.
 const MOST_IN_A_ROW: usize = 4;
 /// How far the sun stands to the left of the eye, radians.
@@ -55,11 +56,21 @@ impl GasPicture {
         Self { gas, plates: Plates::default() }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Image, Error> {
+    /// The partition is gone from a time on, s.
+    pub(super) fn lift_partition(&mut self, time: f64) {
+        if let Some(partition) = &mut self.gas.partition {
+            partition.lifted_at_s = Some(partition.lifted_at_s.map_or(time, |planned| planned.min(time)));
+        }
+    }
+
+    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let key = gas_key(&self.gas, moment.frame);
         let view = self.view(studio, moment, &key);
         let flat = self.gas.dimensions() == 2;
-        let light = if flat { Light::paper() } else { Light::studio().from_azimuth(DIRECTION[0] + SUN) };
+        let light = match flat {
+            true => Light::paper_of(studio.paper),
+            false => studio.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
+        };
         let overlay = self.overlay(studio, title, moment, &key, &view);
         let stage = &view.stage;
         let mut balls = self.balls(studio, &view, moment, &key);
@@ -74,11 +85,13 @@ impl GasPicture {
         things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
         things.push(&mut ways);
         if !flat {
-            things.push(&mut floor);
+            if studio.look == Look::Full {
+                things.push(&mut floor);
+            }
             things.extend(edges.iter_mut().map(|edges| edges as &mut dyn Drawable));
             things.extend(self.plates.of(&self.gas, studio, &view, moment.frame.time));
         }
-        studio.take(stage, &view.camera, &light, &mut things, &overlay)
+        studio.take(stage, &view.camera, &light, &mut things, overlay)
     }
 
     /// Where it is seen from. What moves does not move the camera.
@@ -94,10 +107,14 @@ impl GasPicture {
             let camera = studio.camera(&stage, &OWN_VIEW, moment.frame.time);
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
+        if !studio.overlaid {
+            let camera = studio.hand.moved(Camera::plan(&stage, aspect, IN_WINDOW));
+            return View { stage, camera, container, key_place: KeyPlace::Corner };
+        }
         let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];
         let [below, beside] = places.map(|(key_place, margins)| View {
             stage,
-            camera: Camera::plan(&stage, aspect, margins),
+            camera: studio.hand.moved(Camera::plan(&stage, aspect, margins)),
             container,
             key_place,
         });
@@ -107,7 +124,13 @@ impl GasPicture {
 
     /// The sets of balls, each in its colours.
     fn balls(&self, studio: &Studio, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
+        let shading = match (self.gas.dimensions(), studio.look) {
+            (2, _) => Shading::Discs,
+            (_, Look::Simple) => Shading::Matt,
+            (_, Look::Full) => Shading::Full,
+        };
         let style = |number: usize| BallStyle {
+            shading,
             least_radius: self.least_radius(studio, moment.frame, view) as f32,
             ..BallStyle::new(match key {
                 GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),

@@ -1,0 +1,43 @@
+//! Files that the window writes, into the folder that the program was started in; none is ever overwritten.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A file in a folder that is not there yet: `gas-maxwell.png`, then `gas-maxwell-2.png`.
+fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
+    let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    let stem = stem.trim_matches('-');
+    let numbered = |number: usize| match number {
+        1 => folder.join(format!("{stem}.{ending}")),
+        _ => folder.join(format!("{stem}-{number}.{ending}")),
+    };
+    (1..).map(numbered).find(|path| !path.exists()).unwrap_or_else(|| numbered(1))
+}
+
+/// Writes a text; gives the file.
+pub fn text(folder: &Path, name: &str, ending: &str, text: &str) -> io::Result<PathBuf> {
+    let path = free(folder, name, ending);
+    corpuscle_whole::write_whole(&path, |file| io::Write::write_all(file, text.as_bytes()))?;
+    Ok(path)
+}
+
+/// Writes a picture as a PNG file; gives the file.
+pub fn picture(folder: &Path, name: &str, image: &corpuscle::gpu::Image) -> Result<PathBuf, corpuscle::Error> {
+    let path = free(folder, name, "png");
+    corpuscle::record::write_picture(&path, [image.width, image.height], &image.rgba)?;
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_file_is_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = text(folder.path(), "gas/maxwell", "toml", "a").unwrap();
+        let second = text(folder.path(), "gas/maxwell", "toml", "b").unwrap();
+        assert!(first.ends_with("gas-maxwell.toml") && second.ends_with("gas-maxwell-2.toml"));
+        assert_eq!(std::fs::read_to_string(first).unwrap(), "a");
+    }
+}

@@ -1,0 +1,28 @@
+//! The window: a scene that is looked at and touched while it runs.
+//!
+//! The physics goes on in a thread of its own ([`physics`]) and publishes what it shows; the window draws the newest picture on its own
+//! device and never waits. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
+//! it off screen.
+
+mod files;
+mod gallery;
+mod help;
+mod icons;
+mod meter;
+mod overlay;
+mod parameters;
+pub mod physics;
+mod pick;
+mod picture;
+mod plots;
+mod screen;
+mod style;
+mod touch;
+mod transport;
+mod view;
+mod window;
+
+pub use meter::Measurement;
+pub use screen::Screen;
+pub use view::{ViewError, view};
+pub use window::{Source, Start, Window};

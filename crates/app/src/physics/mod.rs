@@ -1,0 +1,153 @@
+//! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
+
+mod pace;
+mod snapshot;
+mod subject;
+mod thread;
+
+pub use snapshot::{Measures, Snapshot};
+
+use corpuscle::Simulation;
+use corpuscle::gpu::Gpu;
+use corpuscle::pictures::Pictures;
+use corpuscle::scene::Scene;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// Tells whoever shows the physics that there is something new; called from its thread.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Seconds in which a scene is seen from start to end, if it can be computed so fast.
+const WHOLE: f64 = 40.0;
+
+/// The pace of what ends at a time, s: simulated seconds in a second, if nobody says otherwise; a round number.
+pub fn default_pace(end: f64) -> f64 {
+    round(end.max(f64::MIN_POSITIVE) / WHOLE)
+}
+
+/// The nearest of 1, 2 and 5 times a power of ten.
+pub(crate) fn round(value: f64) -> f64 {
+    let power = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
+    let far = |step: &f64| (step / value).ln().abs();
+    steps.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(value)
+}
+
+/// What the physics is asked to do.
+pub enum Command {
+    /// Set a scene up, at its start, and wait. Relative paths are taken from the folder.
+    Open(Box<Scene>, PathBuf),
+    /// Show a finished run from its folder, at its start, and wait.
+    OpenRun(PathBuf),
+    /// Show another time of a finished run, s.
+    Seek(f64),
+    /// Go on.
+    Play,
+    /// Wait.
+    Pause,
+    /// Go on by this much, s, and wait.
+    Step(f64),
+    /// Go on at this pace, simulated seconds in a second, where that is possible.
+    Pace(f64),
+    /// Change something while it runs.
+    Change(Change),
+}
+
+/// What changes while it runs.
+pub type Change = Box<dyn FnOnce(&mut Simulation) -> Result<(), corpuscle::Error> + Send>;
+
+/// What the physics tells.
+pub enum Event {
+    /// A scene stands at its start.
+    Opened(Box<Opened>),
+    /// A scene could not be set up.
+    Refused(String),
+    /// What was to change while it runs could not.
+    NotChanged(String),
+    /// It came to the scene's end, and waits.
+    Ended,
+    /// It broke down, and waits; what it showed last is sound.
+    Fault(String),
+}
+
+/// A scene that stands at its start.
+pub struct Opened {
+    /// Its number: snapshots of it carry the same.
+    pub number: u64,
+    /// The scene with all defaults filled in.
+    pub scene: Scene,
+    /// Draws it.
+    pub pictures: Pictures,
+    /// Names of its gauges, as in files.
+    pub gauges: Vec<String>,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    /// Of a finished run its gauges: times, s, and rows of values.
+    pub history: Option<Vec<(f64, Vec<f64>)>>,
+    /// Where it ends, s.
+    pub end: f64,
+}
+
+/// What is shared between the thread and whoever shows it.
+struct Shared {
+    newest: Mutex<Option<Arc<Snapshot>>>,
+    /// Breaks off what is being computed, so that a command is taken.
+    stop: AtomicBool,
+    wake: Wake,
+}
+
+/// The physics, seen from outside. Dropping it ends its thread.
+pub struct Physics {
+    commands: Option<Sender<Command>>,
+    events: Receiver<Event>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Physics {
+    /// Starts the thread; pictures are made for a device.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn start(gpu: &Gpu, wake: Wake) -> std::io::Result<Self> {
+        let (commands, taken) = channel();
+        let (tell, events) = channel();
+        let shared = Arc::new(Shared { newest: Mutex::new(None), stop: AtomicBool::new(false), wake });
+        let (gpu, own) = (gpu.clone(), shared.clone());
+        let run = move || thread::run(&taken, &tell, &own, &gpu);
+        let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
+        Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
+    }
+
+    /// Asks for something. Never waits.
+    pub fn ask(&self, command: Command) {
+        if let Some(commands) = &self.commands {
+            // A thread that is gone has told why.
+            let _ = commands.send(command);
+            self.shared.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// What it told since, the oldest first.
+    pub fn events(&self) -> Vec<Event> {
+        self.events.try_iter().collect()
+    }
+
+    /// The newest that it shows.
+    pub fn newest(&self) -> Option<Arc<Snapshot>> {
+        self.shared.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl Drop for Physics {
+    fn drop(&mut self) {
+        self.commands = None;
+        self.shared.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! What goes on in the thread: a scene that is computed, or a finished run that is shown again.
+
+use super::{Change, Measures};
+use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
+use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
+use corpuscle::scene::Scene;
+use corpuscle::{Error, Simulation};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// What goes on.
+pub(super) enum Subject {
+    Live(Box<Simulation>),
+    Recorded(Box<Recorded>),
+}
+
+/// A finished run.
+pub(super) struct Recorded {
+    /// The scene at its start: ground, solids and box.
+    simulation: Simulation,
+    files: FrameFiles,
+    paths: Vec<Way>,
+    walls: WallPlaces,
+    gauges: GaugeTable,
+    /// Number of the frame that is shown, and the frame.
+    shown: (usize, Frame),
+    time: f64,
+    end: f64,
+}
+
+impl Subject {
+    /// A scene at its start.
+    pub fn live(scene: Scene, folder: &Path) -> Result<Self, Error> {
+        Ok(Self::Live(Box::new(Simulation::open(scene, folder)?)))
+    }
+
+    /// A finished run at its start.
+    pub fn recorded(folder: &Path) -> Result<Self, Error> {
+        let scene = Scene::read(&folder.join("scene.toml"), &[])?;
+        let (period, until) = (scene.run.frame_period_s(), scene.run.until_s);
+        let files = FrameFiles::list(folder, |index| (index as f64 * period).min(until))?;
+        let shown = (0, files.read(0)?);
+        let end = files.times().fold(0.0, f64::max);
+        let gauges = GaugeTable::read(&folder.join("gauges.csv"))?;
+        let (paths, walls) = (followed_paths(folder)?, WallPlaces::read(folder)?);
+        let simulation = Simulation::open_to_restore(scene, folder)?;
+        let time = shown.1.time;
+        Ok(Self::Recorded(Box::new(Recorded { simulation, files, paths, walls, gauges, shown, time, end })))
+    }
+
+    /// The scene as it stood at its start; of one that is computed, as it stands.
+    pub fn simulation(&self) -> &Simulation {
+        match self {
+            Self::Live(simulation) => simulation,
+            Self::Recorded(run) => &run.simulation,
+        }
+    }
+
+    /// The time shown, s.
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::Live(simulation) => simulation.model().time(),
+            Self::Recorded(run) => run.time,
+        }
+    }
+
+    /// Where it ends, s.
+    pub fn end(&self) -> f64 {
+        match self {
+            Self::Live(simulation) => simulation.scene().run.until_s,
+            Self::Recorded(run) => run.end,
+        }
+    }
+
+    /// Where it waits next: who plays a scene on from its end wants to see more.
+    pub fn next_end(&self) -> f64 {
+        match self {
+            Self::Live(_) if self.time() >= self.end() => f64::INFINITY,
+            Self::Live(_) | Self::Recorded(_) => self.end(),
+        }
+    }
+
+    /// Goes on to a time, or to where it was told to stop.
+    pub fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
+        match self {
+            Self::Live(simulation) => Ok(simulation.model_mut().advance_to(time, stop)?),
+            Self::Recorded(run) => run.show(time),
+        }
+    }
+
+    /// Shows another time of a finished run; nothing happens to a scene that is computed.
+    pub fn seek(&mut self, time: f64) -> Result<(), Error> {
+        match self {
+            Self::Live(_) => Ok(()),
+            Self::Recorded(run) => run.show(time),
+        }
+    }
+
+    /// Changes what is computed; a finished run stays as it is.
+    pub fn change(&mut self, change: Change) -> Result<(), Error> {
+        match self {
+            Self::Live(simulation) => change(simulation),
+            Self::Recorded(_) => Ok(()),
+        }
+    }
+
+    /// Work done so far.
+    pub fn work(&self) -> u64 {
+        match self {
+            Self::Live(simulation) => simulation.model().particle_steps(),
+            Self::Recorded(_) => 0,
+        }
+    }
+
+    /// Names of the gauges.
+    pub fn gauge_names(&self) -> Vec<String> {
+        match self {
+            Self::Live(simulation) => simulation.model().gauge_columns().iter().map(GaugeColumn::header).collect(),
+            Self::Recorded(run) => run.gauges.columns.clone(),
+        }
+    }
+
+    /// Of a finished run its gauges over time.
+    pub fn history(&self) -> Option<Vec<(f64, Vec<f64>)>> {
+        match self {
+            Self::Live(_) => None,
+            Self::Recorded(run) => {
+                let rows = run.gauges.times.iter().copied().zip(run.gauges.rows.iter().cloned());
+                Some(rows.collect())
+            }
+        }
+    }
+
+    /// What is seen now.
+    pub fn look(&self) -> (Frame, Vec<Way>, Option<Container>) {
+        match self {
+            Self::Live(simulation) => {
+                let model = simulation.model();
+                (model.frame(), model.paths(), model.container())
+            }
+            Self::Recorded(run) => {
+                let start = run.simulation.model().container();
+                let container = start.map(|start| run.walls.container(start, run.shown.1.time));
+                (run.shown.1.clone(), run.paths.clone(), container)
+            }
+        }
+    }
+
+    /// What is measured now.
+    pub fn measures(&self) -> Measures {
+        match self {
+            Self::Live(simulation) => Measures::of(simulation.model()),
+            Self::Recorded(run) => {
+                let row = run.gauges.times.partition_point(|time| *time <= run.time).saturating_sub(1);
+                let gauges = run.gauges.rows.get(row).cloned().unwrap_or_default();
+                Measures { time: run.time, gauges, ..Measures::default() }
+            }
+        }
+    }
+}
+
+impl Recorded {
+    /// Shows the frame nearest to a time, s.
+    fn show(&mut self, time: f64) -> Result<(), Error> {
+        self.time = time.clamp(0.0, self.end);
+        let index = self.files.nearest(self.time);
+        if index != self.shown.0 {
+            self.shown = (index, self.files.read(index)?);
+        }
+        Ok(())
+    }
+}

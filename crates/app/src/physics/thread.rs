@@ -1,0 +1,235 @@
+//! The thread itself.
+
+use super::pace::Pace;
+use super::subject::Subject;
+use super::{Command, Event, Measures, Opened, Shared, Snapshot, default_pace};
+use corpuscle::Error;
+use corpuscle::gpu::Gpu;
+use corpuscle::pictures::{PictureSettings, Pictures};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Pictures in a second at most.
+const PICTURES: f64 = 60.0;
+/// Time between two measurements at least, and how many times longer than one takes.
+const MEASURE: Duration = Duration::from_millis(120);
+const MEASURE_SHARE: u32 = 10;
+/// Size that pictures are opened with; whoever shows them makes them larger.
+const SMALL: [u32; 2] = [16, 16];
+
+/// Takes commands and goes on until there is nobody to give commands.
+pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &Arc<Shared>, gpu: &Gpu) {
+    let mut thread = Thread { tell, shared, gpu, number: 0, running: None };
+    loop {
+        let next = match thread.time_left() {
+            None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(left) => commands.recv_timeout(left),
+        };
+        shared.stop.store(false, Ordering::Relaxed);
+        // A fault of the program must not take the window with it.
+        let done = catch_unwind(AssertUnwindSafe(|| match next {
+            Ok(command) => {
+                thread.take(command);
+                true
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                thread.slice();
+                true
+            }
+            Err(RecvTimeoutError::Disconnected) => false,
+        }));
+        match done {
+            Ok(true) => {}
+            Ok(false) => return,
+            Err(_) => {
+                thread.running = None;
+                thread.tell(Event::Fault("a fault in the program stopped it; open the scene again".into()));
+            }
+        }
+    }
+}
+
+struct Thread<'a> {
+    tell: &'a Sender<Event>,
+    shared: &'a Arc<Shared>,
+    gpu: &'a Gpu,
+    /// Scenes opened so far.
+    number: u64,
+    running: Option<Running>,
+}
+
+/// The scene that is open.
+struct Running {
+    subject: Subject,
+    playing: bool,
+    /// Where it waits next, s.
+    until: f64,
+    pace: Pace,
+    /// When the last slice began.
+    began: Instant,
+    measured: Arc<Measures>,
+    /// When it may be measured again.
+    measure_at: Instant,
+    /// Work done and when, as it was last told; work in a second since.
+    work: (u64, Instant),
+    rate: f64,
+}
+
+impl Thread<'_> {
+    /// How long to wait for a command before the next slice; none where there is nothing to go on with.
+    fn time_left(&self) -> Option<Duration> {
+        let running = self.running.as_ref().filter(|running| running.playing)?;
+        Some(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(running.began.elapsed()))
+    }
+
+    fn tell(&self, event: Event) {
+        // Nobody listens where the window is closing.
+        let _ = self.tell.send(event);
+        (self.shared.wake)();
+    }
+
+    fn take(&mut self, command: Command) {
+        let command = match command {
+            Command::Open(scene, folder) => return self.open(|| Subject::live(*scene, &folder)),
+            Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
+            command => command,
+        };
+        let Some(running) = &mut self.running else { return };
+        match command {
+            Command::Open(..) | Command::OpenRun(..) => {}
+            Command::Seek(time) => {
+                if let Err(error) = running.subject.seek(time) {
+                    self.tell(Event::Fault(error.to_string()));
+                }
+            }
+            Command::Play => {
+                running.until = running.subject.next_end();
+                (running.playing, running.began) = (true, Instant::now());
+            }
+            Command::Pause => running.wait(),
+            Command::Pace(pace) => running.pace.asked = pace,
+            Command::Step(by) => self.step(by),
+            Command::Change(change) => match running.subject.change(change) {
+                Ok(()) => running.measure_at = Instant::now(),
+                Err(error) => self.tell(Event::NotChanged(error.to_string())),
+            },
+        }
+        self.publish();
+    }
+
+    fn open(&mut self, subject: impl FnOnce() -> Result<Subject, Error>) {
+        self.running = None;
+        self.number += 1;
+        match subject().and_then(|subject| self.put(subject)) {
+            Ok(opened) => {
+                self.publish();
+                self.tell(Event::Opened(Box::new(opened)));
+            }
+            Err(error) => self.tell(Event::Refused(error.to_string())),
+        }
+    }
+
+    /// Makes ready what was opened.
+    fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
+        let simulation = subject.simulation();
+        let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
+        let pictures = Pictures::open_on(self.gpu, simulation, settings)?;
+        let scene = simulation.scene().clone();
+        let now = Instant::now();
+        let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
+        let history = subject.history();
+        let end = subject.end();
+        self.running = Some(Running {
+            playing: false,
+            until: end,
+            pace: Pace::new(default_pace(end)),
+            began: now,
+            measured: Arc::default(),
+            measure_at: now,
+            work: (subject.work(), now),
+            rate: 0.0,
+            subject,
+        });
+        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, end })
+    }
+
+    fn step(&mut self, by: f64) {
+        let Some(running) = &mut self.running else { return };
+        running.wait();
+        let to = running.subject.time() + by;
+        if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
+            self.tell(Event::Fault(error.to_string()));
+        }
+    }
+
+    /// Goes on for a slice of wall-clock time.
+    fn slice(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        let begun = Instant::now();
+        let from = running.subject.time();
+        let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
+        let whole = running.began.elapsed();
+        running.began = begun;
+        let gone = running.subject.advance_to(to, &self.shared.stop);
+        let now = running.subject.time();
+        running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
+        let told = match gone {
+            Err(error) => Some(Event::Fault(error.to_string())),
+            Ok(()) if now >= running.until => Some(Event::Ended),
+            Ok(()) => None,
+        };
+        if told.is_some() {
+            running.wait();
+        }
+        self.publish();
+        if let Some(event) = told {
+            self.tell(event);
+        }
+    }
+
+    /// Shows how it stands now.
+    fn publish(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        let snapshot = running.snapshot(self.number);
+        *self.shared.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(snapshot));
+        (self.shared.wake)();
+    }
+}
+
+impl Running {
+    fn wait(&mut self) {
+        self.playing = false;
+        self.pace.rest();
+        // What stands still is shown with its newest measures.
+        self.measure_at = Instant::now();
+    }
+
+    fn snapshot(&mut self, number: u64) -> Snapshot {
+        let now = Instant::now();
+        if now >= self.measure_at {
+            self.measured = Arc::new(self.subject.measures());
+            self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
+        }
+        let since = now.duration_since(self.work.1).as_secs_f64();
+        if since > 0.5 {
+            self.rate = (self.subject.work() - self.work.0) as f64 / since;
+            self.work = (self.subject.work(), now);
+        }
+        let (frame, paths, container) = self.subject.look();
+        Snapshot {
+            number,
+            particles: frame.sets.iter().map(|set| set.len()).sum(),
+            frame,
+            paths,
+            container,
+            playing: self.playing,
+            pace: self.pace.real,
+            behind: self.playing && self.pace.is_behind(),
+            rate: if self.playing { self.rate } else { 0.0 },
+            measures: self.measured.clone(),
+        }
+    }
+}

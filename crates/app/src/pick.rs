@@ -1,0 +1,131 @@
+//! What was picked in the picture: the nearest particle, its values, and its way from then on.
+
+use crate::icons::{self, Icon};
+use crate::overlay::{self, Over};
+use corpuscle::model::{Frame, ParticleSet, Values};
+use corpuscle::pictures::Shown;
+use corpuscle_drawing::text::number;
+use egui::{Color32, Frame as Box, Grid, Pos2, Rect, RichText, Stroke, Ui};
+
+/// How far from a particle one may click, points.
+const REACH: f32 = 22.0;
+/// Places of a way that are kept at most; then every other one is given up.
+const MOST: usize = 2000;
+const COLOUR: Color32 = Color32::from_rgb(0xe0, 0x3e, 0x8c);
+
+/// A particle that was picked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picked {
+    /// Name of its set.
+    set: String,
+    /// Its identity.
+    id: u64,
+    /// Where it was since.
+    way: Vec<[f64; 3]>,
+    time: f64,
+}
+
+impl Picked {
+    /// The particle nearest to a place in the window, the nearest to the eye of those within reach.
+    pub fn at(shown: &Shown, rect: Rect, frame: &Frame, pointer: Pos2) -> Option<Self> {
+        let eye: [f64; 3] = shown.camera.eye.into();
+        let mut best: Option<(f32, f64, Self)> = None;
+        for set in &frame.sets {
+            for (at, place) in set.position.iter().enumerate() {
+                let Some(seen) = overlay::place(shown, rect, *place) else { continue };
+                let off = (seen - pointer).length();
+                if off > REACH {
+                    continue;
+                }
+                let far = (0..3).map(|k| (place[k] - eye[k]).powi(2)).sum::<f64>();
+                // A few points beside each other count as one: the nearer to the eye is meant.
+                let step = (off / 4.0).floor();
+                if best.as_ref().is_none_or(|(other, away, _)| (step, far) < (*other, *away)) {
+                    let picked = Self { set: set.name.clone(), id: set.id[at], way: Vec::new(), time: f64::NAN };
+                    best = Some((step, far, picked));
+                }
+            }
+        }
+        best.map(|(_, _, picked)| picked)
+    }
+
+    fn find<'a>(&self, frame: &'a Frame) -> Option<(&'a ParticleSet, usize)> {
+        let set = frame.sets.iter().find(|set| set.name == self.set)?;
+        Some((set, set.id.iter().position(|id| *id == self.id)?))
+    }
+
+    /// Goes with the particle.
+    pub fn follow(&mut self, frame: &Frame) {
+        let Some((set, at)) = self.find(frame) else { return };
+        if frame.time == self.time {
+            return;
+        }
+        if frame.time < self.time {
+            self.way.clear();
+        }
+        self.time = frame.time;
+        self.way.push(set.position[at]);
+        if self.way.len() > MOST {
+            let mut number = 0;
+            self.way.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+        }
+    }
+
+    /// Draws its way and a ring round it.
+    pub fn paint(&self, over: &Over<'_>, frame: &Frame, box_size: f64) {
+        let Some((set, at)) = self.find(frame) else { return };
+        for pair in self.way.windows(2) {
+            // Where a periodic side is crossed the way is not drawn across the box.
+            let far = (0..3).map(|k| (pair[1][k] - pair[0][k]).abs()).fold(0.0, f64::max);
+            if let (Some(from), Some(to)) = (over.place(pair[0]), over.place(pair[1]))
+                && far < 0.5 * box_size
+            {
+                over.painter.line_segment([from, to], Stroke::new(1.8, COLOUR));
+            }
+        }
+        overlay::ring(over, set.position[at], set.radius[at], COLOUR);
+    }
+
+    /// The card with its values; true where it is to be put away.
+    pub fn card(&self, ui: &mut Ui, frame: &Frame, units: bool) -> bool {
+        let mut away = false;
+        let unit = |unit: &'static str| if units { unit } else { "" };
+        Box::new().fill(ui.visuals().window_fill.gamma_multiply(0.94)).corner_radius(8).inner_margin(10).show(
+            ui,
+            |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(format!("{} {}", self.set, self.id)).color(COLOUR).strong());
+                    away = icons::sized(ui, Icon::Close, "Follow it no longer", "Esc", 20.0, false).clicked();
+                });
+                let Some((set, at)) = self.find(frame) else {
+                    ui.label(RichText::new("It is no longer there.").weak());
+                    return;
+                };
+                Grid::new("picked").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
+                    let mut row = |name: &str, value: String, unit: &str| {
+                        ui.label(RichText::new(name).small().weak());
+                        ui.label(RichText::new(format!("{value} {unit}")).small());
+                        ui.end_row();
+                    };
+                    let vector = |of: [f64; 3]| of.map(number).join(",  ");
+                    let speed = set.velocity[at].iter().map(|along| along * along).sum::<f64>().sqrt();
+                    row("place", vector(set.position[at]), unit("m"));
+                    row("velocity", vector(set.velocity[at]), unit("m/s"));
+                    row("speed", number(speed), unit("m/s"));
+                    row("mass", number(set.mass[at]), unit("kg"));
+                    for column in &set.columns {
+                        let value = match &column.values {
+                            Values::Scalar(values) => number(values[at]),
+                            Values::Vector(values) => vector(values[at]),
+                        };
+                        row(&column.name.replace('_', " "), value, unit(column.unit));
+                    }
+                });
+            },
+        );
+        away
+    }
+}

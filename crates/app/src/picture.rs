@@ -1,0 +1,238 @@
+//! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
+
+use crate::overlay::Over;
+use crate::physics::Snapshot;
+use crate::screen::OnScreen;
+use crate::{Screen, style};
+use corpuscle::gpu::{GpuKind, Image};
+use corpuscle::pictures::{Hand, Look, Moment, Pictures, Shown};
+use corpuscle_render::Lens;
+use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use glam::DVec3;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How far a point that the pointer goes turns the eye, radians.
+const TURN: f64 = 0.008;
+/// How far it may be zoomed.
+const ZOOM: [f64; 2] = [0.3, 200.0];
+/// Size of a still, pixels.
+const STILL_SIZE: [u32; 2] = [1920, 1080];
+/// After so long without change what stands still is drawn with all there is.
+const STILL: Duration = Duration::from_millis(350);
+
+/// How much work pictures are, as the user wants it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Quality {
+    /// All there is on a graphics card and of what stands still; what moves simply where there is no card.
+    #[default]
+    Auto,
+    /// Always simple.
+    Simple,
+    /// Always all there is.
+    Full,
+}
+
+/// The picture of a scene.
+pub struct Picture {
+    screen: Screen,
+    pictures: Pictures,
+    on_screen: Option<OnScreen>,
+    shown: Option<Shown>,
+    /// What was drawn last.
+    drawn: Option<Drawn>,
+    /// How the camera was moved.
+    pub hand: Hand,
+    /// How much work it may be.
+    pub quality: Quality,
+    /// When something last changed.
+    changed: Instant,
+    /// What went wrong with it.
+    fault: Option<String>,
+}
+
+/// What a picture was drawn from.
+#[derive(Clone, PartialEq)]
+struct Drawn {
+    /// The snapshot, by where it lies.
+    of: usize,
+    hand: Hand,
+    look: Look,
+    size: [u32; 2],
+    samples: u32,
+    paper: Color32,
+}
+
+impl Picture {
+    /// The picture of a scene that was opened.
+    pub fn new(screen: Screen, pictures: Pictures) -> Self {
+        Self {
+            screen,
+            pictures,
+            on_screen: None,
+            shown: None,
+            drawn: None,
+            hand: Hand::default(),
+            quality: Quality::Auto,
+            changed: Instant::now(),
+            fault: None,
+        }
+    }
+
+    /// Shows all again from where the model shows best.
+    pub fn reset(&mut self) {
+        self.hand = Hand { plan: self.hand.plan, ..Hand::default() };
+    }
+
+    /// What was drawn last.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
+    }
+
+    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it.
+    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool) -> Response {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, ui.is_enabled(), "Picture of the scene"));
+        self.follow_hand(ui, rect, &response);
+        let scale = ui.pixels_per_point();
+        let size = [rect.width(), rect.height()].map(|length| ((length * scale).round() as u32).clamp(16, 8192));
+        let (paper, linear) = style::paper(ui.visuals());
+        let still = self.note_change(ui, snapshot, moves, size, paper);
+        let (look, samples) = self.work(still);
+        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper };
+        if self.drawn.as_ref() != Some(&drawn) {
+            match self.draw(snapshot, &drawn, linear) {
+                Ok(()) => self.fault = None,
+                Err(error) => self.fault = Some(error.to_string()),
+            }
+            self.drawn = Some(drawn);
+        }
+        self.paint(ui, rect);
+        response
+    }
+
+    /// A still of a snapshot as it is seen now, with its title and axes, in the size of films.
+    pub fn still(&mut self, snapshot: &Snapshot) -> Result<Image, corpuscle::Error> {
+        // What is shown is drawn anew after it, in the window's size.
+        self.drawn = None;
+        self.pictures.resize(STILL_SIZE, 2)?;
+        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
+        self.pictures.still(&moment, &self.hand)
+    }
+
+    /// The partition of a gas was lifted.
+    pub fn lift_partition(&mut self, time: f64) {
+        self.pictures.lift_partition(time);
+        self.drawn = None;
+    }
+
+    /// True where nothing has changed for a while; asks to be called again where that is yet to come.
+    fn note_change(&mut self, ui: &Ui, snapshot: &Arc<Snapshot>, moves: bool, size: [u32; 2], paper: Color32) -> bool {
+        let same = self.drawn.as_ref().is_some_and(|drawn| {
+            drawn.of == Arc::as_ptr(snapshot) as usize
+                && (drawn.hand, drawn.size, drawn.paper) == (self.hand, size, paper)
+        });
+        if !same || moves {
+            self.changed = Instant::now();
+        }
+        let since = self.changed.elapsed();
+        if since < STILL && !moves {
+            ui.ctx().request_repaint_after(STILL.saturating_sub(since));
+        }
+        since >= STILL
+    }
+
+    /// The look, and samples each way in a pixel.
+    fn work(&self, still: bool) -> (Look, u32) {
+        let card = self.screen.gpu.kind == GpuKind::Card;
+        match self.quality {
+            Quality::Simple => (Look::Simple, if card || still { 2 } else { 1 }),
+            Quality::Full => (Look::Full, if card || still { 2 } else { 1 }),
+            Quality::Auto => (if card || still { Look::Full } else { Look::Simple }, if card || still { 2 } else { 1 }),
+        }
+    }
+
+    fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
+        let resized = self.pictures.resize(drawn.size, drawn.samples)?;
+        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
+        self.shown = Some(self.pictures.show(&moment, &self.hand, drawn.look, paper)?);
+        if resized || self.on_screen.is_none() {
+            self.on_screen = Some(self.screen.show(&self.pictures.view()));
+        }
+        Ok(())
+    }
+
+    fn paint(&self, ui: &Ui, rect: Rect) {
+        let painter = ui.painter_at(rect);
+        if let Some(on_screen) = &self.on_screen {
+            painter.add(egui_wgpu::Callback::new_paint_callback(rect, on_screen.clone()));
+        }
+        if let Some(shown) = &self.shown {
+            Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode }.paint();
+        }
+        if let Some(fault) = &self.fault {
+            let font = egui::FontId::proportional(13.5);
+            painter.text(rect.center(), egui::Align2::CENTER_CENTER, fault, font, ui.visuals().error_fg_color);
+        }
+    }
+
+    /// Turns, shifts and zooms.
+    fn follow_hand(&mut self, ui: &Ui, rect: Rect, response: &Response) {
+        if response.double_clicked() {
+            self.reset();
+        }
+        let Some(shown) = &self.shown else { return };
+        let flat = matches!(shown.camera.lens, Lens::Orthographic { .. });
+        let shift = ui.input(|input| input.modifiers.shift);
+        let (turns, shifts) = (
+            response.dragged_by(PointerButton::Primary) && !flat && !shift,
+            response.dragged_by(PointerButton::Secondary)
+                || response.dragged_by(PointerButton::Middle)
+                || response.dragged_by(PointerButton::Primary) && (flat || shift),
+        );
+        let moved = response.drag_delta();
+        let [right, up] = axes(shown);
+        let point = height(shown) / f64::from(rect.height());
+        if turns {
+            let away = shown.camera.eye - shown.camera.target;
+            let own = (away.z / away.length()).asin() - self.hand.turn[1];
+            self.hand.turn_by(own, [-f64::from(moved.x) * TURN, f64::from(moved.y) * TURN]);
+        }
+        if shifts {
+            self.shift_by(point * (f64::from(moved.y) * up - f64::from(moved.x) * right));
+        }
+        if response.hovered() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let times = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
+            if let Some(pointer) = response.hover_pos().filter(|_| times != 1.0) {
+                let zoom = (self.hand.zoom * times).clamp(ZOOM[0], ZOOM[1]);
+                let off = pointer - rect.center();
+                let towards = point * (f64::from(off.x) * right - f64::from(off.y) * up);
+                let part = 1.0 - self.hand.zoom / zoom;
+                self.hand.zoom = zoom;
+                self.shift_by(part * towards);
+            }
+        }
+    }
+
+    fn shift_by(&mut self, by: DVec3) {
+        self.hand.shift = (DVec3::from(self.hand.shift) + by).into();
+    }
+}
+
+/// To the right and up in the picture, of length 1.
+fn axes(shown: &Shown) -> [DVec3; 2] {
+    let forward = (shown.camera.target - shown.camera.eye).normalize_or(DVec3::NEG_Z);
+    let right = forward.cross(shown.camera.up).normalize_or(DVec3::X);
+    [right, right.cross(forward)]
+}
+
+/// Height of the world in the picture at what it looks at, m.
+fn height(shown: &Shown) -> f64 {
+    match shown.camera.lens {
+        Lens::Orthographic { height } => height,
+        Lens::Perspective { field_of_view } => {
+            2.0 * (shown.camera.eye - shown.camera.target).length() * (0.5 * field_of_view).tan()
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Gauges over time.
+
+use corpuscle::model::{Chart, ChartAxis, ChartSeries};
+
+/// Rows at most; then every other one is given up, so that what is kept reaches from the start to now.
+const MOST: usize = 4000;
+
+/// Rows of gauges.
+#[derive(Debug, Default)]
+pub struct History {
+    rows: Vec<(f64, Vec<f64>)>,
+    /// Rows that come are counted; one of so many is kept.
+    every: usize,
+    come: usize,
+    /// True where all there is is there.
+    whole: bool,
+}
+
+impl History {
+    /// The gauges of a finished run.
+    pub fn whole(rows: Vec<(f64, Vec<f64>)>) -> Self {
+        Self { rows, whole: true, ..Self::default() }
+    }
+
+    /// Takes in a row, if it is one of a later time.
+    pub fn take(&mut self, time: f64, row: &[f64]) {
+        let later = self.rows.last().is_none_or(|(last, _)| time > *last);
+        if self.whole || row.is_empty() || !later {
+            return;
+        }
+        self.come += 1;
+        if self.come.is_multiple_of(self.every.max(1)) {
+            self.rows.push((time, row.to_vec()));
+        }
+        if self.rows.len() >= MOST {
+            let mut number = 0;
+            self.rows.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+            self.every = 2 * self.every.max(1);
+        }
+    }
+
+    /// A gauge over time; none before there are two rows.
+    pub fn chart(&self, index: usize, header: &str, time_unit: &str) -> Option<Chart> {
+        let points: Vec<[f64; 2]> =
+            self.rows.iter().filter_map(|(time, row)| row.get(index).map(|value| [*time, *value])).collect();
+        if points.iter().filter(|point| point[1].is_finite()).count() < 2 {
+            return None;
+        }
+        let axis = |label: &str, unit: &str| ChartAxis { label: label.into(), unit: unit.into(), logarithmic: false };
+        let series = ChartSeries { name: header.into(), points, ..ChartSeries::default() };
+        Some(Chart {
+            name: header.replace('.', "_"),
+            title: header.into(),
+            x: axis("Time", time_unit),
+            y: axis(header, ""),
+            series: vec![series],
+            note: String::new(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_reaches_from_the_start_to_now() {
+        let mut history = History::default();
+        (0..50_000).for_each(|step| history.take(f64::from(step), &[f64::from(step)]));
+        history.take(3.0, &[0.0]);
+        assert!(history.rows.len() < MOST && history.rows.len() >= MOST / 4, "{}", history.rows.len());
+        assert!(history.rows.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        assert!(history.rows[0].0 == 0.0 && history.rows.last().is_some_and(|row| row.0 > 49_900.0));
+        assert!(history.chart(0, "gas.energy", "").is_some() && history.chart(7, "none", "").is_none());
+    }
+}

@@ -1,0 +1,130 @@
+//! The strip below the picture: play, pause, step, restart, pace, the time bar, and how fast it goes.
+
+use crate::icons::{self, Icon};
+use crate::physics::Snapshot;
+use corpuscle::scene::{Scene, Units};
+use corpuscle_drawing::text;
+use egui::{Align, Color32, CornerRadius, Layout, Rect, RichText, Role, Sense, Slider, Ui, WidgetInfo, vec2};
+
+/// How much slower and faster than its own pace a scene can be shown.
+const PACES: [f64; 2] = [0.02, 50.0];
+
+/// What was pressed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pressed {
+    /// Go on, or wait.
+    Play,
+    /// One step.
+    Step,
+    /// From the start.
+    Restart,
+    /// So many times the scene's own pace.
+    Pace(f64),
+    /// Another time of a finished run, s.
+    Seek(f64),
+}
+
+/// What the strip shows.
+pub struct Transport<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Where it ends, s.
+    pub end: f64,
+    /// True for a finished run, whose time can be chosen.
+    pub recorded: bool,
+    /// How it stands.
+    pub snapshot: Option<&'a Snapshot>,
+    /// True while it goes on.
+    pub playing: bool,
+    /// The pace, as a multiple of the scene's own.
+    pub times: f64,
+    /// Pictures in a second.
+    pub pictures: f64,
+}
+
+impl Transport<'_> {
+    /// Shows the strip; gives what was pressed.
+    pub fn ui(&self, ui: &mut Ui) -> Option<Pressed> {
+        let mut pressed = None;
+        ui.horizontal_centered(|ui| {
+            let (icon, name) = if self.playing { (Icon::Pause, "Pause") } else { (Icon::Play, "Play") };
+            let mut press = |hit: bool, what: Pressed| {
+                if hit {
+                    pressed = Some(what);
+                }
+            };
+            press(icons::button(ui, Icon::Restart, "Restart", "R").clicked(), Pressed::Restart);
+            press(icons::sized(ui, icon, name, "Space", 36.0, true).clicked(), Pressed::Play);
+            press(icons::button(ui, Icon::Step, "One step", "right arrow").clicked(), Pressed::Step);
+            ui.add_space(6.0);
+            let mut times = self.times;
+            let slider = Slider::new(&mut times, PACES[0]..=PACES[1])
+                .logarithmic(true)
+                .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
+                .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
+            ui.spacing_mut().slider_width = 90.0;
+            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's own");
+            slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
+            press(slider.changed(), Pressed::Pace(times));
+            ui.add_space(6.0);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                self.numbers(ui);
+                if let Some(time) = self.bar(ui) {
+                    pressed = Some(Pressed::Seek(time));
+                }
+            });
+        });
+        pressed
+    }
+
+    fn time(&self, time: f64) -> String {
+        match self.scene.gas().map(|gas| gas.units) {
+            Some(Units::Reduced) => text::short_number(time),
+            Some(Units::Si) => text::any_time(time),
+            None => text::any_time(time),
+        }
+    }
+
+    fn numbers(&self, ui: &mut Ui) {
+        let Some(snapshot) = self.snapshot else { return };
+        let particles = text::number(snapshot.particles as f64);
+        let words = match self.scene.gas() {
+            Some(_) => format!("{particles} balls"),
+            None => format!("{particles} particles"),
+        };
+        ui.label(RichText::new(words).small().weak());
+        let work = if self.scene.gas().is_some() { "collisions/s" } else { "particle steps/s" };
+        let rate = if snapshot.playing {
+            format!("{:.0} pictures/s  ·  {} {work}", self.pictures, text::short_number(snapshot.rate))
+        } else {
+            String::new()
+        };
+        let quick = ui.label(RichText::new(rate).small().weak());
+        if snapshot.behind {
+            let told = "This machine cannot compute the scene at this speed: it goes as fast as it can.";
+            let mark = ui.label(RichText::new("as fast as it can").small().color(ui.visuals().warn_fg_color));
+            mark.union(quick).on_hover_text(told);
+        }
+    }
+
+    /// How far it has come; gives the time that was chosen.
+    fn bar(&self, ui: &mut Ui) -> Option<f64> {
+        let now = self.snapshot.map_or(0.0, |snapshot| snapshot.frame.time);
+        let end = self.end.max(now);
+        let words = format!("{} / {}", self.time(now), self.time(end));
+        ui.label(RichText::new(&words).small());
+        let sense = if self.recorded { Sense::click_and_drag() } else { Sense::hover() };
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().max(20.0), 20.0), sense);
+        let kind = if self.recorded { Role::Slider } else { Role::ProgressIndicator };
+        response.widget_info(|| WidgetInfo::labeled(kind, true, format!("Time {words}")));
+        let part = if end > 0.0 { (now / end) as f32 } else { 0.0 };
+        let rail = Rect::from_center_size(rect.center(), vec2(rect.width(), 5.0));
+        ui.painter().rect_filled(rail, CornerRadius::same(3), ui.visuals().widgets.inactive.bg_fill);
+        let done = rail.with_max_x(rail.left() + part * rail.width());
+        ui.painter().rect_filled(done, CornerRadius::same(3), crate::style::accent(ui.visuals()));
+        ui.painter().circle_filled(done.right_center(), 6.0, crate::style::accent(ui.visuals()));
+        ui.painter().circle_filled(done.right_center(), 2.5, Color32::WHITE);
+        let pointer = response.interact_pointer_pos().filter(|_| self.recorded)?;
+        Some(f64::from(((pointer.x - rail.left()) / rail.width()).clamp(0.0, 1.0)) * end)
+    }
+}

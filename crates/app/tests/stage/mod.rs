@@ -1,0 +1,202 @@
+//! A window off screen, with a device that draws it.
+
+use corpuscle::gpu::{Gpu, require_gpu, wgpu};
+use corpuscle_app::{Screen, Start, Window};
+use egui::mutex::RwLock;
+use egui::{Role, TexturesDelta, vec2};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, TestRenderer};
+use std::cell::RefCell;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Size of the window, points.
+const SIZE: [f32; 2] = [1360.0, 840.0];
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// A window off screen.
+#[allow(dead_code)]
+pub struct Stage {
+    pub harness: Harness<'static, Option<Window>>,
+    pub screen: Screen,
+    pub renderer: Arc<RwLock<egui_wgpu::Renderer>>,
+}
+
+/// Keeps the window's textures on its device.
+struct Textures(Gpu, Arc<RwLock<egui_wgpu::Renderer>>);
+
+impl TestRenderer for Textures {
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        let mut renderer = self.1.write();
+        for (id, images) in delta.set.drain() {
+            for image in images {
+                renderer.update_texture(&self.0.device, &self.0.queue, id, &image);
+            }
+        }
+        for id in delta.free.drain() {
+            renderer.free_texture(&id);
+        }
+    }
+}
+
+/// A window with the first page; none, after a line that says so, where there is no device.
+pub fn stage(test: &str) -> Option<Stage> {
+    stage_in(test, egui::Theme::Light, Start::Welcome)
+}
+
+/// A window in a theme that begins so.
+pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
+    let gpu = require_gpu(test)?;
+    let renderer = egui_wgpu::Renderer::new(
+        &gpu.device,
+        FORMAT,
+        egui_wgpu::RendererOptions { dithering: false, ..Default::default() },
+    );
+    let renderer = Arc::new(RwLock::new(renderer));
+    let screen = Screen::new(gpu, FORMAT);
+    // The window sets its letters before the first picture, as it does in the system's window.
+    let made = Rc::new(RefCell::new(None));
+    let (own, made_first) = (screen.clone(), made.clone());
+    let harness = Harness::builder()
+        .with_size(vec2(SIZE[0], SIZE[1]))
+        .with_theme(theme)
+        .with_step_dt(1.0 / 60.0)
+        .renderer(Textures(screen.gpu.clone(), renderer.clone()))
+        .with_context_setup(move |context| {
+            *made_first.borrow_mut() = Some(Window::new(context, own, start).unwrap());
+        })
+        .build_ui_state(
+            move |ui, window: &mut Option<Window>| {
+                if window.is_none() {
+                    *window = made.borrow_mut().take();
+                }
+                window.as_mut().expect("it was made before").ui(ui);
+            },
+            None,
+        );
+    Some(Stage { harness, screen, renderer })
+}
+
+impl Stage {
+    /// The window.
+    pub fn window(&self) -> &Window {
+        self.harness.state().as_ref().expect("it was shown")
+    }
+
+    /// Simulated time that is shown, s.
+    pub fn time(&self) -> f64 {
+        self.window().snapshot().map_or(f64::NAN, |snapshot| snapshot.frame.time)
+    }
+
+    /// Shows the window again and again for so long.
+    pub fn run(&mut self, time: Duration) {
+        let start = Instant::now();
+        while start.elapsed() < time {
+            self.harness.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Shows the window until something holds of it.
+    pub fn until(&mut self, most: Duration, what: &str, holds: impl Fn(&Window) -> bool) {
+        let start = Instant::now();
+        while !holds(self.window()) {
+            assert!(start.elapsed() < most, "not so after {most:?}: {what}; {:?}", self.window().fault());
+            self.run(Duration::from_millis(20));
+        }
+    }
+
+    /// Clicks on what is called so.
+    pub fn click(&mut self, name: &str) {
+        self.harness.get_by_label(name).click();
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Chooses a scene by its title, wherever in its list it stands, as a screen reader does.
+    pub fn choose(&mut self, title: &str) {
+        self.harness.get_by_role_and_label(Role::Button, title).click_accesskit();
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// True where something is called so.
+    pub fn has(&self, name: &str) -> bool {
+        self.harness.query_all_by_label(name).next().is_some()
+    }
+
+    /// Types a number into the field that is called so.
+    pub fn type_into(&mut self, name: &str, words: &str) {
+        self.harness.get_by_role_and_label(Role::SpinButton, name).click();
+        self.harness.step();
+        self.harness.step();
+        self.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+        self.harness.event(egui::Event::Text(words.into()));
+        self.harness.step();
+        self.key(egui::Key::Enter);
+    }
+
+    /// Presses a key.
+    pub fn key(&mut self, key: egui::Key) {
+        self.harness.key_press(key);
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// The window as an image: width, height, and its pixels. Where the environment names a folder `CORPUSCLE_SHOTS`, it is put there.
+    pub fn picture(&mut self, name: &str) -> corpuscle::gpu::Image {
+        self.harness.step();
+        let image = draw(&self.screen, &self.renderer, &self.harness);
+        if let Some(folder) = std::env::var_os("CORPUSCLE_SHOTS") {
+            let file = PathBuf::from(folder).join(format!("{name}.png"));
+            corpuscle::record::write_picture(&file, [image.width, image.height], &image.rgba).unwrap();
+        }
+        image
+    }
+}
+
+pub fn draw(
+    screen: &Screen,
+    renderer: &RwLock<egui_wgpu::Renderer>,
+    harness: &Harness<'static, Option<Window>>,
+) -> corpuscle::gpu::Image {
+    let Gpu { device, queue, .. } = &screen.gpu;
+    let [width, height] = SIZE.map(|length| length as u32);
+    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("window"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let descriptor = egui_wgpu::ScreenDescriptor { size_in_pixels: [width, height], pixels_per_point: 1.0 };
+    let shapes = harness.ctx.tessellate(harness.output().shapes.clone(), 1.0);
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut renderer = renderer.write();
+    renderer.update_buffers(device, queue, &mut encoder, &shapes, &descriptor);
+    {
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("window"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color { r: 0.965, g: 0.969, b: 0.976, a: 1.0 }),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..wgpu::RenderPassDescriptor::default()
+        });
+        renderer.render(&mut pass.forget_lifetime(), &shapes, &descriptor);
+    }
+    queue.submit([encoder.finish()]);
+    corpuscle::gpu::read_rgba8(&screen.gpu, &texture).unwrap()
+}

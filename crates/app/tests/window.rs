@@ -1,0 +1,71 @@
+//! The window, clicked through off screen.
+
+mod stage;
+
+use stage::stage;
+use std::time::Duration;
+
+const SOON: Duration = Duration::from_secs(30);
+
+#[test]
+fn a_gas_is_opened_played_paused_stepped_and_started_again() {
+    let Some(mut stage) = stage("a gas in the window") else { return };
+    stage.click("Maxwell's speeds");
+    stage.until(SOON, "it plays", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > 0.02));
+    stage.click("Pause");
+    stage.until(SOON, "it waits", |window| window.snapshot().is_some_and(|snapshot| !snapshot.playing));
+    let waiting = stage.time();
+    stage.run(Duration::from_millis(200));
+    assert_eq!(stage.time(), waiting);
+    stage.click("One step");
+    stage.until(SOON, "it steps", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > waiting));
+    stage.picture("gas");
+    stage.click("Restart");
+    stage.until(SOON, "it starts again", |window| {
+        window.snapshot().is_some_and(|snapshot| snapshot.frame.time < waiting)
+    });
+}
+
+#[test]
+fn a_gas_is_heated_and_its_parameters_wait_for_a_restart() {
+    let Some(mut stage) = stage("heating a gas") else { return };
+    stage.click("Free expansion");
+    stage.until(SOON, "it plays", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > 0.0));
+    stage.key(egui::Key::Space);
+    stage.until(SOON, "it waits", |window| window.snapshot().is_some_and(|snapshot| !snapshot.playing));
+    let energy = |window: &corpuscle_app::Window| {
+        let snapshot = window.snapshot().unwrap();
+        snapshot.frame.sets.iter().flat_map(|set| &set.velocity).flatten().map(|along| along * along).sum::<f64>()
+    };
+    let before = energy(stage.window());
+    stage.click("Heat");
+    stage.until(SOON, "it is hotter", |window| energy(window) > 1.14 * before && energy(window) < 1.16 * before);
+    stage.click("Lift the partition");
+    assert!(stage.has("The partition is lifted") && stage.window().fault().is_none());
+    // A change of the scene is offered, and taken by a restart.
+    assert!(!stage.has("Restart with changes"));
+    stage.type_into("Number, ", "300");
+    stage.click("Restart with changes");
+    stage.until(SOON, "it has fewer balls", |window| {
+        window.snapshot().is_some_and(|snapshot| snapshot.particles == 300)
+    });
+    assert!(!stage.has("Restart with changes"));
+}
+
+#[test]
+fn a_flood_and_dew_are_opened_and_play() {
+    let Some(mut stage) = stage("flood and dew in the window") else { return };
+    for (title, name, least) in [("A lake at rest over a hill", "flood", 1e-3), ("A cold pane", "dew", 1e-3)] {
+        stage.choose(title);
+        let plays = |window: &corpuscle_app::Window| {
+            !window.is_waiting() && window.snapshot().is_some_and(|snapshot| snapshot.frame.time > least)
+        };
+        stage.until(SOON, title, plays);
+        stage.run(Duration::from_millis(1500));
+        stage.key(egui::Key::Space);
+        stage.until(SOON, "it waits", |window| window.snapshot().is_some_and(|snapshot| !snapshot.playing));
+        stage.run(Duration::from_millis(600));
+        assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+        stage.picture(name);
+    }
+}

@@ -1,0 +1,83 @@
+//! Pictures that are shown where they are drawn, again and again, seen from where a hand moves the camera to.
+
+use super::{Hand, Moment, Pictures, Subject};
+use crate::Error;
+use corpuscle_gpu::{Gpu, Image, wgpu};
+use corpuscle_render::{Camera, Overlay, Stage, Target};
+
+/// How much work a picture may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Look {
+    /// All there is: shadows, water that looks like water.
+    #[default]
+    Full,
+    /// What can be drawn quickly without a graphics card: no shadows, water as its particles, coloured by depth.
+    Simple,
+}
+
+/// What was drawn, for whoever lays texts and lines over it.
+#[derive(Debug, Clone)]
+pub struct Shown {
+    /// The part of the world that is shown.
+    pub stage: Stage,
+    /// From where.
+    pub camera: Camera,
+    /// True where it is a drawing on paper, false where it is lit.
+    pub on_paper: bool,
+    /// What is to lie over it.
+    pub overlay: Overlay,
+}
+
+impl Pictures {
+    /// The device that draws.
+    pub fn gpu(&self) -> &Gpu {
+        self.studio.renderer.gpu()
+    }
+
+    /// Draws a moment and leaves the picture on the device ([`Pictures::view`]), without its overlay, on paper of a colour (linear
+    /// light) where it is a drawing. Returns before the device is done.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where something cannot be drawn.
+    pub fn show(&mut self, moment: &Moment<'_>, hand: &Hand, look: Look, paper: [f32; 3]) -> Result<Shown, Error> {
+        let studio = &mut self.studio;
+        (studio.overlaid, studio.look, studio.hand, studio.paper) = (false, look, *hand, paper);
+        self.subject.draw(studio, &self.title, moment)
+    }
+
+    /// The picture of a moment as [`Pictures::draw`] makes it, seen from where a hand moved the camera to.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the device was lost.
+    pub fn still(&mut self, moment: &Moment<'_>, hand: &Hand) -> Result<Image, Error> {
+        let studio = &mut self.studio;
+        (studio.overlaid, studio.look, studio.hand, studio.paper) = (true, Look::Full, *hand, [1.0; 3]);
+        self.subject.draw(studio, &self.title, moment)?;
+        Ok(studio.renderer.read(&studio.target)?)
+    }
+
+    /// Makes pictures of another size, pixels, with so many samples each way in a pixel; false where they have it already.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where that is more than the device can hold.
+    pub fn resize(&mut self, size: [u32; 2], samples: u32) -> Result<bool, Error> {
+        let target = &mut self.studio.target;
+        if (target.size, target.samples) == (size, samples) {
+            return Ok(false);
+        }
+        *target = Target::new(self.studio.renderer.gpu(), size, samples)?;
+        Ok(true)
+    }
+
+    /// The partition of a gas is drawn no longer from a time on, s: it was lifted by hand.
+    pub fn lift_partition(&mut self, time: f64) {
+        if let Subject::Gas(gas) = &mut self.subject {
+            gas.lift_partition(time);
+        }
+    }
+
+    /// The picture on the device.
+    pub fn view(&self) -> wgpu::TextureView {
+        self.studio.target.picture_view()
+    }
+}

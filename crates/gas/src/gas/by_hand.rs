@@ -1,0 +1,153 @@
+//! What a hand changes of a gas while it runs.
+
+use super::Gas;
+use crate::method::Mover;
+use crate::world::{Facing, Wall};
+use corpuscle_model::{ExactSum, ModelError};
+use serde::{Deserialize, Serialize};
+use std::any::Any;
+
+/// A change of a gas that runs. Walls are named by their axis, 0 to 2, and end, 0 at the smaller coordinate and 1 at the larger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ByHand {
+    /// All velocities become so many times greater that the kinetic energy, and the temperature of a gas at rest, is this many times
+    /// what it was; above 0.
+    Heat(f64),
+    /// The partition is taken away.
+    LiftPartition,
+    /// A thermal wall is held at another temperature, above 0.
+    WallTemperature {
+        /// The wall.
+        wall: [usize; 2],
+        /// Its temperature from now on.
+        temperature: f64,
+    },
+    /// A piston is pressed by another pressure from outside, 0 or more.
+    PistonPressure {
+        /// The wall.
+        wall: [usize; 2],
+        /// The pressure from now on.
+        pressure: f64,
+    },
+}
+
+impl ByHand {
+    /// Changes a model that is a gas, at the time it shows. Averages over time begin anew.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where it is none, has no such wall or partition, or the number is out of range: nothing has changed then.
+    pub fn change(self, model: &mut dyn Any) -> Result<(), ModelError> {
+        if let Some(gas) = model.downcast_mut::<Gas<2>>() {
+            return gas.change_by_hand(self);
+        }
+        match model.downcast_mut::<Gas<3>>() {
+            Some(gas) => gas.change_by_hand(self),
+            None => Err(ModelError::Setup("this model is no gas".into())),
+        }
+    }
+}
+
+/// Energy and momentum that a hand gave and took.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct HandTally {
+    pub gained: ExactSum,
+    pub lost: ExactSum,
+    /// Sum of the components.
+    pub momentum: ExactSum,
+}
+
+impl<const D: usize> Gas<D> {
+    fn change_by_hand(&mut self, change: ByHand) -> Result<(), ModelError> {
+        let positive = |value: f64, what: &str| match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(ModelError::Setup(format!("{what} must be above 0, not {value}"))),
+        };
+        match change {
+            ByHand::Heat(factor) => {
+                positive(factor, "the factor of the temperature")?;
+                self.heat(factor);
+            }
+            ByHand::LiftPartition if self.partition.is_none() || self.lifted => {
+                return Err(ModelError::Setup("there is no partition to be lifted".into()));
+            }
+            ByHand::LiftPartition => {
+                self.come_to_now();
+                self.lift();
+            }
+            ByHand::WallTemperature { wall, temperature } => {
+                positive(temperature, "the temperature of a wall")?;
+                let boltzmann = self.setup.boltzmann;
+                let wall = self.wall_where(wall, "thermal wall", |wall| wall.temperature.is_some())?;
+                self.mover.world_mut().walls[wall].temperature = Some(boltzmann * temperature);
+            }
+            ByHand::PistonPressure { wall: [axis, end], pressure } => {
+                if !(pressure.is_finite() && pressure >= 0.0) {
+                    return Err(ModelError::Setup(format!("a pressure must be 0 or more, not {pressure}")));
+                }
+                let wall = self.wall_where([axis, end], "piston", |wall| wall.mass.is_some())?;
+                self.press(wall, axis, pressure);
+            }
+        }
+        self.begin_averages_anew();
+        Ok(())
+    }
+
+    /// Number of the wall at an end of an axis that is of a kind.
+    fn wall_where(&self, [axis, end]: [usize; 2], kind: &str, is: impl Fn(&Wall) -> bool) -> Result<usize, ModelError> {
+        let facing = if end == 0 { Facing::Up } else { Facing::Down };
+        let mut walls = self.mover.world().walls.iter();
+        let found = walls.position(|wall| wall.axis == axis && wall.facing == facing && is(wall));
+        found.ok_or_else(|| ModelError::Setup(format!("there is no {kind} at this end of the box")))
+    }
+
+    /// Events up to the time shown have happened: the clock comes to it. Equal steps stay at the step they are at.
+    fn come_to_now(&mut self) {
+        if !matches!(self.mover, Mover::FixedStep(_)) {
+            let shown = self.shown;
+            let world = self.mover.world_mut();
+            world.now = world.in_window(shown);
+        }
+    }
+
+    fn heat(&mut self, factor: f64) {
+        let before = [self.kinetic_energy(), self.momentum().iter().sum()];
+        self.come_to_now();
+        // All balls are brought to the beginning of a window, and what is to come of them is found anew after it.
+        self.mover.begin_window();
+        let times = factor.sqrt();
+        let world = self.mover.world_mut();
+        for ball in 0..world.balls.len() {
+            world.balls[ball].velocity = world.balls[ball].velocity.map(|velocity| times * velocity);
+            world.note_bend(ball);
+        }
+        self.mover.begin_window();
+        let [energy, momentum] = [self.kinetic_energy(), self.momentum().iter().sum()];
+        let given = energy - before[0];
+        if given >= 0.0 {
+            self.hand.gained.add(given)
+        } else {
+            self.hand.lost.add(-given)
+        }
+        self.hand.momentum.add(momentum - before[1]);
+    }
+
+    /// A piston's acceleration is the pressure from outside on its area, over its mass, as where it was set up.
+    fn press(&mut self, number: usize, axis: usize, pressure: f64) {
+        self.come_to_now();
+        let area: f64 = (0..D).filter(|&other| other != axis).map(|other| self.setup.size[other]).product();
+        let world = self.mover.world_mut();
+        let now = world.now;
+        let wall = &mut world.walls[number];
+        let inward = if wall.facing == Facing::Up { 1.0 } else { -1.0 };
+        let speed = wall.speed_at(now);
+        wall.bend(now, speed);
+        wall.acceleration = inward * pressure * area / wall.mass.unwrap_or(f64::INFINITY);
+        self.mover.wall_bent(number);
+    }
+
+    /// Counts of speeds, profile and pairs are of what comes now.
+    fn begin_averages_anew(&mut self) {
+        let largest = self.setup.largest_speeds(&self.sets, self.mover.world());
+        self.measures.begin_anew(&self.setup, largest);
+    }
+}
