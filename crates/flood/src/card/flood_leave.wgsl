@@ -67,7 +67,8 @@ fn kept(particle: ptr<function, Particle>) -> vec3f {
     velocity *= vec2f(x.y, y.y);
     let side = select(u32(x.z), 2u + u32(y.z), y.z > 0.0);
     var now = vec2f(x.x, y.x);
-    if side == 0u {
+    // Where the particles are only brought into new cells the step is 0 s long, and nothing is booked.
+    if side == 0u && status.step > 0.0 {
         let bounds = parameters.bounds;
         let rules = parameters.rules;
         let off = before_walls((*particle).next_h);
