@@ -1,0 +1,76 @@
+//! Keys, and what is pressed in the strip.
+
+use super::open::QUALITIES;
+use super::{Source, Window};
+use crate::physics::{Command, default_pace};
+use crate::transport::Pressed;
+use egui::{Key, Ui};
+
+impl Window {
+    pub(super) fn keys(&mut self, ui: &Ui) {
+        if ui.ctx().egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key: Key| ui.input(|input| input.key_pressed(key) && input.modifiers.is_none());
+        let keys = [(Key::Space, Pressed::Play), (Key::ArrowRight, Pressed::Step), (Key::R, Pressed::Restart)];
+        for (key, what) in keys {
+            if pressed(key) {
+                self.press(what);
+            }
+        }
+        if pressed(Key::G) {
+            self.panels.scenes = !self.panels.scenes;
+        }
+        if pressed(Key::P) {
+            self.panels.parameters = !self.panels.parameters;
+        }
+        if pressed(Key::L) {
+            self.panels.plots = !self.panels.plots;
+        }
+        if pressed(Key::S) {
+            self.save_still();
+        }
+        let asks = ui.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::Questionmark));
+        self.help |= asks;
+        let Some(open) = &mut self.open else { return };
+        if pressed(Key::F) {
+            open.picture.reset();
+        }
+        if pressed(Key::T) && !open.is_flat() {
+            open.picture.hand.plan = !open.picture.hand.plan;
+        }
+        if pressed(Key::Escape) {
+            open.picked = None;
+        }
+        for (key, (quality, ..)) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(QUALITIES) {
+            if pressed(key) {
+                open.picture.quality = quality;
+            }
+        }
+    }
+
+    pub(super) fn press(&mut self, pressed: Pressed) {
+        let Some(open) = &mut self.open else { return };
+        match pressed {
+            Pressed::Play => {
+                let playing = !open.playing;
+                self.play(playing);
+            }
+            Pressed::Step => {
+                open.playing = false;
+                self.physics.ask(Command::Step(open.times * default_pace(open.end) / 30.0));
+            }
+            Pressed::Restart if open.recorded => self.physics.ask(Command::Seek(0.0)),
+            Pressed::Restart => {
+                let changes = open.parameters.changes().to_vec();
+                let source = Source { changes, ..open.source.clone() };
+                self.open(source);
+            }
+            Pressed::Seek(time) => self.physics.ask(Command::Seek(time)),
+            Pressed::Pace(times) => {
+                open.times = times;
+                self.physics.ask(Command::Pace(times * default_pace(open.end)));
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The scene that is open.
+
+use super::Source;
+use crate::overlay::Over;
+use crate::parameters::Parameters;
+use crate::physics::Snapshot;
+use crate::pick::Picked;
+use crate::picture::{Picture, Quality};
+use crate::plots::Plots;
+use corpuscle::scene::Scene;
+use egui::Ui;
+use std::sync::Arc;
+
+/// The scene that is open.
+pub(super) struct Open {
+    pub(super) number: u64,
+    pub(super) source: Source,
+    /// True for a finished run.
+    pub(super) recorded: bool,
+    /// Where it ends, s.
+    pub(super) end: f64,
+    pub(super) scene: Scene,
+    pub(super) picture: Picture,
+    pub(super) parameters: Parameters,
+    pub(super) plots: Plots,
+    pub(super) picked: Option<Picked>,
+    /// True once the partition of a gas is gone.
+    pub(super) lifted: bool,
+    pub(super) snapshot: Option<Arc<Snapshot>>,
+    pub(super) playing: bool,
+    /// The pace, as a multiple of the scene's own.
+    pub(super) times: f64,
+}
+
+/// Looks: how they are called, and what they mean.
+pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
+    (
+        Quality::Auto,
+        "By itself",
+        "Full on a graphics card; without one full where it stands still, simple where it moves",
+    ),
+    (Quality::Simple, "Simple", "Without shadows, water as its particles: quick"),
+    (Quality::Full, "Full", "Shadows, and water that looks like water: slow without a graphics card"),
+];
+
+/// The parameters of a scene as it is written.
+pub(super) fn parameters(source: &Source) -> Parameters {
+    let written = Scene::parse(&source.text, &source.name, &[]);
+    written.map_or_else(|_| Parameters::none(), |written| Parameters::new(&written, source.changes.clone()))
+}
+
+impl Open {
+    /// True for a gas in the plane.
+    pub(super) fn is_flat(&self) -> bool {
+        self.scene.gas().is_some_and(|gas| gas.dimensions() == 2)
+    }
+
+    pub(super) fn quality(&mut self, ui: &mut Ui) {
+        let now =
+            QUALITIES.iter().find(|(quality, ..)| *quality == self.picture.quality).map_or("", |(_, name, _)| *name);
+        let combo = egui::ComboBox::from_id_salt("look").selected_text(format!("Look: {}", now.to_lowercase()));
+        let shown = combo.show_ui(ui, |ui| {
+            for (quality, name, hint) in QUALITIES {
+                ui.selectable_value(&mut self.picture.quality, quality, name).on_hover_text(hint);
+            }
+        });
+        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Look"));
+    }
+
+    /// Picks what was clicked on, and draws what is picked.
+    pub(super) fn pick(&mut self, ui: &Ui, response: &egui::Response, snapshot: &Snapshot) {
+        let Some(shown) = self.picture.shown() else { return };
+        if response.clicked()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            self.picked = Picked::at(shown, response.rect, &snapshot.frame, pointer);
+            if let Some(picked) = &mut self.picked {
+                picked.follow(&snapshot.frame);
+            }
+        }
+        if let Some(picked) = &self.picked {
+            let painter = ui.painter_at(response.rect);
+            let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
+            picked.paint(&over, &snapshot.frame, (shown.stage.to - shown.stage.from).max_element());
+        }
+    }
+}

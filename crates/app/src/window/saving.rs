@@ -1,0 +1,38 @@
+//! Stills and scenes into files.
+
+use super::{Source, Window};
+use crate::files;
+use std::path::PathBuf;
+use std::time::Instant;
+
+impl Window {
+    /// Says where something was written, or why not.
+    pub(super) fn wrote(&mut self, done: Result<PathBuf, String>) {
+        match done {
+            Ok(path) => self.notice = Some((format!("Saved as {}", path.display()), Instant::now())),
+            Err(error) => self.fault = Some(format!("It could not be saved: {error}")),
+        }
+    }
+
+    pub(super) fn save_scene(&mut self) {
+        let Some(open) = &self.open else { return };
+        let changes = open.parameters.changes().to_vec();
+        let changed = Source { changes, ..open.source.clone() }.scene();
+        let text = changed.map_err(|error| error.to_string()).and_then(|mut scene| {
+            scene.resolve_paths(&open.source.folder);
+            scene.to_toml().map_err(|error| error.to_string())
+        });
+        let name = format!("{}-changed", open.source.name.trim_end_matches(".toml"));
+        let done = text
+            .and_then(|text| files::text(&PathBuf::from("."), &name, "toml", &text).map_err(|error| error.to_string()));
+        self.wrote(done);
+    }
+
+    pub(super) fn save_still(&mut self) {
+        let Some(open) = &mut self.open else { return };
+        let Some(snapshot) = open.snapshot.clone() else { return };
+        let still = open.picture.still(&snapshot);
+        let done = still.and_then(|image| files::picture(&PathBuf::from("."), &open.source.name, &image));
+        self.wrote(done.map_err(|error| error.to_string()));
+    }
+}
