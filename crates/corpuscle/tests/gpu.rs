@@ -14,8 +14,8 @@ const TIMES: [(&str, f64); 8] = [
     ("flood/lake-at-rest", 0.5),
     ("flood/city", 1.5),
     ("flood/cloudburst", 200.0),
-    ("flood/cuboid", 1.1),
-    ("flood/cylinder", 1.1),
+    ("flood/cuboid", 1.7),
+    ("flood/cylinder", 1.7),
     ("flood/rough-terrain", 1.5),
 ];
 
