@@ -18,6 +18,10 @@ use rayon::prelude::*;
 /// Rounds of relaxation.
 const ROUNDS: usize = 60;
 
+/// The last rounds are without what stands beyond the shore. The rim then moves out a little, and so the water comes to its
+/// volume: with 0 a lake between rough hills holds 1.9 % too much, with 3 to 6 it is within 1 %, with all 60 it lacks 3 %.
+const FREE_ROUNDS: usize = 4;
+
 /// Longest way in one round, in particle distances.
 const LONGEST_SHIFT: f64 = 0.1;
 
@@ -66,11 +70,17 @@ impl Body<'_> {
         let mut particles = self.scatter(edges, seed);
         let mut arrangement = Arrangement::default();
         let mut spare = Vec::new();
-        for _ in 0..ROUNDS {
+        for _ in FREE_ROUNDS..ROUNDS {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
-            self.relax(&arrangement, &mut particles, edges);
+            self.relax(&arrangement, &mut particles, edges, |x, y| self.glass_depth(x, y));
         }
-        particles.retain(|particle| (self.depth)(particle.x, particle.y) > self.shallowest);
+        let is_wet = |x: f64, y: f64| (self.depth)(x, y) > self.shallowest;
+        particles.retain(|particle| is_wet(particle.x, particle.y));
+        let on_water = |x: f64, y: f64| if is_wet(x, y) { self.glass_depth(x, y) } else { 0.0 };
+        for _ in 0..FREE_ROUNDS {
+            self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
+            self.relax(&arrangement, &mut particles, edges, on_water);
+        }
         // Obstacles are cut out of the glass, so that water stands before their walls as close as elsewhere.
         particles.retain(|particle| !obstacles.hold([particle.x, particle.y]));
         self.settle_smoothing(&mut arrangement, &mut particles, &mut spare, edges, obstacles);
@@ -81,7 +91,7 @@ impl Body<'_> {
     /// Depth for which the glass is made, m. Particles that follow the depth alone stand far apart at a shore, where the ground
     /// within reach of one rises by many times its depth, and water there never calms. And with nothing beyond the shore, those
     /// that stand further out push them together there. So the glass is fine on rising ground near a shore, and goes on
-    /// some way over the land; that part of it is taken out at last.
+    /// some way over the land; that part of it is taken out before the last rounds.
     fn glass_depth(&self, x: f64, y: f64) -> f64 {
         let depth = (self.depth)(x, y);
         let shallow = self.volume / (SHORE_DISTANCE * self.spacing).powi(2);
@@ -164,8 +174,14 @@ impl Body<'_> {
         lists.search(Near::Either, cells, x, y, reach_squared, &mut vec![(); x.len()], &());
     }
 
-    /// Moves each particle away from where its neighbours crowd, along -sum V grad W.
-    fn relax(&self, arrangement: &Arrangement, particles: &mut [Particle], edges: &EdgeRules) {
+    /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where no depth is wanted.
+    fn relax(
+        &self,
+        arrangement: &Arrangement,
+        particles: &mut [Particle],
+        edges: &EdgeRules,
+        wanted: impl Fn(f64, f64) -> f64 + Sync,
+    ) {
         let Arrangement { x, y, reach_squared, real, lists, .. } = arrangement;
         // The area that stands at each place, by the depth wanted there: equal in an even arrangement.
         let area: Vec<f64> = reach_squared.iter().map(|square| square / (4.0 * self.eta * self.eta)).collect();
@@ -181,7 +197,7 @@ impl Body<'_> {
             if edges.keep(&mut place, &mut [0.0; 2], self.before_walls.of(h)).is_some() {
                 return;
             }
-            let depth = self.glass_depth(place[0], place[1]);
+            let depth = wanted(place[0], place[1]);
             if depth > self.shallowest {
                 [particle.x, particle.y] = place;
                 particle.h = self.smoothing(depth);

@@ -183,6 +183,19 @@ north = "wall"
 level_m = 3
 "#;
 
+/// A glass with nothing beyond the shore holds 2.5 % too little here, one that is cut out of a larger one 1.9 % too much.
+#[test]
+fn a_lake_between_rough_hills_holds_its_volume() {
+    let scene = parse(ROUGH_LAKE, &[]);
+    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+    let (parts, step) = (400, 0.25);
+    let middle = |k: usize| (k as f64 + 0.5) * step;
+    let depth = |k: usize| (3.0 - terrain.height(middle(k % parts), middle(k / parts))).max(0.0);
+    let volume: f64 = (0..parts * parts).map(|k| depth(k) * step * step).sum();
+    let held: f64 = open(&scene).particles().iter().map(|particle| particle.volume).sum();
+    assert!((held / volume - 1.0).abs() < 0.01, "{held} of {volume} m3");
+}
+
 /// Particles that follow the depth alone, and that nothing holds back at the shore, move with 0.03 m/s here.
 #[test]
 fn a_lake_between_rough_hills_lies_still() {
@@ -192,7 +205,7 @@ fn a_lake_between_rough_hills_lies_still() {
     let particles = flood.particles();
     let kinetic: f64 = particles.iter().map(|p| p.volume * (p.u * p.u + p.v * p.v)).sum();
     let speed = (kinetic / full).sqrt();
-    assert!(speed < 0.012, "{speed} m/s");
+    assert!(speed < 0.008, "{speed} m/s");
     let off = particles.iter().filter(|p| (p.surface() - 3.0).abs() > 0.1).count();
     assert!(off * 500 < particles.len(), "{off} of {} more than 10 cm off the level", particles.len());
 }
