@@ -30,7 +30,13 @@ fn what_the_card_cannot_compute_is_refused_by_name() {
         return;
     }
     let place = Place::new();
-    let refused = place.run(&["run", "flood/cloudburst", "--backend", "gpu", "-o", "refused"]).expect_status(2);
-    assert!(refused.stderr.contains("[flood.rain]") && refused.stderr.contains("--backend cpu"), "{}", refused.stderr);
+    let refused = place
+        .run(&["run", "flood/cloudburst", "--set", "flood.refinement={}", "--backend", "gpu", "-o", "refused"])
+        .expect_status(2);
+    assert!(
+        refused.stderr.contains("[flood.refinement]") && refused.stderr.contains("--backend cpu"),
+        "{}",
+        refused.stderr
+    );
     assert!(!place.path("refused").exists(), "a run that was refused leaves no folder");
 }

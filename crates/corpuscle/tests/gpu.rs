@@ -8,8 +8,16 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Time to go: some ten to fifty steps.
-const TIMES: [(&str, f64); 4] =
-    [("flood/valley", 20.0), ("flood/dam-break", 1.0), ("flood/lake-at-rest", 0.5), ("flood/city", 1.5)];
+const TIMES: [(&str, f64); 8] = [
+    ("flood/valley", 20.0),
+    ("flood/dam-break", 1.0),
+    ("flood/lake-at-rest", 0.5),
+    ("flood/city", 1.5),
+    ("flood/cloudburst", 200.0),
+    ("flood/cuboid", 1.7),
+    ("flood/cylinder", 1.7),
+    ("flood/rough-terrain", 1.5),
+];
 
 fn open(name: &str) -> Simulation {
     let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();

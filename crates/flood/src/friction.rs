@@ -73,7 +73,16 @@ impl Roughness {
 }
 
 impl Coefficient {
-    fn at(&self, x: f64, y: f64) -> f64 {
+    /// The raster that says how fine it is.
+    #[cfg(feature = "gpu")]
+    pub fn raster(&self) -> Option<&RasterField> {
+        match self {
+            Self::Even(_) => None,
+            Self::Raster(raster) | Self::Classes(raster, ..) => Some(raster),
+        }
+    }
+
+    pub fn at(&self, x: f64, y: f64) -> f64 {
         match self {
             Self::Even(value) => *value,
             Self::Raster(raster) => raster.nearest(x, y).unwrap_or(0.0),

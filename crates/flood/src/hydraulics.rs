@@ -85,6 +85,13 @@ impl Culvert {
         }
     }
 
+    /// The numbers as `card/flood_laws.wgsl` has them, levels above `level`, m.
+    #[cfg(feature = "gpu")]
+    pub fn numbers(&self, level: f64) -> [f64; 9] {
+        let Self { height, area, radius, length, floor, manning, entrance_loss, barrels } = self;
+        [*height, *area, *radius, *length, floor[0] - level, floor[1] - level, *manning, *entrance_loss, *barrels]
+    }
+
     fn discharge(&self, upper: f64, lower: Option<f64>, [from, to]: [usize; 2], gravity: f64) -> f64 {
         let depth = (upper - self.floor[from]).max(0.0);
         let inlet = self.inlet(depth, gravity);

@@ -11,7 +11,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Places tried for each new particle; the lowest surface is taken.
-pub(crate) const TRIES: usize = 12;
+const TRIES: usize = 12;
 
 /// A discharge into the water.
 #[derive(Debug, Clone)]
@@ -135,9 +135,9 @@ impl Nursery<'_> {
         }
     }
 
-    /// A place in `zone` for a particle that comes from elsewhere, told by its number.
-    pub fn place(&self, zone: &Zone, number: u64) -> [f64; 2] {
-        self.lowest(zone, self.next_id.wrapping_add(number), false)
+    /// A place in `zone` for a particle that comes from elsewhere, drawn for what has the number `stream`.
+    pub fn place(&self, zone: &Zone, stream: u64) -> [f64; 2] {
+        self.lowest(zone, stream, false)
     }
 
     /// Of some places in `zone` the one where the surface stands lowest.
@@ -147,7 +147,7 @@ impl Nursery<'_> {
     }
 
     /// Places in `zone`, drawn at random for what has the number `stream`.
-    pub fn places(&self, zone: &Zone, stream: u64, may_be_outside: bool) -> [[f64; 2]; TRIES] {
+    fn places(&self, zone: &Zone, stream: u64, may_be_outside: bool) -> [[f64; 2]; TRIES] {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(stream);
         let bounds = self.edges.bounds;

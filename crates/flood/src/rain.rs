@@ -23,7 +23,7 @@ const DRAINED: f64 = 1e-6;
 pub type RainFunction = Box<dyn Fn(f64, f64, f64) -> f64 + Send + Sync>;
 
 /// How hard it rains.
-enum Intensity {
+pub(crate) enum Intensity {
     None,
     /// mm/h over time.
     Table(Table),
@@ -32,30 +32,30 @@ enum Intensity {
 
 /// What does not change: cells, rain and soils.
 pub(crate) struct Ground {
-    intensity: Intensity,
+    pub intensity: Intensity,
     /// Depth at which the film of a cell becomes a particle, m.
-    film: f64,
+    pub film: f64,
     bounds: Bounds,
-    columns: usize,
-    rows: usize,
+    pub columns: usize,
+    pub rows: usize,
     /// Area of a cell, m2.
-    area: f64,
+    pub area: f64,
     /// By what the intensity is multiplied in each cell.
-    factor: Vec<f64>,
+    pub factor: Vec<f64>,
     /// How water soaks into each cell, by number in `laws`.
-    law: Vec<u16>,
-    laws: Vec<Option<Law>>,
+    pub law: Vec<u16>,
+    pub laws: Vec<Option<Law>>,
 }
 
 /// What changes.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Wetness {
     /// Water on the ground of each cell that is no particle yet, m3.
-    film: Vec<f64>,
+    pub film: Vec<f64>,
     /// What has soaked in, m.
-    soaked: Vec<f64>,
+    pub soaked: Vec<f64>,
     /// Until when rain has fallen, s.
-    until: f64,
+    pub until: f64,
     /// All the rain so far, m3.
     pub rained: ExactSum,
     /// All that has soaked in so far, m3.
@@ -167,7 +167,7 @@ impl Ground {
         wetness.film.len() == self.factor.len()
     }
 
-    fn size(&self) -> [f64; 2] {
+    pub fn size(&self) -> [f64; 2] {
         let size = self.bounds.size();
         [size[0] / self.columns as f64, size[1] / self.rows as f64]
     }

@@ -89,7 +89,7 @@ impl Zone {
     }
 
     /// A disc round all of it: its middle and radius.
-    fn round(&self) -> ([f64; 2], f64) {
+    pub fn round(&self) -> ([f64; 2], f64) {
         let (places, margin) = match self {
             Self::Disc { centre, radius } => return (*centre, *radius),
             Self::Band { line, half_width } => (line, *half_width),
@@ -106,7 +106,7 @@ impl Zone {
     }
 
     /// Places all over it at which the water is looked at, each standing for the same area.
-    fn looks(&self) -> Vec<[f64; 2]> {
+    pub fn looks(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Disc { centre, .. } => vec![*centre],
             Self::Band { line, .. } => {
@@ -129,7 +129,7 @@ impl Zone {
     }
 
     /// Its area, m2; that of a band without what bends add.
-    fn area(&self) -> f64 {
+    pub fn area(&self) -> f64 {
         match self {
             Self::Disc { radius, .. } => std::f64::consts::PI * radius * radius,
             Self::Band { line, half_width } => {

@@ -39,6 +39,14 @@ impl Frame {
         Ok(Self { kind, own: system.projection(), wgs_84: wgs_84() })
     }
 
+    /// Model metres over the own coordinates' unit, where the two differ by nothing else.
+    pub(crate) fn metres_per_unit(&self) -> Option<f64> {
+        match self.kind {
+            Kind::Scaled(metres) => Some(metres),
+            Kind::Projected(_) => None,
+        }
+    }
+
     /// Not-a-number where the projection does not reach.
     pub(crate) fn to_model(&self, place: [f64; 2]) -> [f64; 2] {
         match (&self.kind, &self.own) {

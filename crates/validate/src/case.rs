@@ -41,6 +41,13 @@ pub struct Case {
     pub run: fn(&Options) -> Vec<Row>,
 }
 
+impl Case {
+    /// Runs it, its floods on the card where `options` names one.
+    pub fn rows(&self, options: &Options) -> Vec<Row> {
+        crate::flood::device::on_card(options.gpu.clone(), || (self.run)(options))
+    }
+}
+
 /// What cases are run with.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -48,6 +55,8 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Missing data is a failure instead.
     pub require_data: bool,
+    /// The card that takes the steps of floods, where one does.
+    pub gpu: Option<corpuscle_gpu::Gpu>,
     /// What cases have drawn, for a report.
     charts: RefCell<Vec<Chart>>,
 }
@@ -55,7 +64,7 @@ pub struct Options {
 impl Options {
     /// Cases with the folder of reference data, whose absence is a failure or not.
     pub fn new(data: Option<PathBuf>, require_data: bool) -> Self {
-        Self { data, require_data, charts: RefCell::default() }
+        Self { data, require_data, gpu: None, charts: RefCell::default() }
     }
 
     /// Takes what cases have drawn since this was last asked.
@@ -113,6 +122,11 @@ impl Row {
             reason: Some(why.into()),
             ..Self::at_most(case, "completed", 0.0, "", 0.0)
         }
+    }
+
+    /// A case that was not run.
+    pub fn skipped(case: &str, why: &str) -> Self {
+        Self { pass: None, ..Self::broken(case, why) }
     }
 
     /// A case that needs the folder of reference data, which was not given: skipped, or failed where it is required.

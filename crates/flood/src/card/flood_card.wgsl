@@ -13,8 +13,10 @@ struct Grid {
 struct Parameters {
     // West, east, south, north side of the ground, m from its centre.
     bounds: vec4f,
-    // What the sides do: OPEN, WALL or PERIODIC.
+    // What the sides do: OPEN, WALL, PERIODIC or STAGE.
     rules: vec4u,
+    // Key of the random numbers.
+    key: array<vec4u, 2>,
     // The cells of the particles, of the boundary particles of obstacles, and by which outlines of obstacles are found.
     grid: Grid,
     walls: Grid,
@@ -42,11 +44,51 @@ struct Parameters {
     new_h: f32,
     spacing: f32,
     obstacles: u32,
+    // Manning's n over the ground: south-west corner of its cells, m, cells per metre, and how many there are.
+    rough_corner: vec2f,
+    rough_per_metre: vec2f,
+    rough_cells: vec2u,
+    // Support of the sampling kernel over that of the scheme.
+    smoothing: f32,
+    // Where the rows of the rain are told, m/s over s; 0 where it does not rain.
+    rain: u32,
+    // Cells of the ground that rain falls on: per metre, how many, their area, m2, and the depth at which their film becomes a particle, m.
+    patches_per_metre: vec2f,
+    patches: vec2u,
+    patch_area: f32,
+    film: f32,
+    // Smoothing length of a particle that comes of a film, m.
+    drop_h: f32,
+    // BALANCED or PAPER.
+    scheme: u32,
+    // The part of a step's acceleration that comes before the particles move, and their reach over their smoothing length.
+    before: f32,
+    reach_over_h: f32,
+    // Particles in the air at the start, and the longest step while any are, s.
+    in_air: u32,
+    fall_step: f32,
+    // Of scheme paper, in its own units.
+    rest_density: f32,
+    gas_constant: f32,
+    paper_viscosity: f32,
+    clips_pressure: u32,
+    control: u32,
+    control_strength: f32,
+    control_square: f32,
+    // Smoothing length at the start, and the largest, m.
+    first_h: f32,
+    widest_h: f32,
+    unused: vec2f,
 }
+
+const BALANCED = 0u;
+const PAPER = 1u;
 
 const OPEN = 0u;
 const WALL = 1u;
 const PERIODIC = 2u;
+// Held at a level over time: water leaves freely, and meets what stands beyond.
+const STAGE = 3u;
 
 // A column of water; `outside` is 0 for one inside, or the side over which it has left, from 1.
 struct Particle {
@@ -59,7 +101,7 @@ struct Particle {
     next_h: f32,
     depth: f32,
     ground: f32,
-    ground_slope: vec2f,
+    surface_slope: vec2f,
     id: u32,
     outside: u32,
 }
@@ -95,9 +137,25 @@ struct Status {
     // Corners of the water.
     low: vec2f,
     high: vec2f,
-    // Particles that are to come, and how many of them have.
+    // Particles that are to come from sources, and how many of them have.
     births: u32,
     born: u32,
+    // The identity of the next new particle, and steps before the host last spoke (the lowest 32 bits).
+    next_id: u32,
+    steps_before: u32,
+    // Particles in the air.
+    falling: u32,
+    spare: u32,
+    // Levels of sides held at one, above the level that heights are counted from, m: at the beginning of the step and at its end.
+    stages: vec4f,
+    next_stages: vec4f,
+    // Rain and what has soaked in, m3, and when it last did by the clock, s.
+    rained: Account,
+    infiltrated: Account,
+    wetted: f32,
+    unused: f32,
+    // Time since the cells were last laid out, s: that of all tables, as how often the host speaks must not matter.
+    clock: Account,
 }
 
 const GOING = 0u;
@@ -110,7 +168,10 @@ const SPOKEN = 3u;
 struct Partial {
     outflow: f32,
     inflow: f32,
+    // Momentum over density, m4/s: in the drift, what came and what went over the edges, and in the second half of the step.
     booked_in_drift: f32,
+    gained_at_edges: f32,
+    lost_at_edges: f32,
     booked_in_kick: f32,
     from_outside: vec2f,
     longest_step: f32,
@@ -124,4 +185,13 @@ fn add(account: ptr<function, Account>, value: f32) {
     let sum = (*account).sum + more;
     (*account).lacking = (sum - (*account).sum) - more;
     (*account).sum = sum;
+}
+
+fn book_momentum(status: ptr<function, Status>, momentum: f32) {
+    var lost = (*status).momentum_lost;
+    var gained = (*status).momentum_gained;
+    add(&lost, max(-momentum, 0.0));
+    add(&gained, max(momentum, 0.0));
+    (*status).momentum_lost = lost;
+    (*status).momentum_gained = gained;
 }

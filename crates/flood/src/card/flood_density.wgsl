@@ -14,6 +14,9 @@
 @group(0) @binding(8) var<storage, read> walls: array<WallSite>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
 
+// Least depth beyond an edge whose level falls below the ground, over the depth as it was.
+const SHALLOWEST_STAGE = 1e-3;
+
 // Number density, that of particles like this one, and how the first changes with h.
 fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     let per_h = 1.0 / h;
@@ -102,7 +105,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     particle.depth = particle.volume * density.y;
     particle.next_h = next_h(particle.h, density.x, density.z);
     particle.ground = ground.x;
-    particle.ground_slope = ground.yz;
+    if particle.outside > 0u && parameters.rules[particle.outside - 1u] == STAGE {
+        let level = status.next_stages[particle.outside - 1u];
+        particle.depth = max(level - particle.ground, SHALLOWEST_STAGE * particle.depth);
+    }
     let ahead = particle.velocity + 0.5 * status.step * particle.acceleration;
     // From here on it holds what obstacles push.
     particle.acceleration = vec2f(0.0);

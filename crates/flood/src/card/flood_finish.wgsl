@@ -4,10 +4,39 @@
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
-// Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group.
+// Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group; and where
+// it rains or soaks in, a thread for each particle, a thread for each cell of the ground, one group; a thread for each particle in the air.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
+// Zones, structures and tables: see `works.rs`.
+@group(0) @binding(4) var<storage, read> works: array<u32>;
+
 const FAR = 3.0e38;
+
+// It rains once in so many steps.
+const RAINS = 8u;
+
+// Where `works` says where the levels of the sides are.
+const LEVELS = 12u;
+
+fn work(at: u32) -> f32 {
+    return bitcast<f32>(works[at]);
+}
+
+// The level of a side at a time of the clock, by the rows that the host has told.
+fn level_at(side: u32, time: f32) -> f32 {
+    let window = works[LEVELS + side];
+    if window == 0u {
+        return 0.0;
+    }
+    let last = works[window] - 1u;
+    var row = window + 1u;
+    for (var k = 1u; k < last && work(row + 2u) <= time; k++) {
+        row += 2u;
+    }
+    let part = (time - work(row)) / (work(row + 2u) - work(row));
+    return work(row + 1u) + clamp(part, 0.0, 1.0) * (work(row + 3u) - work(row + 1u));
+}
 
 var<workgroup> sums: array<Partial, 256>;
 
@@ -16,6 +45,8 @@ fn joined(a: Partial, b: Partial) -> Partial {
         a.outflow + b.outflow,
         a.inflow + b.inflow,
         a.booked_in_drift + b.booked_in_drift,
+        a.gained_at_edges + b.gained_at_edges,
+        a.lost_at_edges + b.lost_at_edges,
         a.booked_in_kick + b.booked_in_kick,
         a.from_outside + b.from_outside,
         min(a.longest_step, b.longest_step),
@@ -33,12 +64,16 @@ fn book(all: Partial) {
     add(&outflow, all.outflow);
     add(&inflow, all.inflow);
     add(&elapsed, status.step);
-    // The force over the step by its means at both ends.
-    let push = 0.5 * status.step * (status.from_outside + all.from_outside);
-    let bookings = array(all.booked_in_drift, all.booked_in_kick, push.x, push.y);
+    var clock = status.clock;
+    add(&clock, status.step);
+    status.clock = clock;
+    // The force over the step by its means at both ends, in scheme paper by that at its end.
+    let mean = select(0.5 * (status.from_outside + all.from_outside), all.from_outside, parameters.scheme == PAPER);
+    let push = status.step * mean;
+    let bookings = array(all.booked_in_drift, all.gained_at_edges, -all.lost_at_edges, all.booked_in_kick, push.x, push.y);
     var lost = status.momentum_lost;
     var gained = status.momentum_gained;
-    for (var k = 0u; k < 4u; k++) {
+    for (var k = 0u; k < 6u; k++) {
         add(&lost, max(-bookings[k], 0.0));
         add(&gained, max(bookings[k], 0.0));
     }
@@ -52,6 +87,9 @@ fn book(all: Partial) {
     let low = status.particle_steps.x + status.particles;
     status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
     status.step = min(all.longest_step, parameters.longest_step);
+    if status.falling > 0u {
+        status.step = min(status.step, parameters.fall_step);
+    }
     status.mean_h = all.sum_of_h / f32(max(status.particles, 1u));
     status.low = all.low;
     status.high = all.high;
@@ -65,14 +103,24 @@ fn decide() {
     } else {
         status.halted = GOING;
     }
+    for (var side = 0u; side < 4u; side++) {
+        status.stages[side] = level_at(side, status.clock.sum);
+        status.next_stages[side] = level_at(side, status.clock.sum + status.step);
+    }
     let is_going = status.halted == GOING;
+    let ground = parameters.patches.x * parameters.patches.y;
+    let is_wetting = ground > 0u && (status.steps_before + status.steps) % RAINS == 0u;
     let counts = array(
         (status.particles + 255u) / 256u,
         (status.cells + 255u) / 256u,
         (status.cells + 1023u) / 1024u,
         1u,
+        select(0u, (status.particles + 255u) / 256u, is_wetting),
+        select(0u, (ground + 255u) / 256u, is_wetting),
+        select(0u, 1u, is_wetting),
+        select(0u, (parameters.in_air + 255u) / 256u, status.falling > 0u),
     );
-    for (var slot = 0u; slot < 4u; slot++) {
+    for (var slot = 0u; slot < 8u; slot++) {
         groups[3u * slot] = select(0u, counts[slot], is_going);
         groups[3u * slot + 1u] = 1u;
         groups[3u * slot + 2u] = 1u;
@@ -81,13 +129,11 @@ fn decide() {
 
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    var own = Partial(0.0, 0.0, 0.0, 0.0, vec2f(0.0), FAR, 0.0, vec2f(FAR), vec2f(-FAR));
+    var own = Partial(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2f(0.0), FAR, 0.0, vec2f(FAR), vec2f(-FAR));
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += 256u) {
             own = joined(own, partials[group]);
-            // Births may call for one more group than there was in the drift.
-            partials[group].outflow = 0.0;
-            partials[group].inflow = 0.0;
+            // Births may call for more groups than there were in the drift.
             partials[group].booked_in_drift = 0.0;
         }
     }

@@ -2,6 +2,7 @@
 // `take_over` in `balanced/mod.rs` and of the second push in `flood/step.rs`.
 #import flood_columns
 #import flood_friction
+#import flood_sums
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
@@ -14,6 +15,7 @@
 @group(0) @binding(7) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
+@group(0) @binding(10) var rough: texture_2d<f32>;
 
 struct Force {
     acceleration: vec2f,
@@ -123,35 +125,11 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     return Force(slide - (force + pushed) / volume, slide * volume - from_outside - pushed);
 }
 
-// Inner parts of what a group sums up.
-struct Sums {
-    booked: f32,
-    sum_of_h: f32,
-    from_outside: vec2f,
-    longest: f32,
-    low: vec2f,
-    high: vec2f,
-}
-
-const FAR = 3.0e38;
-
-var<workgroup> sums: array<Sums, 256>;
-
-fn joined(a: Sums, b: Sums) -> Sums {
-    return Sums(
-        a.booked + b.booked,
-        a.sum_of_h + b.sum_of_h,
-        a.from_outside + b.from_outside,
-        min(a.longest, b.longest),
-        min(a.low, b.low),
-        max(a.high, b.high),
-    );
-}
-
 // Accelerates a particle; what it adds to the sums.
 fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force: Force) -> Sums {
     let place = (*particle).place;
     let h = (*particle).next_h;
+    (*particle).surface_slope = sloped.surface;
     if (*particle).outside > 0u {
         (*particle).acceleration = vec2f(0.0);
         return Sums(0.0, h, vec2f(0.0), FAR, place, place);
@@ -161,7 +139,7 @@ fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force:
     let pull = sqrt((*particle).h * length(force.acceleration));
     let longest = parameters.cfl * (*particle).h / max(sloped.wave_speed + squeeze, pull);
     let velocity = (*particle).velocity + 0.5 * status.step * force.acceleration;
-    let factor = slowed(parameters, velocity, (*particle).depth, 0.5 * status.step);
+    let factor = slowed(parameters, roughness_at(parameters, rough, place), velocity, (*particle).depth, 0.5 * status.step);
     (*particle).velocity = factor * velocity;
     let booked = (*particle).volume * (velocity.x + velocity.y) * (factor - 1.0);
     // What is not a number must not be lost in a minimum: it ends the run.
@@ -175,7 +153,7 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
 ) {
     let i = id.x;
-    sums[thread] = Sums(0.0, 0.0, vec2f(0.0), FAR, vec2f(FAR), vec2f(-FAR));
+    sums[thread] = NOTHING;
     if i < status.particles {
         let own = columns[i];
         let sloped = slopes[i];
@@ -183,15 +161,8 @@ fn main(
         sums[thread] = pushed(&particle, own, sloped, on_one(i, own, sloped));
         particles[i] = particle;
     }
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = summed(thread);
     if thread == 0u {
-        let all = sums[0];
         partials[group.x].booked_in_kick = all.booked;
         partials[group.x].from_outside = all.from_outside;
         partials[group.x].longest_step = all.longest;

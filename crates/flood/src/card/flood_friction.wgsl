@@ -5,13 +5,23 @@ const SMOOTH = 0u;
 const MANNING = 1u;
 const CHEZY = 2u;
 const LINEAR = 3u;
+// Manning's n over the ground.
+const MAPPED = 4u;
+
+// The number of the law at a place.
+fn roughness_at(parameters: Parameters, rough: texture_2d<f32>, place: vec2f) -> f32 {
+    if parameters.friction != MAPPED {
+        return parameters.roughness;
+    }
+    let at = max((place - parameters.rough_corner) * parameters.rough_per_metre, vec2f(0.0));
+    return textureLoad(rough, min(vec2u(at), parameters.rough_cells - 1u), 0).x;
+}
 
 // What is left of a velocity after `step` s.
-fn slowed(parameters: Parameters, velocity: vec2f, depth: f32, step: f32) -> f32 {
-    let roughness = parameters.roughness;
+fn slowed(parameters: Parameters, roughness: f32, velocity: vec2f, depth: f32, step: f32) -> f32 {
     var k = 0.0;
     switch parameters.friction {
-        case MANNING: { k = parameters.gravity * roughness * roughness / (depth * pow(depth, 1.0 / 3.0)); }
+        case MANNING, MAPPED: { k = parameters.gravity * roughness * roughness / (depth * pow(depth, 1.0 / 3.0)); }
         case CHEZY: { k = parameters.gravity / (roughness * roughness * depth); }
         case LINEAR: { return 1.0 / (1.0 + step * parameters.gravity * roughness); }
         default: { return 1.0; }

@@ -68,8 +68,9 @@ fn sees(mirror: Mirror, parameters: Parameters, place: vec2f, reach: f32) -> boo
     }
     let truth = behind(mirror, place);
     let bounds = parameters.bounds;
-    return all(mirror.beyond == vec2f(0.0))
-        || (all(truth + reach >= bounds.xz) && all(truth - reach <= bounds.yw));
+    // Along an open side, particles that have left have images too.
+    let along = mirror.beyond == vec2f(0.0);
+    return all(along | ((truth + reach >= bounds.xz) & (truth - reach <= bounds.yw)));
 }
 
 // Whether a particle whose image stands at `place` has one: not too far from the edge.

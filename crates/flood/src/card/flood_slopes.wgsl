@@ -116,11 +116,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let tilt = surface_step / max(TILT * ground_step, 1e-12 * own.depth);
     let calm = min(unrest, tilt);
     let alone = max(1.0 - (all.x + all.z) / COMPANY, 0.0);
-    let particle = particles[i];
-    let outside = select(0.0, 1.0, particle.outside > 0u);
+    let outside = select(0.0, 1.0, particles[i].outside > 0u);
+    let ground_slope = ground_under(parameters, nodes, own.place).yz;
     var of_areas = b;
     if any(of_walls.xyz != vec3f(0.0)) {
         of_areas = renormalisation(all);
     }
-    slopes[i] = Slopes(of_areas, exp(-calm * calm), turned(b, surface), particle.ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
+    slopes[i] = Slopes(of_areas, exp(-calm * calm), turned(b, surface), ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
 }

@@ -8,7 +8,9 @@ struct WallSite {
     // Area of the obstacle that it stands for, m2.
     area: f32,
     obstacle: u32,
-    unused: vec2f,
+    // Its area as scheme paper has it, m2.
+    volume: f32,
+    unused: f32,
 }
 
 // Most of a kernel that walls are taken to cover.

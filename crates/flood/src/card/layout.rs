@@ -1,7 +1,5 @@
 //! Numbers as the shaders see them: `flood_card.wgsl` and `flood_columns.wgsl` have the same in the same order.
 
-use super::Birth;
-use crate::inflow::TRIES;
 use crate::particle::Particle;
 use bytemuck::{Pod, Zeroable};
 
@@ -24,6 +22,8 @@ pub(super) struct Parameters {
     /// West, east, south, north, m from the centre.
     pub bounds: [f32; 4],
     pub rules: [u32; 4],
+    /// Key of the random numbers.
+    pub key: [u32; 8],
     pub grid: Grid,
     pub walls: Grid,
     pub outlines: Grid,
@@ -44,18 +44,48 @@ pub(super) struct Parameters {
     pub new_h: f32,
     pub spacing: f32,
     pub obstacles: u32,
+    pub rough_corner: [f32; 2],
+    pub rough_per_metre: [f32; 2],
+    pub rough_cells: [u32; 2],
+    pub smoothing: f32,
+    pub rain: u32,
+    pub patches_per_metre: [f32; 2],
+    pub patches: [u32; 2],
+    pub patch_area: f32,
+    pub film: f32,
+    pub drop_h: f32,
+    pub scheme: u32,
+    pub before: f32,
+    pub reach_over_h: f32,
+    pub in_air: u32,
+    pub fall_step: f32,
+    pub rest_density: f32,
+    pub gas_constant: f32,
+    pub paper_viscosity: f32,
+    pub clips_pressure: u32,
+    pub control: u32,
+    pub control_strength: f32,
+    pub control_square: f32,
+    pub first_h: f32,
+    pub widest_h: f32,
+    pub unused: [f32; 3],
 }
+
+/// Scheme paper.
+pub(super) const PAPER: u32 = 1;
 
 /// What the sides do.
 pub(super) const OPEN: u32 = 0;
 pub(super) const WALL: u32 = 1;
 pub(super) const PERIODIC: u32 = 2;
+pub(super) const STAGE: u32 = 3;
 
 /// How the ground slows the water.
 pub(super) const SMOOTH: u32 = 0;
 pub(super) const MANNING: u32 = 1;
 pub(super) const CHEZY: u32 = 2;
 pub(super) const LINEAR: u32 = 3;
+pub(super) const MAPPED: u32 = 4;
 
 /// What the host learns, and says.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -81,6 +111,17 @@ pub(super) struct Status {
     pub high: [f32; 2],
     pub births: u32,
     pub born: u32,
+    pub next_id: u32,
+    pub steps_before: u32,
+    pub falling: u32,
+    pub spare: u32,
+    pub stages: [f32; 4],
+    pub next_stages: [f32; 4],
+    pub rained: [f32; 2],
+    pub infiltrated: [f32; 2],
+    pub wetted: f32,
+    pub unused: f32,
+    pub clock: [f32; 2],
 }
 
 /// Values of [`Status::halted`]: broken down; and the host has said until when to go on.
@@ -100,29 +141,32 @@ pub(super) struct CardParticle {
     pub next_h: f32,
     pub depth: f32,
     pub ground: f32,
-    pub ground_slope: [f32; 2],
+    pub surface_slope: [f32; 2],
     pub id: u32,
     pub outside: u32,
 }
 
-/// Only their size matters here, and where the slopes of the surface stand.
-#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
-#[repr(C)]
-pub(super) struct Slopes {
-    pub renormalisation: [f32; 3],
-    pub rest: f32,
-    pub surface: [f32; 2],
-    pub others: [f32; 10],
-}
-
-/// A particle that is to come.
+/// A particle that is to come, and the zone where.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct CardBirth {
-    pub time: f32,
-    pub id: u32,
     pub velocity: [f32; 2],
-    pub places: [[f32; 2]; TRIES],
+    pub time: f32,
+    pub zone: u32,
+}
+
+/// A particle in the air.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardDrop {
+    pub place: [f32; 2],
+    pub velocity: [f32; 2],
+    pub z: f32,
+    pub w: f32,
+    pub volume: f32,
+    pub h: f32,
+    pub id: u32,
+    pub is_up: u32,
 }
 
 /// A boundary particle.
@@ -133,7 +177,9 @@ pub(super) struct WallSite {
     pub normal: [f32; 2],
     pub area: f32,
     pub obstacle: u32,
-    pub unused: [f32; 2],
+    /// Its area as scheme paper has it, m2.
+    pub volume: f32,
+    pub unused: f32,
 }
 
 /// Where particles may touch an obstacle, the force on it now, and its sum over time with what that lacks.
@@ -147,15 +193,32 @@ pub(super) struct OnObstacle {
     pub unused: [f32; 2],
 }
 
+/// A cell of the ground that rain falls on.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Patch {
+    pub film: f32,
+    pub factor: f32,
+    pub soaked: [f32; 2],
+    pub law: u32,
+    pub gain: f32,
+    pub demand: f32,
+    pub is_deep: u32,
+}
+
+/// The parts of a metre in which the ground counts what it takes of particles.
+pub(super) const DEPTH: f64 = 1e10;
+
 /// What a `vec3f` takes in an array.
 pub(super) type Push = [f32; 4];
 
 /// The part of a particle's volume times m/s that impulses of particles put back are counted in.
 pub(super) const KNOCK: f64 = 1e-4;
 
-/// Bytes of a `Column` and of a `Partial`.
+/// Bytes of a `Column`, of `Slopes` and of a `Partial`.
 pub(super) type Column = [f32; 8];
-pub(super) type Partial = [f32; 12];
+pub(super) type Slopes = [f32; 16];
+pub(super) type Partial = [f32; 14];
 
 /// Where the shaders count from, in model coordinates: single precision has some 7 digits, which are not to be spent on the place of
 /// the whole.
@@ -182,22 +245,14 @@ impl Origin {
             next_h: particle.next_h as f32,
             depth: particle.depth as f32,
             ground: (particle.ground - self.level) as f32,
-            ground_slope: particle.ground_slope.map(|value| value as f32),
+            surface_slope: particle.surface_slope.map(|value| value as f32),
             id: particle.id as u32,
             outside: particle.outside.map_or(0, |side| u32::from(side) + 1),
         }
     }
 
-    pub fn birth(self, birth: &Birth) -> CardBirth {
-        CardBirth {
-            time: birth.time as f32,
-            id: birth.id as u32,
-            velocity: birth.velocity.map(|value| value as f32),
-            places: birth.places.map(|place| self.relative(place)),
-        }
-    }
-
-    pub fn to_host(self, particle: &CardParticle, slopes: &Slopes) -> Particle {
+    /// But for the slope of the ground, which is the terrain's.
+    pub fn to_host(self, particle: &CardParticle) -> Particle {
         let wide = |pair: [f32; 2]| pair.map(f64::from);
         let ([x, y], [u, v], [ax, ay]) = (wide(particle.place), wide(particle.velocity), wide(particle.acceleration));
         Particle {
@@ -213,8 +268,8 @@ impl Origin {
             next_h: f64::from(particle.next_h),
             depth: f64::from(particle.depth),
             ground: f64::from(particle.ground) + self.level,
-            ground_slope: wide(particle.ground_slope),
-            surface_slope: wide(slopes.surface),
+            ground_slope: [0.0; 2],
+            surface_slope: wide(particle.surface_slope),
             outside: particle.outside.checked_sub(1).map(|side| side as u8),
             id: u64::from(particle.id),
         }

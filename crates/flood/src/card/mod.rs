@@ -2,27 +2,41 @@
 //!
 //! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it.
 
+mod air;
 mod ground;
 mod layout;
 mod tasks;
 mod walls;
+mod weather;
+mod works;
 
 use crate::balanced;
 use crate::edges::EdgeRule;
-use crate::friction::{Coefficient, Roughness};
-use crate::inflow::TRIES;
+use crate::falling::Falling;
+use crate::friction::Roughness;
+use crate::inflow::Source;
 use crate::particle::Particle;
+use crate::rain::{Ground, Intensity, Wetness};
 use crate::scheme::Surroundings;
+use crate::structures::{Flows, Structures};
+use air::Air;
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
-use corpuscle_scene::Friction;
-use corpuscle_terrain::Bounds;
-use layout::{CardParticle, Grid, OnObstacle, Origin, Parameters, Slopes, Status};
+use corpuscle_scene::Paper;
+use corpuscle_terrain::{Bounds, Terrain};
+use layout::{CardBirth, CardParticle, Grid, OnObstacle, Origin, Parameters, Status};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use std::time::Instant;
 use tasks::Tasks;
 use walls::Walls;
+use weather::Weather;
+use works::Works;
 
-/// Size of a cell over the mean smoothing length, as on the CPU.
-const CELL_OVER_H: f64 = 1.2;
+/// Size of a cell over the mean reach, as on the CPU in scheme balanced.
+const CELL_OVER_REACH: f64 = 0.6;
+
+/// The same in scheme paper.
+const CELL_OVER_REACH_PAPER: f64 = 1.4;
 
 /// The cells are laid out anew after so many steps; in between the host reads no more than it must.
 const LAID_OUT: u64 = 64;
@@ -40,6 +54,9 @@ pub(crate) struct Card {
     gpu: Gpu,
     tasks: Tasks,
     walls: Walls,
+    works: Works,
+    weather: Option<Weather>,
+    air: Option<Air>,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -49,6 +66,9 @@ pub(crate) struct Card {
     most_cells: usize,
     /// Steps in all, to lay the cells out at the same ones however often the host looks.
     steps: u64,
+    /// The time that the clock of the device counts from, s, and how long before that it last rained, s.
+    clock_began: f64,
+    dry_before: f64,
     /// Steps in a batch.
     batch: u32,
     /// Whether the host has not the state that is here.
@@ -59,14 +79,36 @@ pub(crate) struct Card {
     done_before: DoneToObstacles,
 }
 
-/// A particle that is to come, at the one of some places where the surface then stands lowest.
+/// A particle that is to come from a source.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Birth {
     /// Time from now, s.
     pub time: f64,
-    pub id: u64,
+    pub source: usize,
     pub velocity: [f64; 2],
-    pub places: [[f64; 2]; TRIES],
+}
+
+/// What the water moves in, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct Setting<'a> {
+    pub surroundings: &'a Surroundings,
+    pub scheme: &'a balanced::Parameters,
+    /// Scheme paper in its place, and its smoothing length at the start is `h`.
+    pub paper: Option<&'a Paper>,
+    /// Particles in the air.
+    pub falling: usize,
+    /// The longest step while any are, s.
+    pub fall_step: f64,
+    pub roughness: &'a Roughness,
+    pub sources: &'a [Source],
+    pub structures: &'a Structures,
+    pub ground: Option<&'a Ground>,
+    pub seed: u64,
+    pub shortest_step: f64,
+    /// Volume, m3, smoothing length, m, and distance, m, of new particles.
+    pub volume: f64,
+    pub h: f64,
+    pub spacing: f64,
 }
 
 /// Births that the card can be told of at once.
@@ -84,6 +126,13 @@ pub(crate) struct Water<'a> {
     /// Forces on obstacles summed over time so far, m4/s, and how often a particle was put back.
     pub impulses: &'a [[f64; 2]],
     pub put_back: u64,
+    /// Time, s, and steps so far.
+    pub time: f64,
+    pub steps: u64,
+    pub next_id: u64,
+    pub flows: &'a Flows,
+    pub wetness: &'a Wetness,
+    pub falling: &'a [Falling],
 }
 
 /// What the water has done to obstacles.
@@ -110,10 +159,13 @@ pub(crate) struct Progress {
     pub inflow: f64,
     pub momentum_lost: f64,
     pub momentum_gained: f64,
+    pub rained: f64,
+    pub infiltrated: f64,
     pub from_outside: [f64; 2],
     pub mean_h: f64,
-    /// How many of the births have been.
+    /// How many of the births have been, and the identity of the next new particle.
     pub born: usize,
+    pub next_id: u64,
     /// Whether the next step is too short to go on.
     pub broken: bool,
 }
@@ -130,9 +182,12 @@ impl Progress {
             inflow: 0.0,
             momentum_lost: 0.0,
             momentum_gained: 0.0,
+            rained: 0.0,
+            infiltrated: 0.0,
             from_outside: [0.0; 2],
             mean_h: 0.0,
             born: 0,
+            next_id: 0,
             broken: false,
         }
     }
@@ -147,6 +202,8 @@ impl Progress {
             inflow: self.inflow + later.inflow,
             momentum_lost: self.momentum_lost + later.momentum_lost,
             momentum_gained: self.momentum_gained + later.momentum_gained,
+            rained: self.rained + later.rained,
+            infiltrated: self.infiltrated + later.infiltrated,
             born: self.born + later.born,
             ..later
         }
@@ -154,34 +211,31 @@ impl Progress {
 }
 
 impl Card {
-    /// Room for `count` particles amid `surroundings`; new ones hold `volume` m3 and begin with the smoothing length `h`, m.
-    pub fn new(
-        gpu: Gpu,
-        count: usize,
-        surroundings: &Surroundings,
-        scheme: &balanced::Parameters,
-        roughness: &Roughness,
-        shortest_step: f64,
-        [volume, h, spacing]: [f64; 3],
-    ) -> Result<Self, GpuError> {
+    /// Room for `count` particles.
+    pub fn new(gpu: Gpu, count: usize, setting: &Setting<'_>) -> Result<Self, GpuError> {
+        let &Setting { surroundings, scheme, roughness, sources, structures, ground, .. } = setting;
         let bounds = surroundings.edges.bounds;
         let origin = Origin {
             centre: bounds.centre(),
             level: surroundings.terrain.height(bounds.centre()[0], bounds.centre()[1]),
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
-        let (friction, roughness) = friction(roughness);
-        let walls = Walls::new(&gpu, &surroundings.obstacles, origin, 2.0 * scheme.largest_h)?;
+        let farthest = setting.paper.map_or(2.0 * scheme.largest_h, |paper| paper.largest_smoothing * setting.h);
+        let walls = Walls::new(&gpu, &surroundings.obstacles, origin, farthest)?;
+        let rain = ground.and_then(|ground| match &ground.intensity {
+            Intensity::Table(table) => Some(table),
+            Intensity::None | Intensity::Function(_) => None,
+        });
+        let works = Works::new(&gpu, surroundings, sources, structures, rain, origin, setting.h)?;
         let [west, south] = origin.relative([bounds.x_min, bounds.y_min]);
         let [east, north] = origin.relative([bounds.x_max, bounds.y_max]);
-        let parameters = Parameters {
+        let mut parameters = Parameters {
             bounds: [west, east, south, north],
             rules: surroundings.edges.rules.each_ref().map(rule),
+            key: bytemuck::cast(ChaCha8Rng::seed_from_u64(setting.seed).get_seed()),
             walls: walls.grid,
             outlines: walls.outlines_grid,
             obstacles: walls.count as u32,
-            friction,
-            roughness,
             ground_corner: origin.relative(patches.corner),
             ground_per_metre: patches.per_metre.map(|value| value as f32),
             ground_patches: patches.size.map(|nodes| nodes as u32 - 1),
@@ -191,26 +245,60 @@ impl Card {
             viscosity: scheme.viscosity as f32,
             cfl: scheme.cfl as f32,
             longest_step: scheme.longest_step as f32,
-            shortest_step: shortest_step as f32,
-            new_volume: volume as f32,
-            new_h: h as f32,
-            spacing: spacing as f32,
+            shortest_step: setting.shortest_step as f32,
+            new_volume: setting.volume as f32,
+            new_h: setting.h as f32,
+            spacing: setting.spacing as f32,
+            smoothing: 1.0,
+            before: 0.5,
+            reach_over_h: 2.0,
+            in_air: setting.falling as u32,
+            fall_step: setting.fall_step as f32,
+            rain: works.rain,
             ..Parameters::default()
         };
+        if let Some(paper) = setting.paper {
+            tell_of_paper(&mut parameters, paper, setting.h);
+        }
+        let rough = ground::roughness(&gpu, roughness, bounds, origin, &mut parameters)?;
+        let mut weather = None;
+        if let Some(ground) = ground {
+            weather = Some(Weather::new(&gpu, ground, count, scheme.eta, &mut parameters)?);
+        }
+        if setting.paper.is_some() {
+            parameters.drop_h = setting.h as f32;
+        }
+        let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
         let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
-        let tasks = Tasks::new(&gpu, count, most_cells, MOST_BIRTHS, &nodes, &walls)?;
+        let tasks = Tasks::new(
+            &gpu,
+            count,
+            most_cells,
+            MOST_BIRTHS,
+            [&nodes, &rough],
+            &walls,
+            &works,
+            weather.as_ref(),
+            air.as_ref(),
+            setting.paper.is_some(),
+        )?;
         let status = Status::default();
         Ok(Self {
             gpu,
             room: count,
             tasks,
             walls,
+            works,
+            weather,
+            air,
             parameters,
             origin,
             bounds,
             status,
             most_cells,
             steps: 0,
+            clock_began: 0.0,
+            dry_before: 0.0,
             batch: 4,
             ahead: false,
             busy: 0.0,
@@ -238,10 +326,22 @@ impl Card {
         self.room
     }
 
+    /// Particles in the air that there is room for.
+    pub fn room_in_air(&self) -> usize {
+        self.air.as_ref().map_or(0, |air| air.room)
+    }
+
     /// Hands the water over.
     pub fn send(&mut self, water: &Water<'_>) {
-        let Water { particles, step, from_outside, on_obstacles, impulses, put_back } = *water;
+        let Water { particles, step, from_outside, on_obstacles, impulses, put_back, .. } = *water;
         self.walls.begin(&self.gpu, on_obstacles);
+        self.works.begin(&self.gpu, water.flows);
+        if let Some(weather) = &self.weather {
+            weather.begin(&self.gpu, water.wetness);
+        }
+        if let Some(air) = &self.air {
+            air.begin(&self.gpu, water.falling, self.origin);
+        }
         self.done_before = DoneToObstacles { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let sent: Vec<CardParticle> = particles.iter().map(|particle| self.origin.to_card(particle)).collect();
         self.gpu.queue.write_buffer(&self.tasks.particles, 0, bytemuck::cast_slice(&sent));
@@ -256,21 +356,25 @@ impl Card {
             mean_h: (sum_of_h / particles.len().max(1) as f64) as f32,
             low: corners(f32::min, f32::MAX),
             high: corners(f32::max, -f32::MAX),
+            next_id: water.next_id as u32,
+            steps_before: water.steps as u32,
+            falling: water.falling.len() as u32,
+            wetted: (water.wetness.until - water.time) as f32,
             ..Status::default()
         };
-        (self.steps, self.ahead) = (0, false);
+        (self.steps, self.ahead, self.clock_began) = (0, false, water.time);
     }
 
     /// Brings the water back, where there is any news of it.
-    pub fn fetch(&mut self, particles: &mut Vec<Particle>) -> Result<(), GpuError> {
+    pub fn fetch(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
         let count = self.status.particles as usize;
         let sent: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, count)?;
-        let slopes: Vec<Slopes> = read(&self.gpu, &self.tasks.slopes, count)?;
         particles.clear();
-        particles.extend(sent.iter().zip(&slopes).map(|(particle, slopes)| self.origin.to_host(particle, slopes)));
+        particles.extend(sent.iter().map(|particle| self.origin.to_host(particle)));
+        ground::complete(particles, terrain);
         self.ahead = false;
         Ok(())
     }
@@ -278,7 +382,25 @@ impl Card {
     /// Whether the room may not do for `births` more until it is time to ask again; none where it is not time to.
     pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
         let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
-        self.steps.is_multiple_of(LAID_OUT) && self.status.particles as usize + births(horizon) > self.room
+        self.steps.is_multiple_of(LAID_OUT)
+            && (self.status.particles + self.status.falling) as usize + births(horizon) > self.room
+    }
+
+    /// What outflows and links owe and lead.
+    pub fn flows(&self, flows: &mut Flows) -> Result<(), GpuError> {
+        self.works.flows(&self.gpu, flows)
+    }
+
+    /// Water in the air.
+    pub fn falling(&self, falling: &mut Vec<Falling>) -> Result<(), GpuError> {
+        self.air.as_ref().map_or(Ok(()), |air| air.fetch(&self.gpu, falling, self.origin))
+    }
+
+    /// What stands on the ground and in it.
+    pub fn wetness(&self, wetness: &mut Wetness) -> Result<(), GpuError> {
+        let Some(weather) = &self.weather else { return Ok(()) };
+        wetness.until = self.clock_began + f64::from(self.status.wetted);
+        weather.fetch(&self.gpu, wetness)
     }
 
     /// What was done to obstacles.
@@ -296,18 +418,33 @@ impl Card {
         Ok(DoneToObstacles { forces, impulses, put_back: self.done_before.put_back + knocks[2 * count] as u64 })
     }
 
-    /// Takes some steps, up to `until` s from here or to the first after `look` s, while `births` come, the earliest first.
-    pub fn advance(&mut self, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
+    /// Takes some steps from the time `now` s, up to `until` s from there or to the first after `look` s, while `births` come, the earliest
+    /// first.
+    pub fn advance(&mut self, now: f64, until: f64, look: f64, births: &[Birth]) -> Result<Progress, GpuError> {
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
+            let [sum, lacking] = self.status.clock;
+            self.status.wetted -= sum - lacking;
+            self.status.clock = [0.0; 2];
+            (self.clock_began, self.dry_before) = (now, -f64::from(self.status.wetted).min(0.0));
         }
-        let births: Vec<_> = births.iter().map(|birth| self.origin.birth(birth)).collect();
+        let births: Vec<_> = births
+            .iter()
+            .map(|birth| CardBirth {
+                velocity: birth.velocity.map(|along| along as f32),
+                time: (birth.time + now - self.clock_began) as f32,
+                zone: self.works.sources[birth.source],
+            })
+            .collect();
+        let horizon = (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step);
+        self.works.tell(&self.gpu, self.clock_began, self.dry_before, horizon);
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
         let count = planned.min(self.batch).min(to_layout as u32);
         self.status = Status {
             halted: layout::SPOKEN,
+            steps_before: self.status.steps_before.wrapping_add(self.status.steps),
             steps: 0,
             particle_steps: [0; 2],
             until: until as f32,
@@ -315,6 +452,8 @@ impl Card {
             births: births.len() as u32,
             born: 0,
             elapsed: [0.0; 2],
+            rained: [0.0; 2],
+            infiltrated: [0.0; 2],
             outflow: [0.0; 2],
             inflow: [0.0; 2],
             momentum_lost: [0.0; 2],
@@ -351,9 +490,12 @@ impl Card {
             inflow: total(self.status.inflow),
             momentum_lost: total(self.status.momentum_lost),
             momentum_gained: total(self.status.momentum_gained),
+            rained: total(self.status.rained),
+            infiltrated: total(self.status.infiltrated),
             from_outside: self.status.from_outside.map(f64::from),
             mean_h: f64::from(mean_h),
             born: self.status.born as usize,
+            next_id: u64::from(self.status.next_id),
             broken: halted == layout::BROKEN,
         }
     }
@@ -362,8 +504,17 @@ impl Card {
     fn lay_out(&mut self) -> Result<(), GpuError> {
         let Status { low, high, mean_h, particles, .. } = self.status;
         let any = particles > 0;
-        let [low, high] = [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
-        let smallest = if any { CELL_OVER_H * f64::from(mean_h) } else { self.bounds.size()[0] };
+        let over_reach = if self.parameters.scheme == layout::PAPER { CELL_OVER_REACH_PAPER } else { CELL_OVER_REACH };
+        let cell_over_h = over_reach * f64::from(self.parameters.reach_over_h);
+        let [mut low, mut high] =
+            [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
+        let mut smallest = if any { cell_over_h * f64::from(mean_h) } else { self.bounds.size()[0] };
+        if self.weather.is_some() || self.status.falling > 0 {
+            // Drops fall anywhere.
+            let [west, east, south, north] = self.parameters.bounds.map(f64::from);
+            (low, high) = ([low[0].min(west), low[1].min(south)], [high[0].max(east), high[1].max(north)]);
+            smallest = if any { smallest } else { cell_over_h * f64::from(self.parameters.new_h) };
+        }
         let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
         let most = (self.most_cells - 1) as f64;
         let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);
@@ -395,17 +546,31 @@ fn rule(rule: &EdgeRule) -> u32 {
     match rule {
         EdgeRule::Wall => layout::WALL,
         EdgeRule::Periodic => layout::PERIODIC,
-        EdgeRule::Open | EdgeRule::Stage(_) => layout::OPEN,
+        EdgeRule::Open => layout::OPEN,
+        EdgeRule::Stage(_) => layout::STAGE,
     }
 }
 
-fn friction(roughness: &Roughness) -> (u32, f32) {
-    let (kind, value) = match roughness {
-        Roughness::Manning(Coefficient::Even(0.0)) => (layout::SMOOTH, 0.0),
-        Roughness::Manning(Coefficient::Even(n)) => (layout::MANNING, *n),
-        Roughness::Other(Friction::Chezy(c)) => (layout::CHEZY, *c),
-        Roughness::Other(Friction::Linear(slope)) => (layout::LINEAR, *slope),
-        Roughness::Manning(_) => (layout::SMOOTH, 0.0),
+/// What the shaders of scheme paper must know; `h` is the smoothing length at the start, m.
+fn tell_of_paper(parameters: &mut Parameters, paper: &Paper, h: f64) {
+    let widest = paper.largest_smoothing * h;
+    *parameters = Parameters {
+        scheme: layout::PAPER,
+        before: 0.0,
+        reach_over_h: 1.0,
+        smoothing: 0.5,
+        // A kernel reaches twice that far.
+        largest_h: (0.5 * widest) as f32,
+        longest_step: paper.time_step_s as f32,
+        rest_density: paper.density_kg_per_m3 as f32,
+        gas_constant: paper.gas_constant as f32,
+        paper_viscosity: paper.viscosity as f32,
+        clips_pressure: u32::from(paper.clip_negative_pressure),
+        control: u32::from(paper.control_force),
+        control_strength: paper.control_strength as f32,
+        control_square: paper.control_square as f32,
+        first_h: h as f32,
+        widest_h: widest as f32,
+        ..*parameters
     };
-    (kind, value as f32)
 }

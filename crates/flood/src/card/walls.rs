@@ -90,7 +90,8 @@ fn sites(obstacles: &Obstacles, origin: Origin, reach: f64) -> (Grid, Vec<u32>, 
             normal: site.normal.map(|along| along as f32),
             area: site.area as f32,
             obstacle: site.obstacle as u32,
-            unused: [0.0; 2],
+            volume: site.volume as f32,
+            unused: 0.0,
         })
         .collect();
     sites.sort_by_key(cell);

@@ -1,10 +1,9 @@
 //! A flood whose steps the graphics card takes.
 
-use super::step::CELL_OVER_H_BALANCED;
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Water};
-use crate::friction::{Coefficient, Roughness};
+use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Water};
 use crate::inflow::Source;
+use crate::rain::{Ground, Intensity};
 use corpuscle_gpu::{Gpu, GpuError};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Scheme as SchemeName;
@@ -12,6 +11,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Births are looked for so many steps beyond the next look at the maps: the step that passes it may be longer than the last.
 const LONGEST_AHEAD: f64 = 10.0;
+
+/// Room for so many particles is kept where water is held at levels.
+const HELD_BIRTHS: usize = 4096;
 
 fn failed(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
@@ -48,35 +50,58 @@ impl Flood {
         let depth = self.volume / (self.spacing * self.spacing);
         let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let count = self.state.particles.len();
-        let room = if self.sources.is_empty() { count } else { 2 * count + MOST_BIRTHS };
-        let new = [self.volume, self.h, self.spacing];
-        let card = Card::new(gpu, room, &self.surroundings, &scheme, &self.roughness, self.shortest_step(), new)?;
+        let falling = self.state.falling.len();
+        let holds = !self.structures.held.is_empty() || self.surroundings.edges.holds_level();
+        let comes_in = !self.sources.is_empty() || self.ground.is_some() || holds;
+        let films = self.films();
+        let room = falling + if comes_in { 2 * (count + films) + MOST_BIRTHS } else { count };
+        let setting = Setting {
+            surroundings: &self.surroundings,
+            scheme: &scheme,
+            paper: (self.settings.scheme == SchemeName::Paper).then_some(&self.settings.paper),
+            falling,
+            fall_step: self.fall_step(),
+            roughness: &self.roughness,
+            sources: &self.sources,
+            structures: &self.structures,
+            ground: self.ground.as_ref(),
+            seed: self.seed,
+            shortest_step: self.shortest_step(),
+            volume: self.volume,
+            h: self.h,
+            spacing: self.spacing,
+        };
+        let card = Card::new(gpu, room, &setting)?;
         self.card = Some(card);
         self.send_to_card()
     }
 
     /// What this flood has that there is no twin of on the card.
     fn missing_on_card(&self) -> Vec<&'static str> {
-        let rasters = matches!(self.roughness, Roughness::Manning(Coefficient::Raster(_) | Coefficient::Classes(..)));
-        let all = [
-            (self.settings.scheme == SchemeName::Paper, "flood.scheme = \"paper\""),
-            (self.refinement.is_some(), "[flood.refinement]"),
-            (self.ground.is_some(), "[flood.rain] or [flood.infiltration]"),
-            (!self.structures.is_empty(), "[[flood.outflow]], [[flood.stage]] or [[flood.link]]"),
-            (!self.state.falling.is_empty(), "water that falls (block)"),
-            (self.surroundings.edges.holds_level(), "an edge with a stage"),
-            (rasters, "Manning's n by a raster or [flood.land_use]"),
-        ];
+        let rain_by_function = matches!(&self.ground, Some(Ground { intensity: Intensity::Function(_), .. }));
+        let all = [(self.refinement.is_some(), "[flood.refinement]"), (rain_by_function, "rain by a function")];
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
     /// Hands the state to the card, and takes more room there if there is too little.
     pub(super) fn send_to_card(&mut self) -> Result<(), GpuError> {
-        let State { particles, time_step, external, on_obstacles, impulses, put_back, .. } = &self.state;
-        let water =
-            Water { particles, step: *time_step, from_outside: *external, on_obstacles, impulses, put_back: *put_back };
+        let State { particles, on_obstacles, impulses, flows, .. } = &self.state;
+        let water = Water {
+            particles,
+            step: self.state.time_step,
+            from_outside: self.state.external,
+            on_obstacles,
+            impulses,
+            put_back: self.state.put_back,
+            time: self.state.time,
+            steps: self.state.steps,
+            next_id: self.state.next_id,
+            flows,
+            wetness: &self.state.wetness,
+            falling: &self.state.falling,
+        };
         match &mut self.card {
-            Some(card) if card.room() < particles.len() => {
+            Some(card) if card.room() < particles.len() || card.room_in_air() < water.falling.len() => {
                 let gpu = card.gpu();
                 self.open_card(gpu)
             }
@@ -88,12 +113,25 @@ impl Flood {
         }
     }
 
+    /// Films that can become particles between two looks at the room.
+    fn films(&self) -> usize {
+        self.ground.as_ref().map_or(0, |ground| ground.factor.len())
+    }
+
+    /// As many particles as can come from `now` on within `horizon` s, while sources owe `owed`.
+    fn most_births(&self, owed: &[ExactSum], now: f64, horizon: f64) -> usize {
+        let of_one =
+            |(source, owed): (&Source, &ExactSum)| owed.value() + source.discharge.integral(now, now + horizon);
+        let of_sources =
+            self.sources.iter().zip(owed).map(of_one).map(|come| (come / self.volume).max(0.0) as usize + 1);
+        let holds = self.surroundings.edges.holds_level() || !self.structures.held.is_empty();
+        of_sources.sum::<usize>() + self.films() + if holds { HELD_BIRTHS } else { 0 }
+    }
+
     /// Takes more room on the card where the water that is to come might not find any.
     fn make_room(&mut self) -> Result<(), GpuError> {
         let Some(card) = &self.card else { return Ok(()) };
-        if card
-            .lacks_room(|horizon| most_births(&self.sources, &self.state.owed, self.volume, self.state.time, horizon))
-        {
+        if card.lacks_room(|horizon| self.most_births(&self.state.owed, self.state.time, horizon)) {
             let gpu = card.gpu();
             self.open_card(gpu)?;
         }
@@ -129,72 +167,69 @@ impl Flood {
     fn advance_to_look(&mut self, time: f64, look: f64, stop: &AtomicBool) -> Result<Progress, GpuError> {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
-        let (mut owed, mut next_id) = (self.state.owed.clone(), self.state.next_id);
+        let mut owed = self.state.owed.clone();
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
-            let births = self.births(&owed, next_id, now, time.min(look + LONGEST_AHEAD * done.step));
+            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
             let Some(card) = &mut self.card else { break };
-            let of_card: Vec<Birth> = births.iter().map(|(_, birth)| *birth).collect();
-            let progress = card.advance(time - now, look - now, &of_card)?;
+            let progress = card.advance(now, time - now, look - now, &births)?;
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
-            births[..progress.born].iter().for_each(|(source, _)| owed[*source].add(-self.volume));
-            next_id += progress.born as u64;
+            births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
             done = done.and(progress);
-            let lacks_room = card.lacks_room(|horizon| most_births(&self.sources, &owed, self.volume, now, horizon));
-            if progress.steps == 0 || done.broken || lacks_room || stop.load(Ordering::Relaxed) {
+            let lacks_room = |card: &Card| card.lacks_room(|horizon| self.most_births(&owed, now, horizon));
+            if progress.steps == 0
+                || done.broken
+                || self.card.as_ref().is_some_and(lacks_room)
+                || stop.load(Ordering::Relaxed)
+            {
                 break;
             }
         }
         if let Some(card) = self.card.as_mut().filter(|_| done.steps > 0) {
-            card.fetch(&mut self.state.particles)?;
             let state = &mut self.state;
+            card.fetch(&mut state.particles, &self.surroundings.terrain)?;
+            card.flows(&mut state.flows)?;
+            card.falling(&mut state.falling)?;
+            card.wetness(&mut state.wetness)?;
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
-            (self.state.owed, self.state.next_id) = (owed, next_id);
+            (self.state.owed, self.state.next_id) = (owed, done.next_id);
             self.book(&done);
             self.arrange();
         }
         Ok(done)
     }
 
-    /// The particles that the sources bring from `now` to `until`, the earliest first, each with the number of its source.
-    fn births(&self, owed: &[ExactSum], next_id: u64, now: f64, until: f64) -> Vec<(usize, Birth)> {
+    /// The particles that the sources bring from `now` to `until`, the earliest first.
+    fn births(&self, owed: &[ExactSum], now: f64, until: f64) -> Vec<Birth> {
         let sources = self.sources.iter().zip(owed).enumerate();
-        let times = sources.flat_map(|(number, (source, owed))| {
-            source.times(owed.value(), self.volume, now, until).into_iter().map(move |time| (time, number))
+        let births = sources.flat_map(|(number, (source, owed))| {
+            let times = source.times(owed.value(), self.volume, now, until);
+            times.into_iter().map(move |time| Birth { time: time - now, source: number, velocity: source.velocity })
         });
-        let mut times: Vec<(f64, usize)> = times.collect();
-        times.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        times.truncate(MOST_BIRTHS);
-        let nursery = self.nursery();
-        let birth = |((time, number), id): ((f64, usize), u64)| {
-            let Source { zone, velocity, .. } = &self.sources[number];
-            let places = nursery.places(zone, id, false);
-            (number, Birth { time: time - now, id, velocity: *velocity, places })
-        };
-        times.into_iter().zip(next_id..).map(birth).collect()
+        let mut births: Vec<Birth> = births.collect();
+        births.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
+        births.truncate(MOST_BIRTHS);
+        births
     }
 
     fn book(&mut self, progress: &Progress) {
+        let cell = self.cell_over_h() * progress.mean_h;
         let state = &mut self.state;
         state.time += progress.elapsed;
         state.steps += progress.steps;
         state.particle_steps += progress.particle_steps;
         state.time_step = progress.step;
         state.external = progress.from_outside;
-        state.sizes.cell = CELL_OVER_H_BALANCED * progress.mean_h;
+        state.sizes.cell = cell;
         state.water.inflow.add(progress.inflow);
         state.water.outflow.add(progress.outflow);
+        state.wetness.rained.add(progress.rained);
+        state.wetness.infiltrated.add(progress.infiltrated);
         state.momentum.inflow.add(DENSITY * progress.momentum_gained);
         state.momentum.outflow.add(DENSITY * progress.momentum_lost);
         self.surroundings.time = state.time;
     }
-}
-
-/// As many particles as the sources can bring from `now` on within `horizon` s.
-fn most_births(sources: &[Source], owed: &[ExactSum], volume: f64, now: f64, horizon: f64) -> usize {
-    let of_one = |(source, owed): (&Source, &ExactSum)| owed.value() + source.discharge.integral(now, now + horizon);
-    sources.iter().zip(owed).map(of_one).map(|come| (come / volume).max(0.0) as usize + 1).sum()
 }

@@ -79,7 +79,9 @@ impl Flood {
             let [from, to] = if flow.owed >= 0.0 { [0, 1] } else { [1, 0] };
             let mut forward = Flow { owed: flow.owed.abs(), ..*flow };
             for number in orders.take(&mut forward, &link.ends[from], &water, self.volume) {
-                let place = nursery.place(&link.ends[to], number as u64);
+                // Each particle has another place in each step, whatever the order of the particles.
+                let stream = water.particles[number].id | self.state.steps << 32;
+                let place = nursery.place(&link.ends[to], stream);
                 orders.moved.push((number, place));
             }
             flow.owed = forward.owed.copysign(flow.owed);

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in
 /// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
-pub(super) const CELL_OVER_H_BALANCED: f64 = 1.2;
+const CELL_OVER_H_BALANCED: f64 = 1.2;
 
 /// The same for scheme paper, whose particles look as far as they reach themselves.
 const CELL_OVER_H_PAPER: f64 = 1.4;
@@ -36,13 +36,26 @@ pub(super) struct Renewal {
 impl Flood {
     /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
     pub(super) fn limited(&self, step: f64) -> f64 {
-        let fall = 0.1 * (self.spacing / self.settings.gravity_m_per_s2).sqrt();
-        if self.state.falling.is_empty() { step } else { step.min(fall) }
+        if self.state.falling.is_empty() { step } else { step.min(self.fall_step()) }
+    }
+
+    /// The longest step while anything is in the air, s.
+    pub(super) fn fall_step(&self) -> f64 {
+        0.1 * (self.spacing / self.settings.gravity_m_per_s2).sqrt()
+    }
+
+    /// Size of a cell over the mean smoothing length.
+    pub(super) fn cell_over_h(&self) -> f64 {
+        match self.settings.scheme {
+            SchemeName::Balanced => CELL_OVER_H_BALANCED,
+            SchemeName::Paper => CELL_OVER_H_PAPER,
+        }
     }
 
     /// Gives the particles the smoothing lengths that they have come to need, and the cells their size; whether all the
     /// particles are still inside.
     pub(super) fn renew(&mut self) -> bool {
+        let cell_over_h = self.cell_over_h();
         let edges = &self.surroundings.edges;
         let State { particles, sizes, .. } = &mut self.state;
         let weight = particles.first().map(|particle| particle.weight);
@@ -58,10 +71,6 @@ impl Flood {
         };
         particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.renewals);
         if !particles.is_empty() {
-            let cell_over_h = match self.settings.scheme {
-                SchemeName::Balanced => CELL_OVER_H_BALANCED,
-                SchemeName::Paper => CELL_OVER_H_PAPER,
-            };
             let sum_of_h: f64 = self.renewals.iter().map(|block| block.sum_of_h).sum();
             sizes.cell = cell_over_h * sum_of_h / particles.len() as f64;
         }

@@ -20,12 +20,17 @@ pub(super) fn widest(settings: &Settings, refinement: Option<&Refinement>) -> f6
 }
 
 impl Flood {
-    /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does.
+    /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does. A graphics card cannot ask it: steps are
+    /// the processor's from then on.
     pub fn rain(&mut self, rain: RainFunction) {
         let widest = widest(&self.settings, self.refinement.as_ref());
         let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, widest);
         self.state.wetness = ground.dry();
         self.ground = Some(ground);
+        #[cfg(feature = "gpu")]
+        {
+            self.card = None;
+        }
     }
 
     /// Lets it rain and soak in, where it is time to; whether particles may be left without volume, to be taken out.

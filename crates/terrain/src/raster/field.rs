@@ -49,6 +49,14 @@ impl RasterField {
         &self.raster.warnings
     }
 
+    /// South-west corner, m, and size of the cells `[eastwards, northwards]`, m, where they lie along the model's coordinates.
+    pub fn cells_in_model(&self) -> Option<([f64; 2], [f64; 2])> {
+        let scale = self.frame.metres_per_unit().filter(|_| self.other.is_none())?;
+        let crate::Georeference { corner, cell, .. } = &self.raster.georeference;
+        let south = corner[1] - self.raster.rows as f64 * cell[1];
+        Some(([corner[0] * scale, south * scale], cell.map(|size| size * scale)))
+    }
+
     /// The value of the cell in which the model coordinates lie; `None` outside and where there is no data. For classes
     /// and coefficients.
     pub fn nearest(&self, x: f64, y: f64) -> Option<f64> {

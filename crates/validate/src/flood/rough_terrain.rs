@@ -1,5 +1,6 @@
 //! What the control force of scheme paper does on rough ground.
 
+use super::device::ready;
 use super::rows;
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
@@ -52,7 +53,7 @@ fn measured(control: &str) -> Result<Vec<[f64; 2]>, ModelError> {
     let flood = scene.flood().ok_or_else(|| ModelError::Setup(format!("{name} is no flood")))?;
     let terrain = Terrain::open(&flood.terrain, scene.seed, Path::new("."));
     let terrain = terrain.map_err(|error| ModelError::Setup(error.to_string()))?;
-    let mut flood = Flood::new(&flood.flood, scene.seed, Path::new("."), Arc::new(terrain))?;
+    let mut flood = ready(Flood::new(&flood.flood, scene.seed, Path::new("."), Arc::new(terrain))?)?;
     let look = |(time, ..): (f64, &str, &str)| {
         flood.advance_to(time, &AtomicBool::new(false))?;
         let particles = flood.particles();

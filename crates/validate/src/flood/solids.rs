@@ -1,5 +1,6 @@
 //! Water round solids: the paper's cuboid and cylinder, and the force of a stream on a cylinder.
 
+use super::device::ready;
 use super::{SEED, rows, settings, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
@@ -57,7 +58,7 @@ fn none_inside(case: &'static str, distance: impl Fn(f64, f64) -> f64) -> Result
         let terrain = Terrain::open(&flood.terrain, scene.seed, Path::new("."));
         let terrain = terrain.map_err(|error| ModelError::Setup(error.to_string()))?;
         let settings = Settings { scheme, ..flood.flood.clone() };
-        let mut flood = Flood::new(&settings, scene.seed, Path::new("."), Arc::new(terrain))?;
+        let mut flood = ready(Flood::new(&settings, scene.seed, Path::new("."), Arc::new(terrain))?)?;
         let mut nearest = f64::INFINITY;
         while flood.time() < until {
             flood.advance_to((flood.time() + flood.time_step()).min(until), &AtomicBool::new(false))?;
@@ -92,7 +93,7 @@ fn force() -> Result<Vec<Row>, ModelError> {
         height_m: None,
     }];
     let water = water_everywhere(bounds, |_, _| DEPTH, |_, _| [SPEED, 0.0]);
-    let mut flood = Flood::with_water(&settings, SEED, Path::new("."), terrain, &[water])?;
+    let mut flood = ready(Flood::with_water(&settings, SEED, Path::new("."), terrain, &[water])?)?;
     let column = |flood: &Flood| {
         let columns = flood.gauge_columns();
         columns.iter().position(|column| column.header() == "cylinder.impulse_east_N_s").unwrap_or(0)

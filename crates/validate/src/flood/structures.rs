@@ -1,5 +1,6 @@
 //! Outflows by rating, weirs, and water held at a level.
 
+use super::device::water_rounding;
 use super::{rows, run, settings, strip, water_everywhere};
 use crate::{Case, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -109,6 +110,6 @@ fn tide() -> Result<Vec<Row>, ModelError> {
     let water = flood.ledger().balances[0].relative_error().abs();
     Ok(vec![
         Row::at_most(TIDE.name, "rmse_of_level", rmse, "m", 0.03),
-        Row::at_most(TIDE.name, "water_relative_error", water, "", 1e-12),
+        Row::at_most(TIDE.name, "water_relative_error", water, "", water_rounding()),
     ])
 }

@@ -1,5 +1,6 @@
 //! A dam break over a triangular sill in a channel (CADAM).
 
+use super::device::{ready, water_rounding};
 use super::measured::{Watched, root_mean_square, table};
 use super::{SEED, rows, settings};
 use crate::{Case, Options, Row};
@@ -86,7 +87,7 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
         velocity: Box::new(|_, _| [0.0; 2]),
     };
     let bodies = [water(0.75, 0.0, DAM), water(0.15, CREST, LENGTH)];
-    let mut flood = Flood::with_water(&channel(), SEED, folder, terrain, &bodies)?;
+    let mut flood = ready(Flood::with_water(&channel(), SEED, folder, terrain, &bodies)?)?;
     let seen = Watched::run(&mut flood, TIME, LOOK)?;
     let mut out = Vec::new();
     for (gauge, place) in PLACES.iter().enumerate() {
@@ -100,7 +101,7 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
         }
     }
     let water = flood.ledger().balances[0].relative_error().abs();
-    out.push(Row::at_most(TRIANGULAR_OBSTACLE.name, "water_relative_error", water, "", 1e-12));
+    out.push(Row::at_most(TRIANGULAR_OBSTACLE.name, "water_relative_error", water, "", water_rounding()));
     Ok(out)
 }
 

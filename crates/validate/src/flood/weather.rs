@@ -1,5 +1,6 @@
 //! Rain, infiltration, and the ledger of all that comes and goes.
 
+use super::device::water_rounding;
 use super::{rows, run, settings, strip, water_everywhere};
 use crate::{Case, Row};
 use corpuscle_flood::Flood;
@@ -135,7 +136,7 @@ fn rain_on_a_plane() -> Result<Vec<Row>, ModelError> {
     Ok(vec![
         at_most("relative_error_of_outflow", plane.error_of_outflow(&flood).abs(), 0.03),
         at_most("relative_l1_error_of_depth", plane.error_of_pieces(&flood), 0.15),
-        at_most("water_relative_error", water, 1e-12),
+        at_most("water_relative_error", water, water_rounding()),
     ])
 }
 
@@ -211,7 +212,7 @@ fn ledger() -> Result<Vec<Row>, ModelError> {
     let fallen = 200.0 * MM_PER_H * 300.0 * 5000.0;
     let row = |measure, value: f64, bound| Row::at_most(LEDGER.name, measure, value, "", bound);
     Ok(vec![
-        row("water_relative_error", water.relative_error().abs(), 1e-12),
+        row("water_relative_error", water.relative_error().abs(), water_rounding()),
         // But for the rain since the last look, eight steps at most.
         row("relative_error_of_rain", (gauge(&flood, "total_rain") / fallen - 1.0).abs(), 0.02),
         Row::at_least(LEDGER.name, "infiltration", gauge(&flood, "total_infiltration"), "m3", 10.0),

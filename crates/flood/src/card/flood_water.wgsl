@@ -1,0 +1,126 @@
+// The water at any place, from the particles round it. Twin of `sampling.rs`. Declares what it works on: kernels that import it go on
+// from binding 9.
+#import flood_places
+#import flood_walls
+
+@group(0) @binding(6) var<storage, read> reaches: array<f32>;
+@group(0) @binding(7) var<storage, read> wall_start: array<u32>;
+@group(0) @binding(8) var<storage, read> walls: array<WallSite>;
+
+// Share of a place's surroundings that water must cover for the place to be wet.
+const COVERED = 0.5;
+
+// A place is at most this much deeper than the deepest particle near it.
+const DEEPER = 1.2;
+
+// The share of the surroundings of a place that images beyond walls and periodic sides cover.
+fn covered_by_images(place: vec2f, look: f32) -> f32 {
+    var sum = 0.0;
+    let mirrors = mirrors_round(parameters, place);
+    for (var k = 1u; k < mirrors; k++) {
+        let mirror = mirror(k, parameters);
+        if !sees(mirror, parameters, place, look) {
+            continue;
+        }
+        let cells = cells_round(parameters.grid, behind(mirror, place), look);
+        for (var row = cells.y; row <= cells.w; row++) {
+            let line = row * parameters.grid.columns;
+            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+                let particle = particles[j];
+                let there = shown(mirror, particle.place);
+                let h = parameters.smoothing * particle.h;
+                if has_image(mirror, parameters, there, 2.0 * h) {
+                    sum += particle.volume / particle.depth * spline(distance(there, place), 1.0 / h);
+                }
+            }
+        }
+    }
+    return sum;
+}
+
+// The share that obstacles cover, seen as far as the particles here see.
+fn covered_by_obstacles(place: vec2f, cells: vec4u) -> f32 {
+    if parameters.walls.columns == 0u {
+        return 0.0;
+    }
+    var sum = 0.0;
+    var count = 0.0;
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.grid.columns;
+        for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            sum += particles[j].h;
+            count += 1.0;
+        }
+    }
+    let h = parameters.smoothing * sum / max(count, 1.0);
+    if h == 0.0 || !is_near(parameters.walls, place, 2.0 * h) {
+        return 0.0;
+    }
+    var part = 0.0;
+    let near = cells_round(parameters.walls, place, 2.0 * h);
+    for (var row = near.y; row <= near.w; row++) {
+        let line = row * parameters.walls.columns;
+        for (var k = wall_start[line + near.x]; k < wall_start[line + near.z + 1u]; k++) {
+            part += walls[k].area * spline(distance(walls[k].place, place), 1.0 / h);
+        }
+    }
+    return min(part, MOST_COVERED);
+}
+
+// Depth, m, and velocity, m/s, at a place; nothing where it is dry. A Shepard mean over the particles, of the surface's height where the
+// surface is the smoother field, and of the depth where that is.
+fn water_at(place: vec2f) -> vec3f {
+    let reach = reaches[cell_at(parameters.grid, place)];
+    if reach <= 0.0 || start[parameters.grid.columns * parameters.grid.rows] == 0u {
+        return vec3f(0.0);
+    }
+    let look = 1.1 * reach;
+    let cells = cells_round(parameters.grid, place, look);
+    var total = 0.0;
+    // Surface, depth and velocity.
+    var sums = vec4f(0.0);
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.grid.columns;
+        for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let particle = particles[j];
+            let way = place - particle.place;
+            let weight = particle.volume / particle.depth * spline(length(way), 1.0 / (parameters.smoothing * particle.h));
+            total += weight;
+            let surface = particle.ground + particle.depth + dot(particle.surface_slope, way);
+            sums += weight * vec4f(surface, particle.depth, particle.velocity);
+        }
+    }
+    var covered = total;
+    if total > 0.0 && total < COVERED {
+        covered += covered_by_images(place, look) + covered_by_obstacles(place, cells);
+    }
+    if covered < COVERED {
+        return vec3f(0.0);
+    }
+    sums /= total;
+    var surface_spread = 0.0;
+    var depth_spread = 0.0;
+    var deepest = 0.0;
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.grid.columns;
+        for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let particle = particles[j];
+            let way = place - particle.place;
+            let weight = particle.volume / particle.depth * spline(length(way), 1.0 / (parameters.smoothing * particle.h));
+            if weight > 0.0 {
+                let surface = particle.ground + particle.depth + dot(particle.surface_slope, way);
+                surface_spread += weight * (surface - sums.x) * (surface - sums.x);
+                depth_spread += weight * (particle.depth - sums.y) * (particle.depth - sums.y);
+                deepest = max(deepest, particle.depth);
+            }
+        }
+    }
+    let from_surface = min(sums.x - ground_at(parameters, nodes, place).x, DEEPER * deepest);
+    // Variances squared, so that the smoother field decides alone but where the two are much alike; over the depth, as single
+    // precision holds no squares of what is very small.
+    let scale = 1.0 / max(deepest * deepest, 1e-30);
+    let spreads = vec2f(surface_spread, depth_spread) * scale;
+    let spread = dot(spreads, spreads);
+    let share = select(1.0, spreads.y * spreads.y / spread, spread > 0.0);
+    return vec3f(max(share * from_surface + (1.0 - share) * sums.y, 0.0), sums.zw);
+}

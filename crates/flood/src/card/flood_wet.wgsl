@@ -1,0 +1,155 @@
+// Rain on each cell of the ground, what soaks in of its film, and what its particles are to gain and to give. Twin of `Ground::wet` in
+// `rain.rs` and of `infiltration.rs`, whose formulas stand here without differences of large numbers.
+#import flood_places
+#import flood_wetness
+
+@group(0) @binding(6) var<storage, read_write> ground: array<Patch>;
+// Of each cell: area covered, and depth taken of particles since.
+@group(0) @binding(7) var<storage, read_write> tallies: array<u32>;
+// Kind and numbers of each law.
+@group(0) @binding(8) var<storage, read> laws: array<vec4f>;
+// What each group of cells adds up, and after them what each group of particles does.
+@group(0) @binding(9) var<storage, read_write> sums: array<vec4f>;
+
+const CONSTANT = 1.0;
+const HORTON = 2.0;
+const GREEN_AMPT = 3.0;
+
+const ITERATIONS = 20u;
+
+// Share of a cell that particles must cover for all its rain to be theirs.
+const SHARED_FROM = 0.5;
+
+var<workgroup> of_threads: array<vec2f, 256>;
+
+// Rain since it was last looked at, m, by the rows that the host has told.
+fn rain_fallen() -> f32 {
+    let window = parameters.rain;
+    if window == 0u {
+        return 0.0;
+    }
+    let begin = status.wetted;
+    let end = status.clock.sum;
+    var sum = 0.0;
+    for (var k = 1u; k < works[window]; k++) {
+        let left = work_pair(window + 2u * k - 1u);
+        let right = work_pair(window + 2u * k + 1u);
+        let low = max(begin, left.x);
+        let high = min(end, right.x);
+        if low < high {
+            let slope = (right.y - left.y) / (right.x - left.x);
+            sum += (left.y + slope * (0.5 * (low + high) - left.x)) * (high - low);
+        }
+    }
+    return sum;
+}
+
+// 1 - e^-x.
+fn fallen_off(x: f32) -> f32 {
+    return select(1.0 - exp(-x), x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0))), x < 0.05);
+}
+
+// y - ln(1 + y).
+fn beyond_logarithm(y: f32) -> f32 {
+    return select(y - log(1.0 + y), y * y * (0.5 - y * (1.0 / 3.0 - y * (0.25 - y * (0.2 - y / 6.0)))), y < 0.05);
+}
+
+// What soaks in within `step` s after `soaked` m have: last step + (first - last) e^(-k t) (1 - e^(-k step)) / k, with the time t
+// after which `soaked` would have soaked in.
+fn horton(first: f32, last: f32, decay: f32, soaked: f32, step: f32) -> f32 {
+    var time = 0.0;
+    for (var k = 0u; k < ITERATIONS; k++) {
+        let missing = soaked - last * time - (first - last) / decay * fallen_off(decay * time);
+        let rate = last + (first - last) * exp(-decay * time);
+        if rate <= 0.0 || missing <= 1e-7 * soaked {
+            break;
+        }
+        time += missing / rate;
+    }
+    return last * step + (first - last) / decay * exp(-decay * time) * fallen_off(decay * step);
+}
+
+// The root of soaked y + head (y - ln(1 + y)) = K t, with what soaks in, y (soaked + head).
+fn green_ampt(conducted: f32, head: f32, soaked: f32) -> f32 {
+    if head <= 0.0 || conducted <= 0.0 {
+        return conducted;
+    }
+    let scale = soaked + head;
+    var y = (conducted + sqrt(2.0 * conducted * scale)) / scale;
+    for (var k = 0u; k < ITERATIONS; k++) {
+        let excess = soaked * y + head * beyond_logarithm(y) - conducted;
+        let next = y - excess / (soaked + head * y / (1.0 + y));
+        if abs(next - y) <= 1e-7 * y {
+            break;
+        }
+        y = next;
+    }
+    return y * scale;
+}
+
+fn demand(law: vec4f, soaked: f32, step: f32) -> f32 {
+    if law.x == CONSTANT {
+        return law.y * step;
+    }
+    if law.x == HORTON {
+        return horton(law.y, law.z, law.w, soaked, step);
+    }
+    if law.x == GREEN_AMPT {
+        return green_ampt(law.y * step, law.z, soaked);
+    }
+    return 0.0;
+}
+
+// Rain less what is handed to particles, and what soaks in of the film, m3.
+fn wet(cell: u32) -> vec2f {
+    let area = parameters.patch_area;
+    let step = status.clock.sum - status.wetted;
+    var own = ground[cell];
+    var soaked = own.soaked;
+    add(&soaked, f32(tallies[2u * cell + 1u]) / DEPTH);
+    let covered = f32(tallies[2u * cell]) / AREA;
+    tallies[2u * cell] = 0u;
+    tallies[2u * cell + 1u] = 0u;
+    let rain = rain_fallen() * own.factor * area;
+    var booked = vec2f(rain, 0.0);
+    own.film += rain;
+    let asked = demand(laws[own.law], soaked.sum, step);
+    let drunk = min(own.film, asked * area);
+    own.film -= drunk;
+    booked.y = drunk;
+    add(&soaked, drunk / area);
+    own.demand = max(asked - drunk / area, 0.0);
+    own.gain = 0.0;
+    if covered >= SHARED_FROM {
+        own.demand /= covered;
+        own.gain = own.film / (covered * area);
+        booked.x -= own.film;
+        own.film = 0.0;
+    }
+    own.is_deep = select(0u, 1u, own.film >= parameters.film * area);
+    own.soaked = soaked;
+    ground[cell] = own;
+    return booked;
+}
+
+@compute @workgroup_size(256)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    of_threads[thread] = vec2f(0.0);
+    if id.x < parameters.patches.x * parameters.patches.y {
+        of_threads[thread] = wet(id.x);
+    }
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if thread < half {
+            of_threads[thread] += of_threads[thread + half];
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        sums[group.x] = vec4f(of_threads[0], 0.0, 0.0);
+    }
+}
