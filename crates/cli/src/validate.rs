@@ -2,27 +2,31 @@
 
 use crate::args::{Backend, ValidateOptions};
 use crate::output::{number, print, print_json};
-use crate::refusal::refuse;
 use crate::select::select;
+use corpuscle::gpu::Gpu;
 use corpuscle_record::{ValidatedCase, ValidatedMeasure, ValidationReport};
 use corpuscle_validate::{Options, Row, cases};
 use std::process::ExitCode;
 
 /// Runs cases and prints their rows as they come.
 pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<ExitCode> {
-    if options.backend == Backend::Gpu {
-        return Err(refuse("the cases are computed on the CPU only so far; use --backend cpu, or leave it out"));
-    }
     let data = std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into);
-    let with = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
+    let mut with = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
+    if options.backend == Backend::Gpu {
+        with.gpu = Some(Gpu::open().map_err(corpuscle::Error::from)?);
+    }
     let mut report = options.report.as_deref().map(ValidationReport::create).transpose()?;
     let mut rows = Vec::new();
     for case in select(cases(), |case| case.name, &options.cases)? {
         if options.fast && case.slow {
             continue;
         }
+        if with.gpu.is_some() && !case.name.starts_with("flood/") {
+            eprintln!("{} left out: it computes on the CPU only", case.name);
+            continue;
+        }
         let first = rows.len();
-        for row in (case.run)(&with) {
+        for row in case.rows(&with) {
             let line = line(&row);
             if as_json {
                 eprint!("{line}");

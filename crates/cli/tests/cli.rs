@@ -62,7 +62,6 @@ fn what_is_not_there_is_refused() {
     let missing = place.run(&["run", "--resume", "nowhere"]).expect_status(2);
     assert!(missing.stderr.contains("nowhere"), "{}", missing.stderr);
     place.run(&["run", "gas/maxwell", "--backend", "gpu"]).expect_status(2);
-    place.run(&["validate", "flood/stoker", "--backend", "gpu"]).expect_status(2);
     place.run(&["run", "--set", "nonsense"]).expect_status(2);
     place.run(&["run", "--threads", "0"]).expect_status(2);
     place.run(&["frobnicate"]).expect_status(2);
