@@ -46,19 +46,22 @@ fn vertex(@builtin(vertex_index) index: u32, @location(0) tile: vec4u) -> Corner
 }
 
 // A number from 0 to 1 for a place (Hoskins, "Hash without sine").
-fn scattered(place: vec2f) -> f32 {
-    let bent = fract(place.xyx * 0.1031);
-    let turned = bent + dot(bent, bent.yzx + 33.33);
+fn scattered(place: vec3f) -> f32 {
+    let bent = fract(place * 0.1031);
+    let turned = bent + dot(bent, bent.zyx + 31.32);
     return fract((turned.x + turned.y) * turned.z);
 }
 
-// Smooth noise from 0 to 1 with bumps of length 1.
-fn bumps(place: vec2f) -> f32 {
+// Smooth noise from 0 to 1 with bumps of length 1. In space, so that it is not drawn out where the ground is steep.
+fn bumps(place: vec3f) -> f32 {
     let cell = floor(place);
-    let part = smoothstep(vec2f(0.0), vec2f(1.0), place - cell);
-    let south = mix(scattered(cell), scattered(cell + vec2f(1.0, 0.0)), part.x);
-    let north = mix(scattered(cell + vec2f(0.0, 1.0)), scattered(cell + 1.0), part.x);
-    return mix(south, north, part.y);
+    let part = smoothstep(vec3f(0.0), vec3f(1.0), place - cell);
+    var along = array(0.0, 0.0, 0.0, 0.0);
+    for (var k = 0u; k < 4u; k++) {
+        let corner = cell + vec3f(0.0, f32(k % 2u), f32(k / 2u));
+        along[k] = mix(scattered(corner), scattered(corner + vec3f(1.0, 0.0, 0.0)), part.x);
+    }
+    return mix(mix(along[0], along[1], part.y), mix(along[2], along[3], part.y), part.z);
 }
 
 // Steeper than this no ground is: a quad whose corners have no height is marked so.
@@ -77,7 +80,7 @@ fn fragment(corner: Corner) -> @location(0) vec4f {
     let normal = normalize(vec3f(-slope, 1.0));
     let shine = sunshine(corner.place, normal, corner.clip.xy);
     // Grain finer than the cells, as far as pixels show it.
-    let cells = corner.uv * vec2f(ground.nodes.xy);
+    let cells = (corner.place - vec3f(ground.origin.xy, 0.0)) / ground.cell.x;
     let fine = clamp(ground.cell.x / pixel_at(corner.place) / 8.0 - 0.25, 0.0, 1.0);
     let grain = 1.0 + ground.cell.w * fine * (bumps(cells * 3.1) + bumps(cells * 7.3) - 1.0);
     return vec4f(matt(found.rgb * grain, normal, shine), 1.0);
