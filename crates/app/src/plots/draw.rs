@@ -2,8 +2,9 @@
 
 use corpuscle::model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use corpuscle_drawing::text::short_number;
+use corpuscle_drawing::ticks::step;
 use egui::{Color32, Ui};
-use egui_plot::{Bar, BarChart, Legend, Line, LineStyle, Plot, PlotPoints, Points};
+use egui_plot::{Bar, BarChart, GridInput, Legend, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer};
 
 /// Colours of series that have none of their own, in turn; theory is red.
 const COLOURS: [Color32; 4] = [
@@ -24,6 +25,7 @@ pub fn chart(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, chart: &Ch
         .allow_zoom(false)
         .allow_drag(false)
         .show_background(false)
+        .y_grid_spacer(uniform_grid_spacer(move |input| steps(&input, log[1])))
         .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.35))
         .x_axis_label(label(&chart.x))
         .x_axis_formatter(move |mark, range| if log[0] { power(mark.value) } else { number(mark, range) })
@@ -55,6 +57,13 @@ pub fn chart(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, chart: &Ch
             }
         }
     });
+}
+
+/// At most five steps of a grid across a plot, at round numbers 1, 2 or 5 times a power of ten (of a logarithm at whole ones), and bolder
+/// ones at ten and a hundred times as many: powers of ten alone leave a plot of this height with one number or none.
+fn steps(input: &GridInput, logarithmic: bool) -> [f64; 3] {
+    let step = step((input.bounds.1 - input.bounds.0).max(f64::MIN_POSITIVE), 5);
+    [1.0, 10.0, 100.0].map(|times| times * if logarithmic { step.max(1.0) } else { step })
 }
 
 /// Where all values are one but for rounding, a range round them: rounding is not to fill the plot.
@@ -89,4 +98,18 @@ fn label(axis: &ChartAxis) -> String {
 fn colour(series: &ChartSeries, number: usize) -> Color32 {
     let own = series.colour.as_deref().and_then(|colour| Color32::from_hex(colour).ok());
     own.unwrap_or(COLOURS[number % COLOURS.len()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_has_some_lines_at_round_numbers() {
+        for (high, step) in [(0.0069, 0.002), (1.0, 0.2), (9.0, 2.0), (420.0, 100.0)] {
+            let found = steps(&GridInput { bounds: (0.0, high), base_step_size: 1e-9 }, false)[0];
+            assert!((found / step - 1.0).abs() < 1e-9, "{found} for {high}");
+        }
+        assert_eq!(steps(&GridInput { bounds: (-1.0, 1.0), base_step_size: 0.1 }, true)[0], 1.0);
+    }
 }
