@@ -75,7 +75,7 @@ impl Body<'_> {
             self.relax(&arrangement, &mut particles, edges, |x, y| self.glass_depth(x, y));
         }
         let is_wet = |x: f64, y: f64| (self.depth)(x, y) > self.shallowest;
-        particles.retain(|particle| is_wet(particle.x, particle.y));
+        particles.retain(|particle| !self.fine_shores || is_wet(particle.x, particle.y));
         let on_water = |x: f64, y: f64| if is_wet(x, y) { self.glass_depth(x, y) } else { 0.0 };
         for _ in 0..FREE_ROUNDS {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);

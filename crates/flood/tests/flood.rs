@@ -172,6 +172,7 @@ terrain.rough-hills = { extent = { length_m = 100, width_m = 100, cell_m = 2 }, 
 spacing_m = 1.5
 spacing_depth_m = 1
 manning = 0.03
+balanced = { fine_shores = true }
 
 [flood.edges]
 west = "wall"

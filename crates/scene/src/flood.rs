@@ -162,11 +162,13 @@ pub struct Balanced {
     pub largest_smoothing: f64,
     /// Artificial viscosity, in shares of the dissipation of an unreconstructed Riemann problem.
     pub viscosity: f64,
+    /// Whether the water at the start has closer and smaller particles towards its shores, so that it lies still between rough hills.
+    pub fine_shores: bool,
 }
 
 impl Default for Balanced {
     fn default() -> Self {
-        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0, viscosity: 0.1 }
+        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0, viscosity: 0.1, fine_shores: false }
     }
 }
 

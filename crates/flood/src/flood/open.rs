@@ -193,7 +193,7 @@ impl Flood {
                 volume: self.volume,
                 spacing: self.spacing,
                 before_walls: self.before_walls(),
-                fine_shores: flood.scheme == SchemeName::Balanced,
+                fine_shores: flood.scheme == SchemeName::Balanced && flood.balanced.fine_shores,
                 eta,
                 largest_h: flood.balanced.largest_smoothing * eta * self.spacing,
                 shallowest: flood.wet_depth_m,
