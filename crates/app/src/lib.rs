@@ -8,6 +8,7 @@ mod files;
 mod gallery;
 mod help;
 mod icons;
+mod meshes;
 mod meter;
 mod overlay;
 mod parameters;
@@ -22,6 +23,7 @@ mod transport;
 mod view;
 mod window;
 
+pub use meshes::Meshes;
 pub use meter::Measurement;
 pub use screen::Screen;
 pub use view::{ViewError, view};

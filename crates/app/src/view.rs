@@ -1,7 +1,7 @@
 //! The window of the system.
 
 use crate::meter::Meter;
-use crate::{Measurement, Screen, Start, Window};
+use crate::{Measurement, Meshes, Screen, Start, Window};
 use corpuscle::gpu::{Gpu, wgpu};
 use egui_wgpu::{RenderState, WgpuSetup, WgpuSetupCreateNew};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -43,7 +43,11 @@ pub fn view(start: Start, measure: Option<f64>) -> Result<Option<Measurement>, V
     };
     let create = move |context: &eframe::CreationContext<'_>| {
         let state = context.wgpu_render_state.as_ref().ok_or("the window has no graphics device")?;
-        let window = Window::new(&context.egui_ctx, screen(state), start)?;
+        let screen = screen(state);
+        if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
+            context.egui_ctx.add_plugin(meshes);
+        }
+        let window = Window::new(&context.egui_ctx, screen, start)?;
         Ok(Box::new(App { window, meter }) as Box<dyn eframe::App>)
     };
     let ended = eframe::run_native("Corpuscle", options, Box::new(create));

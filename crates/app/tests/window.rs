@@ -2,7 +2,7 @@
 
 mod stage;
 
-use stage::stage;
+use stage::{stage, stage_of_software};
 use std::time::Duration;
 
 const SOON: Duration = Duration::from_secs(30);
@@ -67,5 +67,26 @@ fn a_flood_and_dew_are_opened_and_play() {
         stage.run(Duration::from_millis(600));
         assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
         stage.picture(name);
+    }
+}
+
+#[test]
+fn software_draws_the_same_window() {
+    let (Some(mut usual), Some(mut quick)) = (stage("the window"), stage_of_software("the window of software")) else {
+        return;
+    };
+    // The first page, and the keys over it.
+    for page in ["first-page", "keys"] {
+        let [one, other] = [(&mut usual, ""), (&mut quick, "-of-software")].map(|(stage, name)| {
+            stage.run(Duration::from_millis(300));
+            stage.picture(&format!("{page}{name}")).rgba
+        });
+        let off: Vec<_> = one.iter().zip(&other).map(|(one, other)| one.abs_diff(*other)).collect();
+        let mean = off.iter().map(|off| f64::from(*off)).sum::<f64>() / off.len() as f64;
+        let far = off.iter().filter(|off| **off > 16).count() as f64 / off.len() as f64;
+        assert!(mean < 0.3 && far < 1e-3, "{page}: {mean} of 255 off, {far} of all far off");
+        for stage in [&mut usual, &mut quick] {
+            stage.key(egui::Key::F1);
+        }
     }
 }

@@ -39,7 +39,7 @@ pub(crate) fn indices(gpu: &Gpu, label: &str, all: &[u32]) -> wgpu::Buffer {
     filled(gpu, label, bytemuck::cast_slice(all), wgpu::BufferUsages::INDEX)
 }
 
-fn filled(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(crate) fn filled(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: (bytes.len() as u64).max(16),

@@ -102,7 +102,7 @@ fn gas(table: &Table, left_out: &str) -> Image {
     let way = [[1.0, 1.0, 4.8], [7.0, 2.0, 4.0], [4.0, 1.0, 1.0], [7.5, 4.0, 4.6]];
     let red = TubeStyle { colour: [194, 24, 91], radius: 0.2, least_radius: 0.8, shaded: true };
     let mut way = tubes.tubes(gpu, &stage, &red, [way.as_slice()]);
-    let mut floor = Floor::new(&table.renderer, &stage, 0.0);
+    let mut floor = Floor::new(&table.renderer, 0.0);
     let mut things: Vec<&mut dyn Drawable> = Vec::new();
     let all: [(char, &mut dyn Drawable); 4] =
         [('f', &mut floor), ('b', &mut balls), ('e', &mut edges), ('w', &mut way)];

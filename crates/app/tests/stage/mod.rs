@@ -1,7 +1,7 @@
 //! A window off screen, with a device that draws it.
 
 use corpuscle::gpu::{Gpu, require_gpu, wgpu};
-use corpuscle_app::{Screen, Start, Window};
+use corpuscle_app::{Meshes, Screen, Start, Window};
 use egui::mutex::RwLock;
 use egui::{Role, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
@@ -46,8 +46,17 @@ pub fn stage(test: &str) -> Option<Stage> {
     stage_in(test, egui::Theme::Light, Start::Welcome)
 }
 
+/// The same as software draws it in the system's window.
+pub fn stage_of_software(test: &str) -> Option<Stage> {
+    stage_by(test, egui::Theme::Light, Start::Welcome, true)
+}
+
 /// A window in a theme that begins so.
 pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
+    stage_by(test, theme, start, false)
+}
+
+fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Option<Stage> {
     let gpu = require_gpu(test)?;
     let renderer = egui_wgpu::Renderer::new(
         &gpu.device,
@@ -65,6 +74,9 @@ pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
         .with_step_dt(1.0 / 60.0)
         .renderer(Textures(screen.gpu.clone(), renderer.clone()))
         .with_context_setup(move |context| {
+            if let Some(meshes) = Meshes::new(&own.gpu, FORMAT).filter(|_| by_meshes) {
+                context.add_plugin(meshes);
+            }
             *made_first.borrow_mut() = Some(Window::new(context, own, start).unwrap());
         })
         .build_ui_state(

@@ -89,7 +89,7 @@ impl FloodPicture {
             stage,
             ground: mesh,
             buildings,
-            floor: Floor::new(&studio.renderer, &stage, base),
+            floor: Floor::new(&studio.renderer, base),
             field,
             water: Water::default(),
             sides: WaterSides::new(&studio.renderer, &stage),

@@ -1,9 +1,9 @@
 //! A floor that only its shadows show.
 
-use crate::buffer::{UNIFORM, uniform};
+use crate::buffer::{UNIFORM, filled};
 use crate::pipeline::Recipe;
-use crate::{Drawable, Renderer, Stage, shaders};
-use corpuscle_gpu::wgpu;
+use crate::{Camera, Drawable, Renderer, Stage, shaders};
+use corpuscle_gpu::{Gpu, wgpu};
 
 /// Part of the light that the darkest shadow takes.
 const DARKNESS: f32 = 0.38;
@@ -13,11 +13,13 @@ const DARKNESS: f32 = 0.38;
 pub struct Floor {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
+    place: wgpu::Buffer,
+    height: f64,
 }
 
 impl Floor {
     /// A floor at a height, m.
-    pub fn new(renderer: &Renderer, stage: &Stage, height: f64) -> Self {
+    pub fn new(renderer: &Renderer, height: f64) -> Self {
         let gpu = renderer.gpu();
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("floor"),
@@ -35,18 +37,30 @@ impl Floor {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let [x, y, _] = stage.centre().into();
-        let buffer = uniform(gpu, "floor", &[stage.place([x, y, height]).z, DARKNESS, 0.0, 0.0]);
+        let bytes = [0.0, DARKNESS, 0.0, 0.0].map(f32::to_le_bytes);
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        let place = filled(gpu, "floor", bytes.as_flattened(), usage);
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("floor"),
             layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: place.as_entire_binding() }],
         });
-        Self { pipeline: recipe.opaque(gpu), group }
+        Self { pipeline: recipe.opaque(gpu), group, place, height }
+    }
+
+    /// Moves it to another height, m.
+    pub fn lay_at(&mut self, height: f64) {
+        self.height = height;
     }
 }
 
 impl Drawable for Floor {
+    fn prepare(&mut self, gpu: &Gpu, stage: &Stage, _camera: &Camera, _size: [u32; 2]) {
+        let [x, y, _] = stage.centre().into();
+        let height = stage.place([x, y, self.height]).z;
+        gpu.queue.write_buffer(&self.place, 0, &height.to_le_bytes());
+    }
+
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(1, &self.group, &[]);

@@ -73,7 +73,7 @@ impl Room {
         };
         let solids =
             surfaces.iter().map(|surface| Solid::new(&studio.renderer, &stage, &surface.shape, style(surface)));
-        let floor = Floor::new(&studio.renderer, &stage, stage.from.z - 0.002 * stage.unit());
+        let floor = Floor::new(&studio.renderer, stage.from.z - 0.002 * stage.unit());
         Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
     }
 

@@ -41,6 +41,8 @@ const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
 pub(super) struct GasPicture {
     gas: Gas,
     plates: Plates,
+    /// Made when it is first needed.
+    floor: Option<Floor>,
 }
 
 /// Where the things of one picture are.
@@ -53,7 +55,7 @@ struct View {
 
 impl GasPicture {
     pub(super) fn new(gas: Gas) -> Self {
-        Self { gas, plates: Plates::default() }
+        Self { gas, plates: Plates::default(), floor: None }
     }
 
     /// The partition is gone from a time on, s.
@@ -81,12 +83,13 @@ impl GasPicture {
         let mut ways = tubes(studio, stage, WAY, [2.2, 0.002], ways);
         let mut things: Vec<&mut dyn Drawable> = Vec::new();
         let mut edges = sides::edges(&self.gas, studio, &view);
-        let mut floor = Floor::new(&studio.renderer, stage, stage.from.z);
         things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
         things.push(&mut ways);
         if !flat {
             if studio.look == Look::Full {
-                things.push(&mut floor);
+                let floor = self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z));
+                floor.lay_at(stage.from.z);
+                things.push(floor);
             }
             things.extend(edges.iter_mut().map(|edges| edges as &mut dyn Drawable));
             things.extend(self.plates.of(&self.gas, studio, &view, moment.frame.time));
