@@ -23,6 +23,7 @@ mod renderer;
 mod shaders;
 mod solids;
 mod stage;
+mod standing;
 mod target;
 mod terrain;
 mod tone;

@@ -1,9 +1,11 @@
 //! Draws pictures, pass by pass.
 
 use crate::pipeline::Recipe;
+use crate::standing::Stood;
 use crate::tone::Tone;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
+use std::sync::PoisonError;
 
 /// Draws pictures. Holds what does not change from one to the next.
 #[derive(Debug)]
@@ -87,16 +89,45 @@ impl Renderer {
         light: &Light,
         things: &[&mut dyn Drawable],
     ) {
+        let all = |_: &dyn Drawable| true;
+        let stands = |thing: &dyn Drawable| thing.standing().is_some();
+        if light.throws_shadows() {
+            return self.draw_some(encoder, target, view, light, things, (true, &all));
+        }
+        let mut standing = target.standing.lock().unwrap_or_else(PoisonError::into_inner);
+        match standing.look(view.bytes(), things) {
+            Stood::Changed => return self.draw_some(encoder, target, view, light, things, (true, &all)),
+            Stood::Rests => {
+                self.draw_some(encoder, target, view, light, things, (true, &stands));
+                standing.keep(&self.gpu, encoder, target);
+            }
+            Stood::Kept => standing.lay(encoder, target),
+        }
+        self.draw_some(encoder, target, view, light, things, (false, &|thing| !stands(thing)));
+    }
+
+    /// Draws the things that are `wanted`, over nothing where it is to be `cleared`.
+    fn draw_some(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &Target,
+        view: &View,
+        light: &Light,
+        things: &[&mut dyn Drawable],
+        (cleared, wanted): (bool, &dyn Fn(&dyn Drawable) -> bool),
+    ) {
         let [colour, depth] = [&target.colour, &target.depth].map(whole);
+        let load = if cleared { wgpu::LoadOp::Clear(behind(light)) } else { wgpu::LoadOp::Load };
+        let load_depth = if cleared { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("opaque"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: &colour,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(behind(light)), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })],
-            depth_stencil_attachment: Some(cleared(&depth)),
+            depth_stencil_attachment: Some(depth_of(&depth, load_depth)),
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &view.group, &[]);
@@ -104,7 +135,7 @@ impl Renderer {
             pass.set_pipeline(&self.backdrop);
             pass.draw(0..3, 0..1);
         }
-        things.iter().for_each(|thing| thing.draw(&mut pass));
+        things.iter().filter(|thing| wanted(&***thing)).for_each(|thing| thing.draw(&mut pass));
     }
 }
 
@@ -119,7 +150,7 @@ fn draw_shadows(encoder: &mut wgpu::CommandEncoder, view: &View, things: &[&mut 
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("shadows"),
         color_attachments: &[],
-        depth_stencil_attachment: Some(cleared(&view.shadow)),
+        depth_stencil_attachment: Some(depth_of(&view.shadow, wgpu::LoadOp::Clear(0.0))),
         ..wgpu::RenderPassDescriptor::default()
     });
     pass.set_bind_group(0, &view.sun_group, &[]);
@@ -141,11 +172,11 @@ fn whole(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Depth that begins at 0: far.
-fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+/// Depth that is there, or begins at 0: far.
+fn depth_of(view: &wgpu::TextureView, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     wgpu::RenderPassDepthStencilAttachment {
         view,
-        depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+        depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
         stencil_ops: None,
     }
 }

@@ -1,7 +1,9 @@
 //! What a picture is drawn into.
 
 use crate::RenderError;
+use crate::standing::Standing;
 use corpuscle_gpu::{Gpu, texture_2d, wgpu};
+use std::sync::Mutex;
 
 /// Format of colours while a picture is drawn: linear light.
 pub const COLOUR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -23,6 +25,7 @@ pub struct Target {
     pub(crate) behind_colour: wgpu::Texture,
     pub(crate) behind_depth: wgpu::Texture,
     pub(crate) picture: wgpu::Texture,
+    pub(crate) standing: Mutex<Standing>,
 }
 
 impl Target {
@@ -37,7 +40,7 @@ impl Target {
         let samples = samples.max(1);
         let drawn = size.map(|length| length.saturating_mul(samples));
         let texture = |label, format, usage| texture_2d(gpu, label, drawn, format, usage);
-        let into = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING | Usage::COPY_SRC;
+        let into = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING | Usage::COPY_SRC | Usage::COPY_DST;
         let behind = Usage::TEXTURE_BINDING | Usage::COPY_DST;
         Ok(Self {
             size,
@@ -47,6 +50,7 @@ impl Target {
             behind_colour: texture("colour behind", COLOUR_FORMAT, behind)?,
             behind_depth: texture("depth behind", DEPTH_FORMAT, behind)?,
             picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, into)?,
+            standing: Mutex::default(),
         })
     }
 

@@ -44,6 +44,7 @@ pub struct View {
     pub(crate) sun_group: wgpu::BindGroup,
     /// The sun's depth map.
     pub(crate) shadow: wgpu::TextureView,
+    uniform: Uniform,
 }
 
 impl View {
@@ -69,7 +70,14 @@ impl View {
         let pixels = if light.throws_shadows() { SHADOW_PIXELS } else { 1 };
         let shadow = depth_map(gpu, pixels);
         let nothing = depth_map(gpu, 1);
-        Self { group: group(gpu, layout, &seen, &shadow), sun_group: group(gpu, layout, &from_sun, &nothing), shadow }
+        let [group, sun_group] =
+            [(&seen, &shadow), (&from_sun, &nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
+        Self { group, sun_group, shadow, uniform: seen }
+    }
+
+    /// All that shaders know of camera, light and size.
+    pub(crate) fn bytes(&self) -> &[u8] {
+        bytemuck::bytes_of(&self.uniform)
     }
 
     /// The layout of group 0: uniform `View`, the sun's depth map, its comparing sampler.

@@ -25,6 +25,8 @@ pub struct Terrain {
     plain: wgpu::RenderPipeline,
     /// True where it is drawn without shadows and grain.
     quick: bool,
+    /// How often another picture was draped over it.
+    draped: u64,
     cast: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     settings: Ground,
@@ -87,6 +89,7 @@ impl Terrain {
             opaque: recipe.opaque(gpu),
             plain: recipe.opaque_by(gpu, "fragment_plain"),
             quick: false,
+            draped: 0,
             cast: recipe.cast(gpu, "throw_shadow"),
             group: group(gpu, &layout, &settings, &shape, &colours),
             layout,
@@ -105,6 +108,7 @@ impl Terrain {
     /// [`RenderError::Gpu`] for more pixels a side than a texture has.
     pub fn drape(&mut self, gpu: &Gpu, colours: &Image) -> Result<(), RenderError> {
         self.settings.cell[3] = 0.0;
+        self.draped += 1;
         let colours = upload_colours(gpu, colours)?;
         self.group = group(gpu, &self.layout, &self.settings, &self.shape, &colours);
         Ok(())
@@ -129,6 +133,10 @@ impl Drawable for Terrain {
     fn prepare(&mut self, gpu: &Gpu, stage: &Stage, camera: &Camera, size: [u32; 2]) {
         let chosen = tiles::choose(&self.field, stage, camera, size);
         self.tiles = Some((instances(gpu, "tiles", &chosen), chosen.len() as u32));
+    }
+
+    fn standing(&self) -> Option<u64> {
+        Some(2 * self.draped + u64::from(self.quick))
     }
 
     fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {

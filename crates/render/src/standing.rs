@@ -1,0 +1,76 @@
+//! What stands still in plain light is drawn once, and kept from picture to picture while the camera rests.
+
+use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
+use crate::{Drawable, Target};
+use corpuscle_gpu::{Gpu, wgpu};
+
+/// Colour and depth of what stands still, of one size.
+#[derive(Debug, Default)]
+pub(crate) struct Standing {
+    /// What the last picture was drawn by: camera, light and size, and the state of each thing that stands.
+    by: Option<(Vec<u8>, Vec<u64>)>,
+    textures: Option<[wgpu::Texture; 2]>,
+    /// True where the textures hold it.
+    drawn: bool,
+}
+
+/// What is to be done with what stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stood {
+    /// Something is other than it was: drawn with the rest.
+    Changed,
+    /// Nothing has changed since the last picture: drawn alone, and kept.
+    Rests,
+    /// It was kept.
+    Kept,
+}
+
+impl Standing {
+    /// What is to be done in a picture by a camera and light.
+    pub fn look(&mut self, view: &[u8], things: &[&mut dyn Drawable]) -> Stood {
+        let states: Vec<u64> = things.iter().filter_map(|thing| thing.standing()).collect();
+        if states.is_empty() {
+            *self = Self { textures: self.textures.take(), ..Self::default() };
+            return Stood::Changed;
+        }
+        let same = self.by.as_ref().is_some_and(|(last, of)| last == view && *of == states);
+        if !same {
+            self.by = Some((view.to_vec(), states));
+            self.drawn = false;
+            return Stood::Changed;
+        }
+        if std::mem::replace(&mut self.drawn, true) { Stood::Kept } else { Stood::Rests }
+    }
+
+    /// Keeps what was drawn into a target.
+    pub fn keep(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+        let kept = self.textures.get_or_insert_with(|| {
+            [("standing colours", COLOUR_FORMAT), ("standing depth", DEPTH_FORMAT)].map(|(label, format)| {
+                gpu.device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some(label),
+                    size: target.colour.size(),
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format,
+                    usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST,
+                    view_formats: &[],
+                })
+            })
+        });
+        copy(encoder, [&target.colour, &target.depth], [&kept[0], &kept[1]]);
+    }
+
+    /// Lays what was kept into a target.
+    pub fn lay(&self, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+        if let Some([colour, depth]) = &self.textures {
+            copy(encoder, [colour, depth], [&target.colour, &target.depth]);
+        }
+    }
+}
+
+fn copy(encoder: &mut wgpu::CommandEncoder, from: [&wgpu::Texture; 2], to: [&wgpu::Texture; 2]) {
+    for (from, to) in from.into_iter().zip(to) {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
+}
