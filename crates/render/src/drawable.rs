@@ -28,8 +28,8 @@ pub trait Drawable {
     /// Draws what is opaque, with a pipeline of [`crate::COLOUR_FORMAT`] and [`crate::DEPTH_FORMAT`].
     fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
-    /// For what stands still, a number that is another one when the thing is drawn otherwise although camera, light and size are the
-    /// same. In plain light, without shadows, its picture is kept while these rest. None for what moves.
+    /// For what stands still, a number that no other thing has, and that is another one when the thing is drawn otherwise although
+    /// camera, light and size are the same. In plain light, without shadows, its picture is kept while these rest. None for what moves.
     fn standing(&self) -> Option<u64> {
         None
     }

@@ -8,7 +8,7 @@ const LIBRARY: [(&str, &str); 9] = [
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
     ("ball", include_str!("balls/ball.wgsl")),
-    ("ball_square", include_str!("balls/ball_square.wgsl")),
+    ("ball_corner", include_str!("balls/ball_corner.wgsl")),
     ("cap", include_str!("caps/cap.wgsl")),
     ("droplet", include_str!("fluid/droplet.wgsl")),
     ("fluid", include_str!("fluid/fluid.wgsl")),

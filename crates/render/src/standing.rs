@@ -3,6 +3,13 @@
 use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
 use crate::{Drawable, Target};
 use corpuscle_gpu::{Gpu, wgpu};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A number for how a thing looks that stands still; no two are the same.
+pub(crate) fn state() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
 
 /// Colour and depth of what stands still, of one size.
 #[derive(Debug, Default)]

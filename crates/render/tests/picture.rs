@@ -227,6 +227,36 @@ fn the_same_frame_twice_is_the_same_picture() {
 }
 
 #[test]
+fn what_stands_is_kept_until_something_changes() {
+    let Some(table) = Table::open("what stands") else { return };
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, -1.0], [10.0, 8.0, 2.0]);
+    let field = HeightField::sampled([0.0; 2], [10.0, 8.0], [90, 70], |x, y| 0.5 * (0.9 * x).sin() * (1.1 * y).cos());
+    let grey = |value| Image { width: 1, height: 1, rgba: vec![value, value, value, 255] };
+    let mut ground = Terrain::new(&table.renderer, &stage, field, &grey(90), -1.0).unwrap();
+    let painter = BallPainter::new(&table.renderer);
+    let light = Light::day().without_shadows();
+    // A ball that goes over the ground and sinks into it, drawn at a table that kept the ground and at one that has drawn nothing yet.
+    let draw = |table: &Table, ground: &mut Terrain, turn: f64, at: f64| {
+        let camera = Camera::orbit(&stage, [turn, 0.4], 0.6, ASPECT, 0.0);
+        let mut ball = painter.balls(gpu, &stage, &BallStyle::new(viridis()), [([at, 4.0, 0.3], 0.5, 0.8)]);
+        table.draw(&stage, &camera, &light, &mut [&mut ball, ground], &Overlay::default())
+    };
+    let fresh = || Table { renderer: Renderer::new(gpu), target: Target::new(gpu, SIZE, 2).unwrap() };
+    for (turn, value) in [(-1.2, 90), (-1.2, 200), (-0.7, 200)] {
+        if value == 200 && turn == -1.2 {
+            ground.drape(gpu, &grey(200)).unwrap();
+        }
+        let pictures = [1.0, 3.0, 5.0, 7.0].map(|at| {
+            let kept = draw(&table, &mut ground, turn, at);
+            assert!(kept == draw(&fresh(), &mut ground, turn, at), "turned by {turn}, {value}, ball at {at}");
+            kept
+        });
+        assert!(pictures[2] != pictures[3]);
+    }
+}
+
+#[test]
 fn a_plan_keeps_colours_and_scale() {
     let Some(table) = Table::open("a plan") else { return };
     let image = plan(&table, "l");

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-/// Longest that a slice may take, so that commands are taken soon, and what time a slice is of, s.
-const LONGEST: f64 = 0.04;
+/// Longest that a slice may take, s: each gives a picture, and commands are taken between them.
+const LONGEST: f64 = 0.015;
 /// A slice that was waited for longer than this is not made up for, s.
 const MOST_OWED: f64 = 0.1;
 /// Weight of the newest slice in what a slice costs, and in the pace that is told.

@@ -1,5 +1,5 @@
 // Balls one by one: shaded spheres, flat discs on paper.
-#import ball_square
+#import ball_corner
 
 @fragment
 fn fragment(corner: Corner) -> Drawn {

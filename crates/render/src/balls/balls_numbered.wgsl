@@ -1,5 +1,5 @@
 // Where there are many balls: which of them is seen where.
-#import ball_square
+#import ball_corner
 
 struct Numbered {
     @location(0) number: u32,

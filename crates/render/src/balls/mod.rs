@@ -9,8 +9,8 @@ use corpuscle_gpu::{Gpu, wgpu};
 use seen::{Seen, SeenPainter};
 use std::sync::Arc;
 
-/// Corners that are drawn for a ball: two triangles.
-const CORNERS: u32 = 6;
+/// Corners that are drawn for a ball: one triangle.
+const CORNERS: u32 = 3;
 /// Balls in one buffer at most: within the floor's 128 MiB.
 const MOST: usize = 6 << 20;
 /// From so many on, one before the other, they are shaded only where they are seen.

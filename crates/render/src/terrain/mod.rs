@@ -10,7 +10,7 @@ pub use natural::natural_colours;
 
 use crate::buffer::{TEXTURE, UNIFORM, indices, instances, uniform};
 use crate::pipeline::Recipe;
-use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders};
+use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, standing};
 use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
 use half::f16;
 use walls::Walls;
@@ -25,8 +25,8 @@ pub struct Terrain {
     plain: wgpu::RenderPipeline,
     /// True where it is drawn without shadows and grain.
     quick: bool,
-    /// How often another picture was draped over it.
-    draped: u64,
+    /// What it looks like: another number after each change, and for each ground.
+    state: u64,
     cast: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     settings: Ground,
@@ -89,7 +89,7 @@ impl Terrain {
             opaque: recipe.opaque(gpu),
             plain: recipe.opaque_by(gpu, "fragment_plain"),
             quick: false,
-            draped: 0,
+            state: standing::state(),
             cast: recipe.cast(gpu, "throw_shadow"),
             group: group(gpu, &layout, &settings, &shape, &colours),
             layout,
@@ -108,7 +108,7 @@ impl Terrain {
     /// [`RenderError::Gpu`] for more pixels a side than a texture has.
     pub fn drape(&mut self, gpu: &Gpu, colours: &Image) -> Result<(), RenderError> {
         self.settings.cell[3] = 0.0;
-        self.draped += 1;
+        self.state = standing::state();
         let colours = upload_colours(gpu, colours)?;
         self.group = group(gpu, &self.layout, &self.settings, &self.shape, &colours);
         Ok(())
@@ -116,6 +116,9 @@ impl Terrain {
 
     /// Whether it is drawn without shadows and grain from now on: much less work.
     pub fn draw_quickly(&mut self, quick: bool) {
+        if quick != self.quick {
+            self.state = standing::state();
+        }
         self.quick = quick;
     }
 
@@ -136,7 +139,7 @@ impl Drawable for Terrain {
     }
 
     fn standing(&self) -> Option<u64> {
-        Some(2 * self.draped + u64::from(self.quick))
+        Some(self.state)
     }
 
     fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {
