@@ -1,7 +1,7 @@
 //! What a hand does to a gas while it goes on.
 
 use crate::physics::Change;
-use corpuscle::ByHand;
+use corpuscle::GasByHand as ByHand;
 use corpuscle::scene::Gas;
 use egui::{Button, RichText, Ui};
 

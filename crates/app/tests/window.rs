@@ -69,3 +69,30 @@ fn a_flood_and_dew_are_opened_and_play() {
         stage.picture(name);
     }
 }
+
+/// Gauges of a flood by their names, as they were measured last.
+fn gauge(window: &corpuscle_app::Window, name: &str) -> f64 {
+    window.gauge(name).unwrap_or(f64::NAN)
+}
+
+#[test]
+fn a_flood_is_rained_on_while_it_goes_on() {
+    let Some(mut stage) = stage("touching a flood") else { return };
+    stage.choose("A lake at rest over a hill");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "water.total_inflow_m3") >= 0.0);
+    assert!(stage.window().gauge("water.total_rain_m3").is_none());
+    stage.type_into("Rain, mm/h", "150");
+    stage.until(SOON, "it rains", |window| gauge(window, "water.total_rain_m3") > 0.0);
+    assert!(!stage.has("Restart with changes") && stage.window().fault().is_none());
+}
+
+#[test]
+fn a_pane_is_cooled_while_it_goes_on() {
+    let Some(mut stage) = stage("touching dew") else { return };
+    stage.choose("A cold pane");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && window.snapshot().is_some());
+    let coldest = |window: &corpuscle_app::Window| gauge(window, "pane.mean_temperature_K");
+    stage.type_into("Temperature of pane, °C", "1");
+    stage.until(SOON, "it is colder", |window| coldest(window) < 275.0);
+    assert!(!stage.has("Restart with changes") && stage.window().fault().is_none());
+}

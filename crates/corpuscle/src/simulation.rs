@@ -1,8 +1,7 @@
 //! A scene made ready, and its run.
 
 use crate::schedule::Schedule;
-use crate::{Error, Progress, Sink};
-use corpuscle_gas::ByHand;
+use crate::{ByHand, Error, Progress, Sink};
 use corpuscle_model::Model;
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
@@ -51,12 +50,12 @@ impl Simulation {
         &mut *self.model
     }
 
-    /// Changes a gas while it runs. What was changed is not part of the scene: the scene as written does not give this run again.
+    /// Changes the model while it runs. What was changed is not part of the scene: the scene as written does not give this run again.
     ///
     /// # Errors
-    /// [`corpuscle_model::ModelError::Setup`] where the scene is none of a gas, or cannot be changed so: nothing has changed then.
-    pub fn change_by_hand(&mut self, change: ByHand) -> Result<(), Error> {
-        Ok(change.change(self.model_mut())?)
+    /// [`corpuscle_model::ModelError::Setup`] where the scene is of another model, or cannot be changed so: nothing has changed then.
+    pub fn change_by_hand(&mut self, change: impl Into<ByHand>) -> Result<(), Error> {
+        Ok(change.into().change(self.model_mut())?)
     }
 
     /// What a user should know, in sentences: of the ground, then of the model.

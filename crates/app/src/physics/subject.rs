@@ -153,7 +153,7 @@ impl Subject {
             Self::Recorded(run) => {
                 let row = run.gauges.times.partition_point(|time| *time <= run.time).saturating_sub(1);
                 let gauges = run.gauges.rows.get(row).cloned().unwrap_or_default();
-                Measures { time: run.time, gauges, ..Measures::default() }
+                Measures { time: run.time, names: run.gauges.columns.clone(), gauges, ..Measures::default() }
             }
         }
     }

@@ -128,6 +128,13 @@ impl Window {
         self.open.as_ref()?.snapshot.clone()
     }
 
+    /// What a gauge was measured at last, by its name as in files; none where there is none.
+    pub fn gauge(&self, name: &str) -> Option<f64> {
+        let snapshot = self.snapshot()?;
+        let at = snapshot.measures.names.iter().position(|gauge| gauge == name)?;
+        snapshot.measures.gauges.get(at).copied()
+    }
+
     /// True until a scene that was asked for is open or refused.
     pub fn is_waiting(&self) -> bool {
         self.awaited.is_some()

@@ -45,8 +45,10 @@ pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
 
 /// The parameters of a scene as it is written.
 pub(super) fn parameters(source: &Source) -> Parameters {
-    let written = Scene::parse(&source.text, &source.name, &[]);
-    written.map_or_else(|_| Parameters::none(), |written| Parameters::new(&written, source.changes.clone()))
+    match (Scene::parse(&source.text, &source.name, &[]), source.scene()) {
+        (Ok(written), Ok(now)) => Parameters::new(&written, &now, source.changes.clone()),
+        _ => Parameters::none(),
+    }
 }
 
 impl Open {

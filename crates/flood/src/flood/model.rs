@@ -1,5 +1,6 @@
 //! What a flood shows of itself.
 
+use super::by_hand::Hand;
 use super::{DENSITY, Flood, State};
 use crate::gauges::{LineGauge, PointGauge};
 use crate::particle::Particle;
@@ -165,14 +166,20 @@ impl Model for Flood {
         if state.owed.len() != self.sources.len()
             || state.impulses.len() != self.surroundings.obstacles.names.len()
             || !self.structures.fit(&state.flows)
-            || self.ground.as_ref().is_some_and(|ground| !ground.fits(&state.wetness))
             || !state.maps.fit(&self.state.maps)
+            || !self.grounds_fit(&state)
         {
             return Err(refused("it belongs to another scene".into()));
         }
+        let by_hand = self.state.hand != Hand::default() || state.hand != Hand::default();
+        self.take_back_hand();
         (self.shown, self.state) = (shown, state);
+        self.take_hand()?;
         self.surroundings.time = self.state.time;
         self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+        if by_hand {
+            return self.renew_card();
+        }
         #[cfg(feature = "gpu")]
         self.send_to_card().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())
