@@ -53,6 +53,22 @@ fn a_gas_is_heated_and_its_parameters_wait_for_a_restart() {
 }
 
 #[test]
+fn balls_are_put_in_a_temperature_is_held_and_a_piston_dragged() {
+    let Some(mut stage) = stage("a gas in a hand") else { return };
+    stage.choose("A piston falls onto a gas");
+    let count = |window: &corpuscle_app::Window| window.snapshot().map_or(0, |snapshot| snapshot.particles);
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "gas.packing") > 0.0);
+    let before = count(stage.window());
+    let part = (before as f64 * 0.1).round() as usize;
+    stage.click(&format!("Add {part}"));
+    stage.until(SOON, "there are more", |window| count(window) == before + part);
+    stage.click("Hold the temperature");
+    stage.run(Duration::from_millis(300));
+    assert!(stage.has_beginning("Hold the temperature no longer") && stage.window().fault().is_none());
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+#[test]
 fn a_flood_and_dew_are_opened_and_play() {
     let Some(mut stage) = stage("flood and dew in the window") else { return };
     for (title, name, least) in [("A lake at rest over a hill", "flood", 1e-3), ("A cold pane", "dew", 1e-3)] {
@@ -95,4 +111,46 @@ fn a_pane_is_cooled_while_it_goes_on() {
     stage.type_into("Temperature of pane, °C", "1");
     stage.until(SOON, "it is colder", |window| coldest(window) < 275.0);
     assert!(!stage.has("Restart with changes") && stage.window().fault().is_none());
+}
+
+#[test]
+fn terrain_that_is_dropped_is_flooded() {
+    let Some(mut stage) = stage("terrain dropped on the window") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("slope.asc");
+    let row =
+        |row: i32| (0..50).map(|column| format!("{} ", 30 - column / 2 + (row - 15).abs() / 5)).collect::<String>();
+    let rows: Vec<String> = (0..30).map(row).collect();
+    let head = "ncols 50\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    std::fs::write(&file, format!("{head}{}\n", rows.join("\n"))).unwrap();
+    stage.drop_file(&file);
+    stage.until(SOON, "it is flooded", |window| gauge(window, "water.total_inflow_m3") > 0.0);
+    assert!(stage.window().fault().is_none());
+    stage.run(Duration::from_millis(1500));
+    stage.picture("dropped");
+    stage.drop_file(&folder.path().join("none.tif"));
+    stage.until(SOON, "it is refused", |window| window.fault().is_some_and(|fault| fault.contains("none.tif")));
+}
+
+#[test]
+fn a_spot_of_ground_is_picked_and_a_gauge_placed_there() {
+    let Some(mut stage) = stage("a gauge placed in the window") else { return };
+    stage.choose("A lake at rest over a hill");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "water.stored_m3") > 0.0);
+    stage.key(egui::Key::Space);
+    stage.run(Duration::from_millis(300));
+    stage.click_picture([0.4, 0.45]);
+    stage.until(SOON, "it is probed", |window| window.snapshot().is_some_and(|snapshot| snapshot.probed.is_some()));
+    let probed = stage.window().snapshot().unwrap().probed.unwrap();
+    stage.picture("spot");
+    stage.click("Place a gauge here");
+    stage.until(SOON, "there is a gauge", |window| window.gauge("P1.depth_m").is_some());
+    assert_eq!(gauge(stage.window(), "P1.depth_m"), probed.depth);
+    assert!(probed.depth > 0.1 && stage.has("There is a gauge here") && !stage.has("Restart with changes"));
+    stage.key(egui::Key::R);
+    stage.run(Duration::from_millis(100));
+    stage.until(SOON, "it is there after a restart", |window| {
+        !window.is_waiting() && window.gauge("P1.depth_m").is_some()
+    });
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }

@@ -34,7 +34,7 @@ pub use corpuscle_dew::ByHand as DewByHand;
 pub use corpuscle_fetch as fetch;
 #[cfg(feature = "film")]
 pub use corpuscle_film as film;
-pub use corpuscle_flood::ByHand as FloodByHand;
+pub use corpuscle_flood::{ByHand as FloodByHand, Sample};
 pub use corpuscle_gas::ByHand as GasByHand;
 #[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;

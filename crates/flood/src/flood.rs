@@ -6,6 +6,7 @@ mod model;
 #[cfg(feature = "gpu")]
 mod on_card;
 mod open;
+mod placed;
 mod regulate;
 mod step;
 mod weather;

@@ -202,6 +202,23 @@ fn a_flood_that_was_changed_goes_on_from_its_checkpoint_to_the_same_bits() {
 }
 
 #[test]
+fn a_gauge_that_is_placed_measures_what_one_of_the_scene_does() {
+    let scene = format!("{RIVER}\n[[flood.gauge]]\nname = \"bridge\"\nat = [150, 100]\n");
+    let (mut written, mut placed) = (open(&scene, &[]), open(RIVER, &[]));
+    placed.place_gauge("bridge", [150.0, 100.0]).unwrap();
+    assert!(placed.place_gauge("bridge", [10.0, 10.0]).is_err() && placed.place_gauge("moon", [-1.0, 0.0]).is_err());
+    let mut again = open(RIVER, &[]);
+    again.restore(&placed.save()).unwrap();
+    for flood in [&mut written, &mut placed, &mut again] {
+        go(flood, 10.0);
+    }
+    let [first, last, back] = [&written, &placed, &again].map(Flood::gauge_row);
+    assert!(first[0] > 0.1 && first[..4] == last[last.len() - 4..] && last == back, "{first:?} {last:?}");
+    let columns = placed.gauge_columns();
+    assert!(columns.len() == last.len() && columns[columns.len() - 4].header() == "bridge.depth_m");
+}
+
+#[test]
 fn what_cannot_be_is_refused_and_changes_nothing() {
     let mut flood = open(RIVER, &[]);
     let state = flood.save();

@@ -22,6 +22,16 @@ fn live(change: impl Into<ByHand> + Send + 'static) -> Option<Change> {
     Some(Box::new(move |simulation| simulation.change_by_hand(change)))
 }
 
+/// Names of the gauges that changes of a scene add.
+fn placed(changes: &[(String, String)]) -> Vec<String> {
+    let gauges = changes.iter().filter(|(path, _)| path.starts_with("flood.gauge."));
+    let name = |text: &String| {
+        let row = format!("v = {text}").parse::<Table>().ok()?;
+        Some(row.get("v")?.get("name")?.as_str()?.to_owned())
+    };
+    gauges.filter_map(|(_, text)| name(text)).collect()
+}
+
 /// The number in a key, as in `flood.inflow.0.discharge_m3_per_s`.
 fn number_in(path: &str) -> Option<usize> {
     path.split('.').find_map(|word| word.parse().ok())
@@ -36,6 +46,8 @@ pub struct Parameters {
     left_out: Vec<String>,
     /// Changes: paths of values, and the values as they are written.
     changes: Vec<(String, String)>,
+    /// Names of gauges that were placed.
+    placed: Vec<String>,
     /// Changes that the scene goes on with; the others wait for a restart.
     applied: Vec<(String, String)>,
 }
@@ -55,7 +67,7 @@ impl Parameters {
         whole.resolve_defaults();
         let document: Table = whole.to_toml().ok().and_then(|text| text.parse().ok()).unwrap_or_default();
         let Builder { groups, document: written, left_out } = groups(&whole, now, document);
-        Self { groups, written, left_out, applied: changes.clone(), changes }
+        Self { groups, written, left_out, placed: placed(&changes), applied: changes.clone(), changes }
     }
 
     /// None.
@@ -64,6 +76,7 @@ impl Parameters {
             groups: Vec::new(),
             written: Table::new(),
             left_out: Vec::new(),
+            placed: Vec::new(),
             changes: Vec::new(),
             applied: Vec::new(),
         }
@@ -72,6 +85,25 @@ impl Parameters {
     /// All changes.
     pub fn changes(&self) -> &[(String, String)] {
         &self.changes
+    }
+
+    /// Adds a gauge at a place in the terrain's own coordinates, which the scene goes on with; gives its name.
+    pub fn add_gauge(&mut self, [x, y]: [f64; 2]) -> String {
+        let rows = value_at(&self.written, "flood.gauge").and_then(Value::as_array);
+        let names: Vec<String> = rows
+            .into_iter()
+            .flatten()
+            .filter_map(|row| Some(row.get("name")?.as_str()?.to_owned()))
+            .chain(self.placed.iter().cloned())
+            .collect();
+        let number = names.len();
+        let name = (1..).map(|number| format!("P{number}")).find(|name| !names.contains(name)).unwrap_or_default();
+        let path = format!("flood.gauge.{number}");
+        let row = format!("{{ name = \"{name}\", at = [{x:?}, {y:?}] }}");
+        self.changes.push((path.clone(), row.clone()));
+        self.applied.push((path, row));
+        self.placed.push(name.clone());
+        name
     }
 
     /// True where changes wait for a restart.

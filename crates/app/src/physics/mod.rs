@@ -11,6 +11,7 @@ use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
 use corpuscle::pictures::Pictures;
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -52,6 +53,8 @@ pub enum Command {
     Step(f64),
     /// Go on at this pace, simulated seconds in a second, where that is possible.
     Pace(f64),
+    /// Tell of the water at a place from now on, in model coordinates; none: no longer.
+    Probe(Option<[f64; 2]>),
     /// Change something while it runs.
     Change(Change),
 }
@@ -87,6 +90,8 @@ pub struct Opened {
     pub warnings: Vec<String>,
     /// Of a finished run its gauges: times, s, and rows of values.
     pub history: Option<Vec<(f64, Vec<f64>)>>,
+    /// Its ground, where it has one.
+    pub terrain: Option<Arc<Terrain>>,
     /// Where it ends, s.
     pub end: f64,
 }

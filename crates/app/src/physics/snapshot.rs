@@ -1,5 +1,6 @@
 //! What the physics shows at one time.
 
+use corpuscle::Sample;
 use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
 use std::sync::Arc;
 
@@ -24,6 +25,8 @@ pub struct Snapshot {
     pub behind: bool,
     /// Particles moved (of a gas: collisions) in a second of the wall clock.
     pub rate: f64,
+    /// The water at the place that was asked for; none of a finished run.
+    pub probed: Option<Sample>,
     /// What was measured, not later than a moment ago.
     pub measures: Arc<Measures>,
 }

@@ -4,7 +4,7 @@ use super::{Change, Measures};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
 use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
-use corpuscle::{Error, Simulation};
+use corpuscle::{Error, Sample, Simulation};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -143,6 +143,14 @@ impl Subject {
                 let container = start.map(|start| run.walls.container(start, run.shown.1.time));
                 (run.shown.1.clone(), run.paths.clone(), container)
             }
+        }
+    }
+
+    /// The water at a place of a flood that is computed.
+    pub fn water_at(&self, place: [f64; 2]) -> Option<Sample> {
+        match self {
+            Self::Live(simulation) => simulation.water_at(place),
+            Self::Recorded(_) => None,
         }
     }
 

@@ -76,6 +76,8 @@ struct Running {
     /// Work done and when, as it was last told; work in a second since.
     work: (u64, Instant),
     rate: f64,
+    /// Where to tell of the water.
+    probe: Option<[f64; 2]>,
 }
 
 impl Thread<'_> {
@@ -110,6 +112,7 @@ impl Thread<'_> {
                 (running.playing, running.began) = (true, Instant::now());
             }
             Command::Pause => running.wait(),
+            Command::Probe(place) => running.probe = place,
             Command::Pace(pace) => running.pace.asked = pace,
             Command::Step(by) => self.step(by),
             Command::Change(change) => match running.subject.change(change) {
@@ -141,6 +144,7 @@ impl Thread<'_> {
         let now = Instant::now();
         let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
         let history = subject.history();
+        let terrain = simulation.terrain().cloned();
         let end = subject.end();
         self.running = Some(Running {
             playing: false,
@@ -151,9 +155,10 @@ impl Thread<'_> {
             measure_at: now,
             work: (subject.work(), now),
             rate: 0.0,
+            probe: None,
             subject,
         });
-        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, end })
+        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, terrain, end })
     }
 
     fn step(&mut self, by: f64) {
@@ -229,6 +234,7 @@ impl Running {
             pace: self.pace.real,
             behind: self.playing && self.pace.is_behind(),
             rate: if self.playing { self.rate } else { 0.0 },
+            probed: self.probe.and_then(|place| self.subject.water_at(place)),
             measures: self.measured.clone(),
         }
     }

@@ -1,5 +1,6 @@
 //! What is in the window.
 
+mod dropping;
 mod keys;
 mod open;
 mod panels;
@@ -13,12 +14,14 @@ use crate::gallery::Gallery;
 use crate::physics::{Command, Event, Opened, Physics, Snapshot, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
+use crate::touch::Hands;
 use crate::{Screen, help, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 /// The window and all that it shows.
@@ -43,6 +46,8 @@ pub struct Window {
 enum Awaited {
     Scene(Source),
     Run(PathBuf),
+    /// What was dropped, until it is read.
+    Dropped(Receiver<Result<Start, String>>),
 }
 
 /// Which panels are shown.
@@ -155,6 +160,7 @@ impl Window {
 
     /// Takes what the physics told.
     fn listen(&mut self) {
+        self.look_for_dropped();
         for event in self.physics.events() {
             match event {
                 Event::Opened(opened) => self.take(*opened),
@@ -191,10 +197,15 @@ impl Window {
     fn take(&mut self, opened: Opened) {
         let Some(awaited) = self.awaited.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, end, .. } = opened;
+        let Opened { number, scene, pictures, terrain, end, .. } = opened;
         let recorded = matches!(awaited, Awaited::Run(_));
         let source = match awaited {
             Awaited::Scene(source) => source,
+            // What was opened before is no longer wanted.
+            Awaited::Dropped(_) => {
+                self.awaited = Some(awaited);
+                return;
+            }
             Awaited::Run(folder) => Source {
                 name: folder.display().to_string(),
                 text: scene.to_toml().unwrap_or_default(),
@@ -216,7 +227,9 @@ impl Window {
             parameters: parameters(&source),
             plots,
             picked: None,
-            lifted: false,
+            terrain,
+            spot: None,
+            hands: Hands::default(),
             source,
             recorded,
             end,
@@ -231,6 +244,7 @@ impl Window {
 
     /// Shows everything.
     pub fn ui(&mut self, ui: &mut Ui) {
+        self.take_dropped(ui.ctx());
         self.listen();
         self.keys(ui);
         let pictures = self.clock.tick();

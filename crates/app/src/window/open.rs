@@ -7,7 +7,10 @@ use crate::physics::Snapshot;
 use crate::pick::Picked;
 use crate::picture::{Picture, Quality};
 use crate::plots::Plots;
+use crate::spot::Spot;
+use crate::touch::Hands;
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
 use egui::Ui;
 use std::sync::Arc;
 
@@ -24,8 +27,11 @@ pub(super) struct Open {
     pub(super) parameters: Parameters,
     pub(super) plots: Plots,
     pub(super) picked: Option<Picked>,
-    /// True once the partition of a gas is gone.
-    pub(super) lifted: bool,
+    /// The ground, and the spot of it that was picked.
+    pub(super) terrain: Option<Arc<Terrain>>,
+    pub(super) spot: Option<Spot>,
+    /// What hands hold of a gas.
+    pub(super) hands: Hands,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     pub(super) playing: bool,
     /// The pace, as a multiple of the scene's own.
@@ -75,14 +81,18 @@ impl Open {
         if response.clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
+            self.spot = self.terrain.as_ref().and_then(|terrain| Spot::at(shown, response.rect, terrain, pointer));
             self.picked = Picked::at(shown, response.rect, &snapshot.frame, pointer);
             if let Some(picked) = &mut self.picked {
                 picked.follow(&snapshot.frame);
             }
         }
+        let painter = ui.painter_at(response.rect);
+        let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
+        if let Some(spot) = &self.spot {
+            spot.paint(&over);
+        }
         if let Some(picked) = &self.picked {
-            let painter = ui.painter_at(response.rect);
-            let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
             picked.paint(&over, &snapshot.frame, (shown.stage.to - shown.stage.from).max_element());
         }
     }

@@ -3,6 +3,8 @@
 use super::open::Open;
 use super::{NOTICE, Window};
 use crate::icons::{self, Icon};
+use crate::physics::{Change, Command};
+use crate::spot::Asked;
 use crate::transport::{Pressed, Transport};
 use corpuscle::scene::Units;
 use egui::{Frame, Margin, Panel, RichText, ScrollArea, Ui, vec2};
@@ -55,7 +57,12 @@ impl Window {
             && let Some(snapshot) = open.snapshot.clone()
         {
             let response = open.picture.ui(ui, &snapshot, open.playing);
+            let before = open.spot.map(|spot| spot.at_model());
             open.pick(ui, &response, &snapshot);
+            let spot = open.spot.map(|spot| spot.at_model());
+            if spot != before {
+                self.physics.ask(Command::Probe(spot));
+            }
         }
         let inside = whole.shrink2(vec2(16.0, 12.0));
         let mut over = ui.new_child(egui::UiBuilder::new().max_rect(inside));
@@ -79,6 +86,25 @@ impl Window {
             && picked.card(&mut over, &snapshot.frame, open.scene.gas().is_none_or(|gas| gas.units == Units::Si))
         {
             open.picked = None;
+        }
+        self.spot_card(&mut over);
+    }
+
+    /// The card of the spot of ground that was picked.
+    fn spot_card(&mut self, ui: &mut Ui) {
+        let Some(open) = &mut self.open else { return };
+        let (Some(spot), Some(terrain)) = (&mut open.spot, &open.terrain) else { return };
+        let water = open.snapshot.as_ref().and_then(|snapshot| snapshot.probed);
+        match spot.card(ui, terrain, water, !open.recorded) {
+            Some(Asked::Away) => open.spot = None,
+            Some(Asked::Gauge) => {
+                spot.gauged = true;
+                let at = spot.at_model();
+                let name = open.parameters.add_gauge(terrain.to_own(at));
+                let place: Change = Box::new(move |simulation| simulation.place_gauge(&name, at));
+                self.physics.ask(Command::Change(place));
+            }
+            None => {}
         }
     }
 

@@ -20,16 +20,16 @@ impl Window {
                 let waiting = open.parameters.waiting(ui);
                 restart = matches!(waiting, Some(Changed::Restart));
                 if let Some(gas) = open.scene.gas() {
-                    match touch::ui(ui, gas, open.lifted) {
+                    match touch::ui(ui, gas, &mut open.hands, open.snapshot.as_deref()) {
                         Some(Touched::Heated(change)) => {
                             open.plots.forget_speeds();
                             self.physics.ask(Command::Change(change));
                         }
                         Some(Touched::Lifted(change)) => {
-                            open.lifted = true;
                             open.picture.lift_partition(open.snapshot.as_ref().map_or(0.0, |now| now.frame.time));
                             self.physics.ask(Command::Change(change));
                         }
+                        Some(Touched::Changed(change)) => self.physics.ask(Command::Change(change)),
                         None => {}
                     }
                 }

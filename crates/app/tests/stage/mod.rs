@@ -127,6 +127,32 @@ impl Stage {
         self.harness.query_all_by_label(name).next().is_some()
     }
 
+    /// Clicks on a place of the picture, in parts of its width and height.
+    pub fn click_picture(&mut self, part: [f32; 2]) {
+        let rect = self.harness.get_by_label("Picture of the scene").rect();
+        let at = rect.min + vec2(part[0], part[1]) * rect.size();
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.harness.drag_at(at);
+        self.harness.step();
+        self.harness.drop_at(at);
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Opens a file as if it was dropped on the window.
+    pub fn drop_file(&mut self, path: &std::path::Path) {
+        let context = self.harness.ctx.clone();
+        if let Some(window) = self.harness.state_mut() {
+            window.open_dropped(&context, path.to_owned());
+        }
+    }
+
+    /// True where something is called so at its beginning.
+    pub fn has_beginning(&self, words: &str) -> bool {
+        self.harness.query_all_by(|node| node.label().is_some_and(|label| label.starts_with(words))).next().is_some()
+    }
+
     /// Types a number into the field that is called so.
     pub fn type_into(&mut self, name: &str, words: &str) {
         self.harness.get_by_role_and_label(Role::SpinButton, name).click();

@@ -73,6 +73,8 @@ pub(super) struct Hand {
     control: Option<bool>,
     /// Whether it rains by hand alone.
     ground: bool,
+    /// Gauges that were placed: names, and places in model coordinates.
+    pub gauges: Vec<(String, [f64; 2])>,
 }
 
 impl ByHand {

@@ -111,7 +111,12 @@ impl Model for Flood {
         let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
         let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
         let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
-        points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(weather).collect()
+        points
+            .chain(lines)
+            .chain(["stored", "total_inflow", "total_outflow"].map(total))
+            .chain(weather)
+            .chain(self.placed_columns())
+            .collect()
     }
 
     fn gauge_row(&self) -> Vec<f64> {
@@ -126,7 +131,7 @@ impl Model for Flood {
         let Wetness { rained, infiltrated, .. } = &self.state.wetness;
         let film = self.state.wetness.on_the_ground();
         let weather = self.ground.iter().flat_map(|_| [rained.value(), infiltrated.value(), film]);
-        points.chain(lines).chain(totals).chain(weather).collect()
+        points.chain(lines).chain(totals).chain(weather).chain(self.placed_row()).collect()
     }
 
     fn maps(&self) -> Vec<Map> {
