@@ -51,6 +51,11 @@ impl Spot {
         ((seen - pointer).length() < 3.0 && inside).then_some(Self { place, gauged: false })
     }
 
+    /// The spot under a place.
+    pub fn under(terrain: &Terrain, [x, y, _]: [f64; 3]) -> Self {
+        Self { place: [x, y, terrain.height(x, y)], gauged: false }
+    }
+
     /// Where it is, in model coordinates, m.
     pub fn at_model(&self) -> [f64; 2] {
         [self.place[0], self.place[1]]
@@ -88,8 +93,8 @@ impl Spot {
                     if let Some(water) = water {
                         row("depth", format!("{} m", number(water.depth)));
                         row("level", format!("{} m", number(self.place[2] + water.depth)));
-                        row("velocity", format!("{} m/s", water.velocity.map(number).join(",  ")));
-                        row("speed", format!("{} m/s", number(water.speed())));
+                        row("velocity", format!("{} m/s", water.velocity.map(at_rest).map(number).join(",  ")));
+                        row("speed", format!("{} m/s", number(at_rest(water.speed()))));
                     }
                 });
                 let name = if self.gauged { "There is a gauge here" } else { "Place a gauge here" };
@@ -101,6 +106,13 @@ impl Spot {
         );
         asked
     }
+}
+
+/// Slower than this is rounding, m/s.
+const REST: f64 = 1e-6;
+
+fn at_rest(velocity: f64) -> f64 {
+    if velocity.abs() < REST { 0.0 } else { velocity }
 }
 
 /// Of places over a part of the ground the one that is seen nearest to the pointer, of those next to it the nearest to the eye.

@@ -154,7 +154,8 @@ fn gauge(snapshot: &Snapshot, names: &[&str]) -> Option<f64> {
 
 /// A button over the whole width; true where it was clicked.
 fn wide(ui: &mut Ui, name: &str, hint: &str) -> bool {
-    let size = [ui.available_width(), 28.0];
+    // Clear of the bar that scrolls.
+    let size = [ui.available_width() - 4.0, 28.0];
     let response = ui.add_sized(size, Button::new(name));
     let clicked = response.clicked();
     if !hint.is_empty() {
@@ -166,7 +167,7 @@ fn wide(ui: &mut Ui, name: &str, hint: &str) -> bool {
 /// Two buttons beside each other, each with its hint; which were clicked.
 fn pair(ui: &mut Ui, left: (&str, &str), right: (&str, &str)) -> [bool; 2] {
     ui.horizontal(|ui| {
-        let size = [0.5 * (ui.available_width() - 8.0), 28.0];
+        let size = [0.5 * (ui.available_width() - 12.0), 28.0];
         [left, right].map(|(name, hint)| ui.add_sized(size, Button::new(name)).on_hover_text(hint).clicked())
     })
     .inner

@@ -154,3 +154,60 @@ fn a_spot_of_ground_is_picked_and_a_gauge_placed_there() {
     });
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }
+
+/// A scene at its start.
+fn waiting(test: &str, title: &str) -> Option<stage::Stage> {
+    let mut stage = stage(test)?;
+    stage.window_mut().wait_at_start();
+    stage.choose(title);
+    stage.until(SOON, title, |window| !window.is_waiting() && window.snapshot().is_some());
+    Some(stage)
+}
+
+#[test]
+fn the_story_of_a_gas_looks_as_it_did() {
+    let Some(mut stage) = waiting("a gas as it looked", "Free expansion") else { return };
+    stage.click("Lift the partition");
+    stage.click("Heat");
+    stage.steps(12);
+    stage.same_as_reference("gas");
+}
+
+#[test]
+fn the_story_of_a_flood_looks_as_it_did() {
+    let Some(mut stage) = waiting("a flood as it looked", "A lake at rest over a hill") else { return };
+    stage.type_into("Rain, mm/h", "180");
+    stage.steps(2);
+    stage.click_picture([0.42, 0.45]);
+    stage.until(SOON, "it is probed", |window| window.snapshot().is_some_and(|snapshot| snapshot.probed.is_some()));
+    stage.click("Place a gauge here");
+    stage.click("Follow it no longer");
+    stage.same_as_reference("flood");
+}
+
+#[test]
+fn the_story_of_dew_looks_as_it_did() {
+    let Some(mut stage) = waiting("dew as it looked", "A cold pane") else { return };
+    stage.type_into("Temperature of pane, °C", "2");
+    stage.steps(12);
+    stage.same_as_reference("dew");
+}
+
+#[test]
+fn a_film_is_recorded_and_stills_and_scenes_are_saved() {
+    let Some(mut stage) = waiting("a film in the window", "Maxwell's speeds") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    stage.window_mut().save_into(folder.path().to_owned());
+    stage.click("Record a film");
+    stage.click("Play");
+    stage.until(SOON, "it plays", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > 0.05));
+    stage.click("End the film");
+    let film = folder.path().join("gas-maxwell.mp4");
+    stage.until(SOON, "there is a film", |_| film.exists());
+    let bytes = std::fs::read(&film).unwrap();
+    assert!(bytes.len() > 10_000 && &bytes[4..8] == b"ftyp", "{} bytes", bytes.len());
+    stage.click("Save a still");
+    stage.key(egui::Key::P);
+    assert!(folder.path().join("gas-maxwell.png").exists() && stage.has("Record a film"));
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}

@@ -13,7 +13,7 @@ use builder::{Builder, Control, Group, Parameter, groups};
 use corpuscle::ByHand;
 use corpuscle::scene::Scene;
 use egui::{Align, ComboBox, Layout, RichText, Ui, WidgetInfo};
-use slider::{slider, written};
+use slider::{is_long, slider, written};
 use toml::{Table, Value};
 use values::{as_number, largest, multiplied, set, value_at};
 
@@ -184,7 +184,11 @@ impl Parameters {
         let when = if parameter.live.is_some() { "changes at once" } else { "changes on restart" };
         let hint = format!("{}\n{} ({when})", parameter.hint, parameter.path);
         ui.horizontal(|ui| {
-            ui.label(&parameter.name).on_hover_text(&hint);
+            let name = match is_long(parameter.unit) {
+                true => format!("{}, {}", parameter.name, parameter.unit),
+                false => parameter.name.clone(),
+            };
+            ui.label(name).on_hover_text(&hint);
             let note = if parameter.live.is_some() { "live" } else { "" };
             ui.label(RichText::new(note).small().color(crate::style::accent(ui.visuals())));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

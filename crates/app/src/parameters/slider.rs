@@ -6,6 +6,11 @@ use toml::Value;
 /// Width of a number beside its slider, points.
 const VALUE: f32 = 92.0;
 
+/// Whether a unit has no room beside a number.
+pub(super) fn is_long(unit: &str) -> bool {
+    unit.chars().count() > 5
+}
+
 /// A slider with its number beside it; true where it was changed.
 pub(super) fn slider(
     ui: &mut Ui,
@@ -36,7 +41,7 @@ pub(super) fn slider(
         } else {
             typed = typed.custom_formatter(|number, _| corpuscle_drawing::text::short_number(number));
         }
-        if !unit.is_empty() {
+        if !unit.is_empty() && !is_long(unit) {
             typed = typed.suffix(format!(" {unit}"));
         }
         let typed = ui.add_sized([VALUE, 24.0], typed);

@@ -1,5 +1,6 @@
 //! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
 
+mod filming;
 mod pace;
 mod snapshot;
 mod subject;
@@ -9,7 +10,7 @@ pub use snapshot::{Measures, Snapshot};
 
 use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
-use corpuscle::pictures::Pictures;
+use corpuscle::pictures::{Hand, Pictures};
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
 use std::path::PathBuf;
@@ -55,6 +56,10 @@ pub enum Command {
     Pace(f64),
     /// Tell of the water at a place from now on, in model coordinates; none: no longer.
     Probe(Option<[f64; 2]>),
+    /// Film what goes on from now on into a file, seen so.
+    Film(PathBuf, Hand),
+    /// End the film.
+    EndFilm,
     /// Change something while it runs.
     Change(Change),
 }
@@ -70,6 +75,8 @@ pub enum Event {
     Refused(String),
     /// What was to change while it runs could not.
     NotChanged(String),
+    /// A film was put in its place, or could not be.
+    Filmed(Result<PathBuf, String>),
     /// It came to the scene's end, and waits.
     Ended,
     /// It broke down, and waits; what it showed last is sound.
@@ -130,9 +137,10 @@ impl Physics {
     /// Asks for something. Never waits.
     pub fn ask(&self, command: Command) {
         if let Some(commands) = &self.commands {
+            // Before the command can be taken: it must not break itself off.
+            self.shared.stop.store(true, Ordering::Relaxed);
             // A thread that is gone has told why.
             let _ = commands.send(command);
-            self.shared.stop.store(true, Ordering::Relaxed);
         }
     }
 

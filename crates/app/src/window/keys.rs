@@ -27,6 +27,9 @@ impl Window {
         if pressed(Key::L) {
             self.panels.plots = !self.panels.plots;
         }
+        if pressed(Key::V) {
+            self.film();
+        }
         if pressed(Key::S) {
             self.save_still();
         }

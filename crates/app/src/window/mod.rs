@@ -40,6 +40,10 @@ pub struct Window {
     /// What went wrong last.
     fault: Option<String>,
     clock: PictureClock,
+    /// Where files are written.
+    folder: PathBuf,
+    /// Whether what is opened plays at once.
+    plays: bool,
 }
 
 /// What is to be opened.
@@ -100,6 +104,8 @@ impl Window {
             open: None,
             fault: None,
             clock: PictureClock::default(),
+            folder: PathBuf::from("."),
+            plays: true,
         };
         match start {
             Start::Welcome => {}
@@ -107,6 +113,16 @@ impl Window {
             Start::Run(folder) => window.open_run(folder),
         }
         Ok(window)
+    }
+
+    /// Writes files into another folder than the one that the program was started in.
+    pub fn save_into(&mut self, folder: PathBuf) {
+        self.folder = folder;
+    }
+
+    /// What is opened from now on waits at its start.
+    pub fn wait_at_start(&mut self) {
+        self.plays = false;
     }
 
     /// Opens a scene.
@@ -169,6 +185,7 @@ impl Window {
                     self.fault = Some(what);
                 }
                 Event::NotChanged(what) => self.fault = Some(what),
+                Event::Filmed(film) => self.filmed(film),
                 Event::Ended => self.stopped(),
                 Event::Fault(what) => {
                     self.fault = Some(what);
@@ -229,6 +246,7 @@ impl Window {
             picked: None,
             terrain,
             spot: None,
+            filming: false,
             hands: Hands::default(),
             source,
             recorded,
@@ -239,7 +257,7 @@ impl Window {
             playing: false,
             times,
         });
-        self.play(true);
+        self.play(self.plays);
     }
 
     /// Shows everything.

@@ -32,6 +32,8 @@ pub(super) struct Open {
     pub(super) spot: Option<Spot>,
     /// What hands hold of a gas.
     pub(super) hands: Hands,
+    /// True while a film is made.
+    pub(super) filming: bool,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     pub(super) playing: bool,
     /// The pace, as a multiple of the scene's own.
@@ -81,8 +83,13 @@ impl Open {
         if response.clicked()
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            self.spot = self.terrain.as_ref().and_then(|terrain| Spot::at(shown, response.rect, terrain, pointer));
             self.picked = Picked::at(shown, response.rect, &snapshot.frame, pointer);
+            let place = self.picked.as_ref().and_then(|picked| picked.place(&snapshot.frame));
+            self.spot = self.terrain.as_ref().and_then(|terrain| match place {
+                // Who clicks on water means the place below it.
+                Some(place) => Some(Spot::under(terrain, place)),
+                None => Spot::at(shown, response.rect, terrain, pointer),
+            });
             if let Some(picked) = &mut self.picked {
                 picked.follow(&snapshot.frame);
             }

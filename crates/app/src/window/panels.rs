@@ -113,7 +113,7 @@ impl Window {
         if icons::toggle(ui, Icon::Gallery, "Scenes", "G", panels.scenes).clicked() {
             panels.scenes = !panels.scenes;
         }
-        let (mut still, mut help) = (false, false);
+        let (mut still, mut film, mut help) = (false, false, false);
         if let Some(open) = &mut self.open {
             ui.label(RichText::new(&open.scene.title).heading()).on_hover_text(open.scene.description.trim());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -125,6 +125,8 @@ impl Window {
                     panels.plots = !panels.plots;
                 }
                 ui.separator();
+                let name = if open.filming { "End the film" } else { "Record a film" };
+                film = icons::toggle(ui, Icon::Film, name, "V", open.filming).clicked();
                 still = icons::button(ui, Icon::Still, "Save a still", "S").clicked();
                 if !open.is_flat() && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.hand.plan).clicked()
                 {
@@ -138,6 +140,9 @@ impl Window {
         }
         if still {
             self.save_still();
+        }
+        if film {
+            self.film();
         }
         self.help |= help;
     }

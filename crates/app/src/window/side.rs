@@ -7,7 +7,6 @@ use crate::physics::Command;
 use crate::touch::{self, Touched};
 use crate::transport::Pressed;
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
-use std::path::PathBuf;
 
 impl Window {
     pub(super) fn parameters(&mut self, ui: &mut Ui) {
@@ -60,7 +59,7 @@ impl Window {
         let table = panel.show(ui, |ui| open.plots.ui(ui, &snapshot)).inner;
         if let Some((name, text)) = table {
             let name = format!("{}-{name}", open.source.name);
-            let done = files::text(&PathBuf::from("."), &name, "csv", &text).map_err(|error| error.to_string());
+            let done = files::text(&self.folder, &name, "csv", &text).map_err(|error| error.to_string());
             self.wrote(done);
         }
     }

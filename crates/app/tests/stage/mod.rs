@@ -1,5 +1,7 @@
 //! A window off screen, with a device that draws it.
 
+mod reference;
+
 use corpuscle::gpu::{Gpu, require_gpu, wgpu};
 use corpuscle_app::{Screen, Start, Window};
 use egui::mutex::RwLock;
@@ -146,6 +148,33 @@ impl Stage {
         if let Some(window) = self.harness.state_mut() {
             window.open_dropped(&context, path.to_owned());
         }
+    }
+
+    /// Goes on by so many steps, each in full.
+    pub fn steps(&mut self, count: u32) {
+        for _ in 0..count {
+            let before = self.time();
+            self.key(egui::Key::ArrowRight);
+            self.until(Duration::from_secs(30), "a step", |window| {
+                window.snapshot().is_some_and(|snapshot| snapshot.frame.time > before)
+            });
+        }
+    }
+
+    /// Compares picture and parameters with the reference of a name, at half their size: it shows what it was when it was looked at.
+    /// Where it changed on purpose: run with `CORPUSCLE_NEW_REFERENCE=1`, look at it, and keep it.
+    pub fn same_as_reference(&mut self, name: &str) {
+        // What stands still is drawn with all there is.
+        self.run(Duration::from_millis(1200));
+        let rect = self.harness.get_by_label("Picture of the scene").rect();
+        let whole = self.picture(name);
+        let found = reference::half(&whole, [rect.left(), rect.top(), SIZE[0], rect.bottom()].map(|at| at as u32));
+        reference::compare(name, &found);
+    }
+
+    /// The window, to be set up.
+    pub fn window_mut(&mut self) -> &mut Window {
+        self.harness.state_mut().as_mut().expect("it was shown")
     }
 
     /// True where something is called so at its beginning.
