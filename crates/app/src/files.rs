@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// A file in a folder that is not there yet: `gas-maxwell.png`, then `gas-maxwell-2.png`.
-fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
+pub fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
     let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
     let stem = stem.trim_matches('-');
     let numbered = |number: usize| match number {

@@ -3,7 +3,7 @@
 use egui::{Context, Grid, Modal, RichText};
 
 /// What keys and the pointer do.
-const ROWS: [(&str, &str); 15] = [
+const ROWS: [(&str, &str); 16] = [
     ("Space", "play and pause"),
     ("Right arrow", "one step"),
     ("R", "restart, with the parameters as they are set"),
@@ -11,13 +11,14 @@ const ROWS: [(&str, &str); 15] = [
     ("T", "from above and back (not for flat gases)"),
     ("1, 2, 3", "look: by itself, simple, full"),
     ("S", "save a still, as large as films are"),
+    ("V", "record a film of what goes on, and end it"),
     ("G", "scenes"),
     ("P", "parameters"),
     ("L", "plots"),
     ("Drag", "turn; shift a flat picture"),
     ("Drag with the right button, or Shift", "shift"),
     ("Wheel", "nearer and farther"),
-    ("Click", "pick a particle, see its values, follow its way; Esc to end"),
+    ("Click", "pick a particle or a spot of ground, see its values, follow its way; Esc to end"),
     ("F1 or ?", "this sheet"),
 ];
 

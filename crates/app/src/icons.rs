@@ -19,6 +19,8 @@ pub enum Icon {
     Plan,
     /// A still.
     Still,
+    /// A film.
+    Film,
     /// The scenes.
     Gallery,
     /// The parameters.
@@ -126,6 +128,10 @@ pub fn paint(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
             painter.rect_stroke(body, CornerRadius::same(3), line, egui::StrokeKind::Middle);
             painter.circle_stroke(at(0.5, 0.57), 0.2 * rect.width(), line);
             bar(0.32, 0.04, 0.68, 0.2);
+        }
+        Icon::Film => {
+            painter.circle_stroke(rect.center(), 0.52 * rect.width(), line);
+            painter.circle_filled(rect.center(), 0.26 * rect.width(), colour);
         }
         Icon::Gallery => {
             for (x, y) in [(0.0, 0.0), (0.58, 0.0), (0.0, 0.58), (0.58, 0.58)] {

@@ -4,6 +4,7 @@
 //! device and never waits. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
 //! it off screen.
 
+mod dropped;
 mod files;
 mod gallery;
 mod help;
@@ -17,6 +18,7 @@ mod pick;
 mod picture;
 mod plots;
 mod screen;
+mod spot;
 mod style;
 mod touch;
 mod transport;

@@ -54,6 +54,11 @@ impl Picked {
         Some((set, set.id.iter().position(|id| *id == self.id)?))
     }
 
+    /// Where it is in a frame.
+    pub fn place(&self, frame: &Frame) -> Option<[f64; 3]> {
+        self.find(frame).map(|(set, at)| set.position[at])
+    }
+
     /// Goes with the particle.
     pub fn follow(&mut self, frame: &Frame) {
         let Some((set, at)) = self.find(frame) else { return };

@@ -53,6 +53,22 @@ fn a_gas_is_heated_and_its_parameters_wait_for_a_restart() {
 }
 
 #[test]
+fn balls_are_put_in_a_temperature_is_held_and_a_piston_dragged() {
+    let Some(mut stage) = stage("a gas in a hand") else { return };
+    stage.choose("A piston falls onto a gas");
+    let count = |window: &corpuscle_app::Window| window.snapshot().map_or(0, |snapshot| snapshot.particles);
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "gas.packing") > 0.0);
+    let before = count(stage.window());
+    let part = (before as f64 * 0.1).round() as usize;
+    stage.click(&format!("Add {part}"));
+    stage.until(SOON, "there are more", |window| count(window) == before + part);
+    stage.click("Hold the temperature");
+    stage.run(Duration::from_millis(300));
+    assert!(stage.has_beginning("Hold the temperature no longer") && stage.window().fault().is_none());
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+#[test]
 fn a_flood_and_dew_are_opened_and_play() {
     let Some(mut stage) = stage("flood and dew in the window") else { return };
     for (title, name, least) in [("A lake at rest over a hill", "flood", 1e-3), ("A cold pane", "dew", 1e-3)] {
@@ -89,4 +105,130 @@ fn software_draws_the_same_window() {
             stage.key(egui::Key::F1);
         }
     }
+}
+
+/// Gauges of a flood by their names, as they were measured last.
+fn gauge(window: &corpuscle_app::Window, name: &str) -> f64 {
+    window.gauge(name).unwrap_or(f64::NAN)
+}
+
+#[test]
+fn a_flood_is_rained_on_while_it_goes_on() {
+    let Some(mut stage) = stage("touching a flood") else { return };
+    stage.choose("A lake at rest over a hill");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "water.total_inflow_m3") >= 0.0);
+    assert!(stage.window().gauge("water.total_rain_m3").is_none());
+    stage.type_into("Rain, mm/h", "150");
+    stage.until(SOON, "it rains", |window| gauge(window, "water.total_rain_m3") > 0.0);
+    assert!(!stage.has("Restart with changes") && stage.window().fault().is_none());
+}
+
+#[test]
+fn a_pane_is_cooled_while_it_goes_on() {
+    let Some(mut stage) = stage("touching dew") else { return };
+    stage.choose("A cold pane");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && window.snapshot().is_some());
+    let coldest = |window: &corpuscle_app::Window| gauge(window, "pane.mean_temperature_K");
+    stage.type_into("Temperature of pane, °C", "1");
+    stage.until(SOON, "it is colder", |window| coldest(window) < 275.0);
+    assert!(!stage.has("Restart with changes") && stage.window().fault().is_none());
+}
+
+#[test]
+fn terrain_that_is_dropped_is_flooded() {
+    let Some(mut stage) = stage("terrain dropped on the window") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("slope.asc");
+    let row =
+        |row: i32| (0..50).map(|column| format!("{} ", 30 - column / 2 + (row - 15).abs() / 5)).collect::<String>();
+    let rows: Vec<String> = (0..30).map(row).collect();
+    let head = "ncols 50\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    std::fs::write(&file, format!("{head}{}\n", rows.join("\n"))).unwrap();
+    stage.drop_file(&file);
+    stage.until(SOON, "it is flooded", |window| gauge(window, "water.total_inflow_m3") > 0.0);
+    assert!(stage.window().fault().is_none());
+    stage.run(Duration::from_millis(1500));
+    stage.picture("dropped");
+    stage.drop_file(&folder.path().join("none.tif"));
+    stage.until(SOON, "it is refused", |window| window.fault().is_some_and(|fault| fault.contains("none.tif")));
+}
+
+#[test]
+fn a_spot_of_ground_is_picked_and_a_gauge_placed_there() {
+    let Some(mut stage) = stage("a gauge placed in the window") else { return };
+    stage.choose("A lake at rest over a hill");
+    stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "water.stored_m3") > 0.0);
+    stage.key(egui::Key::Space);
+    stage.run(Duration::from_millis(300));
+    stage.click_picture([0.4, 0.45]);
+    stage.until(SOON, "it is probed", |window| window.snapshot().is_some_and(|snapshot| snapshot.probed.is_some()));
+    let probed = stage.window().snapshot().unwrap().probed.unwrap();
+    stage.picture("spot");
+    stage.click("Place a gauge here");
+    stage.until(SOON, "there is a gauge", |window| window.gauge("P1.depth_m").is_some());
+    assert_eq!(gauge(stage.window(), "P1.depth_m"), probed.depth);
+    assert!(probed.depth > 0.1 && stage.has("There is a gauge here") && !stage.has("Restart with changes"));
+    stage.key(egui::Key::R);
+    stage.run(Duration::from_millis(100));
+    stage.until(SOON, "it is there after a restart", |window| {
+        !window.is_waiting() && window.gauge("P1.depth_m").is_some()
+    });
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+/// A scene at its start.
+fn waiting(test: &str, title: &str) -> Option<stage::Stage> {
+    let mut stage = stage(test)?;
+    stage.window_mut().wait_at_start();
+    stage.choose(title);
+    stage.until(SOON, title, |window| !window.is_waiting() && window.snapshot().is_some());
+    Some(stage)
+}
+
+#[test]
+fn the_story_of_a_gas_looks_as_it_did() {
+    let Some(mut stage) = waiting("a gas as it looked", "Free expansion") else { return };
+    stage.click("Lift the partition");
+    stage.click("Heat");
+    stage.steps(12);
+    stage.same_as_reference("gas");
+}
+
+#[test]
+fn the_story_of_a_flood_looks_as_it_did() {
+    let Some(mut stage) = waiting("a flood as it looked", "A lake at rest over a hill") else { return };
+    stage.type_into("Rain, mm/h", "180");
+    stage.steps(2);
+    stage.click_picture([0.42, 0.45]);
+    stage.until(SOON, "it is probed", |window| window.snapshot().is_some_and(|snapshot| snapshot.probed.is_some()));
+    stage.click("Place a gauge here");
+    stage.click("Follow it no longer");
+    stage.same_as_reference("flood");
+}
+
+#[test]
+fn the_story_of_dew_looks_as_it_did() {
+    let Some(mut stage) = waiting("dew as it looked", "A cold pane") else { return };
+    stage.type_into("Temperature of pane, °C", "2");
+    stage.steps(12);
+    stage.same_as_reference("dew");
+}
+
+#[test]
+fn a_film_is_recorded_and_stills_and_scenes_are_saved() {
+    let Some(mut stage) = waiting("a film in the window", "Maxwell's speeds") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    stage.window_mut().save_into(folder.path().to_owned());
+    stage.click("Record a film");
+    stage.click("Play");
+    stage.until(SOON, "it plays", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > 0.05));
+    stage.click("End the film");
+    let film = folder.path().join("gas-maxwell.mp4");
+    stage.until(SOON, "there is a film", |_| film.exists());
+    let bytes = std::fs::read(&film).unwrap();
+    assert!(bytes.len() > 10_000 && &bytes[4..8] == b"ftyp", "{} bytes", bytes.len());
+    stage.click("Save a still");
+    stage.key(egui::Key::P);
+    assert!(folder.path().join("gas-maxwell.png").exists() && stage.has("Record a film"));
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }

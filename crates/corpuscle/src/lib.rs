@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+mod by_hand;
 mod error;
 #[cfg(feature = "film")]
 mod filming;
@@ -28,11 +29,13 @@ mod schedule;
 mod simulation;
 mod sink;
 
+pub use corpuscle_dew::ByHand as DewByHand;
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
 #[cfg(feature = "film")]
 pub use corpuscle_film as film;
-pub use corpuscle_gas::ByHand;
+pub use corpuscle_flood::{ByHand as FloodByHand, Sample};
+pub use corpuscle_gas::ByHand as GasByHand;
 #[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
@@ -40,6 +43,7 @@ pub use corpuscle_record as record;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
+pub use by_hand::ByHand;
 pub use error::Error;
 #[cfg(feature = "film")]
 pub use filming::Filming;

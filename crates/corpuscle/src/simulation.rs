@@ -1,12 +1,13 @@
 //! A scene made ready, and its run.
 
 use crate::schedule::Schedule;
-use crate::{Error, Progress, Sink};
-use corpuscle_gas::ByHand;
-use corpuscle_model::Model;
+use crate::{ByHand, Error, Progress, Sink};
+use corpuscle_flood::{Flood, Sample};
+use corpuscle_model::{Model, ModelError};
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
+use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -51,12 +52,29 @@ impl Simulation {
         &mut *self.model
     }
 
-    /// Changes a gas while it runs. What was changed is not part of the scene: the scene as written does not give this run again.
+    /// Changes the model while it runs. What was changed is not part of the scene: the scene as written does not give this run again.
     ///
     /// # Errors
-    /// [`corpuscle_model::ModelError::Setup`] where the scene is none of a gas, or cannot be changed so: nothing has changed then.
-    pub fn change_by_hand(&mut self, change: ByHand) -> Result<(), Error> {
-        Ok(change.change(self.model_mut())?)
+    /// [`corpuscle_model::ModelError::Setup`] where the scene is of another model, or cannot be changed so: nothing has changed then.
+    pub fn change_by_hand(&mut self, change: impl Into<ByHand>) -> Result<(), Error> {
+        Ok(change.into().change(self.model_mut())?)
+    }
+
+    /// The water at a place of a flood, in model coordinates; none where the scene is none.
+    pub fn water_at(&self, [x, y]: [f64; 2]) -> Option<Sample> {
+        let model: &dyn Any = &*self.model;
+        model.downcast_ref::<Flood>().map(|flood| flood.sample(x, y))
+    }
+
+    /// Places a gauge in a flood while it runs, at a place in model coordinates. Its columns come after all others.
+    ///
+    /// # Errors
+    /// [`corpuscle_model::ModelError::Setup`] where the scene is no flood, the name is taken, or the place lies outside the terrain.
+    pub fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), Error> {
+        let model: &mut dyn Any = &mut *self.model;
+        let none = || ModelError::Setup("gauges are placed in floods only".into());
+        let flood = model.downcast_mut::<Flood>().ok_or_else(none)?;
+        Ok(flood.place_gauge(name, at)?)
     }
 
     /// What a user should know, in sentences: of the ground, then of the model.

@@ -1,8 +1,11 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
+mod by_hand;
 mod motion;
 mod settle;
 mod transfer;
+
+pub use by_hand::ByHand;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
@@ -16,6 +19,7 @@ use crate::settings::Settings;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
+use by_hand::Hand;
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::Table;
 use corpuscle_scene::dew::Output;
@@ -62,6 +66,10 @@ pub struct Dew {
     pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
+    /// Whether air rises and sinks by its warmth and vapour.
+    pub(crate) buoyant: bool,
+    /// What a hand can change, as it was set up, once one has changed it.
+    as_set_up: Option<Hand>,
 }
 
 /// Everything that changes.
@@ -90,6 +98,8 @@ pub(crate) struct State {
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
     pub energy: Account,
+    /// What a hand can change, once one has changed it.
+    pub hand: Option<Hand>,
 }
 
 /// Zero of the energy's temperature, K.
@@ -152,6 +162,7 @@ impl Dew {
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
+            hand: None,
         };
         let mut dew = Self {
             latent_heat: humid_air::latent_heat(settings.ambient_temperature),
@@ -182,6 +193,8 @@ impl Dew {
             open_sides: Vec::new(),
             fans: fans.clone(),
             wetting: None,
+            buoyant: true,
+            as_set_up: None,
         };
         dew.fill(bodies, start);
         dew.settle();

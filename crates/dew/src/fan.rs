@@ -20,10 +20,10 @@ pub struct Fan {
 }
 
 impl Fan {
-    /// A fan by its middle, the lengths of its sides, m, and its velocity, m/s, which is not 0.
+    /// A fan by its middle, the lengths of its sides, m, and its velocity, m/s; one of no velocity drives nothing.
     pub fn new(middle: [f64; 3], size: [f64; 3], velocity: [f64; 3]) -> Self {
         let speed = velocity.iter().map(|along| along * along).sum::<f64>().sqrt();
-        let direction = velocity.map(|along| along / speed);
+        let direction = velocity.map(|along| if speed > 0.0 { along / speed } else { 0.0 });
         // The longest way through the box along the velocity.
         let depth = (0..3).map(|axis| size[axis] / direction[axis].abs().max(1e-9)).fold(f64::INFINITY, f64::min);
         Self {
@@ -33,6 +33,15 @@ impl Fan {
             speed,
             rate: DRIVE * speed / depth,
         }
+    }
+
+    /// The same fan with another velocity along an axis, m/s.
+    pub fn along(&self, axis: usize, velocity: f64) -> Self {
+        let mut whole = self.direction.map(|part| self.speed * part);
+        whole[axis] = velocity;
+        let middle = [0, 1, 2].map(|axis| 0.5 * (self.low[axis] + self.high[axis]));
+        let size = [0, 1, 2].map(|axis| self.high[axis] - self.low[axis]);
+        Self { low: self.low, high: self.high, ..Self::new(middle, size, whole) }
     }
 
     /// Its speed, m/s.

@@ -30,7 +30,7 @@ mod utility;
 mod walls;
 mod wetting;
 
-pub use dew::{Dew, Setup};
+pub use dew::{ByHand, Dew, Setup};
 pub use fan::Fan;
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};

@@ -174,6 +174,6 @@ impl Model for Dew {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);
-        Ok(())
+        self.take_hand()
     }
 }

@@ -18,10 +18,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// The speed of sound over the fastest motion: the density then stays within a percent (Monaghan 1994).
-const SOUND_OVER_MOTION: f64 = 10.0;
+pub(crate) const SOUND_OVER_MOTION: f64 = 10.0;
 
 /// Least speed of sound, m/s: air at rest stays evenly spread.
-const LEAST_SOUND: f64 = 0.1;
+pub(crate) const LEAST_SOUND: f64 = 0.1;
 
 /// Makes the model of a scene; `seed` is that of everything random, relative paths are taken from `folder`.
 ///
@@ -48,6 +48,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
     dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
+    dew.buoyant = scene.buoyancy;
     dew.shows = scene.output.clone();
     dew.warnings = warnings(scene, &bodies);
     let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();

@@ -65,6 +65,11 @@ impl Wetting {
         self.shares = self.drops.shares_of(&self.portions);
     }
 
+    /// Gravity as drops feel it, m/s2, to be changed.
+    pub fn gravity_mut(&mut self) -> &mut [f64; 3] {
+        self.drops.gravity_mut()
+    }
+
     pub fn drops(&self) -> &Drops {
         &self.drops
     }

@@ -1,13 +1,17 @@
 //! The flood model: water that comes, moves and goes.
 
+mod by_hand;
 mod exchange;
 mod model;
 #[cfg(feature = "gpu")]
 mod on_card;
 mod open;
+mod placed;
 mod regulate;
 mod step;
 mod weather;
+
+pub use by_hand::ByHand;
 
 use crate::falling::Falling;
 use crate::friction::Roughness;
@@ -20,8 +24,9 @@ use crate::refinement::Refinement;
 use crate::sampling::{Sample, Sampler};
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::structures::{Flows, Structures};
+use by_hand::{Hand, Over};
 use corpuscle_model::{Account, ExactSum};
-use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName, Table};
 use serde::{Deserialize, Serialize};
 use step::Renewal;
 
@@ -48,6 +53,8 @@ pub struct Flood {
     h: f64,
     map_period: f64,
     state: State,
+    /// What the scene says of the values over time that a hand has changed.
+    before_hand: Vec<(Over, Table)>,
     /// Working memory.
     of_blocks: Vec<f64>,
     renewals: Vec<Renewal>,
@@ -90,6 +97,8 @@ struct State {
     overtopped: Vec<Option<f64>>,
     /// What a user should know of the water at the start.
     warnings: Vec<String>,
+    /// What a hand has changed.
+    hand: Hand,
 }
 
 impl Flood {

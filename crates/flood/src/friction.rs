@@ -40,6 +40,14 @@ impl Roughness {
         Ok(Self::Manning(Coefficient::Classes(open(raster)?, classes, Box::new(rest))))
     }
 
+    /// Manning's n where no kind of ground has its own, to be changed; none where that is a raster, or friction another law's.
+    pub fn rest(&mut self) -> Option<&mut f64> {
+        match self {
+            Self::Manning(coefficient) => coefficient.rest(),
+            Self::Other(_) => None,
+        }
+    }
+
     /// Whether it slows nothing.
     pub fn is_smooth(&self) -> bool {
         matches!(self, Self::Manning(Coefficient::Even(0.0)))
@@ -79,6 +87,14 @@ impl Coefficient {
         match self {
             Self::Even(_) => None,
             Self::Raster(raster) | Self::Classes(raster, ..) => Some(raster),
+        }
+    }
+
+    fn rest(&mut self) -> Option<&mut f64> {
+        match self {
+            Self::Even(value) => Some(value),
+            Self::Raster(_) => None,
+            Self::Classes(_, _, rest) => rest.rest(),
         }
     }
 

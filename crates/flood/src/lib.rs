@@ -32,7 +32,7 @@ mod setup;
 mod structures;
 mod zone;
 
-pub use flood::Flood;
+pub use flood::{ByHand, Flood};
 pub use obstacles::obstacle_shapes;
 pub use particle::Particle;
 pub use rain::RainFunction;

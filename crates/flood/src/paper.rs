@@ -359,6 +359,11 @@ impl Scheme for Paper {
         &self.on_obstacles
     }
 
+    fn control(&mut self, on: bool) -> bool {
+        self.parameters.control_force = on;
+        true
+    }
+
     fn bytes(&self) -> usize {
         let each = size_of::<Parcel>() + size_of::<f64>() + size_of::<[f64; 2]>();
         self.arrangement.bytes() + self.arrangement.len() * each + self.spare.capacity() * size_of::<Particle>()

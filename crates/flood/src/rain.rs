@@ -156,6 +156,11 @@ impl Ground {
         Self { intensity: Intensity::Function(rain), ..Self::bare(terrain, FILM, volume, widest) }
     }
 
+    /// Ground without rain, into which nothing soaks.
+    pub fn without_rain(terrain: &Terrain, volume: f64, widest: f64) -> Self {
+        Self::bare(terrain, FILM, volume, widest)
+    }
+
     /// Nothing on the ground and nothing in it.
     pub fn dry(&self) -> Wetness {
         let cells = self.factor.len();

@@ -84,6 +84,11 @@ pub(crate) trait Scheme: Send {
     /// Force of the water on each obstacle at the last evaluation, over the density of water, m4/s2.
     fn on_obstacles(&self) -> &[[f64; 2]];
 
+    /// Switches the control force on or off; false where the scheme has none.
+    fn control(&mut self, _on: bool) -> bool {
+        false
+    }
+
     /// Bytes held.
     fn bytes(&self) -> usize;
 }

@@ -1,6 +1,6 @@
 //! The flood on the graphics card does what the flood on the processor does.
 
-use corpuscle_flood::{Flood, Particle};
+use corpuscle_flood::{ByHand, Flood, Particle};
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Balance, Model, ModelError};
 use corpuscle_scene::{FloodScene, Scene};
@@ -487,4 +487,19 @@ fn what_is_not_there_yet_is_refused_by_name() {
     let mut flood = open(&VALLEY.replace("friction.chezy = 40", "refinement = {}"));
     let error = flood.use_card(gpu).unwrap_err().to_string();
     assert!(error.contains("[flood.refinement]") && error.contains("--backend cpu"), "{error}");
+}
+
+#[test]
+fn what_a_hand_changes_is_changed_on_the_card() {
+    let Some(gpu) = require_gpu("a hand's changes on the card") else { return };
+    let (mut host, mut card) = (open(DAM), on_card(DAM, &gpu));
+    for flood in [&mut host, &mut card] {
+        go(flood, 1.0);
+        ByHand::Rain(2000.0).change(flood).unwrap();
+        ByHand::Manning(0.1).change(flood).unwrap();
+        go(flood, 7.0);
+    }
+    let [host, card] = [&host, &card].map(|flood| flood.ledger().balances[0].inflow);
+    // Six seconds of it on 2400 m2, but for what falls in the eight steps that are booked together.
+    assert!((host / 8.0 - 1.0).abs() < 0.1 && (card / host - 1.0).abs() < 0.05, "{host} {card}");
 }

@@ -65,6 +65,10 @@ enum Due {
     Knot(usize),
     Lift,
     Reverse,
+    /// A piston that a hand drags is where it is to be.
+    Arrive(usize),
+    /// A temperature that a hand holds.
+    Regulate,
     Look,
 }
 

@@ -1,7 +1,11 @@
 //! Parameters of dew.
 
-use super::{Builder, Control};
-use corpuscle::scene::Dew;
+use super::builder::{Builder, Control, Numbers};
+use super::{live, number_in};
+use crate::physics::Change;
+use corpuscle::DewByHand as ByHand;
+use corpuscle::scene::dew::{self, AirInflow};
+use corpuscle::scene::{Axis, Dew};
 
 const SCHEMES: &[(&str, &str)] = &[("physical", "\"physical\""), ("paper (as patented)", "\"paper\"")];
 const TREATMENTS: &[(&str, &str)] = &[
@@ -10,7 +14,10 @@ const TREATMENTS: &[(&str, &str)] = &[
     ("virtual force", "\"virtual-force\""),
 ];
 
-pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
+const SIDES: [&str; 6] = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
+
+pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
+    solids(builder, dew);
     builder
         .group("Air")
         .number(
@@ -28,7 +35,10 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
             "Vapour pressure over that of saturation",
         )
         .number("dew.air.dew_point_c", "Dew point", "°C", [-10.0, 50.0], "Temperature at which it would be saturated");
-    for side in ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"] {
+    for (number, side) in SIDES.into_iter().enumerate() {
+        if let dew::Face::Inflow(inflow) = dew.faces.along(Axis::ALL[number / 2])[number % 2] {
+            incoming(builder, dew, side, inflow);
+        }
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let path = format!("dew.faces.{side}.inflow.velocity_m_per_s.{axis}");
             let range = match (side.starts_with(name), side.ends_with("min")) {
@@ -38,33 +48,21 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
                 (true, false) => [-2.0, -0.01],
             };
             let hint = "Velocity of the air that comes in here";
-            builder.number(path, &format!("Wind at {side} along {name}"), "m/s", range, hint);
+            builder.number(&*path, &format!("Wind at {side} along {name}"), "m/s", range, hint).live(&path, blow);
         }
     }
     for number in 0..dew.fan.len() {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let path = format!("dew.fan.{number}.velocity_m_per_s.{axis}");
-            builder.number(
-                path,
-                &format!("Fan along {name}"),
-                "m/s",
-                [-2.0, 2.0],
-                "The velocity to which it drives the air",
-            );
+            let hint = "The velocity to which it drives the air";
+            builder.number(&*path, &format!("Fan along {name}"), "m/s", [-2.0, 2.0], hint).live(&path, drive);
         }
     }
-    for (number, solid) in dew.solid.iter().enumerate() {
-        let path = |key: &str| format!("dew.solid.{number}.{key}");
-        builder
-            .group(format!("Solid: {}", solid.name))
-            .number(
-                path("temperature_c"),
-                "Temperature",
-                "°C",
-                [-10.0, 60.0],
-                "At the start; held, where the scene holds it",
-            )
-            .number(path("rotation_deg.1"), "Turned about y", "°", [-90.0, 90.0], "Tilts what stands upright");
+    builder.group("Tilt");
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let path = format!("dew.gravity_m_per_s2.{axis}");
+        let hint = "Gravity along x or y tilts the box: drops slide that way, and air sinks that way where it may";
+        builder.number(&*path, &format!("Gravity along {name}"), "m/s²", [-9.81, 9.81], hint).live(&path, tilt);
     }
     builder
         .group("Drops")
@@ -85,6 +83,7 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
             [1.0, 50.0],
             "Heat, vapour and phase change go so many times faster",
         )
+        .live("dew.time_factor", go_faster)
         .add("dew.scheme", "Scheme", "", "Which laws of transport hold", Control::Choice(SCHEMES))
         .add(
             "dew.boundary.treatment",
@@ -94,4 +93,86 @@ pub(super) fn parameters(builder: &mut Builder<'_>, dew: &Dew) {
             Control::Choice(TREATMENTS),
         )
         .between("dew.spacing_m", "Distance of particles", "m", [0.5, 2.0], "Half of it: eight times the particles");
+}
+
+fn solids(builder: &mut Builder, dew: &Dew) {
+    for (number, solid) in dew.solid.iter().enumerate() {
+        let path = |key: &str| format!("dew.solid.{number}.{key}");
+        builder
+            .group(format!("Solid: {}", solid.name))
+            .number(
+                path("temperature_c"),
+                &format!("Temperature of {}", solid.name),
+                "°C",
+                [-10.0, 60.0],
+                "Held, where the scene holds it; another solid is brought to it, and goes on from there",
+            )
+            .live(&path("temperature_c"), warm)
+            .number(path("rotation_deg.1"), "Turned about y", "°", [-90.0, 90.0], "Tilts what stands upright");
+    }
+}
+
+/// Temperature and humidity of the air that comes in; where the scene leaves them out they are those of the air at the start.
+fn incoming(builder: &mut Builder, dew: &Dew, side: &str, inflow: &AirInflow) {
+    let path = |key: &str| format!("dew.faces.{side}.inflow.{key}");
+    let (warmth, humidity) = (path("temperature_c"), path("relative_humidity"));
+    let own = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio].into_iter().flatten().count();
+    builder.or(&warmth, dew.air.temperature_c);
+    let hint = "Of the air that comes in here; it keeps its vapour, or its relative humidity where that is told";
+    builder.number(&*warmth, &format!("Temperature at {side}"), "°C", [0.0, 60.0], hint).live(&warmth, warm_inlet);
+    if own == 0
+        && let (Some(relative), None) = (dew.air.relative_humidity, inflow.temperature_c)
+    {
+        builder.or(&humidity, relative);
+    }
+    let hint = "Of the air that comes in here: vapour pressure over that of saturation";
+    let name = format!("Relative humidity at {side}");
+    builder.number(&*humidity, &name, "", [0.05, 1.0], hint).live(&humidity, moisten_inlet);
+}
+
+/// The face that a key names: its axis and its end.
+fn face_in(path: &str) -> Option<[usize; 2]> {
+    let number = SIDES.iter().position(|side| path.split('.').any(|word| word == *side))?;
+    Some([number / 2, number % 2])
+}
+
+/// The axis at the end of a key.
+fn axis_in(path: &str) -> Option<usize> {
+    path.rsplit('.').next()?.parse().ok()
+}
+
+fn warm(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::SolidTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
+}
+
+fn warm_inlet(path: &str, value: &str, numbers: Numbers<'_>) -> Option<Change> {
+    let (face, celsius) = (face_in(path)?, value.parse().ok()?);
+    let relative = numbers(&path.replace("temperature_c", "relative_humidity"));
+    Some(Box::new(move |simulation| {
+        simulation.change_by_hand(ByHand::InletTemperature { face, celsius })?;
+        match relative {
+            Some(relative) => simulation.change_by_hand(ByHand::InletHumidity { face, relative }),
+            None => Ok(()),
+        }
+    }))
+}
+
+fn moisten_inlet(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::InletHumidity { face: face_in(path)?, relative: value.parse().ok()? })
+}
+
+fn blow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Wind { face: face_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
+}
+
+fn drive(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::FanVelocity { fan: number_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
+}
+
+fn tilt(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Gravity { axis: axis_in(path)?, acceleration: value.parse().ok()? })
+}
+
+fn go_faster(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::TimeFactor(value.parse().ok()?))
 }

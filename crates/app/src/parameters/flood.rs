@@ -1,16 +1,31 @@
 //! Parameters of a flood.
 
-use super::{Builder, Control};
-use corpuscle::scene::Flood;
+use super::builder::{Builder, Control, Numbers};
+use super::{live, number_in};
+use crate::physics::Change;
+use corpuscle::FloodByHand as ByHand;
+use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
 
 const SCHEMES: &[(&str, &str)] = &[("balanced", "\"balanced\""), ("paper (published)", "\"paper\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];
 
-pub(super) fn parameters(builder: &mut Builder<'_>, flood: &Flood) {
+/// How many times more water a slider lets in at most.
+const MOST: f64 = 5.0;
+/// The hardest rain that a slider offers at least, mm/h: a cloudburst.
+const CLOUDBURST: f64 = 200.0;
+
+/// `now` is the flood with the changes that it goes on with.
+pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
     builder.group("Water");
-    for number in 0..flood.inflow.len() {
-        let path = |key: &str| format!("flood.inflow.{number}.{key}");
-        builder.scaled(path("discharge_m3_per_s"), "Inflow", "m³/s", "Water that comes in");
+    for (number, inflow) in flood.inflow.iter().enumerate() {
+        series(
+            builder,
+            &format!("flood.inflow.{number}.discharge_m3_per_s"),
+            &format!("Inflow: {}", inflow.name),
+            "m³/s",
+            "Water that comes in",
+            &inflow.discharge_m3_per_s,
+        );
     }
     for number in 0..flood.water.len() {
         let path = |key: &str| format!("flood.water.{number}.{key}");
@@ -22,20 +37,19 @@ pub(super) fn parameters(builder: &mut Builder<'_>, flood: &Flood) {
             "Level of the water that is there at first",
         );
     }
-    for number in 0..flood.stage.len() {
-        builder.scaled(format!("flood.stage.{number}.level_m"), "Level held", "m", "Level that is held at an edge");
+    levels(builder, flood);
+    rain(builder, flood.rain.as_ref());
+    builder.group("Ground").number(
+        "flood.manning",
+        "Manning's n",
+        "s/m^(1/3)",
+        [0.0, 0.15],
+        "Roughness: 0 for none, 0.03 for grass, 0.1 for woods",
+    );
+    if now.friction.is_none() {
+        builder.live("flood.manning", roughen);
     }
-    builder.scaled("flood.rain.intensity_mm_per_h", "Rain", "mm/h", "How hard it rains");
-    builder
-        .group("Ground")
-        .number(
-            "flood.manning",
-            "Manning's n",
-            "s/m^(1/3)",
-            [0.0, 0.15],
-            "Roughness: 0 for none, 0.03 for grass, 0.1 for woods",
-        )
-        .number("flood.gravity_m_per_s2", "Gravity", "m/s²", [1.0, 25.0], "9.81 on Earth, 3.7 on Mars");
+    builder.number("flood.gravity_m_per_s2", "Gravity", "m/s²", [1.0, 25.0], "9.81 on Earth, 3.7 on Mars");
     builder
         .group("Method")
         .add("flood.scheme", "Scheme", "", "Which formulation moves the water", Control::Choice(SCHEMES))
@@ -45,19 +59,135 @@ pub(super) fn parameters(builder: &mut Builder<'_>, flood: &Flood) {
             "",
             "The published scheme's guard of particles",
             Control::Choice(CONTROL),
-        )
-        .scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles")
-        .number(
-            "flood.balanced.viscosity",
-            "Viscosity",
-            "",
-            [0.0, 1.0],
-            "Share of the dissipation of an unreconstructed Riemann problem",
         );
+    if now.scheme == Scheme::Paper {
+        builder.live("flood.paper.control_force", control);
+    }
+    builder.scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles").number(
+        "flood.balanced.viscosity",
+        "Viscosity",
+        "",
+        [0.0, 1.0],
+        "Share of the dissipation of an unreconstructed Riemann problem",
+    );
 }
 
 /// Some metres below and above a level.
 fn around(flood: &Flood, number: usize) -> [f64; 2] {
     let level = flood.water.get(number).and_then(|water| water.level_m).unwrap_or_default();
     [level - 5.0, level + 5.0]
+}
+
+/// A value over time: a number, or by how many times what the scene says is multiplied.
+fn series(builder: &mut Builder, path: &str, name: &str, unit: &'static str, hint: &'static str, written: &Series) {
+    match written {
+        Series::Constant(value) => {
+            let most = if *value > 0.0 { MOST * value } else { 100.0 };
+            builder.number(path, name, unit, [0.0, most], hint).live(path, flow);
+        }
+        Series::Table(_) => {
+            builder.add(path, &format!("{name}, times"), "", hint, Control::Times([0.0, MOST])).live(path, flow_times);
+        }
+        Series::File { factor, .. } => {
+            let path = format!("{path}.factor");
+            builder.or(&path, 1.0).number(&*path, &format!("{name}, times"), "", [0.0, MOST * factor.max(0.1)], hint);
+            builder.live(&path, flow_times);
+        }
+    }
+}
+
+fn levels(builder: &mut Builder, flood: &Flood) {
+    let range = |level: f64| [level - 5.0, level + 5.0];
+    for (number, stage) in flood.stage.iter().enumerate() {
+        if let Series::Constant(level) = stage.level_m {
+            let path = format!("flood.stage.{number}.level_m");
+            let name = format!("Level held: {}", stage.name);
+            builder.number(&*path, &name, "m", range(level), "Level that is held here").live(&path, hold_stage);
+        }
+    }
+    let edges = &flood.edges;
+    for (side, edge) in SIDES.into_iter().zip([&edges.west, &edges.east, &edges.south, &edges.north]) {
+        if let Edge::Stage(Series::Constant(level)) = edge {
+            let path = format!("flood.edges.{side}.stage");
+            let name = format!("Level held in the {side}");
+            builder.number(&*path, &name, "m", range(*level), "Level that is held at this edge").live(&path, hold_edge);
+        }
+    }
+}
+
+const SIDES: [&str; 4] = ["west", "east", "south", "north"];
+
+fn rain(builder: &mut Builder, rain: Option<&Rain>) {
+    let path = "flood.rain.intensity_mm_per_h";
+    let hint = "How hard it rains";
+    match rain.map(|rain| &rain.intensity_mm_per_h) {
+        None => {
+            builder.or(path, 0.0).number(path, "Rain", "mm/h", [0.0, CLOUDBURST], hint).live(path, let_rain);
+        }
+        Some(Series::Constant(value)) => {
+            let most = CLOUDBURST.max(MOST * value);
+            builder.number(path, "Rain", "mm/h", [0.0, most], hint).live(path, let_rain);
+        }
+        Some(Series::Table(_) | Series::File { .. }) => {
+            builder.add(path, "Rain, times", "", hint, Control::Times([0.0, MOST])).live(path, rain_times);
+        }
+    }
+}
+
+fn flow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Discharge { inflow: number_in(path)?, discharge: value.parse().ok()? })
+}
+
+/// How large a series is, to be compared with the same times a number.
+fn size(series: &Series) -> f64 {
+    match series {
+        Series::Constant(value) => *value,
+        Series::Table(rows) => rows.iter().map(|row| row[1]).fold(0.0, f64::max),
+        Series::File { factor, .. } => *factor,
+    }
+}
+
+/// The size of a series or a factor as it is written in a scene.
+fn written_size(value: &str) -> Option<f64> {
+    let value = format!("v = {value}").parse::<toml::Table>().ok()?.remove("v")?;
+    super::as_number(&value).or_else(|| super::largest(&value))
+}
+
+fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    let (inflow, wanted) = (number_in(path)?, written_size(value)?);
+    Some(Box::new(move |simulation| {
+        let now = simulation.scene().flood().and_then(|scene| scene.flood.inflow.get(inflow));
+        let times = wanted / now.map_or(1.0, |inflow| size(&inflow.discharge_m3_per_s));
+        simulation.change_by_hand(ByHand::DischargeTimes { inflow, times })
+    }))
+}
+
+fn rain_times(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    let wanted = written_size(value)?;
+    Some(Box::new(move |simulation| {
+        let now = simulation.scene().flood().and_then(|scene| scene.flood.rain.as_ref());
+        let times = wanted / now.map_or(1.0, |rain| size(&rain.intensity_mm_per_h));
+        simulation.change_by_hand(ByHand::RainTimes(times))
+    }))
+}
+
+fn let_rain(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Rain(value.parse().ok()?))
+}
+
+fn hold_stage(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Level { stage: number_in(path)?, level: value.parse().ok()? })
+}
+
+fn hold_edge(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    let side = SIDES.iter().position(|side| path.split('.').any(|word| word == *side))?;
+    live(ByHand::EdgeLevel { side, level: value.parse().ok()? })
+}
+
+fn roughen(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::Manning(value.parse().ok()?))
+}
+
+fn control(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::ControlForce(value.parse().ok()?))
 }

@@ -1,8 +1,9 @@
 //! Parameters of a gas.
 
-use super::{Builder, Control};
+use super::builder::{Builder, Control, Numbers};
+use super::live;
 use crate::physics::Change;
-use corpuscle::ByHand;
+use corpuscle::GasByHand as ByHand;
 use corpuscle::scene::{Axis, Gas, Species, Wall};
 use std::f64::consts::PI;
 
@@ -15,7 +16,7 @@ const METHODS: &[(&str, &str)] = &[
 const STARTS: &[(&str, &str)] = &[("anywhere", "\"random\""), ("on a lattice", "\"lattice\"")];
 const SPEEDS: &[(&str, &str)] = &[("after Maxwell", "\"maxwell\""), ("all the same", "\"equal\"")];
 
-pub(super) fn parameters(builder: &mut Builder<'_>, gas: &Gas) {
+pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
     // The ball that is followed must be there.
     let least = gas.follow.map_or(1.0, |ball| ball as f64 + 1.0);
     for (number, species) in gas.species.iter().enumerate() {
@@ -118,14 +119,12 @@ fn wall_of(path: &str) -> [usize; 2] {
     [axis, usize::from(side.ends_with("max"))]
 }
 
-fn warm_wall(path: &str, temperature: f64) -> Change {
-    let wall = wall_of(path);
-    Box::new(move |simulation| simulation.change_by_hand(ByHand::WallTemperature { wall, temperature }))
+fn warm_wall(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::WallTemperature { wall: wall_of(path), temperature: value.parse().ok()? })
 }
 
-fn press_piston(path: &str, pressure: f64) -> Change {
-    let wall = wall_of(path);
-    Box::new(move |simulation| simulation.change_by_hand(ByHand::PistonPressure { wall, pressure }))
+fn press_piston(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(ByHand::PistonPressure { wall: wall_of(path), pressure: value.parse().ok()? })
 }
 
 #[cfg(test)]

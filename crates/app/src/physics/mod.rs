@@ -1,5 +1,6 @@
 //! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
 
+mod filming;
 mod pace;
 mod snapshot;
 mod subject;
@@ -9,8 +10,9 @@ pub use snapshot::{Measures, Snapshot};
 
 use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
-use corpuscle::pictures::Pictures;
+use corpuscle::pictures::{Hand, Pictures};
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -52,6 +54,12 @@ pub enum Command {
     Step(f64),
     /// Go on at this pace, simulated seconds in a second, where that is possible.
     Pace(f64),
+    /// Tell of the water at a place from now on, in model coordinates; none: no longer.
+    Probe(Option<[f64; 2]>),
+    /// Film what goes on from now on into a file, seen so.
+    Film(PathBuf, Hand),
+    /// End the film.
+    EndFilm,
     /// Change something while it runs.
     Change(Change),
 }
@@ -67,6 +75,8 @@ pub enum Event {
     Refused(String),
     /// What was to change while it runs could not.
     NotChanged(String),
+    /// A film was put in its place, or could not be.
+    Filmed(Result<PathBuf, String>),
     /// It came to the scene's end, and waits.
     Ended,
     /// It broke down, and waits; what it showed last is sound.
@@ -87,6 +97,8 @@ pub struct Opened {
     pub warnings: Vec<String>,
     /// Of a finished run its gauges: times, s, and rows of values.
     pub history: Option<Vec<(f64, Vec<f64>)>>,
+    /// Its ground, where it has one.
+    pub terrain: Option<Arc<Terrain>>,
     /// Where it ends, s.
     pub end: f64,
 }
@@ -125,9 +137,10 @@ impl Physics {
     /// Asks for something. Never waits.
     pub fn ask(&self, command: Command) {
         if let Some(commands) = &self.commands {
+            // Before the command can be taken: it must not break itself off.
+            self.shared.stop.store(true, Ordering::Relaxed);
             // A thread that is gone has told why.
             let _ = commands.send(command);
-            self.shared.stop.store(true, Ordering::Relaxed);
         }
     }
 

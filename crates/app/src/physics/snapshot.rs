@@ -1,6 +1,7 @@
 //! What the physics shows at one time.
 
-use corpuscle::model::{Chart, Container, Frame, Ledger, Model, Path};
+use corpuscle::Sample;
+use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
 use std::sync::Arc;
 
 /// The physics at one time.
@@ -24,6 +25,8 @@ pub struct Snapshot {
     pub behind: bool,
     /// Particles moved (of a gas: collisions) in a second of the wall clock.
     pub rate: f64,
+    /// The water at the place that was asked for; none of a finished run.
+    pub probed: Option<Sample>,
     /// What was measured, not later than a moment ago.
     pub measures: Arc<Measures>,
 }
@@ -33,6 +36,8 @@ pub struct Snapshot {
 pub struct Measures {
     /// When, s.
     pub time: f64,
+    /// Names of the gauges, as in files.
+    pub names: Vec<String>,
     /// Values of the gauges.
     pub gauges: Vec<f64>,
     /// Charts of the model.
@@ -48,6 +53,7 @@ impl Measures {
     pub(super) fn of(model: &dyn Model) -> Self {
         Self {
             time: model.time(),
+            names: model.gauge_columns().iter().map(GaugeColumn::header).collect(),
             gauges: model.gauge_row(),
             charts: model.charts(),
             ledger: model.ledger(),

@@ -4,7 +4,7 @@ use super::{Change, Measures};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
 use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
-use corpuscle::{Error, Simulation};
+use corpuscle::{Error, Sample, Simulation};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -146,6 +146,14 @@ impl Subject {
         }
     }
 
+    /// The water at a place of a flood that is computed.
+    pub fn water_at(&self, place: [f64; 2]) -> Option<Sample> {
+        match self {
+            Self::Live(simulation) => simulation.water_at(place),
+            Self::Recorded(_) => None,
+        }
+    }
+
     /// What is measured now.
     pub fn measures(&self) -> Measures {
         match self {
@@ -153,7 +161,7 @@ impl Subject {
             Self::Recorded(run) => {
                 let row = run.gauges.times.partition_point(|time| *time <= run.time).saturating_sub(1);
                 let gauges = run.gauges.rows.get(row).cloned().unwrap_or_default();
-                Measures { time: run.time, gauges, ..Measures::default() }
+                Measures { time: run.time, names: run.gauges.columns.clone(), gauges, ..Measures::default() }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The thread itself.
 
+use super::filming::Filming;
 use super::pace::Pace;
 use super::subject::Subject;
 use super::{Command, Event, Measures, Opened, Shared, Snapshot, default_pace};
@@ -43,7 +44,7 @@ pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &A
         }));
         match done {
             Ok(true) => {}
-            Ok(false) => return,
+            Ok(false) => return thread.end_film(),
             Err(_) => {
                 thread.running = None;
                 thread.tell(Event::Fault("a fault in the program stopped it; open the scene again".into()));
@@ -76,6 +77,9 @@ struct Running {
     /// Work done and when, as it was last told; work in a second since.
     work: (u64, Instant),
     rate: f64,
+    /// Where to tell of the water.
+    probe: Option<[f64; 2]>,
+    filming: Option<Filming>,
 }
 
 impl Thread<'_> {
@@ -110,6 +114,18 @@ impl Thread<'_> {
                 (running.playing, running.began) = (true, Instant::now());
             }
             Command::Pause => running.wait(),
+            Command::Probe(place) => running.probe = place,
+            Command::Film(path, hand) => {
+                let begun = Filming::begin(self.gpu, &running.subject, &path, hand, running.pace.asked);
+                match begun {
+                    Ok(filming) => {
+                        running.filming = Some(filming);
+                        self.look_for_film();
+                    }
+                    Err(error) => self.tell(Event::Filmed(Err(error.to_string()))),
+                }
+            }
+            Command::EndFilm => self.end_film(),
             Command::Pace(pace) => running.pace.asked = pace,
             Command::Step(by) => self.step(by),
             Command::Change(change) => match running.subject.change(change) {
@@ -121,6 +137,7 @@ impl Thread<'_> {
     }
 
     fn open(&mut self, subject: impl FnOnce() -> Result<Subject, Error>) {
+        self.end_film();
         self.running = None;
         self.number += 1;
         match subject().and_then(|subject| self.put(subject)) {
@@ -141,6 +158,7 @@ impl Thread<'_> {
         let now = Instant::now();
         let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
         let history = subject.history();
+        let terrain = simulation.terrain().cloned();
         let end = subject.end();
         self.running = Some(Running {
             playing: false,
@@ -151,9 +169,11 @@ impl Thread<'_> {
             measure_at: now,
             work: (subject.work(), now),
             rate: 0.0,
+            probe: None,
+            filming: None,
             subject,
         });
-        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, end })
+        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, terrain, end })
     }
 
     fn step(&mut self, by: f64) {
@@ -163,6 +183,7 @@ impl Thread<'_> {
         if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
             self.tell(Event::Fault(error.to_string()));
         }
+        self.look_for_film();
     }
 
     /// Goes on for a slice of wall-clock time.
@@ -171,6 +192,8 @@ impl Thread<'_> {
         let begun = Instant::now();
         let from = running.subject.time();
         let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
+        // A film has its pictures at their times.
+        let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
         let whole = running.began.elapsed();
         running.began = begun;
         let gone = running.subject.advance_to(to, &self.shared.stop);
@@ -184,9 +207,27 @@ impl Thread<'_> {
         if told.is_some() {
             running.wait();
         }
+        self.look_for_film();
         self.publish();
         if let Some(event) = told {
             self.tell(event);
+        }
+    }
+
+    /// Adds a picture to the film, where one is made and it is due.
+    fn look_for_film(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        let Some(filming) = &mut running.filming else { return };
+        if let Err(error) = filming.look(&running.subject) {
+            running.filming = None;
+            self.tell(Event::Filmed(Err(error.to_string())));
+        }
+    }
+
+    fn end_film(&mut self) {
+        let filming = self.running.as_mut().and_then(|running| running.filming.take());
+        if let Some(filming) = filming {
+            self.tell(Event::Filmed(filming.finish().map_err(|error| error.to_string())));
         }
     }
 
@@ -229,6 +270,7 @@ impl Running {
             pace: self.pace.real,
             behind: self.playing && self.pace.is_behind(),
             rate: if self.playing { self.rate } else { 0.0 },
+            probed: self.probe.and_then(|place| self.subject.water_at(place)),
             measures: self.measured.clone(),
         }
     }

@@ -42,6 +42,14 @@ impl History {
         }
     }
 
+    /// Gives rows other columns: the number of each before, none for what is new.
+    pub fn rename(&mut self, before: &[Option<usize>]) {
+        for (_, row) in &mut self.rows {
+            let value = |before: &Option<usize>| before.and_then(|before| row.get(before).copied()).unwrap_or(f64::NAN);
+            *row = before.iter().map(value).collect();
+        }
+    }
+
     /// A gauge over time; none before there are two rows.
     pub fn chart(&self, index: usize, header: &str, time_unit: &str) -> Option<Chart> {
         let points: Vec<[f64; 2]> =
@@ -65,6 +73,20 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gauge_that_comes_later_has_its_own_column() {
+        let mut history = History::default();
+        (0..3).for_each(|step| history.take(f64::from(step), &[1.0, 2.0]));
+        history.rename(&[Some(1), None, Some(0)]);
+        history.take(3.0, &[2.0, 5.0, 1.0]);
+        let values = |index| {
+            let chart = history.chart(index, "x", "s").unwrap();
+            chart.series[0].points.iter().map(|point| point[1]).collect::<Vec<_>>()
+        };
+        assert_eq!([values(0), values(2)], [vec![2.0; 4], vec![1.0; 4]]);
+        assert!(history.rows[2].1[1].is_nan() && history.rows[3].1[1] == 5.0);
+    }
 
     #[test]
     fn what_is_kept_reaches_from_the_start_to_now() {

@@ -75,6 +75,7 @@ impl Plots {
 
     /// Takes in another snapshot.
     pub fn take(&mut self, snapshot: &Snapshot) {
+        self.rename(&snapshot.measures.names);
         self.history.take(snapshot.measures.time, &snapshot.measures.gauges);
         if self.dimensions.is_some() {
             self.speeds.take(&snapshot.frame);
@@ -82,6 +83,22 @@ impl Plots {
                 self.sets = snapshot.frame.sets.iter().map(|set| set.name.clone()).collect();
             }
         }
+    }
+
+    /// Gauges that have come while the scene goes on, as where one is placed, are among the others from now on.
+    fn rename(&mut self, names: &[String]) {
+        if names.is_empty() || self.gauges == names {
+            return;
+        }
+        let before: Vec<Option<usize>> =
+            names.iter().map(|name| self.gauges.iter().position(|gauge| gauge == name)).collect();
+        self.history.rename(&before);
+        for kind in &mut self.chosen {
+            if let Kind::Gauge(index) = kind {
+                *index = before.iter().position(|before| *before == Some(*index)).unwrap_or(0);
+            }
+        }
+        self.gauges = names.to_vec();
     }
 
     /// The speeds of balls that were seen so far are no longer those of now.

@@ -27,6 +27,9 @@ impl Window {
         if pressed(Key::L) {
             self.panels.plots = !self.panels.plots;
         }
+        if pressed(Key::V) {
+            self.film();
+        }
         if pressed(Key::S) {
             self.save_still();
         }
@@ -40,7 +43,7 @@ impl Window {
             open.picture.hand.plan = !open.picture.hand.plan;
         }
         if pressed(Key::Escape) {
-            open.picked = None;
+            (open.picked, open.spot) = (None, None);
         }
         for (key, (quality, ..)) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(QUALITIES) {
             if pressed(key) {

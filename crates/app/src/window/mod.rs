@@ -1,5 +1,6 @@
 //! What is in the window.
 
+mod dropping;
 mod keys;
 mod open;
 mod panels;
@@ -13,12 +14,14 @@ use crate::gallery::Gallery;
 use crate::physics::{Command, Event, Opened, Physics, Snapshot, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
+use crate::touch::Hands;
 use crate::{Screen, help, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 /// The window and all that it shows.
@@ -37,12 +40,18 @@ pub struct Window {
     /// What went wrong last.
     fault: Option<String>,
     clock: PictureClock,
+    /// Where files are written.
+    folder: PathBuf,
+    /// Whether what is opened plays at once.
+    plays: bool,
 }
 
 /// What is to be opened.
 enum Awaited {
     Scene(Source),
     Run(PathBuf),
+    /// What was dropped, until it is read.
+    Dropped(Receiver<Result<Start, String>>),
 }
 
 /// Which panels are shown.
@@ -95,6 +104,8 @@ impl Window {
             open: None,
             fault: None,
             clock: PictureClock::default(),
+            folder: PathBuf::from("."),
+            plays: true,
         };
         match start {
             Start::Welcome => {}
@@ -102,6 +113,16 @@ impl Window {
             Start::Run(folder) => window.open_run(folder),
         }
         Ok(window)
+    }
+
+    /// Writes files into another folder than the one that the program was started in.
+    pub fn save_into(&mut self, folder: PathBuf) {
+        self.folder = folder;
+    }
+
+    /// What is opened from now on waits at its start.
+    pub fn wait_at_start(&mut self) {
+        self.plays = false;
     }
 
     /// Opens a scene.
@@ -128,6 +149,13 @@ impl Window {
         self.open.as_ref()?.snapshot.clone()
     }
 
+    /// What a gauge was measured at last, by its name as in files; none where there is none.
+    pub fn gauge(&self, name: &str) -> Option<f64> {
+        let snapshot = self.snapshot()?;
+        let at = snapshot.measures.names.iter().position(|gauge| gauge == name)?;
+        snapshot.measures.gauges.get(at).copied()
+    }
+
     /// True until a scene that was asked for is open or refused.
     pub fn is_waiting(&self) -> bool {
         self.awaited.is_some()
@@ -148,6 +176,7 @@ impl Window {
 
     /// Takes what the physics told.
     fn listen(&mut self) {
+        self.look_for_dropped();
         for event in self.physics.events() {
             match event {
                 Event::Opened(opened) => self.take(*opened),
@@ -156,6 +185,7 @@ impl Window {
                     self.fault = Some(what);
                 }
                 Event::NotChanged(what) => self.fault = Some(what),
+                Event::Filmed(film) => self.filmed(film),
                 Event::Ended => self.stopped(),
                 Event::Fault(what) => {
                     self.fault = Some(what);
@@ -184,10 +214,15 @@ impl Window {
     fn take(&mut self, opened: Opened) {
         let Some(awaited) = self.awaited.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, end, .. } = opened;
+        let Opened { number, scene, pictures, terrain, end, .. } = opened;
         let recorded = matches!(awaited, Awaited::Run(_));
         let source = match awaited {
             Awaited::Scene(source) => source,
+            // What was opened before is no longer wanted.
+            Awaited::Dropped(_) => {
+                self.awaited = Some(awaited);
+                return;
+            }
             Awaited::Run(folder) => Source {
                 name: folder.display().to_string(),
                 text: scene.to_toml().unwrap_or_default(),
@@ -209,7 +244,10 @@ impl Window {
             parameters: parameters(&source),
             plots,
             picked: None,
-            lifted: false,
+            terrain,
+            spot: None,
+            filming: false,
+            hands: Hands::default(),
             source,
             recorded,
             end,
@@ -219,11 +257,12 @@ impl Window {
             playing: false,
             times,
         });
-        self.play(true);
+        self.play(self.plays);
     }
 
     /// Shows everything.
     pub fn ui(&mut self, ui: &mut Ui) {
+        self.take_dropped(ui.ctx());
         self.listen();
         self.keys(ui);
         let pictures = self.clock.tick();

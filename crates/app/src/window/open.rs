@@ -7,7 +7,10 @@ use crate::physics::Snapshot;
 use crate::pick::Picked;
 use crate::picture::{Picture, Quality};
 use crate::plots::Plots;
+use crate::spot::Spot;
+use crate::touch::Hands;
 use corpuscle::scene::Scene;
+use corpuscle::terrain::Terrain;
 use egui::Ui;
 use std::sync::Arc;
 
@@ -24,8 +27,13 @@ pub(super) struct Open {
     pub(super) parameters: Parameters,
     pub(super) plots: Plots,
     pub(super) picked: Option<Picked>,
-    /// True once the partition of a gas is gone.
-    pub(super) lifted: bool,
+    /// The ground, and the spot of it that was picked.
+    pub(super) terrain: Option<Arc<Terrain>>,
+    pub(super) spot: Option<Spot>,
+    /// What hands hold of a gas.
+    pub(super) hands: Hands,
+    /// True while a film is made.
+    pub(super) filming: bool,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     pub(super) playing: bool,
     /// The pace, as a multiple of the scene's own.
@@ -45,8 +53,10 @@ pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
 
 /// The parameters of a scene as it is written.
 pub(super) fn parameters(source: &Source) -> Parameters {
-    let written = Scene::parse(&source.text, &source.name, &[]);
-    written.map_or_else(|_| Parameters::none(), |written| Parameters::new(&written, source.changes.clone()))
+    match (Scene::parse(&source.text, &source.name, &[]), source.scene()) {
+        (Ok(written), Ok(now)) => Parameters::new(&written, &now, source.changes.clone()),
+        _ => Parameters::none(),
+    }
 }
 
 impl Open {
@@ -74,13 +84,22 @@ impl Open {
             && let Some(pointer) = response.interact_pointer_pos()
         {
             self.picked = Picked::at(shown, response.rect, &snapshot.frame, pointer);
+            let place = self.picked.as_ref().and_then(|picked| picked.place(&snapshot.frame));
+            self.spot = self.terrain.as_ref().and_then(|terrain| match place {
+                // Who clicks on water means the place below it.
+                Some(place) => Some(Spot::under(terrain, place)),
+                None => Spot::at(shown, response.rect, terrain, pointer),
+            });
             if let Some(picked) = &mut self.picked {
                 picked.follow(&snapshot.frame);
             }
         }
+        let painter = ui.painter_at(response.rect);
+        let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
+        if let Some(spot) = &self.spot {
+            spot.paint(&over);
+        }
         if let Some(picked) = &self.picked {
-            let painter = ui.painter_at(response.rect);
-            let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
             picked.paint(&over, &snapshot.frame, (shown.stage.to - shown.stage.from).max_element());
         }
     }

@@ -3,6 +3,8 @@
 use super::open::Open;
 use super::{NOTICE, Window};
 use crate::icons::{self, Icon};
+use crate::physics::{Change, Command};
+use crate::spot::Asked;
 use crate::transport::{Pressed, Transport};
 use corpuscle::scene::Units;
 use egui::{Frame, Margin, Panel, RichText, ScrollArea, Ui, vec2};
@@ -55,7 +57,12 @@ impl Window {
             && let Some(snapshot) = open.snapshot.clone()
         {
             let response = open.picture.ui(ui, &snapshot, open.playing);
+            let before = open.spot.map(|spot| spot.at_model());
             open.pick(ui, &response, &snapshot);
+            let spot = open.spot.map(|spot| spot.at_model());
+            if spot != before {
+                self.physics.ask(Command::Probe(spot));
+            }
         }
         let inside = whole.shrink2(vec2(16.0, 12.0));
         let mut over = ui.new_child(egui::UiBuilder::new().max_rect(inside));
@@ -80,6 +87,25 @@ impl Window {
         {
             open.picked = None;
         }
+        self.spot_card(&mut over);
+    }
+
+    /// The card of the spot of ground that was picked.
+    fn spot_card(&mut self, ui: &mut Ui) {
+        let Some(open) = &mut self.open else { return };
+        let (Some(spot), Some(terrain)) = (&mut open.spot, &open.terrain) else { return };
+        let water = open.snapshot.as_ref().and_then(|snapshot| snapshot.probed);
+        match spot.card(ui, terrain, water, !open.recorded) {
+            Some(Asked::Away) => open.spot = None,
+            Some(Asked::Gauge) => {
+                spot.gauged = true;
+                let at = spot.at_model();
+                let name = open.parameters.add_gauge(terrain.to_own(at));
+                let place: Change = Box::new(move |simulation| simulation.place_gauge(&name, at));
+                self.physics.ask(Command::Change(place));
+            }
+            None => {}
+        }
     }
 
     pub(super) fn toolbar(&mut self, ui: &mut Ui) {
@@ -87,7 +113,7 @@ impl Window {
         if icons::toggle(ui, Icon::Gallery, "Scenes", "G", panels.scenes).clicked() {
             panels.scenes = !panels.scenes;
         }
-        let (mut still, mut help) = (false, false);
+        let (mut still, mut film, mut help) = (false, false, false);
         if let Some(open) = &mut self.open {
             ui.label(RichText::new(&open.scene.title).heading()).on_hover_text(open.scene.description.trim());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -99,6 +125,8 @@ impl Window {
                     panels.plots = !panels.plots;
                 }
                 ui.separator();
+                let name = if open.filming { "End the film" } else { "Record a film" };
+                film = icons::toggle(ui, Icon::Film, name, "V", open.filming).clicked();
                 still = icons::button(ui, Icon::Still, "Save a still", "S").clicked();
                 if !open.is_flat() && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.hand.plan).clicked()
                 {
@@ -112,6 +140,9 @@ impl Window {
         }
         if still {
             self.save_still();
+        }
+        if film {
+            self.film();
         }
         self.help |= help;
     }

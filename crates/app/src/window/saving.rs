@@ -2,6 +2,7 @@
 
 use super::{Source, Window};
 use crate::files;
+use crate::physics::Command;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -23,16 +24,36 @@ impl Window {
             scene.to_toml().map_err(|error| error.to_string())
         });
         let name = format!("{}-changed", open.source.name.trim_end_matches(".toml"));
-        let done = text
-            .and_then(|text| files::text(&PathBuf::from("."), &name, "toml", &text).map_err(|error| error.to_string()));
+        let done =
+            text.and_then(|text| files::text(&self.folder, &name, "toml", &text).map_err(|error| error.to_string()));
         self.wrote(done);
+    }
+
+    /// Begins a film, or ends it.
+    pub(super) fn film(&mut self) {
+        let Some(open) = &mut self.open else { return };
+        open.filming = !open.filming;
+        self.physics.ask(if open.filming {
+            let path = files::free(&self.folder, &open.source.name, "mp4");
+            Command::Film(path, open.picture.hand)
+        } else {
+            Command::EndFilm
+        });
+    }
+
+    /// A film is there, or could not be made.
+    pub(super) fn filmed(&mut self, film: Result<PathBuf, String>) {
+        if let Some(open) = &mut self.open {
+            open.filming = false;
+        }
+        self.wrote(film);
     }
 
     pub(super) fn save_still(&mut self) {
         let Some(open) = &mut self.open else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
         let still = open.picture.still(&snapshot);
-        let done = still.and_then(|image| files::picture(&PathBuf::from("."), &open.source.name, &image));
+        let done = still.and_then(|image| files::picture(&self.folder, &open.source.name, &image));
         self.wrote(done.map_err(|error| error.to_string()));
     }
 }

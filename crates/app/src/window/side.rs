@@ -7,7 +7,6 @@ use crate::physics::Command;
 use crate::touch::{self, Touched};
 use crate::transport::Pressed;
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
-use std::path::PathBuf;
 
 impl Window {
     pub(super) fn parameters(&mut self, ui: &mut Ui) {
@@ -20,16 +19,16 @@ impl Window {
                 let waiting = open.parameters.waiting(ui);
                 restart = matches!(waiting, Some(Changed::Restart));
                 if let Some(gas) = open.scene.gas() {
-                    match touch::ui(ui, gas, open.lifted) {
+                    match touch::ui(ui, gas, &mut open.hands, open.snapshot.as_deref()) {
                         Some(Touched::Heated(change)) => {
                             open.plots.forget_speeds();
                             self.physics.ask(Command::Change(change));
                         }
                         Some(Touched::Lifted(change)) => {
-                            open.lifted = true;
                             open.picture.lift_partition(open.snapshot.as_ref().map_or(0.0, |now| now.frame.time));
                             self.physics.ask(Command::Change(change));
                         }
+                        Some(Touched::Changed(change)) => self.physics.ask(Command::Change(change)),
                         None => {}
                     }
                 }
@@ -60,7 +59,7 @@ impl Window {
         let table = panel.show(ui, |ui| open.plots.ui(ui, &snapshot)).inner;
         if let Some((name, text)) = table {
             let name = format!("{}-{name}", open.source.name);
-            let done = files::text(&PathBuf::from("."), &name, "csv", &text).map_err(|error| error.to_string());
+            let done = files::text(&self.folder, &name, "csv", &text).map_err(|error| error.to_string());
             self.wrote(done);
         }
     }

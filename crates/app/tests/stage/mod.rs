@@ -1,5 +1,7 @@
 //! A window off screen, with a device that draws it.
 
+mod reference;
+
 use corpuscle::gpu::{Gpu, require_gpu, wgpu};
 use corpuscle_app::{Meshes, Screen, Start, Window};
 use egui::mutex::RwLock;
@@ -137,6 +139,59 @@ impl Stage {
     /// True where something is called so.
     pub fn has(&self, name: &str) -> bool {
         self.harness.query_all_by_label(name).next().is_some()
+    }
+
+    /// Clicks on a place of the picture, in parts of its width and height.
+    pub fn click_picture(&mut self, part: [f32; 2]) {
+        let rect = self.harness.get_by_label("Picture of the scene").rect();
+        let at = rect.min + vec2(part[0], part[1]) * rect.size();
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.harness.drag_at(at);
+        self.harness.step();
+        self.harness.drop_at(at);
+        self.harness.step();
+        self.harness.step();
+    }
+
+    /// Opens a file as if it was dropped on the window.
+    pub fn drop_file(&mut self, path: &std::path::Path) {
+        let context = self.harness.ctx.clone();
+        if let Some(window) = self.harness.state_mut() {
+            window.open_dropped(&context, path.to_owned());
+        }
+    }
+
+    /// Goes on by so many steps, each in full.
+    pub fn steps(&mut self, count: u32) {
+        for _ in 0..count {
+            let before = self.time();
+            self.key(egui::Key::ArrowRight);
+            self.until(Duration::from_secs(30), "a step", |window| {
+                window.snapshot().is_some_and(|snapshot| snapshot.frame.time > before)
+            });
+        }
+    }
+
+    /// Compares picture and parameters with the reference of a name, at half their size: it shows what it was when it was looked at.
+    /// Where it changed on purpose: run with `CORPUSCLE_NEW_REFERENCE=1`, look at it, and keep it.
+    pub fn same_as_reference(&mut self, name: &str) {
+        // What stands still is drawn with all there is.
+        self.run(Duration::from_millis(1200));
+        let rect = self.harness.get_by_label("Picture of the scene").rect();
+        let whole = self.picture(name);
+        let found = reference::half(&whole, [rect.left(), rect.top(), SIZE[0], rect.bottom()].map(|at| at as u32));
+        reference::compare(name, &found);
+    }
+
+    /// The window, to be set up.
+    pub fn window_mut(&mut self) -> &mut Window {
+        self.harness.state_mut().as_mut().expect("it was shown")
+    }
+
+    /// True where something is called so at its beginning.
+    pub fn has_beginning(&self, words: &str) -> bool {
+        self.harness.query_all_by(|node| node.label().is_some_and(|label| label.starts_with(words))).next().is_some()
     }
 
     /// Types a number into the field that is called so.

@@ -169,6 +169,11 @@ impl Drops {
         (foot, nearest.normal)
     }
 
+    /// Acceleration of gravity, m/s2, to be changed.
+    pub fn gravity_mut(&mut self) -> &mut [f64; 3] {
+        &mut self.laws.gravity
+    }
+
     /// What holds for them.
     pub fn laws(&self) -> &DropLaws {
         &self.laws

@@ -59,6 +59,11 @@ impl Conduction {
         conduction
     }
 
+    /// All conductances become so many times what they are.
+    pub fn speed_up(&mut self, times: f64) {
+        self.conductance.iter_mut().for_each(|conductance| *conductance *= times);
+    }
+
     fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.start[i] as usize..self.start[i + 1] as usize;
         self.other[range.clone()].iter().map(|&other| other as usize).zip(self.conductance[range].iter().copied())

@@ -1,5 +1,6 @@
 //! What a flood shows of itself.
 
+use super::by_hand::Hand;
 use super::{DENSITY, Flood, State};
 use crate::gauges::{LineGauge, PointGauge};
 use crate::particle::Particle;
@@ -110,7 +111,12 @@ impl Model for Flood {
         let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
         let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
         let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
-        points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(weather).collect()
+        points
+            .chain(lines)
+            .chain(["stored", "total_inflow", "total_outflow"].map(total))
+            .chain(weather)
+            .chain(self.placed_columns())
+            .collect()
     }
 
     fn gauge_row(&self) -> Vec<f64> {
@@ -125,7 +131,7 @@ impl Model for Flood {
         let Wetness { rained, infiltrated, .. } = &self.state.wetness;
         let film = self.state.wetness.on_the_ground();
         let weather = self.ground.iter().flat_map(|_| [rained.value(), infiltrated.value(), film]);
-        points.chain(lines).chain(totals).chain(weather).collect()
+        points.chain(lines).chain(totals).chain(weather).chain(self.placed_row()).collect()
     }
 
     fn maps(&self) -> Vec<Map> {
@@ -165,14 +171,20 @@ impl Model for Flood {
         if state.owed.len() != self.sources.len()
             || state.impulses.len() != self.surroundings.obstacles.names.len()
             || !self.structures.fit(&state.flows)
-            || self.ground.as_ref().is_some_and(|ground| !ground.fits(&state.wetness))
             || !state.maps.fit(&self.state.maps)
+            || !self.grounds_fit(&state)
         {
             return Err(refused("it belongs to another scene".into()));
         }
+        let by_hand = self.state.hand != Hand::default() || state.hand != Hand::default();
+        self.take_back_hand();
         (self.shown, self.state) = (shown, state);
+        self.take_hand()?;
         self.surroundings.time = self.state.time;
         self.scheme.arrange(&mut self.state.particles, &self.surroundings, self.state.sizes);
+        if by_hand {
+            return self.renew_card();
+        }
         #[cfg(feature = "gpu")]
         self.send_to_card().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())

@@ -15,7 +15,7 @@ const LONGEST_AHEAD: f64 = 10.0;
 /// Room for so many particles is kept where water is held at levels.
 const HELD_BIRTHS: usize = 4096;
 
-fn failed(error: &GpuError) -> ModelError {
+pub(super) fn failed(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
 }
 
@@ -46,7 +46,7 @@ impl Flood {
     }
 
     /// Makes room on a card for the particles that there are, and for more where water comes in, and hands the state over.
-    fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
+    pub(super) fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let depth = self.volume / (self.spacing * self.spacing);
         let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let count = self.state.particles.len();
@@ -55,10 +55,11 @@ impl Flood {
         let comes_in = !self.sources.is_empty() || self.ground.is_some() || holds;
         let films = self.films();
         let room = falling + if comes_in { 2 * (count + films) + MOST_BIRTHS } else { count };
+        let paper = self.paper();
         let setting = Setting {
             surroundings: &self.surroundings,
             scheme: &scheme,
-            paper: (self.settings.scheme == SchemeName::Paper).then_some(&self.settings.paper),
+            paper: (self.settings.scheme == SchemeName::Paper).then_some(&paper),
             falling,
             fall_step: self.fall_step(),
             roughness: &self.roughness,

@@ -1,5 +1,6 @@
 //! How a flood is set up.
 
+use super::by_hand::Hand;
 use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
 use crate::edges::BeforeWalls;
@@ -148,6 +149,7 @@ impl Flood {
             put_back: 0,
             overtopped: vec![None; obstacles.names.len()],
             warnings: Vec::new(),
+            hand: Hand::default(),
         };
         let model = Self {
             roughness: Roughness::open(flood, &terrain, folder)?,
@@ -166,6 +168,7 @@ impl Flood {
             volume,
             h,
             state,
+            before_hand: Vec::new(),
             of_blocks: Vec::new(),
             renewals: Vec::new(),
             shown: 0.0,

@@ -57,6 +57,7 @@ impl<const D: usize> Gas<D> {
         if let Some(time) = self.setup.reversed_at.filter(|_| !self.reversed) {
             offer(time, Due::Reverse);
         }
+        self.hand.due().for_each(|(time, due)| offer(time, due));
         if let Some(every) = self.setup.measure.every {
             offer(self.next_look as f64 * every, Due::Look);
         }
@@ -164,6 +165,8 @@ impl<const D: usize> Gas<D> {
                 self.reversed = true;
                 self.reverse();
             }
+            Due::Arrive(held) => self.arrive(held),
+            Due::Regulate => self.regulate(),
             Due::Look => {
                 self.next_look += 1;
                 self.look(time);

@@ -1,11 +1,17 @@
 //! What a hand changes of a gas while it runs.
 
-use super::Gas;
+mod balls;
+mod piston;
+mod thermostat;
+
+use super::{Due, Gas};
 use crate::method::Mover;
 use crate::world::{Facing, Wall};
 use corpuscle_model::{ExactSum, ModelError};
+use piston::Grip;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
+use thermostat::Thermostat;
 
 /// A change of a gas that runs. Walls are named by their axis, 0 to 2, and end, 0 at the smaller coordinate and 1 at the larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +35,34 @@ pub enum ByHand {
         /// The pressure from now on.
         pressure: f64,
     },
+    /// A piston is taken hold of, dragged to a place, and held there.
+    DragPiston {
+        /// The wall.
+        wall: [usize; 2],
+        /// Where it is to be, m.
+        to: f64,
+    },
+    /// A piston that is held is let go, at rest.
+    LetPistonGo {
+        /// The wall.
+        wall: [usize; 2],
+    },
+    /// The temperature is held at this, above 0, by scaling the velocities from time to time; `None`: no longer.
+    HoldTemperature(Option<f64>),
+    /// Balls come in at free places at random, like the others of their set, with velocities after Maxwell's law at the temperature now.
+    AddBalls {
+        /// The set, from 0.
+        set: usize,
+        /// How many.
+        count: usize,
+    },
+    /// Balls of a set are taken out at random; one at least stays. The last balls get the numbers of those that have gone.
+    RemoveBalls {
+        /// The set, from 0.
+        set: usize,
+        /// How many.
+        count: usize,
+    },
 }
 
 impl ByHand {
@@ -47,13 +81,37 @@ impl ByHand {
     }
 }
 
-/// Energy and momentum that a hand gave and took.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+/// What a hand gave and took, and what it holds.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct HandTally {
     pub gained: ExactSum,
     pub lost: ExactSum,
     /// Sum of the components.
     pub momentum: ExactSum,
+    /// Balls put in and taken out.
+    pub added: u64,
+    pub removed: u64,
+    /// Pistons that are held.
+    pub grips: Vec<Grip>,
+    /// What holds the temperature.
+    pub thermostat: Option<Thermostat>,
+}
+
+impl HandTally {
+    fn book(&mut self, energy: f64, momentum: f64) {
+        if energy >= 0.0 {
+            self.gained.add(energy)
+        } else {
+            self.lost.add(-energy)
+        }
+        self.momentum.add(momentum);
+    }
+
+    /// What is held has to be seen to next, and when.
+    pub fn due(&self) -> impl Iterator<Item = (f64, Due)> {
+        let grips = self.grips.iter().enumerate().map(|(held, grip)| (grip.arrives, Due::Arrive(held)));
+        grips.chain(self.thermostat.map(|thermostat| (thermostat.next, Due::Regulate)))
+    }
 }
 
 impl<const D: usize> Gas<D> {
@@ -65,7 +123,8 @@ impl<const D: usize> Gas<D> {
         match change {
             ByHand::Heat(factor) => {
                 positive(factor, "the factor of the temperature")?;
-                self.heat(factor);
+                self.come_to_now();
+                self.scale_energy(factor);
             }
             ByHand::LiftPartition if self.partition.is_none() || self.lifted => {
                 return Err(ModelError::Setup("there is no partition to be lifted".into()));
@@ -84,9 +143,19 @@ impl<const D: usize> Gas<D> {
                 if !(pressure.is_finite() && pressure >= 0.0) {
                     return Err(ModelError::Setup(format!("a pressure must be 0 or more, not {pressure}")));
                 }
-                let wall = self.wall_where([axis, end], "piston", |wall| wall.mass.is_some())?;
-                self.press(wall, axis, pressure);
+                let wall = self.piston([axis, end])?;
+                if !self.press_held(wall, axis, pressure) {
+                    self.press(wall, axis, pressure);
+                }
             }
+            ByHand::DragPiston { wall, to } => self.drag(wall, to)?,
+            ByHand::LetPistonGo { wall } => self.let_go(wall)?,
+            ByHand::HoldTemperature(temperature) => {
+                temperature.map_or(Ok(()), |temperature| positive(temperature, "a temperature"))?;
+                self.hold_temperature(temperature)?;
+            }
+            ByHand::AddBalls { set, count } => self.add_balls(set, count)?,
+            ByHand::RemoveBalls { set, count } => self.remove_balls(set, count)?,
         }
         self.begin_averages_anew();
         Ok(())
@@ -109,32 +178,30 @@ impl<const D: usize> Gas<D> {
         }
     }
 
-    fn heat(&mut self, factor: f64) {
-        let before = [self.kinetic_energy(), self.momentum().iter().sum()];
-        self.come_to_now();
+    /// All velocities are scaled now, so that the kinetic energy is so many times what it was.
+    fn scale_energy(&mut self, factor: f64) {
         // All balls are brought to the beginning of a window, and what is to come of them is found anew after it.
         self.mover.begin_window();
         let times = factor.sqrt();
         let world = self.mover.world_mut();
+        let (mut energy, mut momentum) = (ExactSum::default(), ExactSum::default());
         for ball in 0..world.balls.len() {
-            world.balls[ball].velocity = world.balls[ball].velocity.map(|velocity| times * velocity);
+            let mass = world.mass(ball);
+            for velocity in &mut world.balls[ball].velocity {
+                let before = std::mem::replace(velocity, times * *velocity);
+                energy.add(0.5 * mass * (*velocity * *velocity - before * before));
+                momentum.add(mass * (*velocity - before));
+            }
             world.note_bend(ball);
         }
         self.mover.begin_window();
-        let [energy, momentum] = [self.kinetic_energy(), self.momentum().iter().sum()];
-        let given = energy - before[0];
-        if given >= 0.0 {
-            self.hand.gained.add(given)
-        } else {
-            self.hand.lost.add(-given)
-        }
-        self.hand.momentum.add(momentum - before[1]);
+        self.hand.book(energy.value(), momentum.value());
     }
 
     /// A piston's acceleration is the pressure from outside on its area, over its mass, as where it was set up.
     fn press(&mut self, number: usize, axis: usize, pressure: f64) {
         self.come_to_now();
-        let area: f64 = (0..D).filter(|&other| other != axis).map(|other| self.setup.size[other]).product();
+        let area = self.area_across(axis);
         let world = self.mover.world_mut();
         let now = world.now;
         let wall = &mut world.walls[number];

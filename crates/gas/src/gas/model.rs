@@ -231,7 +231,14 @@ impl<const D: usize> Model for Gas<D> {
     }
 
     fn ledger(&self) -> Ledger {
-        Ledger { balances: vec![self.energy_balance(), self.momentum_balance()] }
+        let mut balances = vec![self.energy_balance(), self.momentum_balance()];
+        let (added, removed) = (self.hand.added as f64, self.hand.removed as f64);
+        if added + removed > 0.0 {
+            let now = self.len() as f64;
+            let initial = now - added + removed;
+            balances.push(Balance { quantity: "balls", initial, inflow: added, outflow: removed, now });
+        }
+        Ledger { balances }
     }
 
     fn warnings(&self) -> Vec<String> {

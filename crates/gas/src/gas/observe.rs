@@ -13,7 +13,7 @@ const RECENT: usize = 10;
 
 impl<const D: usize> Gas<D> {
     /// The time shown, counted in the window.
-    fn now(&self) -> f64 {
+    pub(super) fn now(&self) -> f64 {
         self.mover.world().in_window(self.shown)
     }
 

@@ -76,7 +76,7 @@ impl<const D: usize> Gas<D> {
             initial: self.initial,
             shown: self.shown,
             checked: self.checked,
-            hand: self.hand,
+            hand: self.hand.clone(),
         };
         postcard::to_stdvec(&state).unwrap_or_default()
     }
@@ -87,6 +87,11 @@ impl<const D: usize> Gas<D> {
             postcard::from_bytes(bytes).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         let other = || refused("it belongs to another scene".into());
         if state.dimensions != D || state.knots.len() != self.plans.len() {
+            return Err(other());
+        }
+        // A hand may have put balls in and taken some out since the start.
+        let at_the_start = |balls: usize, hand: &HandTally| (balls as u64 + hand.removed).checked_sub(hand.added);
+        if at_the_start(self.len(), &self.hand) != at_the_start(state.world.time.len(), &state.hand) {
             return Err(other());
         }
         state.world.put_into(self.mover.world_mut()).ok_or_else(other)?;
@@ -138,8 +143,8 @@ impl SavedWorld {
 
     /// `None` where it does not fit.
     fn put_into<const D: usize>(&self, world: &mut World<D>) -> Option<()> {
-        let count = world.balls.len();
-        let singles = [self.time.len(), self.kind.len(), self.id.len(), self.species.len(), self.collided.len()];
+        let count = self.time.len();
+        let singles = [self.kind.len(), self.id.len(), self.species.len(), self.collided.len()];
         let vectors = [self.position.len(), self.velocity.len(), self.image.len()];
         let fits = singles.iter().all(|&len| len == count)
             && vectors.iter().all(|&len| len == count * D)
@@ -154,6 +159,9 @@ impl SavedWorld {
         fn vector<T: Copy, const D: usize>(from: &[T], ball: usize) -> Option<[T; D]> {
             from.get(ball * D..(ball + 1) * D)?.try_into().ok()
         }
+        let first = *world.balls.first()?;
+        world.balls.resize(count, first);
+        world.records.resize(count, world.records[0]);
         for ball in 0..count {
             world.balls[ball] = Ball {
                 position: vector(&self.position, ball)?,

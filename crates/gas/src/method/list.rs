@@ -64,7 +64,8 @@ impl<const D: usize> List<D> {
 
     /// Finds the nearest events of all balls.
     pub fn look_all(&mut self) {
-        self.nearest.fill(NOTHING);
+        self.nearest.clear();
+        self.nearest.resize(self.world.balls.len(), NOTHING);
         for ball in 0..self.nearest.len() {
             self.look(ball);
         }

@@ -1,0 +1,158 @@
+//! What is dropped on the window: terrain to be flooded, a scene, or a finished run.
+
+use crate::{Source, Start};
+use corpuscle::scene::{Scene, Terrain as Written, TerrainFile};
+use corpuscle::terrain::Terrain;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Particles that have come in by the end.
+const PARTICLES: f64 = 6000.0;
+/// Part of the ground that the water would cover a metre deep.
+const COVERED: f64 = 0.1;
+/// Speed at which a flood crosses the ground, m/s, to say how long it is to be watched.
+const SPEED: f64 = 1.5;
+/// How far from its edge the water comes in, over the length of the side.
+const INSET: f64 = 0.03;
+/// Frames and rows of gauges in a run.
+const FRAMES: f64 = 60.0;
+const ROWS: f64 = 240.0;
+
+/// What to open of a file or folder that was dropped. Takes as long as it takes to read it.
+///
+/// # Errors
+/// A text that says what is wrong with it.
+pub fn open(path: &Path) -> Result<Start, String> {
+    if path.is_dir() {
+        return Ok(Start::Run(path.to_owned()));
+    }
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if ending == "toml" {
+        let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+        return Ok(Start::Scene(Source { name: path.display().to_string(), text, folder, changes: Vec::new() }));
+    }
+    flood(path).map(Start::Scene)
+}
+
+/// A flood over the terrain in a file: water comes in at the head of the ground and leaves over its edges.
+fn flood(path: &Path) -> Result<Source, String> {
+    let path = fs::canonicalize(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let file = Written::File(TerrainFile { path: path.clone(), crs: None, no_data: Default::default() });
+    let terrain = Terrain::open(&file, 1, Path::new("")).map_err(|error| error.to_string())?;
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let text = text(&terrain, &path, &stem);
+    // What is written must be a scene.
+    Scene::parse(&text, &stem, &[]).map_err(|error| error.to_string())?;
+    Ok(Source { name: format!("flood-{stem}"), text, folder: PathBuf::new(), changes: Vec::new() })
+}
+
+fn text(terrain: &Terrain, path: &Path, name: &str) -> String {
+    let [width, height] = terrain.bounds().size();
+    let area = width * height;
+    let finest = 0.5 * terrain.map_grid().cell_size().into_iter().fold(f64::INFINITY, f64::min);
+    let spacing = two_figures((COVERED * area / PARTICLES).sqrt().max(finest));
+    let until = two_figures(2.0 * width.max(height) / SPEED);
+    let discharge = two_figures(COVERED * area / until);
+    let [x, y] = terrain.to_own(head(terrain));
+    let quoted = |text: &str| toml::Value::String(text.into()).to_string();
+    let mut scene = String::new();
+    let _ = write!(
+        scene,
+        "title = {}\ndescription = {}\n\n[run]\nuntil_s = {until:?}\nframe_every_s = {:?}\ngauge_every_s = {:?}\n\n\
+         [terrain.file]\npath = {}\n\n[flood]\nspacing_m = {spacing:?}\nspacing_depth_m = 1.0\n\n\
+         [[flood.inflow]]\nname = \"head\"\nat = [{x:?}, {y:?}]\ndischarge_m3_per_s = {discharge:?}\n",
+        quoted(&format!("A flood over {name}")),
+        quoted("Water comes in at the lowest point of the highest side, and leaves over the edges."),
+        until / FRAMES,
+        until / ROWS,
+        quoted(&path.display().to_string()),
+    );
+    scene
+}
+
+/// The lowest place along the side that is highest on average, a little inside, in model coordinates: there a valley begins.
+fn head(terrain: &Terrain) -> [f64; 2] {
+    let bounds = terrain.bounds();
+    let [width, height] = bounds.size();
+    let at = |side: usize, part: f64| {
+        let (along, inset) = (INSET + (1.0 - 2.0 * INSET) * part, [INSET, 1.0 - INSET][side % 2]);
+        let [x, y] = if side < 2 { [inset, along] } else { [along, inset] };
+        [bounds.x_min + x * width, bounds.y_min + y * height]
+    };
+    let grid = terrain.map_grid();
+    let has_data = |[x, y]: [f64; 2]| {
+        let [column, row] = grid.position(x, y).map(|at| at.round().max(0.0) as usize);
+        terrain.is_valid_cell(column.min(grid.columns - 1), row.min(grid.rows - 1))
+    };
+    const STEPS: u32 = 400;
+    let heights = |side: usize| -> Vec<(f64, [f64; 2])> {
+        let places = (0..=STEPS).map(|step| at(side, f64::from(step) / f64::from(STEPS)));
+        places.filter(|place| has_data(*place)).map(|place| (terrain.height(place[0], place[1]), place)).collect()
+    };
+    let sides: Vec<_> = (0..4).map(heights).filter(|heights| !heights.is_empty()).collect();
+    let mean = |heights: &[(f64, [f64; 2])]| heights.iter().map(|(z, _)| z).sum::<f64>() / heights.len() as f64;
+    let highest = sides.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
+    let lowest = highest.and_then(|side| side.iter().min_by(|a, b| a.0.total_cmp(&b.0)));
+    // Ground without data along all its edges is flooded from its middle.
+    lowest.map_or([bounds.x_min + 0.5 * width, bounds.y_min + 0.5 * height], |(_, place)| *place)
+}
+
+/// A number with two figures, as people write it.
+fn two_figures(number: f64) -> f64 {
+    let text = format!("{number:.1e}");
+    text.parse().unwrap_or(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ground of 60 by 40 cells of 10 m that falls to the east, with a valley along its middle row, without data in a corner.
+    fn grid(folder: &Path) -> PathBuf {
+        let mut text =
+            String::from("ncols 60\nnrows 40\nxllcorner 1000\nyllcorner 2000\ncellsize 10\nNODATA_value -9999\n");
+        for row in 0..40 {
+            let height = |column: i32| match (row, column) {
+                (0, 0) => -9999.0,
+                _ => 50.0 - 0.5 * f64::from(column) + 0.02 * f64::from(row - 20).powi(2),
+            };
+            let row: Vec<String> = (0..60).map(|column| height(column).to_string()).collect();
+            let _ = writeln!(text, "{}", row.join(" "));
+        }
+        let file = folder.join("two \"words\".asc");
+        fs::write(&file, text).unwrap();
+        file
+    }
+
+    #[test]
+    fn terrain_is_flooded_from_the_head_of_its_valley() {
+        let folder = tempfile::tempdir().unwrap();
+        let Ok(Start::Scene(source)) = open(&grid(folder.path())) else { panic!("no scene") };
+        let scene = source.scene().unwrap();
+        let flood = scene.flood().unwrap();
+        let [x, y] = flood.flood.inflow[0].at.unwrap();
+        assert!((x - 1018.0).abs() < 1.0 && (y - 2195.0).abs() < 15.0, "{x} {y}");
+        // 600 m are crossed twice in this time, a tenth of the ground is covered, by so many particles.
+        assert_eq!(scene.run.until_s, 800.0);
+        let water = 30.0 * 800.0;
+        let corpuscle::scene::Series::Constant(discharge) = flood.flood.inflow[0].discharge_m3_per_s else { panic!() };
+        assert_eq!((discharge * 800.0, flood.flood.spacing_m), (water, 5.0));
+        assert!(corpuscle::Simulation::open(scene, Path::new("")).is_ok());
+    }
+
+    #[test]
+    fn what_is_no_terrain_is_refused_and_scenes_and_runs_are_opened() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(matches!(open(folder.path()), Ok(Start::Run(_))));
+        let file = folder.path().join("notes.txt");
+        fs::write(&file, "no terrain").unwrap();
+        assert!(open(&file).unwrap_err().contains("notes.txt"));
+        assert!(open(&folder.path().join("none.tif")).unwrap_err().contains("none.tif"));
+        let scene = folder.path().join("own.TOML");
+        fs::write(&scene, corpuscle::scene::BUILTIN[0].text).unwrap();
+        let Ok(Start::Scene(source)) = open(&scene) else { panic!("no scene") };
+        assert!(source.scene().is_ok() && source.folder == folder.path());
+    }
+}

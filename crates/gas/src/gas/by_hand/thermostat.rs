@@ -1,0 +1,69 @@
+//! A gas that is held at a temperature by scaling its velocities from time to time (Woodcock 1971).
+
+use super::super::Gas;
+use corpuscle_model::ModelError;
+use serde::{Deserialize, Serialize};
+
+/// Time between two scalings, over that in which a ball at thermal speed crosses the shortest side of the box.
+const OFTEN: f64 = 0.1;
+
+/// What holds the temperature.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Thermostat {
+    temperature: f64,
+    /// Time between two scalings.
+    every: f64,
+    /// When it scales next.
+    pub next: f64,
+}
+
+impl<const D: usize> Gas<D> {
+    /// Holds the temperature from now on, or no longer.
+    pub(super) fn hold_temperature(&mut self, temperature: Option<f64>) -> Result<(), ModelError> {
+        let Some(temperature) = temperature else {
+            self.hand.thermostat = None;
+            return Ok(());
+        };
+        if self.temperature() <= 0.0 {
+            return Err(ModelError::Setup("balls that do not move have no temperature that could be scaled".into()));
+        }
+        let lightest = self.sets.iter().map(|set| set.mass).fold(f64::INFINITY, f64::min);
+        let thermal = (self.setup.boltzmann * temperature / lightest).sqrt();
+        let shortest = self.setup.size.iter().copied().fold(f64::INFINITY, f64::min);
+        let every = OFTEN * shortest / thermal;
+        self.come_to_now();
+        let next = self.mover.world().time() + every;
+        self.hand.thermostat = Some(Thermostat { temperature, every, next });
+        self.scale_energy(temperature / self.temperature());
+        Ok(())
+    }
+
+    /// Scales the velocities to the temperature that is held.
+    pub(in super::super) fn regulate(&mut self) {
+        let Some(thermostat) = &mut self.hand.thermostat else { return };
+        thermostat.next += thermostat.every;
+        let (wanted, now) = (thermostat.temperature, self.temperature_at_the_event());
+        // Where nothing moves there is nothing to scale.
+        if now > 0.0 {
+            self.scale_energy(wanted / now);
+        }
+    }
+
+    /// [`Gas::temperature`] at the time of the last event.
+    fn temperature_at_the_event(&self) -> f64 {
+        let world = self.mover.world();
+        let (mut mass, mut momentum, mut energy) = (0.0, [0.0; D], 0.0);
+        for ball in 0..world.balls.len() {
+            let (own, velocity) = (world.mass(ball), world.state(ball, world.now).1);
+            mass += own;
+            for axis in 0..D {
+                momentum[axis] += own * velocity[axis];
+                energy += 0.5 * own * velocity[axis] * velocity[axis];
+            }
+        }
+        let drift = momentum.iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
+        let freedom = self.setup.degrees_of_freedom(world.balls.len());
+        let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
+        2.0 * (energy - bound) / (freedom * self.setup.boltzmann)
+    }
+}
