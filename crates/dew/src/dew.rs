@@ -1,8 +1,13 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
 mod motion;
+#[cfg(feature = "gpu")]
+mod on_card;
 mod settle;
 mod transfer;
+
+#[cfg(feature = "gpu")]
+pub(crate) use motion::FARTHEST_SPREAD;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
@@ -28,7 +33,7 @@ pub struct Dew {
     pub(crate) room: Room,
     pub(crate) scale: Scale,
     pub(crate) solids: Solids,
-    conduction: Conduction,
+    pub(crate) conduction: Conduction,
     /// Sums of the solids' conductances, W/K.
     conductances: Vec<f64>,
     /// Heat of condensation, J/kg.
@@ -62,6 +67,9 @@ pub struct Dew {
     pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
+    /// The graphics card, where it takes the steps.
+    #[cfg(feature = "gpu")]
+    pub(crate) card: Option<crate::card::Card>,
 }
 
 /// Everything that changes.
@@ -182,6 +190,8 @@ impl Dew {
             open_sides: Vec::new(),
             fans: fans.clone(),
             wetting: None,
+            #[cfg(feature = "gpu")]
+            card: None,
         };
         dew.fill(bodies, start);
         dew.settle();
@@ -210,11 +220,21 @@ impl Dew {
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
         self.hold();
-        self.tend_drops();
+        self.tend_drops(self.state.air.len());
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
-        self.refuse_what_is_faster_than_sound(extremes.speed_squared.sqrt())?;
-        if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
+        self.check_step(extremes.speed_squared.sqrt(), step, next)
+    }
+
+    /// The shortest step with which the run goes on, s.
+    pub(crate) fn shortest_step(&self) -> f64 {
+        1e-9 * self.scale.spacing / self.air.sound_speed
+    }
+
+    /// Refuses to go on where the air is too fast or the next step, s, too short.
+    fn check_step(&self, fastest: f64, step: f64, next: f64) -> Result<(), ModelError> {
+        self.refuse_what_is_faster_than_sound(fastest)?;
+        if next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
         Err(ModelError::Breakdown {
