@@ -8,8 +8,10 @@ use corpuscle_dew::{
 };
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{ModelScene, Scene, builtin};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::TAU;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 const D: f64 = 2e-3;
@@ -339,4 +341,39 @@ fn air_that_cannot_go_on_breaks_down_with_an_error() {
     let mut dew = on_card(dew, &gpu);
     let error = dew.advance_to(1.0, &AtomicBool::new(false)).unwrap_err();
     assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
+}
+
+/// A built-in scene; its seed is 1.
+fn built_in(name: &str) -> Dew {
+    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+    scene.resolve_defaults();
+    let ModelScene::Dew(written) = &scene.model else { panic!("{name} is no dew") };
+    corpuscle_dew::open(written, 1, Path::new("")).unwrap()
+}
+
+/// Drops as frames show them: number, mass, the largest, and where they are on average.
+fn drops(dew: &Dew) -> [f64; 6] {
+    let set = dew.frame().sets.into_iter().find(|set| set.name == "drops").unwrap();
+    let mean = |axis: usize| set.position.iter().map(|place| place[axis]).sum::<f64>() / set.position.len() as f64;
+    let largest = set.mass.iter().copied().fold(0.0, f64::max);
+    [set.id.len() as f64, set.mass.iter().sum(), largest, mean(0), mean(1), mean(2)]
+}
+
+/// Drops are the host's, on a held pane and on a lens that warms; it makes no difference how often something looks.
+#[test]
+fn drops_beside_the_card_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("drops beside the card") else { return };
+    for (name, time) in [("dew/pane", 0.1), ("dew/lens", 0.1)] {
+        let [mut host, seldom, often] = [(); 3].map(|()| built_in(name));
+        let [mut seldom, mut often] = [seldom, often].map(|dew| on_card(dew, &gpu));
+        go(&mut host, time);
+        go(&mut seldom, time);
+        for look in 1..=7 {
+            go(&mut often, time * f64::from(look) / 7.0);
+        }
+        assert!(drops(&host)[0] > 100.0 && host.steps() == seldom.steps(), "{name}");
+        assert!((0..6).all(|k| near(drops(&host)[k], drops(&seldom)[k], 1e-4)), "{name}");
+        assert!(bits(&seldom) == bits(&often) && drops(&seldom) == drops(&often), "{name}");
+        assert!(seldom.ledger().balances.iter().all(|balance| balance.relative_error().abs() < 1e-6));
+    }
 }
