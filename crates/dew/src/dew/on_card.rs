@@ -60,7 +60,10 @@ impl Dew {
     /// Makes room on a card for the air that there is, and for more where air comes in, and hands the state over.
     fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let (count, come) = (self.state.air.len(), self.most_to_come());
-        let room = if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM };
+        self.open_card_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
+    }
+
+    fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut card = Card::new(gpu, room, self)?;
         card.send(&self.state);
         self.card = Some(card);
@@ -227,5 +230,44 @@ impl Dew {
         state.time_step = progress.step;
         state.next_id = progress.next_id;
         state.inlet_phase = progress.inlet_phase;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::air::Properties;
+    use crate::dew::Setup;
+    use crate::room::{Inflow, Room};
+    use crate::settings::Settings;
+    use corpuscle_gpu::require_gpu;
+    use corpuscle_model::Model;
+
+    const WARM: f64 = 300.0;
+
+    fn duct() -> Dew {
+        let inlet = Face::Inlet(Inflow { velocity: [0.097, 0.0, 0.0], temperature: WARM + 1.0, vapour: 0.01 });
+        let faces = [[inlet, Face::Outlet], [Face::Wall; 2], [Face::Periodic; 2]];
+        let room = Room { low: [0.0; 3], high: [0.02, 0.012, 0.01], faces };
+        let (settings, air) = (Settings::new(0.002, WARM, 0.01), Properties::at_room_temperature(0.5));
+        let setup = Setup { settings, air, room, bodies: Vec::new(), fans: Vec::new(), seed: 1 };
+        Dew::new(&setup, |_| [WARM, 0.01]).unwrap()
+    }
+
+    #[test]
+    fn more_room_is_taken_where_air_that_comes_might_find_none() {
+        let Some(gpu) = require_gpu("room on the card") else { return };
+        let mut cards = [(); 2].map(|()| duct());
+        let come = cards[0].most_to_come();
+        let scarce = cards[0].state.air.len() + come - 1;
+        cards[0].open_card_with(gpu.clone(), scarce).unwrap();
+        cards[1].use_card(gpu).unwrap();
+        for dew in &mut cards {
+            dew.advance_to(0.05, &AtomicBool::new(false)).unwrap();
+        }
+        let [with_more, plain] = &cards;
+        assert!(come > 0 && with_more.card.as_ref().unwrap().filling()[1] > scarce);
+        assert!(with_more.state.next_id > with_more.state.air.len() as u64, "some have come");
+        assert!(with_more.state.air == plain.state.air && with_more.state.water == plain.state.water);
     }
 }
