@@ -333,6 +333,18 @@ fn what_the_card_cannot_compute_is_refused_by_name() {
 }
 
 #[test]
+fn a_lost_card_leaves_the_state_of_before() {
+    let Some(gpu) = require_gpu("a card that is lost") else { return };
+    let mut dew = on_card(built_in("dew/pane"), &gpu);
+    go(&mut dew, 0.05);
+    let saved = dew.save();
+    gpu.device.destroy();
+    let error = dew.advance_to(0.1, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, ModelError::Device(_)), "{error}");
+    assert!(dew.save() == saved && dew.time() == 0.05);
+}
+
+#[test]
 fn air_that_cannot_go_on_breaks_down_with_an_error() {
     let Some(gpu) = require_gpu("a breakdown on the card") else { return };
     let setup = ball([[Face::Wall; 2]; 3], false);

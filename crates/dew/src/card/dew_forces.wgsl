@@ -1,14 +1,13 @@
 // What air and solids do to a parcel, the second half of its kick, heat and vapour of the whole step, and what it then has beyond
-// saturation. Twin of `air/pairs.rs`, `walls.rs`, `Exchange::to_one`, and of `kick` and `saturate` in `dew/`.
+// saturation. Twin of `air/pairs.rs`, `walls.rs`, `Exchange::to_one`, and of `kick` in `dew/motion.rs`.
 #import dew_neighbours
 #import dew_humid
+#import dew_saturate
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> columns: array<Column>;
 @group(0) @binding(4) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(5) var<storage, read> site_start: array<u32>;
-@group(0) @binding(6) var<storage, read> sites: array<Site>;
 @group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 
@@ -177,73 +176,12 @@ fn driving(particle: Particle) -> vec3f {
     return driven - lighter / (parameters.ambient * moist) * parameters.gravity;
 }
 
-// 1/Pa times Pa: how fast the mass fraction grows with relative humidity. Twin of `HumidAir::mass_fraction_slope`.
+// How fast the mass fraction grows with relative humidity. Twin of `HumidAir::mass_fraction_slope`.
 fn fraction_by_humidity(vapour: f32) -> f32 {
     let fraction = parameters.ambient_vapour + vapour;
     let pressure = parameters.air_pressure * fraction / (MASS_RATIO + (1.0 - MASS_RATIO) * fraction);
     let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
     return parameters.saturated * MASS_RATIO * parameters.air_pressure / (rest * rest);
-}
-
-// Twin of `exchange::excess`, whose slope is a difference that single precision would lose.
-fn excess(particle: Particle) -> f32 {
-    let warming = parameters.latent_heat / parameters.heat_capacity;
-    let temperature = value(particle.temperature);
-    let vapour = value(particle.vapour);
-    if !(particle.fog > 0.0 || vapour > saturation(temperature).x) {
-        return 0.0;
-    }
-    var condensed = 0.0;
-    for (var k = 0u; k < 3u; k++) {
-        let saturated = saturation(temperature + warming * condensed);
-        condensed += (vapour - condensed - saturated.x) / (1.0 + warming * saturated.y);
-    }
-    return max(condensed, -particle.fog);
-}
-
-// Sum of the weights of the boundary particles near, and with the part of the heat that each takes. Twin of `Exchange::shares`.
-fn weights_near(place: vec3f) -> vec2f {
-    var sums = vec2f(0.0);
-    let low = cell_index(place - parameters.h);
-    let high = cell_index(place + parameters.h);
-    for (var z = low.z; z <= high.z; z++) {
-        for (var y = low.y; y <= high.y; y++) {
-            let row = row_of(y, z);
-            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
-                if (sites[k].flags & BOUNDARY) != 0u {
-                    let away = (place - sites[k].place) * parameters.per_h;
-                    let weight = sites[k].volume * poly6(dot(away, away));
-                    sums += vec2f(weight, weight * sites[k].part);
-                }
-            }
-        }
-    }
-    return sums;
-}
-
-// What a parcel has beyond saturation goes onto solids near it, or becomes fog; gives the vapour that became fog.
-fn saturate(particle: ptr<function, Particle>) -> f32 {
-    let excess = excess(*particle);
-    if excess == 0.0 {
-        return 0.0;
-    }
-    let warming = parameters.latent_heat / parameters.heat_capacity * excess;
-    if excess > 0.0 {
-        let weights = weights_near((*particle).place);
-        if weights.x > 0.0 {
-            (*particle).deposit = parameters.mass * excess / weights.x;
-            (*particle).vapour = add((*particle).vapour, -excess);
-            (*particle).temperature = add((*particle).temperature, warming * (1.0 - weights.y / weights.x));
-            return 0.0;
-        }
-    }
-    if !is_set(FOGS) {
-        return 0.0;
-    }
-    (*particle).vapour = add((*particle).vapour, -excess);
-    (*particle).temperature = add((*particle).temperature, warming);
-    (*particle).fog += excess;
-    return excess;
 }
 
 // Time step limits: see `next_step` in `dew/motion.rs`.

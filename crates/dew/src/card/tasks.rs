@@ -11,6 +11,7 @@ const LIBRARY: &[(&str, &str)] = &[
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),
     ("dew_humid", include_str!("dew_humid.wgsl")),
+    ("dew_saturate", include_str!("dew_saturate.wgsl")),
 ];
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.

@@ -104,7 +104,7 @@ impl Dew {
             self.shown = time;
             return Ok(());
         }
-        let before = (self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
+        let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
         let broken = self.go_on_card(time, stop).and_then(|broken| self.fetch_from_card().map(|()| broken));
         match broken {
             Ok(None) => Ok(()),
@@ -117,8 +117,8 @@ impl Dew {
     }
 
     /// What is here changes only when all of it has come back.
-    fn go_back_to(&mut self, (state, drops): (State, Option<WettingState>)) {
-        self.state = state;
+    fn go_back_to(&mut self, (shown, state, drops): (f64, State, Option<WettingState>)) {
+        (self.shown, self.state) = (shown, state);
         if let (Some(wetting), Some(drops)) = (&mut self.wetting, drops) {
             wetting.restore(drops);
         }
