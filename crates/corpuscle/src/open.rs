@@ -2,6 +2,8 @@
 
 use crate::ground::ground;
 use crate::{Error, Simulation};
+#[cfg(feature = "gpu")]
+use corpuscle_dew::Dew;
 use corpuscle_flood::Flood;
 use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
@@ -38,12 +40,14 @@ impl Simulation {
     pub fn use_gpu(&mut self) -> Result<(), Error> {
         let name = self.model().name();
         let model: &mut dyn Any = self.model_mut();
-        let Some(flood) = model.downcast_mut::<Flood>() else {
-            let what = format!("the model {name} computes on the CPU only: leave `--backend gpu` out");
-            return Err(ModelError::Setup(what).into());
-        };
-        let gpu = corpuscle_gpu::Gpu::open()?;
-        Ok(flood.use_card(gpu)?)
+        if let Some(flood) = model.downcast_mut::<Flood>() {
+            return Ok(flood.use_card(corpuscle_gpu::Gpu::open()?)?);
+        }
+        if let Some(dew) = model.downcast_mut::<Dew>() {
+            return Ok(dew.use_card(corpuscle_gpu::Gpu::open()?)?);
+        }
+        let what = format!("the model {name} computes on the CPU only: leave `--backend gpu` out");
+        Err(ModelError::Setup(what).into())
     }
 
     fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {

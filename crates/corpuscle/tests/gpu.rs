@@ -1,4 +1,4 @@
-//! Built-in floods on the graphics card.
+//! Built-in floods and dew on the graphics card.
 #![cfg(feature = "gpu")]
 
 use corpuscle::Simulation;
@@ -52,15 +52,44 @@ fn built_in_floods_go_as_on_the_processor() {
     }
 }
 
-/// What the card cannot compute says so by name, and those that it can are in the list above.
+/// Time to go: some fifty steps and more, so that there are drops.
+const DEW: [(&str, f64); 3] = [("dew/pane", 0.15), ("dew/lens", 0.1), ("dew/three-boundaries", 0.008)];
+
+/// Drops on the processor beside air on the card are the same drops, so their numbers are the same too.
+#[test]
+fn built_in_dew_goes_as_on_the_processor() {
+    if require_gpu("built-in dew on the card").is_none() {
+        return;
+    }
+    for (name, time) in DEW {
+        let (mut host, mut card) = (open(name), open(name));
+        card.use_gpu().unwrap();
+        assert_eq!(card.model().backend(), "gpu");
+        for simulation in [&mut host, &mut card] {
+            simulation.model_mut().advance_to(time, &AtomicBool::new(false)).unwrap();
+        }
+        let (host, card) = (host.model(), card.model());
+        assert!(host.steps() >= 50 && host.steps() == card.steps(), "{name}: {} steps", host.steps());
+        let columns = host.gauge_columns();
+        for ((column, host), card) in columns.iter().zip(host.gauge_row()).zip(card.gauge_row()) {
+            let is_near = (host - card).abs() <= 1e-4 * host.abs() || (host.is_nan() && card.is_nan());
+            assert!(is_near, "{name}, {}.{}: {host} and {card}", column.gauge, column.quantity);
+        }
+        let errors = card.ledger().balances.into_iter().map(|balance| balance.relative_error().abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-6, "{name}");
+    }
+}
+
+/// What the card cannot compute says so by name, and those that it can are in the lists above.
 #[test]
 fn the_other_built_in_scenes_are_refused() {
     if require_gpu("refusals by the card").is_none() {
         return;
     }
     let fetched = |text: &str| text.contains("[terrain.fetch]");
-    let others =
-        BUILTIN.iter().filter(|scene| !TIMES.iter().any(|(name, _)| *name == scene.name) && !fetched(scene.text));
+    let others = BUILTIN
+        .iter()
+        .filter(|scene| !TIMES.iter().chain(&DEW).any(|(name, _)| *name == scene.name) && !fetched(scene.text));
     for scene in others.filter(|scene| scene.name != "gas/million") {
         let error = open(scene.name).use_gpu().unwrap_err();
         assert!(error.is_refusal() && error.to_string().contains("--backend"), "{}: {error}", scene.name);

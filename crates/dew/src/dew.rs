@@ -2,10 +2,14 @@
 
 mod by_hand;
 mod motion;
+#[cfg(feature = "gpu")]
+mod on_card;
 mod settle;
 mod transfer;
 
 pub use by_hand::ByHand;
+#[cfg(feature = "gpu")]
+pub(crate) use motion::FARTHEST_SPREAD;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
@@ -32,7 +36,7 @@ pub struct Dew {
     pub(crate) room: Room,
     pub(crate) scale: Scale,
     pub(crate) solids: Solids,
-    conduction: Conduction,
+    pub(crate) conduction: Conduction,
     /// Sums of the solids' conductances, W/K.
     conductances: Vec<f64>,
     /// Heat of condensation, J/kg.
@@ -70,6 +74,9 @@ pub struct Dew {
     pub(crate) buoyant: bool,
     /// What a hand can change, as it was set up, once one has changed it.
     as_set_up: Option<Hand>,
+    /// The graphics card, where it takes the steps.
+    #[cfg(feature = "gpu")]
+    pub(crate) card: Option<crate::card::Card>,
 }
 
 /// Everything that changes.
@@ -195,6 +202,8 @@ impl Dew {
             wetting: None,
             buoyant: true,
             as_set_up: None,
+            #[cfg(feature = "gpu")]
+            card: None,
         };
         dew.fill(bodies, start);
         dew.settle();
@@ -223,11 +232,21 @@ impl Dew {
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
         self.hold();
-        self.tend_drops();
+        self.tend_drops(self.state.air.len());
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
-        self.refuse_what_is_faster_than_sound(extremes.speed_squared.sqrt())?;
-        if next.is_finite() && next > 1e-9 * self.scale.spacing / self.air.sound_speed {
+        self.check_step(extremes.speed_squared.sqrt(), step, next)
+    }
+
+    /// The shortest step with which the run goes on, s.
+    pub(crate) fn shortest_step(&self) -> f64 {
+        1e-9 * self.scale.spacing / self.air.sound_speed
+    }
+
+    /// Refuses to go on where the air is too fast or the next step, s, too short.
+    fn check_step(&self, fastest: f64, step: f64, next: f64) -> Result<(), ModelError> {
+        self.refuse_what_is_faster_than_sound(fastest)?;
+        if next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
         Err(ModelError::Breakdown {

@@ -49,6 +49,24 @@ impl Fan {
         self.speed
     }
 
+    /// The corners of its box, m.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn corners(&self) -> [[f64; 3]; 2] {
+        [self.low, self.high]
+    }
+
+    /// Unit vector along which it drives.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn direction(&self) -> [f64; 3] {
+        self.direction
+    }
+
+    /// How fast air takes its speed, 1/s.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
+    }
+
     /// What it adds to the acceleration of air at a place that moves at a velocity, m/s2. It holds no air up that is faster.
     pub fn acceleration(&self, place: [f64; 3], velocity: [f64; 3]) -> [f64; 3] {
         if (0..3).any(|axis| place[axis] < self.low[axis] || place[axis] >= self.high[axis]) {

@@ -9,6 +9,8 @@
 
 pub mod air;
 pub mod bodies;
+#[cfg(feature = "gpu")]
+mod card;
 mod contact;
 mod dew;
 pub mod drops;

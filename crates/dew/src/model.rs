@@ -77,6 +77,11 @@ impl Model for Dew {
         "dew"
     }
 
+    #[cfg(feature = "gpu")]
+    fn backend(&self) -> &'static str {
+        if self.card.is_some() { "gpu" } else { "cpu" }
+    }
+
     fn time(&self) -> f64 {
         self.shown
     }
@@ -94,6 +99,10 @@ impl Model for Dew {
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.card.is_some() {
+            return self.advance_on_card(time, stop);
+        }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -174,6 +183,7 @@ impl Model for Dew {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);
-        self.take_hand()
+        self.take_hand()?;
+        self.renew_card()
     }
 }

@@ -74,8 +74,20 @@ impl Wetting {
         &self.drops
     }
 
-    /// Whether it is their turn in a step.
-    fn is_due(&self, step: u64, air: usize) -> bool {
+    /// It may be their turn once in so many steps.
+    #[cfg(feature = "gpu")]
+    pub fn steps(&self) -> u64 {
+        STEPS
+    }
+
+    /// Steps since they last moved, in a step.
+    #[cfg(feature = "gpu")]
+    pub fn steps_since(&self, step: u64) -> u64 {
+        step - self.step
+    }
+
+    /// Whether it is their turn in a step, with so many parcels of air.
+    pub fn is_due(&self, step: u64, air: usize) -> bool {
         let many = DROPS_TOGETHER * self.drops.drops().len() / air.max(1);
         step - self.step >= STEPS * (1 + many as u64)
     }
@@ -225,9 +237,9 @@ impl Dew {
         self.wetting = Some(Wetting::new(drops, particles));
     }
 
-    /// Drops take over what condensed, where it is their turn.
-    pub(crate) fn tend_drops(&mut self) {
-        let (step, air) = (self.state.steps, self.state.air.len());
+    /// Drops take over what condensed, where it is their turn; there are so many parcels of air.
+    pub(crate) fn tend_drops(&mut self, air: usize) {
+        let step = self.state.steps;
         let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
         wetting.step = step;
         let left = wetting.take_over(&mut self.state.water_on, self.state.time);

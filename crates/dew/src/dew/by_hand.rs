@@ -89,7 +89,8 @@ impl ByHand {
     /// Changes a model that is one of dew.
     ///
     /// # Errors
-    /// [`ModelError::Setup`] where it is none, has nothing of the kind, or the number is out of range: nothing has changed then.
+    /// [`ModelError::Setup`] where it is none, has nothing of the kind, or the number is out of range: nothing has changed then;
+    /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
     pub fn change(self, model: &mut dyn Any) -> Result<(), ModelError> {
         match model.downcast_mut::<Dew>() {
             Some(dew) => dew.change_by_hand(self),
@@ -158,6 +159,13 @@ impl Dew {
         self.as_set_up.get_or_insert(before);
         self.keep_sound_faster();
         self.state.hand = Some(self.as_it_is());
+        self.renew_card()
+    }
+
+    /// A card that takes the steps gets to know what has changed.
+    pub(crate) fn renew_card(&mut self) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        self.tell_card()?;
         Ok(())
     }
 

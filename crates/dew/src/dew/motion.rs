@@ -15,7 +15,7 @@ const ACCELERATION_LIMIT: f64 = 0.25;
 const DIFFUSION_LIMIT: f64 = 0.9;
 
 /// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
-pub(super) const FARTHEST_SPREAD: f64 = 0.05;
+pub(crate) const FARTHEST_SPREAD: f64 = 0.05;
 
 /// The largest of what limits the time step.
 #[derive(Debug, Clone, Copy, Default)]

@@ -11,7 +11,7 @@ use crate::room::{Face, Room};
 use crate::solids::{Body, Searched};
 
 /// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
-const BEYOND: f64 = 2.0;
+pub(crate) const BEYOND: f64 = 2.0;
 
 /// Air starts no nearer to a solid's surface than this, in spacings.
 const CLEARANCE: f64 = 0.25;

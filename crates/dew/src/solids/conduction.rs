@@ -64,7 +64,8 @@ impl Conduction {
         self.conductance.iter_mut().for_each(|conductance| *conductance *= times);
     }
 
-    fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+    /// The particles that are near one, and the conductances to them, W/K.
+    pub(crate) fn pairs(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.start[i] as usize..self.start[i + 1] as usize;
         self.other[range.clone()].iter().map(|&other| other as usize).zip(self.conductance[range].iter().copied())
     }

@@ -1,0 +1,302 @@
+// What the kernels of humid air share: numbers of the run, parcels of air, particles of solids, and what the host learns of a step.
+
+// Air as it comes in by a face: m/s, K and part of the mass from the ambient air's; where a new layer stands, m beyond the face.
+struct Inlet {
+    velocity: vec3f,
+    temperature: f32,
+    vapour: f32,
+    behind: f32,
+    unused: vec2f,
+}
+
+// A box in which air is driven along `direction` to a speed, m/s, at a rate, 1/s.
+struct Fan {
+    low: vec3f,
+    rate: f32,
+    high: vec3f,
+    speed: f32,
+    direction: vec3f,
+    unused: f32,
+}
+
+struct Parameters {
+    // Corners of the room, m from its middle; the kernels' support and the spacing, m.
+    low: vec3f,
+    h: f32,
+    high: vec3f,
+    spacing: f32,
+    // What the faces do: at low and high x, low and high y; at low and high z.
+    faces: array<vec4u, 2>,
+    // Cells: their lowest corner, m, cells per metre, and how many along each axis.
+    corner: vec3f,
+    per_cell: f32,
+    cells: vec3u,
+    flags: u32,
+    // Distance of parcels that come in by inlets, m, and how many along each axis.
+    apart: vec3f,
+    fans: u32,
+    counts: vec3u,
+    per_h: f32,
+    // m/s2; artificial speed of sound, m/s; kinematic viscosity, m2/s.
+    gravity: vec3f,
+    sound: f32,
+    driven: vec3f,
+    viscosity: f32,
+    // Density of the air and the one at which the pressure is that at rest, kg/m3; how dense solids are for the air.
+    density: f32,
+    rest_density: f32,
+    kappa: f32,
+    // Factors of the sums over (1 - q^2)^3, q^2 (1 - q), and, over r or not, (1 - q)^2 and (1 - q), with q = r/h.
+    of_filling: f32,
+    of_moment: f32,
+    of_pressure: f32,
+    of_spread: f32,
+    of_laplacian: f32,
+    // Conductance over conductivity of a pair of air and solid, m; mass of a parcel, kg.
+    of_pair: f32,
+    mass: f32,
+    // J/(kg K), J/kg, W/(m K).
+    heat_capacity: f32,
+    latent_heat: f32,
+    // m2/s, as fast as time goes; and the largest diffusivity.
+    heat_diffusivity: f32,
+    vapour_diffusivity: f32,
+    diffusivity: f32,
+    // Twice density times diffusivity of vapour, kg/(m s).
+    vapour_reach: f32,
+    // The ambient air, from which temperature, K, and vapour, part of the mass, are counted: also in degrees C; pressure, Pa.
+    ambient: f32,
+    ambient_vapour: f32,
+    celsius: f32,
+    air_pressure: f32,
+    // Times the gradient of crowding, m2/s2; farthest that a parcel is put in a step, m.
+    spreading: f32,
+    farthest: f32,
+    cfl: f32,
+    shortest_step: f32,
+    // Least speed beyond outlets, m/s.
+    slowest: f32,
+    // Pressure of saturated vapour at the ambient temperature, Pa, and vapour pressure of the ambient air, Pa.
+    saturated: f32,
+    ambient_pressure: f32,
+    // 0, which no compiler knows: see `add`.
+    zero: u32,
+    // By low and high x, y, z.
+    inlets: array<Inlet, 6>,
+    fan: array<Fan, 8>,
+}
+
+// Flags.
+// Air comes and goes by faces.
+const IS_PASSED = 1u;
+// Vapour diffuses to surfaces; else parcels that are colder than their dew point give up what they have too much.
+const DIFFUSES = 2u;
+const FOGS = 4u;
+const SATURATES = 8u;
+// Air faster than sound is refused.
+const REFUSES_FAST = 16u;
+// What diffuses is relative humidity.
+const RELATIVE = 32u;
+
+// Faces.
+const WALL = 0u;
+const PERIODIC = 1u;
+const INLET = 2u;
+const OUTLET = 3u;
+
+// Roles; those of a face have its number, twice the axis and 1 for the high side, in higher bits.
+const INSIDE = 0u;
+const COMING = 1u;
+const LEAVING = 2u;
+const FACE_BITS = 4u;
+const ROLE_MASK = 15u;
+
+// A sum that does not forget what is small (Kahan 1965): the sum and what it has too much.
+struct Account {
+    sum: f32,
+    lacking: f32,
+}
+
+struct Account4 {
+    sum: vec4f,
+    lacking: vec4f,
+}
+
+// A parcel of air; temperature, K, and vapour, part of the mass, are counted from the ambient air's.
+struct Particle {
+    place: vec3f,
+    density: f32,
+    velocity: vec3f,
+    fog: f32,
+    acceleration: vec3f,
+    // Water that it lays on solids near, kg, over the sum of their weights.
+    deposit: f32,
+    spreading: vec3f,
+    id: u32,
+    temperature: Account,
+    vapour: Account,
+    role: u32,
+    // What the Laplacian is multiplied by so that it is exact where particles stand as they do.
+    evenness: f32,
+    unused: vec2f,
+}
+
+// What neighbours read of a parcel; its pressure over the square of the density, Pa m6/kg2.
+struct Column {
+    place: vec3f,
+    pressure: f32,
+    velocity: vec3f,
+    evenness: f32,
+    temperature: f32,
+    vapour: f32,
+    // What of the vapour diffuses: its part of the mass, or relative humidity.
+    humidity: f32,
+    unused: f32,
+}
+
+// A particle of a solid, its image, or a ghost sample.
+struct Site {
+    place: vec3f,
+    // Over that of a parcel.
+    volume: f32,
+    // Conductivities with which the air is warmed and the solid, W/(m K).
+    to_air: f32,
+    to_solid: f32,
+    // Part of the heat at the surface that goes to the solid.
+    part: f32,
+    flags: u32,
+    particle: u32,
+    // Its pairs in the list of conductances.
+    first: u32,
+    end: u32,
+    // J/K.
+    capacity: f32,
+}
+
+// Flags of sites.
+const BOUNDARY = 1u;
+const NEAR_SURFACE = 2u;
+const JOINS_DENSITY = 4u;
+const REPELS = 8u;
+const GHOST = 16u;
+const HELD = 32u;
+
+// Water on a solid's particle when the host last told, and gained since, kg.
+struct Water {
+    told: f32,
+    unused: f32,
+    gained: Account,
+}
+
+// What else changes of a solid's particle; its temperature is counted from the ambient air's, K.
+struct Solid {
+    temperature: Account,
+    // Heat through the surface, W, and heat that it was held against, J, in the last step; how stiff diffusion was, 1/s.
+    flow: f32,
+    held: f32,
+    stiff: f32,
+}
+
+// What air sees of a solid's particle in a step, and what it gets.
+struct Surface {
+    temperature: f32,
+    water: f32,
+    // Part of the evaporation asked for that there is water for.
+    share: f32,
+    // Heat from the air, W, and with that through the solid, W; water, kg/s; conductances to air and within, W/K.
+    heat: f32,
+    all_heat: f32,
+    gain: f32,
+    conductance: f32,
+    unused: f32,
+}
+
+// A solid: its particles, and what they sum up to: W, J, 1/s.
+struct Body {
+    first: u32,
+    end: u32,
+    flow: f32,
+    stiff: f32,
+    held: Account,
+}
+
+// What a group of threads sums up over its parcels: numbers, and temperature, vapour and fog, of those that came and went; what
+// diffused, K/s and 1/s; vapour that became fog; the longest step, s, and the fastest, m2/s2.
+struct Partial {
+    came: vec4f,
+    went: vec4f,
+    diffused: vec2f,
+    fogged: f32,
+    longest: f32,
+    fastest: f32,
+}
+
+struct Status {
+    // These two first: the sort reads them.
+    particles: u32,
+    cells: u32,
+    halted: u32,
+    steps: u32,
+    // Particle-steps, low and high half.
+    particle_steps: vec2u,
+    // The next step, s; and time since the host last spoke, s, with that at which to halt.
+    step: f32,
+    until: f32,
+    elapsed: Account,
+    next_id: u32,
+    // The fastest parcel in the last step, m2/s2.
+    fastest: f32,
+    came: Account4,
+    went: Account4,
+    // Over the mass of a parcel: water that diffused in and out over faces, and energy, J/kg.
+    diffused: Account4,
+    fogged: Account,
+    unused: vec2f,
+    // How far the air before each inlet has come since its last layer, m.
+    phase: array<Account, 6>,
+    // What air beyond each outlet is faster by, m/s.
+    before: array<f32, 6>,
+    spare: vec2f,
+    // How long the steps were, s.
+    lengths: array<f32, 64>,
+}
+
+const GOING = 0u;
+const ARRIVED = 1u;
+const BROKEN = 2u;
+// The host has said until when to go on.
+const SPOKEN = 3u;
+
+const FAR = 3.0e38;
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
+
+fn face(number: u32) -> u32 {
+    return parameters.faces[number / 4u][number % 4u];
+}
+
+fn is_set(flag: u32) -> bool {
+    return (parameters.flags & flag) != 0u;
+}
+
+// A number that compilers cannot tell: some take (a + b) - a for b, and what a sum has too much for 0.
+fn opaque(number: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(number) ^ parameters.zero);
+}
+
+fn add(account: Account, value: f32) -> Account {
+    let more = value - account.lacking;
+    let sum = opaque(account.sum + more);
+    return Account(sum, opaque(sum - account.sum) - more);
+}
+
+fn add4(account: Account4, value: vec4f) -> Account4 {
+    let more = value - account.lacking;
+    let sum = bitcast<vec4f>(bitcast<vec4u>(account.sum + more) ^ vec4u(parameters.zero));
+    let added = bitcast<vec4f>(bitcast<vec4u>(sum - account.sum) ^ vec4u(parameters.zero));
+    return Account4(sum, added - more);
+}
+
+fn value(account: Account) -> f32 {
+    return account.sum - account.lacking;
+}

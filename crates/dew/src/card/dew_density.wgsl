@@ -1,0 +1,130 @@
+// How dense the air is and how regularly its parcels stand, solids among them, and what neighbours read of each. Twin of
+// `air/density.rs`, of `add_density` and `add_moment` in `walls.rs`, and of `fill_columns` in `dew/motion.rs`.
+#import dew_neighbours
+#import dew_humid
+
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> spots: array<vec4f>;
+@group(0) @binding(4) var<storage, read> ordered: array<Particle>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(6) var<storage, read_write> columns: array<Column>;
+@group(0) @binding(7) var<storage, read> site_start: array<u32>;
+@group(0) @binding(8) var<storage, read> sites: array<Site>;
+
+// Filling and moment by the air, itself included.
+fn of_air(i: u32, place: vec3f) -> vec2f {
+    var sums = vec2f(1.0, 0.0);
+    let mirrors = mirrors_round(place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, place);
+        if !mirror.is_there {
+            continue;
+        }
+        let truth = behind(mirror, place);
+        let low = cell_index(truth - parameters.h);
+        let high = cell_index(truth + parameters.h);
+        for (var z = low.z; z <= high.z; z++) {
+            for (var y = low.y; y <= high.y; y++) {
+                let row = row_of(y, z);
+                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
+                    let away = (shown(mirror, spots[j].xyz) - place) * parameters.per_h;
+                    let q_squared = dot(away, away);
+                    if q_squared >= 1.0 || (j == i && k == 0u) {
+                        continue;
+                    }
+                    sums += vec2f(poly6(q_squared), q_squared * (1.0 - sqrt(q_squared)));
+                }
+            }
+        }
+    }
+    return sums;
+}
+
+// The same by solids: their particles and ghost samples.
+fn of_solids(place: vec3f) -> vec2f {
+    var sums = vec2f(0.0);
+    let low = cell_index(place - parameters.h);
+    let high = cell_index(place + parameters.h);
+    for (var z = low.z; z <= high.z; z++) {
+        for (var y = low.y; y <= high.y; y++) {
+            let row = row_of(y, z);
+            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
+                let away = (sites[k].place - place) * parameters.per_h;
+                let q_squared = dot(away, away);
+                if q_squared >= 1.0 {
+                    continue;
+                }
+                let flags = sites[k].flags;
+                if (flags & GHOST) != 0u {
+                    sums.x += sites[k].volume * poly6(q_squared);
+                    continue;
+                }
+                if (flags & JOINS_DENSITY) != 0u {
+                    sums.x += parameters.kappa * sites[k].volume * poly6(q_squared);
+                }
+                sums.y += sites[k].volume * q_squared * (1.0 - sqrt(q_squared));
+            }
+        }
+    }
+    return sums;
+}
+
+// Twin of `Room::is_before_outlet`.
+fn is_before_outlet(place: vec3f) -> bool {
+    for (var number = 0u; number < 6u; number++) {
+        let axis = number / 2u;
+        let to = select(parameters.high[axis] - place[axis], place[axis] - parameters.low[axis], number % 2u == 0u);
+        if to < parameters.h && face(number) == OUTLET {
+            return true;
+        }
+    }
+    return false;
+}
+
+fn density_of(particle: Particle, filling: f32) -> f32 {
+    let density = parameters.density * filling;
+    if (particle.role & ROLE_MASK) == LEAVING {
+        // Beyond an outlet the air is as it is at rest.
+        return parameters.rest_density;
+    }
+    if is_before_outlet(particle.place) {
+        // Where air would flow back in there is none beyond: that must not suck.
+        return max(density, parameters.rest_density);
+    }
+    return density;
+}
+
+// Relative humidity referred to the ambient temperature, less that of the ambient air.
+fn relative_humidity(vapour: f32) -> f32 {
+    let fraction = parameters.ambient_vapour + vapour;
+    let pressure = parameters.air_pressure * fraction / (MASS_RATIO + (1.0 - MASS_RATIO) * fraction);
+    return (pressure - parameters.ambient_pressure) / parameters.saturated;
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= status.particles {
+        return;
+    }
+    var particle = ordered[i];
+    let sums = of_air(i, particle.place) + of_solids(particle.place);
+    particle.density = density_of(particle, parameters.of_filling * sums.x);
+    // A particle with few neighbours diffuses no faster than one with half of them.
+    particle.evenness = 1.0 / max(parameters.of_moment * sums.y, 0.5);
+    var velocity = particle.velocity;
+    if particle.role == INSIDE {
+        velocity += 0.5 * status.step * particle.acceleration;
+    }
+    let density = particle.density;
+    let pressure = parameters.sound * parameters.sound * (density - parameters.rest_density) / (density * density);
+    let temperature = value(particle.temperature);
+    let vapour = value(particle.vapour);
+    var humidity = vapour;
+    if is_set(RELATIVE) {
+        humidity = relative_humidity(vapour);
+    }
+    columns[i] = Column(particle.place, pressure, velocity, particle.evenness, temperature, vapour, humidity, 0.0);
+    particles[i] = particle;
+}

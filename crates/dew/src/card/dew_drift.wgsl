@@ -1,0 +1,91 @@
+// Half a kick with the old acceleration, then on by a whole step; and how the air before outlets is accelerated. Twin of `drift` in
+// `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `acceleration_before` in `faces/mod.rs`.
+#import dew_card
+
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+// Sum of the accelerations before each face, m/s2, and number.
+@group(0) @binding(3) var<storage, read_write> before: array<array<vec2f, 6>>;
+
+var<workgroup> sums: array<vec2f, 256>;
+
+fn wrapped(at: f32, low: f32, high: f32) -> f32 {
+    let size = high - low;
+    let shifted = at - size * floor((at - low) / size);
+    return select(low, shifted, shifted >= low && shifted < high);
+}
+
+// Brings back what has crossed periodic faces and walls, and what has gone beyond the rim of an inlet.
+fn keep(particle: ptr<function, Particle>) {
+    let is_coming = ((*particle).role & ROLE_MASK) == COMING;
+    let inlet = (*particle).role >> FACE_BITS;
+    for (var axis = 0u; axis < 3u; axis++) {
+        let low = parameters.low[axis];
+        let high = parameters.high[axis];
+        let at = (*particle).place[axis];
+        if at >= low && at < high {
+            continue;
+        }
+        let side = select(0u, 1u, at >= high);
+        let rule = face(2u * axis + side);
+        if rule == PERIODIC || (is_coming && axis != inlet / 2u) {
+            (*particle).place[axis] = wrapped(at, low, high);
+        } else if rule == WALL {
+            // The largest number below the high side.
+            let last = bitcast<f32>(bitcast<u32>(high) - 1u);
+            (*particle).place[axis] = clamp(2.0 * select(high, low, side == 0u) - at, low, last);
+            (*particle).velocity[axis] = -(*particle).velocity[axis];
+        }
+    }
+}
+
+// What a parcel adds to the mean before a face.
+fn counted(particle: Particle, number: u32) -> vec2f {
+    let axis = number / 2u;
+    let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);
+    let is_near = particle.role == INSIDE && abs(particle.place[axis] - at_face) < parameters.h;
+    return select(vec2f(0.0), vec2f(particle.acceleration[axis], 1.0), is_near);
+}
+
+@compute @workgroup_size(256)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let i = id.x;
+    let is_there = i < status.particles;
+    var particle: Particle;
+    if is_there {
+        particle = particles[i];
+        let step = status.step;
+        if particle.role == INSIDE {
+            particle.velocity += 0.5 * step * particle.acceleration;
+        }
+        // The transport velocity (Adami, Hu & Adams 2013, equations 6 and 8).
+        let spread = clamp(step * step * particle.spreading, vec3f(-parameters.farthest), vec3f(parameters.farthest));
+        particle.place += step * particle.velocity + spread;
+        keep(&particle);
+        particles[i] = particle;
+    }
+    for (var number = 0u; number < 6u; number++) {
+        if face(number) != OUTLET {
+            continue;
+        }
+        sums[thread] = vec2f(0.0);
+        if is_there {
+            sums[thread] = counted(particle, number);
+        }
+        workgroupBarrier();
+        for (var half = 128u; half > 0u; half /= 2u) {
+            if thread < half {
+                sums[thread] += sums[thread + half];
+            }
+            workgroupBarrier();
+        }
+        if thread == 0u {
+            before[group.x][number] = sums[0];
+        }
+        workgroupBarrier();
+    }
+}

@@ -1,0 +1,102 @@
+// Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
+// `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
+#import dew_card
+
+@group(0) @binding(1) var<storage, read_write> status: Status;
+@group(0) @binding(2) var<storage, read> partials: array<Partial>;
+// Slots of three numbers: a thread for each parcel, a thread for each cell, a group for each block of 1024 cells, one group, a thread for
+// each particle of the solids, a group for each solid.
+@group(0) @binding(3) var<storage, read_write> groups: array<u32>;
+@group(0) @binding(4) var<storage, read> bodies: array<Body>;
+@group(0) @binding(5) var<storage, read> own: array<Site>;
+
+const DIFFUSION_LIMIT = 0.9;
+
+const THREADS = 128u;
+
+var<workgroup> sums: array<Partial, 128>;
+
+fn joined(a: Partial, b: Partial) -> Partial {
+    return Partial(
+        a.came + b.came,
+        a.went + b.went,
+        a.diffused + b.diffused,
+        a.fogged + b.fogged,
+        min(a.longest, b.longest),
+        max(a.fastest, b.fastest),
+    );
+}
+
+// Books what the groups have summed up.
+fn book(all: Partial) {
+    let step = status.step;
+    status.came = add4(status.came, all.came);
+    status.went = add4(status.went, all.went);
+    if is_set(IS_PASSED) {
+        let water = step * all.diffused.y;
+        let energy = step * (parameters.heat_capacity * all.diffused.x + parameters.latent_heat * all.diffused.y);
+        status.diffused = add4(status.diffused, max(vec4f(water, -water, energy, -energy), vec4f(0.0)));
+    }
+    status.fogged = add(status.fogged, all.fogged);
+    status.elapsed = add(status.elapsed, step);
+    status.lengths[min(status.steps, 63u)] = step;
+    status.steps += 1u;
+    let low = status.particle_steps.x + status.particles;
+    status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
+    var stiffest = 1e-30;
+    for (var body = 0u; body < arrayLength(&bodies); body++) {
+        stiffest = max(stiffest, bodies[body].stiff);
+    }
+    status.step = min(all.longest, DIFFUSION_LIMIT / stiffest);
+    status.fastest = all.fastest;
+}
+
+fn decide() {
+    let is_fast = is_set(REFUSES_FAST) && status.fastest > parameters.sound * parameters.sound;
+    if !(status.step > parameters.shortest_step) || is_fast {
+        status.halted = BROKEN;
+    } else if status.elapsed.sum + status.step > status.until {
+        status.halted = ARRIVED;
+    } else {
+        status.halted = GOING;
+    }
+    let counts = array(
+        (status.particles + 255u) / 256u,
+        (status.cells + 255u) / 256u,
+        (status.cells + 1023u) / 1024u,
+        1u,
+        (arrayLength(&own) + 255u) / 256u,
+        arrayLength(&bodies),
+    );
+    for (var slot = 0u; slot < 6u; slot++) {
+        groups[3u * slot] = select(0u, counts[slot], status.halted == GOING);
+        groups[3u * slot + 1u] = 1u;
+        groups[3u * slot + 2u] = 1u;
+    }
+}
+
+@compute @workgroup_size(128)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    var all = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0);
+    if status.halted == GOING {
+        for (var group = thread; group < groups[0]; group += THREADS) {
+            all = joined(all, partials[group]);
+        }
+    }
+    sums[thread] = all;
+    workgroupBarrier();
+    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] = joined(sums[thread], sums[thread + half]);
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        if status.halted == GOING {
+            book(sums[0]);
+        }
+        if status.halted == GOING || status.halted == SPOKEN {
+            decide();
+        }
+    }
+}

@@ -1,0 +1,265 @@
+// What air and solids do to a parcel, the second half of its kick, heat and vapour of the whole step, and what it then has beyond
+// saturation. Twin of `air/pairs.rs`, `walls.rs`, `Exchange::to_one`, and of `kick` in `dew/motion.rs`.
+#import dew_neighbours
+#import dew_humid
+#import dew_saturate
+
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> columns: array<Column>;
+@group(0) @binding(4) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
+@group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
+
+// What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
+struct Rates {
+    acceleration: vec3f,
+    spread: vec3f,
+    warming: f32,
+    moistening: f32,
+    weights: f32,
+}
+
+// Pressure of impact: see `air/pairs.rs`.
+const DAMPING = 3.0;
+
+// Distances, in h, below which two places are one.
+const NOTHING = 1e-9;
+
+fn of_air(i: u32, own: Column) -> Rates {
+    var push = vec3f(0.0);
+    var shear = vec3f(0.0);
+    var spread = vec3f(0.0);
+    var warming = 0.0;
+    var moistening = 0.0;
+    var weights = 0.0;
+    let mirrors = mirrors_round(own.place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, own.place);
+        if !mirror.is_there {
+            continue;
+        }
+        let truth = behind(mirror, own.place);
+        let low = cell_index(truth - parameters.h);
+        let high = cell_index(truth + parameters.h);
+        for (var z = low.z; z <= high.z; z++) {
+            for (var y = low.y; y <= high.y; y++) {
+                let row = row_of(y, z);
+                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
+                    let near = columns[j];
+                    let away = own.place - shown(mirror, near.place);
+                    let r = length(away);
+                    let q = r * parameters.per_h;
+                    if q >= 1.0 || q < NOTHING || (j == i && k == 0u) {
+                        continue;
+                    }
+                    let velocity = mirror.sign * near.velocity;
+                    let slope = (1.0 - q) * (1.0 - q) / r;
+                    let approach = max(-dot(own.velocity - velocity, away) / r, 0.0);
+                    let damping = min(DAMPING * approach, parameters.sound) * approach / parameters.density;
+                    // Monaghan 1992, equation 3.1, with the spiky kernel.
+                    push += (near.pressure + own.pressure + damping) * slope * parameters.of_pressure * away;
+                    spread += slope * away;
+                    let weight = (1.0 - q) * (near.evenness + own.evenness) * parameters.of_laplacian;
+                    shear += weight * (velocity - own.velocity);
+                    warming += weight * (near.temperature - own.temperature);
+                    moistening += weight * (near.humidity - own.humidity);
+                    weights += weight;
+                }
+            }
+        }
+    }
+    return Rates(
+        push + parameters.viscosity * shear,
+        parameters.of_spread * spread,
+        parameters.heat_diffusivity * warming,
+        parameters.vapour_diffusivity * moistening,
+        weights,
+    );
+}
+
+// Repulsion by solids: see `walls.rs` (Monaghan 1994, equation 4.1).
+const STRENGTH = 0.3;
+const RANGE = 1.5;
+
+fn repulsion(r: f32) -> f32 {
+    let over = RANGE * parameters.spacing / r;
+    let ratio = over * over;
+    let force = STRENGTH * parameters.sound * parameters.sound * (ratio * ratio - ratio) / r;
+    return select(0.0, force, ratio > 1.0);
+}
+
+// The wall has the air's own pressure; air that comes against it is held up (Joukowsky 1898). Twin of `Push::press`.
+fn pressed(own: Column, spread: vec3f) -> vec3f {
+    let inward = -dot(own.velocity, spread) / max(length(spread), 1e-30);
+    return (parameters.density * own.pressure + parameters.sound * max(inward, 0.0)) * spread;
+}
+
+// What solids give: K/s, 1/s, and how stiff that is, 1/s.
+struct Given {
+    warming: f32,
+    moistening: f32,
+    stiffness: f32,
+}
+
+// Adds what one site gives to a parcel.
+fn give(given: ptr<function, Given>, site: Site, own: Column, q: f32) {
+    let surface = surfaces[site.particle];
+    let flux = flux(site, surface, own.temperature, own.vapour, own.evenness, q);
+    let water = select(flux.water, surface.share * flux.water, flux.water < 0.0);
+    let capacity = parameters.mass * parameters.heat_capacity;
+    let released = (1.0 - site.part) * parameters.latent_heat * water;
+    (*given).warming += (released - flux.to_air * flux.difference) / capacity;
+    (*given).moistening -= water / parameters.mass;
+    (*given).stiffness += flux.to_air / capacity;
+}
+
+// Adds what solids do to the motion; what they give.
+fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
+    var given = Given(0.0, 0.0, 0.0);
+    // By the density correction, by ghost samples, and by virtual forces.
+    var corrected = vec3f(0.0);
+    var ghostly = vec3f(0.0);
+    var repelled = vec3f(0.0);
+    var stuck = 0.0;
+    let low = cell_index(own.place - parameters.h);
+    let high = cell_index(own.place + parameters.h);
+    for (var z = low.z; z <= high.z; z++) {
+        for (var y = low.y; y <= high.y; y++) {
+            let row = row_of(y, z);
+            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
+                let site = sites[k];
+                let away = own.place - site.place;
+                let r = max(length(away), 1e-9 * parameters.spacing);
+                let q = r * parameters.per_h;
+                if q >= 1.0 {
+                    continue;
+                }
+                let inside = 1.0 - q;
+                let slope = parameters.of_spread * site.volume * inside * inside / r;
+                if (site.flags & GHOST) != 0u {
+                    ghostly += slope * away;
+                    continue;
+                }
+                if (site.flags & JOINS_DENSITY) != 0u {
+                    corrected += parameters.kappa * slope * away;
+                } else if (site.flags & REPELS) != 0u {
+                    repelled += repulsion(r) / r * away;
+                }
+                stuck += site.volume * inside;
+                give(&given, site, own, q);
+            }
+        }
+    }
+    // Air at a wall is at rest: viscosity against a wall half way between the air and the site.
+    let weight = 2.0 * parameters.of_laplacian * stuck * own.evenness;
+    (*rates).acceleration += pressed(own, corrected) + pressed(own, ghostly) + repelled
+        - 2.0 * parameters.viscosity * weight * own.velocity;
+    (*rates).spread += corrected + ghostly;
+    (*rates).weights += 2.0 * weight;
+    return given;
+}
+
+// What fans and the weight of warm and moist air add to the acceleration. Twin of `Fan::acceleration` and of `kick`.
+fn driving(particle: Particle) -> vec3f {
+    var driven = parameters.driven;
+    for (var number = 0u; number < parameters.fans; number++) {
+        let fan = parameters.fan[number];
+        if all(particle.place >= fan.low) && all(particle.place < fan.high) {
+            driven += fan.rate * max(fan.speed - dot(particle.velocity, fan.direction), 0.0) * fan.direction;
+        }
+    }
+    // Boussinesq, by differences from the ambient air (Stull 1988, equation 1.5.1).
+    let moist = 1.0 + 0.608 * parameters.ambient_vapour;
+    let temperature = value(particle.temperature);
+    let lighter = temperature * moist + (parameters.ambient + temperature) * 0.608 * value(particle.vapour);
+    return driven - lighter / (parameters.ambient * moist) * parameters.gravity;
+}
+
+// How fast the mass fraction grows with relative humidity. Twin of `HumidAir::mass_fraction_slope`.
+fn fraction_by_humidity(vapour: f32) -> f32 {
+    let fraction = parameters.ambient_vapour + vapour;
+    let pressure = parameters.air_pressure * fraction / (MASS_RATIO + (1.0 - MASS_RATIO) * fraction);
+    let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
+    return parameters.saturated * MASS_RATIO * parameters.air_pressure / (rest * rest);
+}
+
+// Time step limits: see `next_step` in `dew/motion.rs`.
+const ACCELERATION_LIMIT = 0.25;
+const DIFFUSION_LIMIT = 0.9;
+
+// The longest step after this one; 0 where anything is not a number, which must not be lost in a minimum.
+fn longest_step(speed_squared: f32, acceleration_squared: f32, stiffest: f32) -> f32 {
+    let by_sound = parameters.cfl * parameters.h / (parameters.sound + sqrt(speed_squared));
+    let by_force = ACCELERATION_LIMIT * sqrt(parameters.spacing / max(sqrt(acceleration_squared), 1e-30));
+    let by_diffusion = DIFFUSION_LIMIT / max(stiffest, 1e-30);
+    let are_numbers = speed_squared < FAR && acceleration_squared < FAR && stiffest < FAR;
+    return select(0.0, min(min(by_sound, by_force), by_diffusion), are_numbers);
+}
+
+// Kicks a parcel; what it adds to the sums.
+fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial {
+    var rates = air;
+    let given = of_solids(own, &rates);
+    var diffused = -vec2f(given.warming, given.moistening);
+    var fogged = 0.0;
+    (*particle).deposit = 0.0;
+    if (*particle).role == INSIDE {
+        diffused = vec2f(rates.warming, rates.moistening);
+        let step = status.step;
+        (*particle).acceleration = rates.acceleration + driving(*particle);
+        (*particle).velocity += 0.5 * step * (*particle).acceleration;
+        (*particle).spreading = parameters.spreading * rates.spread;
+        (*particle).temperature = add((*particle).temperature, step * (rates.warming + given.warming));
+        (*particle).vapour = add((*particle).vapour, step * (rates.moistening + given.moistening));
+    }
+    let speed = dot((*particle).velocity, (*particle).velocity);
+    let acceleration = dot((*particle).acceleration, (*particle).acceleration);
+    let stiffest = max(parameters.diffusivity * rates.weights, given.stiffness);
+    if (*particle).role == INSIDE && is_set(SATURATES) {
+        fogged = saturate(particle);
+    }
+    return Partial(vec4f(0.0), vec4f(0.0), diffused, fogged, longest_step(speed, acceleration, stiffest), speed);
+}
+
+// What diffused, and what became fog; the longest step and the fastest.
+var<workgroup> sums: array<vec3f, 256>;
+var<workgroup> limits: array<vec2f, 256>;
+
+@compute @workgroup_size(256)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let i = id.x;
+    sums[thread] = vec3f(0.0);
+    limits[thread] = vec2f(FAR, 0.0);
+    if i < status.particles {
+        let own = columns[i];
+        var particle = particles[i];
+        var rates = of_air(i, own);
+        if is_set(RELATIVE) {
+            rates.moistening *= fraction_by_humidity(own.vapour);
+        }
+        let part = kicked(&particle, own, rates);
+        particles[i] = particle;
+        sums[thread] = vec3f(part.diffused, part.fogged);
+        limits[thread] = vec2f(part.longest, part.fastest);
+    }
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] += sums[thread + half];
+            let other = limits[thread + half];
+            limits[thread] = vec2f(min(limits[thread].x, other.x), max(limits[thread].y, other.y));
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        partials[group.x].diffused = sums[0].xy;
+        partials[group.x].fogged = sums[0].z;
+        partials[group.x].longest = limits[0].x;
+        partials[group.x].fastest = limits[0].y;
+    }
+}

@@ -1,0 +1,48 @@
+// Saturation, and what passes between air and the surface of a solid. Twin of `humid_air.rs` and of `Exchange::flux`.
+#import dew_card
+
+// The constants of `humid_air.rs` (Bolton 1980, equation 10), and molar mass of water over that of dry air.
+const AT_ZERO = 611.2;
+const B = 17.67;
+const C = 243.5;
+const MASS_RATIO = 0.6219453152;
+
+// Pressure of saturated vapour, Pa, at a temperature from the ambient air's.
+fn saturation_pressure(temperature: f32) -> f32 {
+    let celsius = parameters.celsius + temperature;
+    return AT_ZERO * exp(B * celsius / (C + celsius));
+}
+
+// Part of the mass that is vapour in saturated air, less that of the ambient air, and its slope over temperature, 1/K.
+fn saturation(temperature: f32) -> vec2f {
+    let pressure = saturation_pressure(temperature);
+    let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
+    let above = C + parameters.celsius + temperature;
+    let slope = MASS_RATIO * parameters.air_pressure / (rest * rest) * pressure * B * C / (above * above);
+    return vec2f(MASS_RATIO * pressure / rest - parameters.ambient_vapour, slope);
+}
+
+struct Flux {
+    // Conductances with which the air is warmed, W/K, and the solid.
+    to_air: f32,
+    to_solid: f32,
+    // Temperature of the air less that of the solid, K.
+    difference: f32,
+    // Water that condenses, kg/s; evaporation is negative.
+    water: f32,
+}
+
+// Between a site and air, q their distance over h.
+fn flux(site: Site, surface: Surface, temperature: f32, vapour: f32, evenness: f32, q: f32) -> Flux {
+    let of_pair = parameters.of_pair * site.volume * (1.0 - q) * evenness;
+    let difference = temperature - surface.temperature;
+    var water = 0.0;
+    if is_set(DIFFUSES) && (site.flags & BOUNDARY) != 0u {
+        let at_surface = surface.temperature + (1.0 - site.part) * difference;
+        water = parameters.vapour_reach * of_pair * (vapour - saturation(at_surface).x);
+        if water < 0.0 && surface.water <= 0.0 {
+            water = 0.0;
+        }
+    }
+    return Flux(of_pair * site.to_air, of_pair * site.to_solid, difference, water);
+}

@@ -1,0 +1,92 @@
+// What air beyond outlets is faster by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs` and of
+// `acceleration_before` in `faces/mod.rs`.
+#import dew_card
+
+@group(0) @binding(1) var<storage, read_write> status: Status;
+@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(3) var<storage, read> before: array<array<vec2f, 6>>;
+@group(0) @binding(4) var<storage, read_write> groups: array<u32>;
+
+var<workgroup> sums: array<vec2f, 256>;
+
+// The mean acceleration before a face, by all threads together.
+fn mean_before(number: u32, count: u32, thread: u32) -> f32 {
+    var own = vec2f(0.0);
+    for (var group = thread; group < count; group += 256u) {
+        own += before[group][number];
+    }
+    sums[thread] = own;
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] += sums[thread + half];
+        }
+        workgroupBarrier();
+    }
+    let all = sums[0];
+    workgroupBarrier();
+    return all.x / max(all.y, 1.0);
+}
+
+// A layer of air `behind` an inlet, its parcels numbered from `first`.
+fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
+    let inlet = parameters.inlets[number];
+    let axis = number / 2u;
+    let a = (axis + 1u) % 3u;
+    let b = (axis + 2u) % 3u;
+    let columns = parameters.counts[a];
+    let all = columns * parameters.counts[b];
+    for (var k = thread; k < all; k += 256u) {
+        var particle: Particle;
+        particle.place[axis] = select(parameters.high[axis] + behind, parameters.low[axis] - behind, number % 2u == 0u);
+        particle.place[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
+        particle.place[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];
+        particle.velocity = inlet.velocity;
+        particle.temperature = Account(inlet.temperature, 0.0);
+        particle.vapour = Account(inlet.vapour, 0.0);
+        particle.id = first_id + k;
+        particle.role = COMING | (number << FACE_BITS);
+        particle.evenness = 1.0;
+        if first + k < arrayLength(&particles) {
+            particles[first + k] = particle;
+        }
+    }
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    let old = status.particles;
+    var count = old;
+    let id = status.next_id;
+    // Where the device halts, nothing comes in.
+    let is_going = status.halted == GOING;
+    let step = select(0.0, status.step, is_going);
+    var phases = status.phase;
+    var faster = array<f32, 6>();
+    for (var number = 0u; number < 6u; number++) {
+        let rule = face(number);
+        if rule == OUTLET {
+            faster[number] = step * mean_before(number, (old + 255u) / 256u, thread);
+        } else if rule == INLET {
+            let axis = number / 2u;
+            let apart = parameters.apart[axis];
+            phases[number] = add(phases[number], abs(parameters.inlets[number].velocity[axis]) * step);
+            if value(phases[number]) >= apart {
+                phases[number] = add(phases[number], -apart);
+                let behind = parameters.inlets[number].behind - value(phases[number]);
+                add_layer(number, behind, count, id + count - old, thread);
+                count += parameters.counts[(axis + 1u) % 3u] * parameters.counts[(axis + 2u) % 3u];
+            }
+        }
+    }
+    // All have read what it was.
+    storageBarrier();
+    workgroupBarrier();
+    if thread == 0u && is_going {
+        status.phase = phases;
+        status.before = faster;
+        status.particles = min(count, arrayLength(&particles));
+        status.next_id = id + count - old;
+        groups[0] = (status.particles + 255u) / 256u;
+    }
+}

@@ -1,0 +1,75 @@
+// What every particle of a solid gets from the air and through the solid, as they stand. Twin of `Exchange::to_solid` and of
+// `Conduction::heat`.
+#import dew_neighbours
+#import dew_humid
+
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> columns: array<Column>;
+@group(0) @binding(4) var<storage, read> own: array<Site>;
+@group(0) @binding(5) var<storage, read> solids: array<Solid>;
+@group(0) @binding(6) var<storage, read_write> surfaces: array<Surface>;
+// The other particle and the conductance, W/K.
+@group(0) @binding(7) var<storage, read> pairs: array<vec2u>;
+@group(0) @binding(8) var<storage, read> waters: array<Water>;
+
+// Heat by difference of temperature, W, condensation and evaporation, kg/s, and the sum of conductances, W/K.
+fn from_air(site: Site, surface: Surface) -> vec4f {
+    var sums = vec4f(0.0);
+    let mirrors = mirrors_round(site.place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, site.place);
+        if !mirror.is_there {
+            continue;
+        }
+        let truth = behind(mirror, site.place);
+        let low = cell_index(truth - parameters.h);
+        let high = cell_index(truth + parameters.h);
+        for (var z = low.z; z <= high.z; z++) {
+            for (var y = low.y; y <= high.y; y++) {
+                let row = row_of(y, z);
+                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
+                    let air = columns[j];
+                    let q = distance(shown(mirror, air.place), site.place) * parameters.per_h;
+                    if q >= 1.0 {
+                        continue;
+                    }
+                    let flux = flux(site, surface, air.temperature, air.vapour, air.evenness, q);
+                    let heat = flux.to_solid * flux.difference;
+                    sums += vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid);
+                }
+            }
+        }
+    }
+    return sums;
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= arrayLength(&own) {
+        return;
+    }
+    let site = own[i];
+    let solid = solids[i];
+    let water = max(waters[i].told + value(waters[i].gained), 0.0);
+    var surface = Surface(value(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    if (site.flags & NEAR_SURFACE) != 0u {
+        let sums = from_air(site, surface);
+        if sums.z * status.step > water {
+            surface.share = water / (sums.z * status.step);
+        }
+        surface.gain = sums.y - surface.share * sums.z;
+        surface.heat = sums.x + site.part * parameters.latent_heat * surface.gain;
+        surface.conductance = sums.w;
+    }
+    surface.all_heat = surface.heat;
+    for (var k = site.first; k < site.end; k++) {
+        let conductance = bitcast<f32>(pairs[k].y);
+        let other = solids[pairs[k].x].temperature;
+        let warmer = (other.sum - solid.temperature.sum) - (other.lacking - solid.temperature.lacking);
+        surface.all_heat += conductance * warmer;
+        surface.conductance += conductance;
+    }
+    surfaces[i] = surface;
+}

@@ -1,0 +1,68 @@
+// Particles of solids take up what they get in a step: heat, and water from vapour that diffuses to them and from parcels near them
+// that are beyond saturation. Twin of `exchange` and `deposit_of` in `dew/transfer.rs`.
+#import dew_neighbours
+
+@group(0) @binding(1) var<storage, read> status: Status;
+@group(0) @binding(2) var<storage, read> start: array<u32>;
+@group(0) @binding(3) var<storage, read> spots: array<vec4f>;
+@group(0) @binding(4) var<storage, read> particles: array<Particle>;
+@group(0) @binding(5) var<storage, read> own: array<Site>;
+@group(0) @binding(6) var<storage, read> surfaces: array<Surface>;
+@group(0) @binding(7) var<storage, read_write> solids: array<Solid>;
+@group(0) @binding(8) var<storage, read_write> waters: array<Water>;
+
+// Water that parcels lay on a boundary particle, kg.
+fn deposited(site: Site) -> f32 {
+    var water = 0.0;
+    let mirrors = mirrors_round(site.place);
+    for (var k = 0u; k < mirrors; k++) {
+        let mirror = mirror(k, site.place);
+        if !mirror.is_there {
+            continue;
+        }
+        let truth = behind(mirror, site.place);
+        let low = cell_index(truth - parameters.h);
+        let high = cell_index(truth + parameters.h);
+        for (var z = low.z; z <= high.z; z++) {
+            for (var y = low.y; y <= high.y; y++) {
+                let row = row_of(y, z);
+                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
+                    let deposit = particles[j].deposit;
+                    if deposit > 0.0 {
+                        let away = (shown(mirror, spots[j].xyz) - site.place) * parameters.per_h;
+                        water += deposit * site.volume * poly6(dot(away, away));
+                    }
+                }
+            }
+        }
+    }
+    return water;
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= arrayLength(&own) {
+        return;
+    }
+    let site = own[i];
+    let surface = surfaces[i];
+    var solid = solids[i];
+    var laid = 0.0;
+    if is_set(SATURATES) && (site.flags & (BOUNDARY | NEAR_SURFACE)) == (BOUNDARY | NEAR_SURFACE) {
+        laid = deposited(site);
+    }
+    let step = status.step;
+    let released = site.part * parameters.latent_heat * laid;
+    let heat = step * surface.all_heat + released;
+    let is_held = (site.flags & HELD) != 0u;
+    if !is_held {
+        solid.temperature = add(solid.temperature, heat / site.capacity);
+    }
+    // What rounding leaves of the last of the water is nothing.
+    waters[i].gained = add(add(waters[i].gained, max(step * surface.gain, -surface.water)), laid);
+    solid.flow = surface.heat + released / step;
+    solid.held = select(0.0, -heat, is_held);
+    solid.stiff = select(surface.conductance / site.capacity, 0.0, is_held);
+    solids[i] = solid;
+}

@@ -1,0 +1,247 @@
+//! Humid air on the graphics card: twins of the passes of a step, in single precision, that leave the air where it is.
+//!
+//! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it. Drops
+//! stay with the host: they are few, each decides for itself whether it sticks, merges or runs, and they only want to know what
+//! water the solids have gained once in some steps.
+//!
+//! What single precision is spent on: see `layout.rs`.
+
+mod layout;
+mod numbers;
+mod solids;
+mod tasks;
+
+pub(crate) use layout::MOST_FANS;
+
+use crate::dew::{Dew, State};
+use bytemuck::Zeroable;
+use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
+use layout::{CardBody, CardParticle, CardSolid, CardWater, MOST_STEPS, Origin, Parameters, Status};
+use solids::CardSolids;
+use std::time::Instant;
+use tasks::Tasks;
+
+/// Humid air on a card.
+#[derive(Debug)]
+pub(crate) struct Card {
+    gpu: Gpu,
+    tasks: Tasks,
+    origin: Origin,
+    bodies: Vec<CardBody>,
+    status: Status,
+    /// Parcels that there is room for.
+    room: usize,
+    /// Water on the particles of the solids when it was last told, kg.
+    water_told: Vec<f64>,
+    /// Heat that came from each solid until the last batch, J.
+    held_before: Vec<f64>,
+    /// Whether the host has not the air that is here.
+    ahead: bool,
+    /// Time spent on steps, s.
+    busy: f64,
+}
+
+/// Parcels that came or went: sums of their temperature above 0 °C, K, vapour and fog, parts of the mass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Crossed {
+    pub temperature: f64,
+    pub vapour: f64,
+    pub fog: f64,
+}
+
+/// What a batch of steps did.
+#[derive(Debug, Clone)]
+pub(crate) struct Progress {
+    /// How long each step was, s.
+    pub lengths: Vec<f64>,
+    pub particle_steps: u64,
+    /// The next step, s.
+    pub step: f64,
+    pub next_id: u64,
+    pub came: Crossed,
+    pub went: Crossed,
+    /// Water that diffused in and out, part of a parcel's mass, and energy, J for a kilogram of it.
+    pub diffused: [f64; 4],
+    /// Vapour that became fog, part of a parcel's mass.
+    pub fogged: f64,
+    /// Heat that came from each solid held at a temperature, J.
+    pub held_heat: Vec<f64>,
+    pub inlet_phase: [[f64; 2]; 3],
+    /// m/s.
+    pub fastest: f64,
+    /// Whether the next step is too short to go on, or the air faster than sound where that is refused.
+    pub broken: bool,
+}
+
+impl Card {
+    /// Room for `room` parcels of air.
+    pub fn new(gpu: Gpu, room: usize, dew: &Dew) -> Result<Self, GpuError> {
+        let origin = Origin {
+            room: dew.room,
+            temperature: dew.settings.ambient_temperature,
+            vapour: dew.settings.ambient_vapour,
+        };
+        let parameters = Parameters::of(dew, origin);
+        let solids = CardSolids::new(&gpu, dew, origin, &parameters)?;
+        let tasks = Tasks::new(&gpu, room, &parameters, &solids)?;
+        let cells = parameters.cells.iter().product::<u32>() + 1;
+        let held_before = vec![0.0; solids.bodies.len()];
+        Ok(Self {
+            gpu,
+            tasks,
+            origin,
+            bodies: solids.bodies,
+            // One more cell holds what has gone.
+            status: Status { cells, ..Status::zeroed() },
+            room,
+            water_told: vec![0.0; solids.count],
+            held_before,
+            ahead: false,
+            busy: 0.0,
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
+    }
+
+    /// Wall-clock time spent on steps, s.
+    pub fn busy(&self) -> f64 {
+        self.busy
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.tasks.bytes
+    }
+
+    /// Parcels that there are, and that there is room for.
+    pub fn filling(&self) -> [usize; 2] {
+        [self.status.particles as usize, self.room]
+    }
+
+    /// Hands the state over.
+    pub fn send(&mut self, state: &State) {
+        let air: Vec<CardParticle> = state.air.iter().map(|particle| self.origin.to_card(particle)).collect();
+        let temperature = |temperature: &f64| CardSolid {
+            temperature: layout::account(temperature - self.origin.temperature),
+            ..CardSolid::default()
+        };
+        let solids: Vec<CardSolid> = state.temperatures.iter().map(temperature).collect();
+        let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.gpu.queue.write_buffer(buffer, 0, bytes);
+        write(&self.tasks.particles, bytemuck::cast_slice(&air));
+        write(&self.tasks.solids, bytemuck::cast_slice(&solids));
+        write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
+        self.tell_water(&state.water_on);
+        self.held_before.fill(0.0);
+        let phases = state.inlet_phase.as_flattened();
+        self.status = Status {
+            cells: self.status.cells,
+            particles: air.len() as u32,
+            step: state.time_step as f32,
+            next_id: state.next_id as u32,
+            phase: std::array::from_fn(|number| layout::account(phases[number])),
+            ..Status::zeroed()
+        };
+        self.ahead = false;
+    }
+
+    /// Tells the water on the particles of the solids, kg, where drops have moved.
+    pub fn tell_water(&mut self, water: &[f64]) {
+        let told: Vec<CardWater> =
+            water.iter().map(|&water| CardWater { told: water as f32, ..CardWater::default() }).collect();
+        self.gpu.queue.write_buffer(&self.tasks.waters, 0, bytemuck::cast_slice(&told));
+        self.water_told.clear();
+        self.water_told.extend_from_slice(water);
+    }
+
+    /// Brings the water on the particles of the solids, kg.
+    pub fn fetch_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
+        let waters: Vec<CardWater> = read(&self.gpu, &self.tasks.waters, self.water_told.len())?;
+        water.clear();
+        // What rounding leaves of the last of the water is nothing.
+        let now = |(told, water): (&f64, &CardWater)| (told + layout::value(water.gained)).max(0.0);
+        water.extend(self.water_told.iter().zip(&waters).map(now));
+        Ok(())
+    }
+
+    /// Brings the air and the solids back, where there is any news of them.
+    pub fn fetch(&mut self, state: &mut State) -> Result<(), GpuError> {
+        if !self.ahead {
+            return Ok(());
+        }
+        let air: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, self.status.particles as usize)?;
+        let solids: Vec<CardSolid> = read(&self.gpu, &self.tasks.solids, self.water_told.len())?;
+        let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        self.fetch_water(&mut state.water_on)?;
+        state.air.clear();
+        state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
+        let temperature = |solid: &CardSolid| layout::value(solid.temperature) + self.origin.temperature;
+        state.temperatures.clear();
+        state.temperatures.extend(solids.iter().map(temperature));
+        state.heat_flow.clear();
+        state.heat_flow.extend(bodies.iter().map(|body| f64::from(body.flow)));
+        self.ahead = false;
+        Ok(())
+    }
+
+    /// Takes `count` steps, or fewer: only up to `until` s from now.
+    pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
+        let count = count.min(MOST_STEPS) as u32;
+        self.status = Status {
+            halted: layout::SPOKEN,
+            particles: self.status.particles,
+            cells: self.status.cells,
+            step: self.status.step,
+            until: until as f32,
+            next_id: self.status.next_id,
+            phase: self.status.phase,
+            ..Status::zeroed()
+        };
+        let began = Instant::now();
+        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dew") });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.tasks.steps(&mut pass, count);
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        self.busy += began.elapsed().as_secs_f64();
+        self.ahead |= self.status.steps > 0;
+        Ok(self.progress(&bodies))
+    }
+
+    fn progress(&mut self, bodies: &[CardBody]) -> Progress {
+        let Status { steps, particle_steps: [low, high], step, halted, fastest, .. } = self.status;
+        let held: Vec<f64> = bodies.iter().map(|body| layout::value(body.held)).collect();
+        let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
+        self.held_before = held;
+        let phase = |axis: usize, side: usize| layout::value(self.status.phase[2 * axis + side]);
+        Progress {
+            lengths: self.status.lengths[..steps as usize].iter().map(|&step| f64::from(step)).collect(),
+            particle_steps: (u64::from(high) << 32) + u64::from(low),
+            step: f64::from(step),
+            next_id: u64::from(self.status.next_id),
+            came: self.crossed(self.status.came.values()),
+            went: self.crossed(self.status.went.values()),
+            diffused: self.status.diffused.values(),
+            fogged: layout::value(self.status.fogged),
+            held_heat,
+            inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
+            fastest: f64::from(fastest).sqrt(),
+            broken: halted == layout::BROKEN,
+        }
+    }
+
+    fn crossed(&self, [number, temperature, vapour, fog]: [f64; 4]) -> Crossed {
+        let Origin { temperature: ambient, vapour: ambient_vapour, .. } = self.origin;
+        Crossed {
+            temperature: number * (ambient - crate::humid_air::ZERO_CELSIUS) + temperature,
+            vapour: number * ambient_vapour + vapour,
+            fog,
+        }
+    }
+}

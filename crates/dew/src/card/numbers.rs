@@ -1,0 +1,145 @@
+//! The numbers of a run, as the shaders want them.
+
+use super::layout::{self, CardFan, Inlet, Origin, Parameters};
+use crate::dew::Dew;
+use crate::faces::BEYOND;
+use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
+use crate::room::Face;
+use crate::settings::{Condensation, Humidity};
+
+/// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
+const CELLS_BEYOND: f64 = BEYOND + 1.0;
+
+fn narrow(vector: [f64; 3]) -> [f32; 3] {
+    vector.map(|along| along as f32)
+}
+
+impl Parameters {
+    /// Of a model.
+    pub fn of(dew: &Dew, origin: Origin) -> Self {
+        let mut new = Self { flags: flags(dew), ..Self::default() };
+        new.tell_room(dew, origin);
+        new.tell_air(dew);
+        new.tell_kernels(dew);
+        new.tell_inlets(dew);
+        new.fans = dew.fans.len().min(layout::MOST_FANS) as u32;
+        for (told, fan) in new.fan.iter_mut().zip(&dew.fans) {
+            let [low, high] = fan.corners();
+            *told = CardFan {
+                low: origin.relative(low),
+                high: origin.relative(high),
+                rate: fan.rate() as f32,
+                speed: fan.speed() as f32,
+                direction: narrow(fan.direction()),
+                unused: 0.0,
+            };
+        }
+        new
+    }
+
+    fn tell_room(&mut self, dew: &Dew, origin: Origin) {
+        let (room, h) = (&dew.room, dew.scale.h());
+        let beyond = |axis: usize, side: usize| h * if room.faces[axis][side].is_passed() { CELLS_BEYOND } else { 1.0 };
+        let corner = [0, 1, 2].map(|axis| room.low[axis] - beyond(axis, 0));
+        let size = [0, 1, 2].map(|axis| room.high[axis] + beyond(axis, 1) - corner[axis]);
+        (self.low, self.high) = (origin.relative(room.low), origin.relative(room.high));
+        (self.h, self.per_h, self.spacing) = (h as f32, (1.0 / h) as f32, dew.scale.spacing as f32);
+        for (rule, face) in self.faces.iter_mut().zip(room.faces.as_flattened()) {
+            *rule = self::rule(face);
+        }
+        (self.corner, self.per_cell) = (origin.relative(corner), (1.0 / h) as f32);
+        self.cells = size.map(|length| (length / h).ceil() as u32);
+        self.apart = narrow(room.apart(dew.scale.spacing));
+        self.counts = room.counts(dew.scale.spacing).map(|count| count as u32);
+    }
+
+    fn tell_air(&mut self, dew: &Dew) {
+        let (air, settings) = (&dew.air, &dew.settings);
+        let diffusivities = [air.heat_diffusivity(), air.vapour_diffusivity].map(|value| settings.faster * value);
+        let ambient = HumidAir::with_mass_fraction(settings.ambient_temperature, air.pressure, settings.ambient_vapour);
+        *self = Self {
+            gravity: narrow(settings.gravity),
+            driven: narrow(settings.body_acceleration),
+            sound: air.sound_speed as f32,
+            viscosity: air.viscosity as f32,
+            density: air.density as f32,
+            rest_density: dew.rest_density as f32,
+            kappa: settings.kappa as f32,
+            mass: dew.particle_mass() as f32,
+            heat_capacity: air.heat_capacity as f32,
+            latent_heat: dew.latent_heat as f32,
+            heat_diffusivity: diffusivities[0] as f32,
+            vapour_diffusivity: diffusivities[1] as f32,
+            diffusivity: diffusivities.into_iter().fold(air.viscosity, f64::max) as f32,
+            vapour_reach: (2.0 * air.density * air.vapour_diffusivity) as f32,
+            ambient: settings.ambient_temperature as f32,
+            ambient_vapour: settings.ambient_vapour as f32,
+            celsius: (settings.ambient_temperature - ZERO_CELSIUS) as f32,
+            air_pressure: air.pressure as f32,
+            spreading: (air.spreading * air.sound_speed * air.sound_speed) as f32,
+            farthest: (crate::dew::FARTHEST_SPREAD * dew.scale.spacing) as f32,
+            cfl: settings.cfl as f32,
+            shortest_step: dew.shortest_step() as f32,
+            slowest: dew.slowest() as f32,
+            saturated: humid_air::saturation_pressure(settings.ambient_temperature) as f32,
+            ambient_pressure: ambient.vapour_pressure as f32,
+            ..*self
+        };
+    }
+
+    /// The shaders' kernels are of distances over h and without their factors.
+    fn tell_kernels(&mut self, dew: &Dew) {
+        let crate::air::Scale { volume, kernels, to_density, to_gradient, moment, .. } = dew.scale;
+        let (h, spiky) = (dew.scale.h(), kernels.spiky_factor());
+        let spread = 2.0 * volume * to_gradient * spiky * h.powi(2);
+        *self = Self {
+            of_filling: (to_density * volume * kernels.poly6_factor() * h.powi(6)) as f32,
+            of_moment: (volume * spiky * h.powi(3) / (6.0 * moment)) as f32,
+            of_pressure: (0.5 * dew.air.density * spread) as f32,
+            of_spread: spread as f32,
+            of_laplacian: (0.5 * volume * spiky * h / moment) as f32,
+            of_pair: (dew.settings.faster * volume * volume * spiky * h / moment) as f32,
+            ..*self
+        };
+    }
+
+    fn tell_inlets(&mut self, dew: &Dew) {
+        let apart = dew.room.apart(dew.scale.spacing);
+        for (number, face) in dew.room.faces.as_flattened().iter().enumerate() {
+            if let Face::Inlet(inflow) = face {
+                let apart = apart[number / 2];
+                self.inlets[number] = Inlet {
+                    velocity: narrow(inflow.velocity),
+                    temperature: (inflow.temperature - dew.settings.ambient_temperature) as f32,
+                    vapour: (inflow.vapour - dew.settings.ambient_vapour) as f32,
+                    behind: (((BEYOND * dew.scale.h() / apart).ceil() - 0.5) * apart) as f32,
+                    unused: [0.0; 2],
+                };
+            }
+        }
+    }
+}
+
+fn rule(face: &Face) -> u32 {
+    match face {
+        Face::Wall => layout::WALL,
+        Face::Periodic => layout::PERIODIC,
+        Face::Inlet(_) => layout::INLET,
+        // Open sides are refused before the run starts.
+        Face::Outlet | Face::Open => layout::OUTLET,
+    }
+}
+
+fn flags(dew: &Dew) -> u32 {
+    let settings = &dew.settings;
+    let parcels = settings.condensation == Condensation::Parcel;
+    let all = [
+        (dew.room.faces.as_flattened().iter().any(Face::is_passed), layout::IS_PASSED),
+        (!parcels, layout::DIFFUSES),
+        (settings.fog, layout::FOGS),
+        (settings.fog || parcels, layout::SATURATES),
+        (dew.wetting.is_some(), layout::REFUSES_FAST),
+        (settings.humidity == Humidity::Relative, layout::RELATIVE),
+    ];
+    all.into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag)).sum()
+}

@@ -1,0 +1,121 @@
+//! Solids as the shaders see them: their particles, what air is near, and how heat goes through them.
+
+use super::layout::{self, CardBody, CardSite, Origin, Parameters};
+use crate::contact::Contact;
+use crate::dew::Dew;
+use crate::settings::WallTreatment;
+use crate::solids::Site;
+use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
+
+/// What is told once of the solids.
+#[derive(Debug)]
+pub(super) struct CardSolids {
+    /// First site of each cell of the air.
+    pub start: wgpu::Buffer,
+    /// Sites that air comes near: particles, images and ghost samples.
+    pub sites: wgpu::Buffer,
+    /// The particles themselves, in order.
+    pub own: wgpu::Buffer,
+    /// Pairs between which heat goes.
+    pub pairs: wgpu::Buffer,
+    /// Particles.
+    pub count: usize,
+    /// The solids, by their ranges of particles.
+    pub bodies: Vec<CardBody>,
+}
+
+impl CardSolids {
+    pub fn new(gpu: &Gpu, dew: &Dew, origin: Origin, parameters: &Parameters) -> Result<Self, GpuError> {
+        let particles = &dew.solids.particles;
+        let mut pairs = Vec::new();
+        let mut own = Vec::new();
+        for (number, particle) in particles.iter().enumerate() {
+            let first = pairs.len() as u32;
+            let of_it = dew.conduction.pairs(number);
+            pairs.extend(of_it.map(|(other, conductance)| [other as u32, (conductance as f32).to_bits()]));
+            let site = Site { position: particle.position, particle: number as u32, image: false };
+            let end = pairs.len() as u32;
+            own.push(CardSite { first, end, ..card_site(dew, origin, &site, particle.volume) });
+        }
+        let mut sites = of_contact(dew, origin, &dew.contact);
+        sites.extend(dew.ghosts.sites.iter().zip(&dew.ghosts.volumes).map(|(site, volume)| CardSite {
+            place: origin.relative(site.position),
+            volume: (volume / dew.scale.volume) as f32,
+            flags: layout::GHOST,
+            ..CardSite::default()
+        }));
+        let cell = |site: &CardSite| cell_at(parameters, site.place);
+        sites.sort_by_key(cell);
+        let cells = parameters.cells.iter().product::<u32>();
+        let first = |wanted: u32| sites.partition_point(|site| cell(site) < wanted) as u32;
+        let start: Vec<u32> = (0..=cells).map(first).collect();
+        let of_body = |body: u32| particles.partition_point(|particle| particle.body < body) as u32;
+        let bodies = (0..dew.solids.bodies.len() as u32)
+            .map(|body| CardBody { first: of_body(body), end: of_body(body + 1), ..CardBody::default() })
+            .collect();
+        Ok(Self {
+            start: filled(gpu, "first sites of cells", &start)?,
+            sites: filled(gpu, "sites of solids", &sites)?,
+            own: filled(gpu, "particles of solids", &own)?,
+            pairs: filled(gpu, "conductances", &pairs)?,
+            count: own.len(),
+            bodies,
+        })
+    }
+}
+
+fn of_contact(dew: &Dew, origin: Origin, contact: &Contact) -> Vec<CardSite> {
+    let sites = contact.sites.iter().zip(&contact.volumes).zip(&contact.walls);
+    let of_one = |((site, &volume), walls): ((&Site, &f64), &WallTreatment)| {
+        let card = card_site(dew, origin, site, volume);
+        let keeps_out = match walls {
+            WallTreatment::DensityCorrection => layout::JOINS_DENSITY,
+            WallTreatment::VirtualForce => layout::REPELS,
+            WallTreatment::Ghosts | WallTreatment::None => 0,
+        };
+        CardSite { flags: card.flags | keeps_out, ..card }
+    };
+    sites.map(of_one).collect()
+}
+
+/// But for the way it keeps air out.
+fn card_site(dew: &Dew, origin: Origin, site: &Site, volume: f64) -> CardSite {
+    let number = site.particle as usize;
+    let particle = &dew.solids.particles[number];
+    let (of_air, of_solid) = (dew.air.conductor(), dew.solids.material(number).conductor());
+    let mean = dew.settings.mean;
+    let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
+    CardSite {
+        place: origin.relative(site.position),
+        volume: (volume / dew.scale.volume) as f32,
+        to_air: mean.conductivity(of_air, of_solid) as f32,
+        to_solid: mean.conductivity(of_solid, of_air) as f32,
+        part: (of_solid.conductivity / (of_solid.conductivity + of_air.conductivity)) as f32,
+        flags: flag(particle.normal.is_some(), layout::BOUNDARY)
+            | flag(particle.near_surface, layout::NEAR_SURFACE)
+            | flag(dew.solids.is_held(number), layout::HELD),
+        particle: site.particle,
+        capacity: dew.solids.heat_capacity(number) as f32,
+        ..CardSite::default()
+    }
+}
+
+/// The cell of a place, as `dew_neighbours.wgsl` has it.
+fn cell_at(parameters: &Parameters, place: [f32; 3]) -> u32 {
+    let Parameters { corner, per_cell, cells, .. } = parameters;
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let index = ((place[axis] - corner[axis]) * per_cell).max(0.0) as u32;
+        index.min(cells[axis] - 1)
+    });
+    (z * cells[1] + y) * cells[0] + x
+}
+
+pub(super) fn filled<T: bytemuck::NoUninit>(
+    gpu: &Gpu,
+    label: &'static str,
+    values: &[T],
+) -> Result<wgpu::Buffer, GpuError> {
+    let buffer = storage::<T>(gpu, label, values.len())?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(values));
+    Ok(buffer)
+}

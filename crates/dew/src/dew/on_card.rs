@@ -1,0 +1,267 @@
+//! Humid air whose steps the graphics card takes.
+
+use super::{Dew, State};
+use crate::card::{Card, Crossed, MOST_FANS, Progress};
+use crate::room::Face;
+use crate::wetting::WettingState;
+use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_model::ModelError;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// So many steps are ordered at once where there are no drops to be told of.
+const TOGETHER: u64 = 64;
+
+/// Room for parcels that come beside those that there are.
+const SPARE_ROOM: usize = 1024;
+
+fn failed(error: &GpuError) -> ModelError {
+    ModelError::Device(error.to_string())
+}
+
+impl Dew {
+    /// Lets a graphics card take the steps, in single precision. What is laid or stirred by hand comes before.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where the scene has something that the card's program has not yet, or the card too little memory.
+    pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        let missing = self.missing_on_card();
+        if !missing.is_empty() {
+            let what = missing.join(", ");
+            return Err(ModelError::Setup(format!(
+                "the graphics card cannot yet compute this dew: it has {what}. Run it with `--backend cpu`"
+            )));
+        }
+        self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
+    }
+
+    /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
+    pub fn seconds_on_card(&self) -> Option<f64> {
+        self.card.as_ref().map(Card::busy)
+    }
+
+    /// Bytes held on the card.
+    pub fn bytes_on_card(&self) -> Option<u64> {
+        self.card.as_ref().map(Card::bytes)
+    }
+
+    /// What this model has that there is no twin of on the card.
+    fn missing_on_card(&self) -> Vec<&'static str> {
+        let is_open = self.room.faces.as_flattened().contains(&Face::Open);
+        let changes = self.held_to.iter().flatten().any(|table| table.rows().len() > 1);
+        let all = [
+            (is_open, "a side that is \"open\" ([dew.faces])"),
+            (self.settings.low_utility.is_some(), "[dew.low_utility]"),
+            (changes, "a solid held at a temperature that changes (temperature_c)"),
+            (self.fans.len() > MOST_FANS, "more than eight fans ([[dew.fan]])"),
+        ];
+        all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
+    }
+
+    /// Makes room on a card for the air that there is, and for more where air comes in, and hands the state over.
+    fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
+        let (count, come) = (self.state.air.len(), self.most_to_come());
+        self.open_card_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
+    }
+
+    fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
+        let mut card = Card::new(gpu, room, self)?;
+        card.send(&self.state);
+        self.card = Some(card);
+        Ok(())
+    }
+
+    /// Hands the state to the card, where there is one, with the settings as they are now.
+    pub(crate) fn tell_card(&mut self) -> Result<(), ModelError> {
+        let Some(card) = &self.card else { return Ok(()) };
+        let gpu = card.gpu();
+        self.open_card(gpu).map_err(|error| failed(&error))
+    }
+
+    /// Parcels that can come in by inlets while so many steps are taken as are ordered at once.
+    fn most_to_come(&self) -> usize {
+        let counts = self.room.counts(self.scale.spacing);
+        let apart = self.room.apart(self.scale.spacing);
+        let longest = self.settings.cfl * self.scale.h() / self.air.sound_speed;
+        let of_face = |(number, face): (usize, &Face)| match face {
+            Face::Inlet(inflow) => {
+                let axis = number / 2;
+                let way = inflow.velocity[axis].abs() * longest * TOGETHER as f64;
+                ((way / apart[axis]) as usize + 2) * counts[(axis + 1) % 3] * counts[(axis + 2) % 3]
+            }
+            _ => 0,
+        };
+        self.room.faces.as_flattened().iter().enumerate().map(of_face).sum()
+    }
+
+    pub(crate) fn advance_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        if self.state.time + self.state.time_step > time {
+            self.shown = time;
+            return Ok(());
+        }
+        let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
+        let broken = self.go_on_card(time, stop).and_then(|broken| self.fetch_from_card().map(|()| broken));
+        match broken {
+            Ok(None) => Ok(()),
+            Ok(Some(broken)) => Err(broken),
+            Err(error) => {
+                self.go_back_to(before);
+                Err(failed(&error))
+            }
+        }
+    }
+
+    /// What is here changes only when all of it has come back.
+    fn go_back_to(&mut self, (shown, state, drops): (f64, State, Option<WettingState>)) {
+        (self.shown, self.state) = (shown, state);
+        if let (Some(wetting), Some(drops)) = (&mut self.wetting, drops) {
+            wetting.restore(drops);
+        }
+    }
+
+    /// Goes on to `time`, batch by batch; gives what broke down.
+    fn go_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<Option<ModelError>, GpuError> {
+        while self.state.time + self.state.time_step <= time {
+            if stop.load(Ordering::Relaxed) {
+                self.shown = self.shown.max(self.state.time);
+                return Ok(None);
+            }
+            let count = self.steps_to_drops();
+            let is_whole = count == self.wetting.as_ref().map_or(TOGETHER, |wetting| wetting.steps());
+            self.make_room(is_whole)?;
+            let Some(card) = &mut self.card else { break };
+            let progress = card.advance(time - self.state.time, count as usize)?;
+            self.book_progress(&progress);
+            self.tend_drops_beside_card()?;
+            if progress.broken {
+                let last = progress.lengths.last().copied().unwrap_or(progress.step);
+                return Ok(self.check_step(progress.fastest, last, progress.step).err());
+            }
+            // To the card, which rounds more coarsely, a step that ends at that time may end after it.
+            if progress.lengths.is_empty() {
+                break;
+            }
+        }
+        self.shown = time;
+        Ok(None)
+    }
+
+    /// Steps until it may be the drops' turn. They are asked at the same steps however often something looks.
+    fn steps_to_drops(&self) -> u64 {
+        match &self.wetting {
+            Some(wetting) => wetting.steps() - wetting.steps_since(self.state.steps) % wetting.steps(),
+            None => TOGETHER - self.state.steps % TOGETHER,
+        }
+    }
+
+    /// Takes more room on the card where the air that is to come might not find any.
+    fn make_room(&mut self, is_whole: bool) -> Result<(), GpuError> {
+        let Some(card) = self.card.as_ref().filter(|_| is_whole) else { return Ok(()) };
+        let ([filled, room], come) = (card.filling(), self.most_to_come());
+        if come == 0 || filled + come <= room {
+            return Ok(());
+        }
+        let gpu = card.gpu();
+        self.fetch_from_card()?;
+        self.open_card(gpu)
+    }
+
+    /// Drops take over what condensed, where it is their turn, and the card is told what water there is then.
+    fn tend_drops_beside_card(&mut self) -> Result<(), GpuError> {
+        let Some(card) = &mut self.card else { return Ok(()) };
+        let [air, _] = card.filling();
+        let is_due = |wetting: &crate::wetting::Wetting| {
+            wetting.steps_since(self.state.steps).is_multiple_of(wetting.steps())
+                && wetting.is_due(self.state.steps, air)
+        };
+        if !self.wetting.as_ref().is_some_and(is_due) {
+            return Ok(());
+        }
+        card.fetch_water(&mut self.state.water_on)?;
+        self.tend_drops(air);
+        if let Some(card) = &mut self.card {
+            card.tell_water(&self.state.water_on);
+        }
+        Ok(())
+    }
+
+    /// Brings the state back.
+    fn fetch_from_card(&mut self) -> Result<(), GpuError> {
+        let Some(card) = &mut self.card else { return Ok(()) };
+        card.fetch(&mut self.state)?;
+        if self.layers.iter().any(Option::is_some) {
+            // Gauges of layers tell pairs of air and wall.
+            self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());
+            self.contact.update(&self.arrangement, &self.scale);
+            self.ghosts.update(&self.arrangement, &self.scale);
+        }
+        Ok(())
+    }
+
+    fn book_progress(&mut self, progress: &Progress) {
+        let mass = self.particle_mass();
+        let (heat_capacity, latent_heat) = (self.air.heat_capacity, self.latent_heat);
+        let State { water, energy, held_heat, .. } = &mut self.state;
+        let mut book = |crossed: &Crossed, sign: f64| {
+            water.book(sign * mass * (crossed.vapour + crossed.fog));
+            energy.book(sign * mass * (heat_capacity * crossed.temperature + latent_heat * crossed.vapour));
+        };
+        book(&progress.came, 1.0);
+        book(&progress.went, -1.0);
+        let [water_in, water_out, energy_in, energy_out] = progress.diffused.map(|part| mass * part);
+        water.book(water_in);
+        water.book(-water_out);
+        energy.book(energy_in);
+        energy.book(-energy_out);
+        for (held, &heat) in held_heat.iter_mut().zip(&progress.held_heat) {
+            held.add(heat);
+            energy.book(heat);
+        }
+        let state = &mut self.state;
+        state.fogged.add(mass * progress.fogged);
+        progress.lengths.iter().for_each(|step| state.time += step);
+        state.steps += progress.lengths.len() as u64;
+        state.particle_steps += progress.particle_steps;
+        state.time_step = progress.step;
+        state.next_id = progress.next_id;
+        state.inlet_phase = progress.inlet_phase;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::air::Properties;
+    use crate::dew::Setup;
+    use crate::room::{Inflow, Room};
+    use crate::settings::Settings;
+    use corpuscle_gpu::require_gpu;
+    use corpuscle_model::Model;
+
+    const WARM: f64 = 300.0;
+
+    fn duct() -> Dew {
+        let inlet = Face::Inlet(Inflow { velocity: [0.097, 0.0, 0.0], temperature: WARM + 1.0, vapour: 0.01 });
+        let faces = [[inlet, Face::Outlet], [Face::Wall; 2], [Face::Periodic; 2]];
+        let room = Room { low: [0.0; 3], high: [0.02, 0.012, 0.01], faces };
+        let (settings, air) = (Settings::new(0.002, WARM, 0.01), Properties::at_room_temperature(0.5));
+        let setup = Setup { settings, air, room, bodies: Vec::new(), fans: Vec::new(), seed: 1 };
+        Dew::new(&setup, |_| [WARM, 0.01]).unwrap()
+    }
+
+    #[test]
+    fn more_room_is_taken_where_air_that_comes_might_find_none() {
+        let Some(gpu) = require_gpu("room on the card") else { return };
+        let mut cards = [(); 2].map(|()| duct());
+        let come = cards[0].most_to_come();
+        let scarce = cards[0].state.air.len() + come - 1;
+        cards[0].open_card_with(gpu.clone(), scarce).unwrap();
+        cards[1].use_card(gpu).unwrap();
+        for dew in &mut cards {
+            dew.advance_to(0.05, &AtomicBool::new(false)).unwrap();
+        }
+        let [with_more, plain] = &cards;
+        assert!(come > 0 && with_more.card.as_ref().unwrap().filling()[1] > scarce);
+        assert!(with_more.state.next_id > with_more.state.air.len() as u64, "some have come");
+        assert!(with_more.state.air == plain.state.air && with_more.state.water == plain.state.water);
+    }
+}

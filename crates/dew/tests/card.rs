@@ -1,0 +1,391 @@
+//! Humid air on the graphics card does what it does on the processor.
+
+use corpuscle_dew::air::{Particle, Properties};
+use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
+use corpuscle_dew::solids::{Body, Material};
+use corpuscle_dew::{
+    Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, WallTreatment,
+};
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{ModelScene, Scene, builtin};
+use corpuscle_solids::{Pose, Shape, Solid};
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+const D: f64 = 2e-3;
+const WARM: f64 = ZERO_CELSIUS + 25.0;
+const COLD: f64 = ZERO_CELSIUS + 5.0;
+const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
+const SIZE: [f64; 3] = [12.0 * D, 8.0 * D, 10.0 * D];
+
+fn vapour(temperature: f64, humidity: f64) -> f64 {
+    HumidAir::with_relative_humidity(temperature, 101_325.0, humidity).mass_fraction()
+}
+
+fn room(faces: [[Face; 2]; 3]) -> Setup {
+    Setup {
+        settings: Settings::new(D, WARM, vapour(WARM, 0.8)),
+        air: Properties::at_room_temperature(0.5),
+        // Far from where coordinates begin.
+        room: Room { low: [3.0, -2.0, 5.0], high: [3.0 + SIZE[0], -2.0 + SIZE[1], 5.0 + SIZE[2]], faces },
+        bodies: Vec::new(),
+        fans: Vec::new(),
+        seed: 1,
+    }
+}
+
+fn part(setup: &Setup, place: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|axis| (place[axis] - setup.room.low[axis]) / SIZE[axis])
+}
+
+/// Air that turns in the room, warmer and moister here than there.
+fn stirred(setup: &Setup) -> Dew {
+    let start = |place| {
+        let [x, y, z] = part(setup, place).map(|part| (TAU * part).sin());
+        [WARM + 3.0 * x * y + z, vapour(WARM, 0.7 + 0.2 * y * z)]
+    };
+    let mut dew = Dew::new(setup, start).unwrap();
+    dew.stir(|place| {
+        let [x, y, z] = part(setup, place).map(|part| TAU * part);
+        [0.05 * z.sin(), 0.03 * (x + z).sin(), 0.04 * x.sin() * y.cos()]
+    });
+    dew
+}
+
+fn on_card(mut dew: Dew, gpu: &Gpu) -> Dew {
+    dew.use_card(gpu.clone()).unwrap();
+    dew
+}
+
+/// A little more than a step, lest rounding take it for less.
+fn step(dew: &mut Dew, count: usize) {
+    for _ in 0..count {
+        dew.advance_to(dew.time() + 1.000_001 * dew.time_step(), &AtomicBool::new(false)).unwrap();
+    }
+}
+
+fn go(dew: &mut Dew, time: f64) {
+    dew.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+fn by_id(dew: &Dew) -> Vec<Particle> {
+    let mut air = dew.air().to_vec();
+    air.sort_unstable_by_key(|particle| particle.id);
+    air
+}
+
+fn largest(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).abs()).fold(0.0, f64::max)
+}
+
+/// Largest differences over all parcels: place over the spacing; velocity, m/s; acceleration, m/s2; temperature, K; vapour and fog, parts
+/// of the mass; density, kg/m3.
+fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
+    let (a, b) = (by_id(a), by_id(b));
+    assert_eq!(a.len(), b.len(), "parcels");
+    let mut most = [0.0_f64; 7];
+    for (a, b) in a.iter().zip(&b) {
+        assert_eq!((a.id, a.role), (b.id, b.role));
+        let apart = [
+            largest(a.position, b.position) / D,
+            largest(a.velocity, b.velocity),
+            largest(a.acceleration, b.acceleration),
+            (a.temperature - b.temperature).abs(),
+            (a.vapour - b.vapour).abs(),
+            (a.fog - b.fog).abs(),
+            (a.density - b.density).abs(),
+        ];
+        most = std::array::from_fn(|k| most[k].max(apart[k]));
+    }
+    most
+}
+
+/// Bounds of the differences after one step, and after ten.
+const ONE: [f64; 7] = [3e-6, 1e-6, 1e-3, 1e-5, 1e-8, 1e-8, 2e-6];
+const TEN: [f64; 7] = [1e-5, 1e-5, 1e-2, 1e-4, 1e-7, 1e-7, 1e-5];
+
+fn all_faces() -> [(&'static str, [[Face; 2]; 3]); 3] {
+    [
+        ("periodic", [[Face::Periodic; 2]; 3]),
+        ("walls", [[Face::Wall; 2]; 3]),
+        ("mixed", [[Face::Wall; 2], [Face::Periodic; 2], [Face::Wall; 2]]),
+    ]
+}
+
+/// Goes one step and nine more with both, and compares every parcel and every particle of the solids.
+fn assert_as_on_the_processor(name: &str, [mut host, mut card]: [Dew; 2]) {
+    for (steps, most) in [(1, ONE), (9, TEN)] {
+        step(&mut host, steps);
+        step(&mut card, steps);
+        let apart = differences(&host, &card);
+        assert!((0..7).all(|k| apart[k] < most[k]), "{name} after {} steps: {apart:?}", host.steps());
+        assert!((card.time_step() / host.time_step() - 1.0).abs() < 1e-5);
+        let solids = differences_of_solids(&host, &card);
+        let most = [if steps == 1 { 1e-7 } else { 1e-6 }, 5e-5];
+        assert!((0..2).all(|k| solids[k] < most[k]), "{name} after {} steps: {solids:?}", host.steps());
+    }
+}
+
+/// Largest differences over all particles of the solids: temperature, K; water over the most on any, or what condenses in a part of a step.
+fn differences_of_solids(a: &Dew, b: &Dew) -> [f64; 2] {
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let most = a.water_on_solids().iter().copied().fold(1e-13, f64::max);
+    [apart(a.temperatures(), b.temperatures()), apart(a.water_on_solids(), b.water_on_solids()) / most]
+}
+
+#[test]
+fn air_in_a_box_goes_as_on_the_processor() {
+    let Some(gpu) = require_gpu("air on the card") else { return };
+    for (name, faces) in all_faces() {
+        let setup = room(faces);
+        assert_as_on_the_processor(name, [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+    }
+}
+
+/// A cold ball in the midst of the room.
+fn ball(faces: [[Face; 2]; 3], held: bool) -> Setup {
+    let mut setup = room(faces);
+    let middle = [0, 1, 2].map(|axis| setup.room.low[axis] + 0.5 * SIZE[axis]);
+    let solid = Solid::of_shape(Shape::sphere(2.4 * D).unwrap(), Pose::new(middle, [0.0; 3]));
+    setup.bodies.push(Body::sampled(solid, D, GLASS, COLD, held).unwrap());
+    setup
+}
+
+/// A ball and a floor of another material under it, at the sides of the room.
+fn ball_on_floor(faces: [[Face; 2]; 3]) -> Setup {
+    let mut setup = ball(faces, false);
+    let low = setup.room.low;
+    let place = [low[0] + 0.5 * SIZE[0], low[1] + 0.5 * SIZE[1], low[2] + D];
+    let floor = Solid::of_shape(Shape::cuboid([SIZE[0], SIZE[1], 2.0 * D]).unwrap(), Pose::new(place, [0.0; 3]));
+    let oak = Material { conductivity: 0.17, heat_capacity: 2000.0, density: 545.0 };
+    setup.bodies.push(Body::sampled(floor, D, oak, WARM - 10.0, true).unwrap());
+    setup
+}
+
+#[test]
+fn air_and_solids_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("solids on the card") else { return };
+    for (name, faces) in all_faces() {
+        for setup in [ball(faces, false), ball_on_floor(faces)] {
+            assert_as_on_the_processor(name, [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+        }
+    }
+}
+
+#[test]
+fn every_way_to_keep_air_out_goes_as_on_the_processor() {
+    let Some(gpu) = require_gpu("walls on the card") else { return };
+    for walls in
+        [WallTreatment::DensityCorrection, WallTreatment::VirtualForce, WallTreatment::Ghosts, WallTreatment::None]
+    {
+        let mut setup = ball(all_faces()[2].1, true);
+        (setup.settings.walls, setup.settings.kappa) = (walls, 1.1);
+        assert_as_on_the_processor(&format!("{walls:?}"), [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+    }
+}
+
+#[test]
+fn published_ways_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("published ways on the card") else { return };
+    for mean in [Mean::Harmonic, Mean::Arithmetic, Mean::Diffusivity] {
+        let mut setup = ball(all_faces()[2].1, false);
+        setup.settings.mean = mean;
+        setup.settings.condensation = Condensation::Parcel;
+        setup.settings.humidity = Humidity::Relative;
+        setup.settings.faster = 2.0;
+        assert_as_on_the_processor(&format!("{mean:?}"), [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+    }
+}
+
+/// Air beyond saturation, by solids and away from them; fog goes where the air is drier.
+#[test]
+fn fog_and_what_it_lays_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("fog on the card") else { return };
+    let setup = ball(all_faces()[2].1, false);
+    let start = |place| {
+        let [x, _, z] = part(&setup, place).map(|part| (TAU * part).sin());
+        [WARM + x, vapour(WARM, 1.0 + 0.1 * z)]
+    };
+    let open = || Dew::new(&setup, start).unwrap();
+    assert_as_on_the_processor("fog", [open(), on_card(open(), &gpu)]);
+}
+
+#[test]
+fn water_that_lies_there_evaporates_as_on_the_processor() {
+    let Some(gpu) = require_gpu("evaporation on the card") else { return };
+    let mut setup = ball(all_faces()[2].1, false);
+    setup.bodies[0].temperature = WARM + 5.0;
+    setup.settings.faster = 20.0;
+    let open = || {
+        let mut dew = stirred(&setup);
+        // So little that some of it is gone after ten steps.
+        dew.wet(0, 2e-6);
+        dew
+    };
+    assert_as_on_the_processor("evaporation", [open(), on_card(open(), &gpu)]);
+}
+
+/// The speed is such that no parcel stands in a face after a whole number of steps, where rounding would tell on which side.
+fn through_flow() -> [[Face; 2]; 3] {
+    let inflow = Inflow { velocity: [0.097, 0.0, 0.0], temperature: WARM + 2.0, vapour: vapour(WARM, 0.9) };
+    [[Face::Inlet(inflow), Face::Outlet], [Face::Wall, Face::Outlet], [Face::Periodic; 2]]
+}
+
+#[test]
+fn air_that_comes_and_goes_does_so_as_on_the_processor() {
+    let Some(gpu) = require_gpu("faces on the card") else { return };
+    let mut setup = ball(through_flow(), false);
+    let low = setup.room.low;
+    let blow = |at: f64, velocity| {
+        Fan::new([0, 1, 2].map(|axis| low[axis] + at * SIZE[axis]), [4.0 * D, 6.0 * D, 3.0 * D], velocity)
+    };
+    setup.fans = vec![blow(0.3, [0.1, 0.1, 0.0]), blow(0.8, [0.0, 0.0, -0.2])];
+    assert_as_on_the_processor("through", [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+}
+
+fn near(a: f64, b: f64, relative: f64) -> bool {
+    (a - b).abs() <= relative * a.abs().max(b.abs())
+}
+
+/// Totals after hundred steps, layers of air that come in among them, and what the card itself keeps.
+#[test]
+fn totals_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("totals on the card") else { return };
+    for (name, faces) in [("walls", [[Face::Wall; 2]; 3]), ("through", through_flow())] {
+        for held in [false, true] {
+            let setup = ball(faces, held);
+            let (mut host, mut card) = (stirred(&setup), on_card(stirred(&setup), &gpu));
+            step(&mut host, 100);
+            let time = host.time() + 0.5 * host.time_step();
+            go(&mut card, time);
+            assert_eq!(host.steps(), card.steps());
+            assert!(differences(&host, &card)[0] < 1e-3, "{name}: {:?}", differences(&host, &card));
+            let columns = host.gauge_columns();
+            for ((column, a), b) in columns.iter().zip(host.gauge_row()).zip(card.gauge_row()) {
+                assert!(near(a, b, 2e-5), "{name}, {}.{}: {a} and {b}", column.gauge, column.quantity);
+            }
+            for (host, card) in host.ledger().balances.iter().zip(card.ledger().balances) {
+                assert!(card.relative_error().abs() < 1e-7, "{name} {card:?}: {:e}", card.relative_error());
+                let both = [(host.inflow, card.inflow), (host.outflow, card.outflow), (host.now, card.now)];
+                assert!(both.iter().all(|&(a, b)| near(a, b, 1e-6)), "{name}: {host:?} and {card:?}");
+            }
+        }
+    }
+}
+
+/// The bits of the air and of the solids, and the time.
+fn bits(dew: &Dew) -> Vec<u64> {
+    let air = by_id(dew);
+    let of_air = air.iter().flat_map(|p| [p.position, p.velocity, [p.temperature, p.vapour, p.fog]]).flatten();
+    let of_solids = dew.temperatures().iter().chain(dew.water_on_solids()).copied();
+    of_air.chain(of_solids).chain([dew.time(), dew.time_step()]).map(f64::to_bits).collect()
+}
+
+#[test]
+fn looking_more_often_changes_nothing() {
+    let Some(gpu) = require_gpu("looks at the card") else { return };
+    let setup = ball(through_flow(), false);
+    let [mut seldom, mut often] = [(); 2].map(|()| on_card(stirred(&setup), &gpu));
+    go(&mut seldom, 0.15);
+    for look in 1..=30 {
+        go(&mut often, 0.15 * f64::from(look) / 30.0);
+        often.frame();
+    }
+    assert!(seldom.steps() > 70 && bits(&seldom) == bits(&often));
+}
+
+#[test]
+fn a_state_of_the_card_goes_on_on_the_processor_and_back() {
+    let Some(gpu) = require_gpu("checkpoints of the card") else { return };
+    let setup = ball(through_flow(), false);
+    let [mut host, mut card, mut other] =
+        [stirred(&setup), on_card(stirred(&setup), &gpu), on_card(stirred(&setup), &gpu)];
+    step(&mut card, 5);
+    let saved = card.save();
+    host.restore(&saved).unwrap();
+    other.restore(&saved).unwrap();
+    assert_eq!((host.backend(), other.backend()), ("cpu", "gpu"));
+    assert_eq!((host.time(), host.steps(), by_id(&host)), (card.time(), card.steps(), by_id(&card)));
+    for dew in [&mut card, &mut host, &mut other] {
+        step(dew, 5);
+    }
+    for dew in [&host, &other] {
+        let apart = differences(dew, &card);
+        assert!((0..7).all(|k| apart[k] < TEN[k]), "{apart:?}");
+        assert!(differences_of_solids(dew, &card)[0] < 1e-6);
+    }
+}
+
+#[test]
+fn what_the_card_cannot_compute_is_refused_by_name() {
+    let Some(gpu) = require_gpu("refusals by the card") else { return };
+    let mut setup = ball([[Face::Open; 2], [Face::Wall; 2], [Face::Wall; 2]], false);
+    setup.settings.low_utility = Some(LowUtility { distance: 1.0, after: 0.1 });
+    setup.fans = vec![Fan::new([0.0; 3], [1.0; 3], [1.0, 0.0, 0.0]); 9];
+    let mut dew = stirred(&setup);
+    let error = dew.use_card(gpu).unwrap_err();
+    assert!(matches!(error, ModelError::Setup(_)) && dew.backend() == "cpu");
+    for what in ["\"open\"", "[dew.low_utility]", "[[dew.fan]]", "--backend cpu"] {
+        assert!(error.to_string().contains(what), "{error}");
+    }
+}
+
+#[test]
+fn a_lost_card_leaves_the_state_of_before() {
+    let Some(gpu) = require_gpu("a card that is lost") else { return };
+    let mut dew = on_card(built_in("dew/pane"), &gpu);
+    go(&mut dew, 0.05);
+    let saved = dew.save();
+    gpu.device.destroy();
+    let error = dew.advance_to(0.1, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, ModelError::Device(_)), "{error}");
+    assert!(dew.save() == saved && dew.time() == 0.05);
+}
+
+#[test]
+fn air_that_cannot_go_on_breaks_down_with_an_error() {
+    let Some(gpu) = require_gpu("a breakdown on the card") else { return };
+    let setup = ball([[Face::Wall; 2]; 3], false);
+    let mut dew = Dew::new(&setup, |_| [WARM, vapour(WARM, 0.8)]).unwrap();
+    dew.stir(|place| if place[0] > setup.room.low[0] + 0.5 * SIZE[0] { [1e20, 0.0, 0.0] } else { [-1e20, 0.0, 0.0] });
+    let mut dew = on_card(dew, &gpu);
+    let error = dew.advance_to(1.0, &AtomicBool::new(false)).unwrap_err();
+    assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
+}
+
+/// A built-in scene; its seed is 1.
+fn built_in(name: &str) -> Dew {
+    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+    scene.resolve_defaults();
+    let ModelScene::Dew(written) = &scene.model else { panic!("{name} is no dew") };
+    corpuscle_dew::open(written, 1, Path::new("")).unwrap()
+}
+
+/// Drops as frames show them: number, mass, the largest, and where they are on average.
+fn drops(dew: &Dew) -> [f64; 6] {
+    let set = dew.frame().sets.into_iter().find(|set| set.name == "drops").unwrap();
+    let mean = |axis: usize| set.position.iter().map(|place| place[axis]).sum::<f64>() / set.position.len() as f64;
+    let largest = set.mass.iter().copied().fold(0.0, f64::max);
+    [set.id.len() as f64, set.mass.iter().sum(), largest, mean(0), mean(1), mean(2)]
+}
+
+/// Drops are the host's, on a held pane and on a lens that warms; it makes no difference how often something looks.
+#[test]
+fn drops_beside_the_card_go_as_on_the_processor() {
+    let Some(gpu) = require_gpu("drops beside the card") else { return };
+    for (name, time) in [("dew/pane", 0.1), ("dew/lens", 0.1)] {
+        let [mut host, seldom, often] = [(); 3].map(|()| built_in(name));
+        let [mut seldom, mut often] = [seldom, often].map(|dew| on_card(dew, &gpu));
+        go(&mut host, time);
+        go(&mut seldom, time);
+        for look in 1..=7 {
+            go(&mut often, time * f64::from(look) / 7.0);
+        }
+        assert!(drops(&host)[0] > 100.0 && host.steps() == seldom.steps(), "{name}");
+        assert!((0..6).all(|k| near(drops(&host)[k], drops(&seldom)[k], 1e-4)), "{name}");
+        assert!(bits(&seldom) == bits(&often) && drops(&seldom) == drops(&often), "{name}");
+        assert!(seldom.ledger().balances.iter().all(|balance| balance.relative_error().abs() < 1e-6));
+    }
+}
