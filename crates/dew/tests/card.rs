@@ -4,7 +4,7 @@ use corpuscle_dew::air::{Particle, Properties};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{
-    Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, WallTreatment,
+    ByHand, Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, WallTreatment,
 };
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Model, ModelError};
@@ -243,6 +243,24 @@ fn air_that_comes_and_goes_does_so_as_on_the_processor() {
     };
     setup.fans = vec![blow(0.3, [0.1, 0.1, 0.0]), blow(0.8, [0.0, 0.0, -0.2])];
     assert_as_on_the_processor("through", [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+}
+
+#[test]
+fn what_a_hand_changes_changes_on_the_card() {
+    let Some(gpu) = require_gpu("changes by hand on the card") else { return };
+    let setup = ball(through_flow(), true);
+    let changed = |mut dew: Dew| {
+        step(&mut dew, 3);
+        for change in [
+            ByHand::SolidTemperature { solid: 0, celsius: 1.0 },
+            ByHand::Wind { face: [0, 0], axis: 0, velocity: 0.2 },
+            ByHand::InletTemperature { face: [0, 0], celsius: 30.0 },
+        ] {
+            change.change(&mut dew).unwrap();
+        }
+        dew
+    };
+    assert_as_on_the_processor("changed", [changed(stirred(&setup)), changed(on_card(stirred(&setup), &gpu))]);
 }
 
 fn near(a: f64, b: f64, relative: f64) -> bool {
