@@ -210,7 +210,7 @@ fn the_story_of_a_flood_looks_as_it_did() {
 fn the_story_of_dew_looks_as_it_did() {
     let Some(mut stage) = waiting("dew as it looked", "A cold pane") else { return };
     stage.type_into("Temperature of pane, °C", "2");
-    stage.steps(12);
+    stage.steps(30);
     stage.same_as_reference("dew");
 }
 

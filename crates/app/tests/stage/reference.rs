@@ -6,10 +6,10 @@ use std::io::BufReader;
 use std::path::Path;
 
 /// Mean difference of two pictures of the same, in steps of a byte: drivers round differently.
-const SAME: f64 = 0.3;
+const SAME: f64 = 0.15;
 /// Side of the squares in which two pictures are compared, pixels, and the largest difference of their means, in steps of a byte.
-const SQUARE: u32 = 16;
-const SAME_SQUARE: f64 = 10.0;
+const SQUARE: u32 = 8;
+const SAME_SQUARE: f64 = 8.0;
 
 /// The part `[left, top, right, bottom]` of a picture, at half its size.
 pub fn half(image: &Image, [left, top, right, bottom]: [u32; 4]) -> Image {
