@@ -25,6 +25,26 @@ fn a_flood_runs_on_the_card() {
 }
 
 #[test]
+fn dew_runs_on_the_card() {
+    if !has_device("dew on the card") {
+        return;
+    }
+    let place = Place::new();
+    let on_card = place
+        .run(&["run", "dew/pane", "--until", "0.06", "--backend", "gpu", "-o", "card", "--json"])
+        .expect_status(0)
+        .json();
+    assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
+    for quantity in ["water_kg", "energy_J"] {
+        let error = on_card["ledger"][quantity]["relative_error"].as_f64().unwrap();
+        assert!(error.abs() < 1e-6, "{quantity}: {error}");
+    }
+    let refused = place.run(&["run", "dew/glassware", "--backend", "gpu", "-o", "refused"]).expect_status(2);
+    assert!(refused.stderr.contains("\"open\"") && refused.stderr.contains("--backend cpu"), "{}", refused.stderr);
+    assert!(!place.path("refused").exists(), "a run that was refused leaves no folder");
+}
+
+#[test]
 fn what_the_card_cannot_compute_is_refused_by_name() {
     if !has_device("a refusal by the card") {
         return;
