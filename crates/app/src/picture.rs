@@ -89,6 +89,26 @@ impl Picture {
         self.shown.as_ref()
     }
 
+    /// Begins the picture of a snapshot as the last one was seen, so that the device draws while the rest of the window is thought out.
+    /// Where it is seen otherwise after all, it is drawn again.
+    pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
+        let (paper, linear) = style::paper(visuals);
+        let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
+        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, ..last };
+        self.draw_as(snapshot, drawn, linear);
+    }
+
+    /// Draws a picture, unless it is drawn already.
+    fn draw_as(&mut self, snapshot: &Snapshot, drawn: Drawn, linear: [f32; 3]) {
+        if self.drawn.as_ref() != Some(&drawn) {
+            match self.draw(snapshot, &drawn, linear) {
+                Ok(()) => self.fault = None,
+                Err(error) => self.fault = Some(error.to_string()),
+            }
+            self.drawn = Some(drawn);
+        }
+    }
+
     /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it.
     pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -100,13 +120,7 @@ impl Picture {
         let still = self.note_change(ui, snapshot, moves, size, paper);
         let (look, samples) = self.work(still);
         let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper };
-        if self.drawn.as_ref() != Some(&drawn) {
-            match self.draw(snapshot, &drawn, linear) {
-                Ok(()) => self.fault = None,
-                Err(error) => self.fault = Some(error.to_string()),
-            }
-            self.drawn = Some(drawn);
-        }
+        self.draw_as(snapshot, drawn, linear);
         self.paint(ui, rect);
         response
     }

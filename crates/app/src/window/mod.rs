@@ -266,6 +266,13 @@ impl Window {
         self.listen();
         self.keys(ui);
         let pictures = self.clock.tick();
+        // Not while a hand moves the camera: it would be drawn twice.
+        if let Some(open) = &mut self.open
+            && let Some(snapshot) = open.snapshot.clone().filter(|snapshot| snapshot.playing)
+            && !ui.input(|input| input.pointer.any_down())
+        {
+            open.picture.draw_ahead(&snapshot, ui.visuals());
+        }
         if self.open.is_none() && self.awaited.is_none() {
             return self.first_page(ui);
         }

@@ -15,20 +15,6 @@ fn fragment(corner: Corner) -> Drawn {
     return shaded(hit(sight, corner.ball), corner.colour, sight, corner.clip.xy);
 }
 
-// The same at once, for where it is known before: software in place of a card computes both sides of every branch.
-@fragment
-fn fragment_discs(corner: Corner) -> Drawn {
-    let offset = corner.place - corner.ball.xyz;
-    let edge = length(offset);
-    if edge > corner.ball.w {
-        discard;
-    }
-    let inner = corner.ball.w - min(2.4 * view.forward.w, 0.3 * corner.ball.w);
-    let rim = smoothstep(inner - 0.5 * view.forward.w, inner + 0.5 * view.forward.w, edge);
-    let large = smoothstep(1.5, 8.0, corner.ball.w / view.forward.w);
-    return Drawn(vec4f(mix(corner.colour, 0.35 * corner.colour, rim * large), 1.0), depth_at(corner.ball.xyz));
-}
-
 // Spheres in plain light, without shadows and shine.
 @fragment
 fn fragment_matt(corner: Corner) -> Drawn {

@@ -98,9 +98,9 @@ impl BallPainter {
         let seen = SeenPainter::new(renderer, &layout).into();
         Self {
             opaque: recipe.opaque(gpu),
-            matt: recipe.opaque_by(gpu, "fragment_matt"),
-            discs: recipe.opaque_by(gpu, "fragment_discs"),
             cast: recipe.cast(gpu, "throw_shadow"),
+            matt: recipe.opaque_by(gpu, "fragment_matt"),
+            discs: Recipe { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }.opaque(gpu),
             layout,
             seen,
         }
