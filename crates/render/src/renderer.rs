@@ -89,24 +89,22 @@ impl Renderer {
         light: &Light,
         things: &[&mut dyn Drawable],
     ) {
-        let all = |_: &dyn Drawable| true;
-        let stands = |thing: &dyn Drawable| thing.standing().is_some();
         if light.throws_shadows() {
-            return self.draw_some(encoder, target, view, light, things, (true, &all));
+            return self.draw_some(encoder, target, view, light, things, Which::All);
         }
         let mut standing = target.standing.lock().unwrap_or_else(PoisonError::into_inner);
         match standing.look(view.bytes(), things) {
-            Stood::Changed => return self.draw_some(encoder, target, view, light, things, (true, &all)),
+            Stood::Changed => return self.draw_some(encoder, target, view, light, things, Which::All),
             Stood::Rests => {
-                self.draw_some(encoder, target, view, light, things, (true, &stands));
+                self.draw_some(encoder, target, view, light, things, Which::Standing);
                 standing.keep(&self.gpu, encoder, target);
             }
             Stood::Kept => standing.lay(encoder, target),
         }
-        self.draw_some(encoder, target, view, light, things, (false, &|thing| !stands(thing)));
+        self.draw_some(encoder, target, view, light, things, Which::Moving);
     }
 
-    /// Draws the things that are `wanted`, over nothing where it is to be `cleared`.
+    /// Draws some of the things: what moves over what is there, all others over nothing.
     fn draw_some(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -114,8 +112,9 @@ impl Renderer {
         view: &View,
         light: &Light,
         things: &[&mut dyn Drawable],
-        (cleared, wanted): (bool, &dyn Fn(&dyn Drawable) -> bool),
+        which: Which,
     ) {
+        let cleared = which != Which::Moving;
         let [colour, depth] = [&target.colour, &target.depth].map(whole);
         let load = if cleared { wgpu::LoadOp::Clear(behind(light)) } else { wgpu::LoadOp::Load };
         let load_depth = if cleared { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
@@ -135,7 +134,25 @@ impl Renderer {
             pass.set_pipeline(&self.backdrop);
             pass.draw(0..3, 0..1);
         }
-        things.iter().filter(|thing| wanted(&***thing)).for_each(|thing| thing.draw(&mut pass));
+        things.iter().filter(|thing| which.has(&***thing)).for_each(|thing| thing.draw(&mut pass));
+    }
+}
+
+/// Which things are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Which {
+    All,
+    Standing,
+    Moving,
+}
+
+impl Which {
+    fn has(self, thing: &dyn Drawable) -> bool {
+        match self {
+            Self::All => true,
+            Self::Standing => thing.standing().is_some(),
+            Self::Moving => thing.standing().is_none(),
+        }
     }
 }
 

@@ -78,6 +78,8 @@ struct Parameters {
     // Smoothing length at the start, and the largest, m.
     first_h: f32,
     widest_h: f32,
+    // 0, which compilers cannot tell.
+    zero: u32,
     unused: vec2f,
 }
 
@@ -178,20 +180,4 @@ struct Partial {
     sum_of_h: f32,
     low: vec2f,
     high: vec2f,
-}
-
-fn add(account: ptr<function, Account>, value: f32) {
-    let more = value - (*account).lacking;
-    let sum = (*account).sum + more;
-    (*account).lacking = (sum - (*account).sum) - more;
-    (*account).sum = sum;
-}
-
-fn book_momentum(status: ptr<function, Status>, momentum: f32) {
-    var lost = (*status).momentum_lost;
-    var gained = (*status).momentum_gained;
-    add(&lost, max(-momentum, 0.0));
-    add(&gained, max(momentum, 0.0));
-    (*status).momentum_lost = lost;
-    (*status).momentum_gained = gained;
 }

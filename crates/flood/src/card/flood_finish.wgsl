@@ -1,5 +1,6 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for.
 #import flood_card
+#import flood_accounts
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read_write> status: Status;

@@ -1,5 +1,6 @@
 // Sums the force on each obstacle, one group of threads for each, and over time. Twin of `push_obstacles` in `flood/step.rs`.
 #import flood_neighbours
+#import flood_accounts
 
 struct OnObstacle {
     // Corners of the rectangle in which particles may touch it, m.

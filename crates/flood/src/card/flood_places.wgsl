@@ -2,6 +2,7 @@
 // in `inflow.rs` and of `Zone::any`; the random numbers are those of ChaCha with 8 rounds (Bernstein 2008), one stream for each new
 // particle. Declares what it works on: kernels that import it go on from binding 6.
 #import flood_neighbours
+#import flood_accounts
 #import flood_ground
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;

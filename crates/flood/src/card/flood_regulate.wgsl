@@ -1,5 +1,6 @@
 // Outflows by rating, held levels and links in a step. Twin of `flood/regulate.rs` and `structures.rs`. One group.
 #import flood_laws
+#import flood_accounts
 
 const THREADS = 64u;
 

@@ -68,7 +68,9 @@ pub(super) struct Parameters {
     pub control_square: f32,
     pub first_h: f32,
     pub widest_h: f32,
-    pub unused: [f32; 3],
+    /// 0, which compilers cannot tell.
+    pub zero: u32,
+    pub unused: [f32; 2],
 }
 
 /// Scheme paper.

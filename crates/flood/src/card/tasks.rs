@@ -18,6 +18,7 @@ const LIBRARY: &[(&str, &str)] = &[
     ("flood_outlines", include_str!("flood_outlines.wgsl")),
     ("flood_places", include_str!("flood_places.wgsl")),
     ("flood_water", include_str!("flood_water.wgsl")),
+    ("flood_accounts", include_str!("flood_accounts.wgsl")),
     ("flood_laws", include_str!("flood_laws.wgsl")),
     ("flood_wetness", include_str!("flood_wetness.wgsl")),
     ("flood_air", include_str!("flood_air.wgsl")),
