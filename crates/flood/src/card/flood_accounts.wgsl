@@ -1,4 +1,7 @@
-// Sums that do not forget what is small: `Account`. Whoever imports this has `parameters`.
+// Sums that do not forget what is small: `Account`. Declares the parameters.
+#import flood_card
+
+@group(0) @binding(0) var<uniform> parameters: Parameters;
 
 // A number that compilers cannot tell: some take (a + b) - a for b, and what a sum has too much for 0.
 fn opaque(number: f32) -> f32 {

@@ -2,7 +2,6 @@
 #import flood_card
 #import flood_accounts
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group; and where

@@ -13,7 +13,6 @@ struct OnObstacle {
     unused: vec2f,
 }
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> pushes: array<vec3f>;
