@@ -28,6 +28,8 @@ pub struct Entry {
 /// The scenes.
 pub struct Gallery {
     entries: Vec<Entry>,
+    /// The scene that the list was last brought to.
+    brought_to: String,
 }
 
 /// The models, as they stand in the list.
@@ -41,7 +43,7 @@ impl Gallery {
             let (title, description) = read.map_or_else(|_| Default::default(), |read| (read.title, read.description));
             Entry { scene: *scene, title, sentence: first_sentence(&description), texture: None }
         };
-        Self { entries: BUILTIN.iter().map(entry).collect() }
+        Self { entries: BUILTIN.iter().map(entry).collect(), brought_to: String::new() }
     }
 
     /// The scenes of a model.
@@ -52,18 +54,26 @@ impl Gallery {
     /// The list at the side; gives the scene that was chosen.
     pub fn list(&mut self, ui: &mut Ui, open: &str) -> Option<Builtin> {
         let mut chosen = None;
+        let is_new = self.brought_to != open;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (model, name) in MODELS {
                 ui.add_space(6.0);
                 ui.label(RichText::new(name).small().weak());
                 for entry in self.of(model) {
-                    if entry.row(ui, entry.scene.name == open).clicked() {
+                    let row = entry.row(ui, entry.scene.name == open);
+                    if is_new && entry.scene.name == open {
+                        row.scroll_to_me(None);
+                    }
+                    if row.clicked() {
                         chosen = Some(entry.scene);
                     }
                 }
             }
             ui.add_space(10.0);
         });
+        if is_new {
+            open.clone_into(&mut self.brought_to);
+        }
         chosen
     }
 
