@@ -6,8 +6,8 @@ use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
     Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, HeightField,
-    Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Solid, SolidStyle, Stage, Target, Terrain, TubePainter,
-    TubeStyle, WaterSides, box_edges, natural_colours,
+    Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Shading, Solid, SolidStyle, Stage, Target, Terrain,
+    TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -160,7 +160,8 @@ fn plan(table: &Table, left_out: &str) -> Image {
     let stage = Stage::new([0.0; 3], [16.0, 9.0, 0.0]);
     let camera = Camera::plan(&stage, ASPECT, [0.1; 4]);
     let discs = (0..40).map(|k| ([1.0 + 2.0 * (k % 8) as f64, 1.0 + 1.8 * (k / 8) as f64, 0.0], 0.7, k as f64 / 39.0));
-    let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &BallStyle::new(viridis()), discs);
+    let style = BallStyle { shading: Shading::Discs, ..BallStyle::new(viridis()) };
+    let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &style, discs);
     let line = |look, ends: [[f64; 2]; 2], outwards| Border::Line { look, ends, outwards };
     let borders = vec![
         line(LineLook::Wall, [[0.0, 0.0], [16.0, 0.0]], [0.0, -1.0]),

@@ -11,8 +11,6 @@ struct Corner {
 
 @vertex
 fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
-    // All in one draw: software in place of a card is slow at instances of few corners. One triangle rather than the two of a square: it
-    // covers a third more, and costs half as much to set up, which is what many small balls cost.
     let number = vertex / 3u;
     let ball = sphere(number);
     let centre = ball.xyz;
@@ -26,9 +24,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.direction.z) > 0.9);
     let right = normalize(cross(sight.direction, aside));
     let up = cross(right, sight.direction);
-    // The triangle with sides of the same length round a circle of radius 1.
-    let side = f32(vertex % 3u) - 1.0;
-    let corner = vec2f(sqrt(3.0) * side, select(-1.0, 2.0, side == 0.0));
+    let corner = corner_of(vertex);
     let place = centre + reach * (corner.x * right + corner.y * up);
     return Corner(view.clip_from_world * vec4f(place, 1.0), place, ball, colour_of(number), number);
 }

@@ -1,17 +1,9 @@
-// Balls one by one: shaded spheres, flat discs on paper.
+// Balls one by one, as shaded spheres.
 #import ball_corner
 
 @fragment
 fn fragment(corner: Corner) -> Drawn {
     let sight = sight_of(corner);
-    if is_paper() {
-        // A darker rim, a pixel of the finished picture wide and narrower on small ones.
-        let edge = length(corner.place - corner.ball.xyz);
-        let inner = corner.ball.w - min(2.4 * view.forward.w, 0.3 * corner.ball.w);
-        let rim = smoothstep(inner - 0.5 * view.forward.w, inner + 0.5 * view.forward.w, edge);
-        let large = smoothstep(1.5, 8.0, corner.ball.w / view.forward.w);
-        return Drawn(vec4f(mix(corner.colour, 0.35 * corner.colour, rim * large), 1.0), depth_at(corner.ball.xyz));
-    }
     return shaded(hit(sight, corner.ball), corner.colour, sight, corner.clip.xy);
 }
 

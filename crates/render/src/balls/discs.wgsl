@@ -15,9 +15,7 @@ struct Corner {
 fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let number = vertex / 3u;
     let disc = sphere(number);
-    // The triangle with sides of the same length round a circle of radius 1.
-    let side = f32(vertex % 3u) - 1.0;
-    let aside = vec2f(sqrt(3.0) * side, select(-1.0, 2.0, side == 0.0));
+    let aside = corner_of(vertex);
     let across = view.world_from_view * vec4f(aside, 0.0, 0.0);
     let clip = view.clip_from_world * vec4f(disc.xyz + disc.w * across.xyz, 1.0);
     // A pixel of the finished picture wide, and narrower on small ones.
