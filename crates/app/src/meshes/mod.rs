@@ -4,10 +4,13 @@
 //! and half of the time of a picture went there (`docs/src/benchmarks.md`, "The window"). Here the same triangles go through a
 //! shader that does what is wanted alone. On a card nothing of this is used.
 
-use corpuscle::gpu::{Gpu, wgpu};
+mod pipelines;
+
+use corpuscle::gpu::{Gpu, GpuKind, wgpu};
 use egui::epaint::{ClippedShape, ImageData, ImageDelta, Primitive, Vertex};
-use egui::{Context, FullOutput, PaintCallbackInfo, Rect, Shape, TextureFilter, TextureId};
+use egui::{Context, FullOutput, PaintCallbackInfo, Rect, Shape, TextureId};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
+use pipelines::{Image, Pipelines};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -24,20 +27,6 @@ pub struct Meshes {
     gone: Vec<TextureId>,
     vertices: Room,
     indices: Room,
-}
-
-struct Pipelines {
-    letters: wgpu::RenderPipeline,
-    images: wgpu::RenderPipeline,
-    window: wgpu::BindGroupLayout,
-    image: wgpu::BindGroupLayout,
-    samplers: [wgpu::Sampler; 2],
-}
-
-/// An image of the toolkit on the device.
-struct Image {
-    texture: wgpu::Texture,
-    group: Arc<wgpu::BindGroup>,
 }
 
 /// Memory on the device that grows.
@@ -76,7 +65,7 @@ struct Gathered {
 impl Meshes {
     /// For a window that is drawn in a format of sRGB bytes; none where the window takes linear light, or a card draws it.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Option<Self> {
-        let software = gpu.kind == corpuscle::gpu::GpuKind::Software;
+        let software = gpu.kind == GpuKind::Software;
         (software && !format.is_srgb()).then(|| Self {
             gpu: gpu.clone(),
             pipelines: Arc::new(Pipelines::new(&gpu.device, format)),
@@ -216,136 +205,6 @@ impl Room {
         gpu.queue.write_buffer(&buffer, 0, bytes);
         self.buffer.insert(buffer).clone()
     }
-}
-
-impl Pipelines {
-    fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("meshes"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("meshes.wgsl").into()),
-        });
-        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("meshes"), entries })
-        };
-        let window = layout(&[entry(0, wgpu::ShaderStages::VERTEX, uniform)]);
-        let seen = wgpu::ShaderStages::FRAGMENT;
-        let image = layout(&[entry(0, seen, texture), entry(1, seen, sampler)]);
-        let pipeline = |entry| pipeline(device, format, &module, entry, [&window, &image]);
-        let sampler = |filter| {
-            device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("meshes"),
-                mag_filter: filter,
-                min_filter: filter,
-                ..wgpu::SamplerDescriptor::default()
-            })
-        };
-        Self {
-            letters: pipeline("fragment_letters"),
-            images: pipeline("fragment_image"),
-            samplers: [wgpu::FilterMode::Nearest, wgpu::FilterMode::Linear].map(sampler),
-            window,
-            image,
-        }
-    }
-
-    /// An empty image.
-    fn image(&self, device: &wgpu::Device, size: wgpu::Extent3d, filter: TextureFilter) -> Image {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("image"),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba8Unorm,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
-        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let sampler = &self.samplers[usize::from(filter == TextureFilter::Linear)];
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("image"),
-            layout: &self.image,
-            entries: &[
-                entry(0, wgpu::BindingResource::TextureView(&view)),
-                entry(1, wgpu::BindingResource::Sampler(sampler)),
-            ],
-        });
-        Image { texture, group: Arc::new(group) }
-    }
-
-    /// The size of the window, points, as the shader takes it.
-    fn window(&self, gpu: &Gpu, [width, height]: [f32; 2]) -> wgpu::BindGroup {
-        let size = [width, height, 0.0, 0.0];
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("size of the window"),
-            size: size_of_val(&size) as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&size));
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("size of the window"),
-            layout: &self.window,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        })
-    }
-}
-
-/// Triangles laid over what is there, opacity multiplied in.
-fn pipeline(
-    device: &wgpu::Device,
-    format: wgpu::TextureFormat,
-    module: &wgpu::ShaderModule,
-    entry: &str,
-    layouts: [&wgpu::BindGroupLayout; 2],
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("meshes"),
-        bind_group_layouts: &layouts.map(Some),
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("meshes"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module,
-            entry_point: Some("vertex"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Uint32],
-            })],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(wgpu::ColorTargetState {
-                format,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
 }
 
 impl CallbackTrait for Drawn {
