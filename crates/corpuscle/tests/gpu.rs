@@ -24,19 +24,25 @@ fn open(name: &str) -> Simulation {
     Simulation::open(scene, Path::new("")).unwrap()
 }
 
+/// A built-in scene at a time, computed on the processor and on the card.
+fn both_at(name: &str, time: f64) -> [Simulation; 2] {
+    let mut both = [open(name), open(name)];
+    both[1].use_gpu().unwrap();
+    assert_eq!(both[1].model().backend(), "gpu");
+    for simulation in &mut both {
+        simulation.model_mut().advance_to(time, &AtomicBool::new(false)).unwrap();
+    }
+    both
+}
+
 #[test]
 fn built_in_floods_go_as_on_the_processor() {
     if require_gpu("built-in floods on the card").is_none() {
         return;
     }
     for (name, time) in TIMES {
-        let (mut host, mut card) = (open(name), open(name));
-        card.use_gpu().unwrap();
-        assert_eq!(card.model().backend(), "gpu");
-        for simulation in [&mut host, &mut card] {
-            simulation.model_mut().advance_to(time, &AtomicBool::new(false)).unwrap();
-        }
-        let (host, card) = (host.model(), card.model());
+        let both = both_at(name, time);
+        let [host, card] = both.each_ref().map(Simulation::model);
         assert!(host.steps() >= 5 && host.steps().abs_diff(card.steps()) <= 1, "{name}: {} steps", host.steps());
         assert_eq!(host.particles(), card.particles(), "{name}");
         let columns = host.gauge_columns();
@@ -62,13 +68,8 @@ fn built_in_dew_goes_as_on_the_processor() {
         return;
     }
     for (name, time) in DEW {
-        let (mut host, mut card) = (open(name), open(name));
-        card.use_gpu().unwrap();
-        assert_eq!(card.model().backend(), "gpu");
-        for simulation in [&mut host, &mut card] {
-            simulation.model_mut().advance_to(time, &AtomicBool::new(false)).unwrap();
-        }
-        let (host, card) = (host.model(), card.model());
+        let both = both_at(name, time);
+        let [host, card] = both.each_ref().map(Simulation::model);
         assert!(host.steps() >= 50 && host.steps() == card.steps(), "{name}: {} steps", host.steps());
         let columns = host.gauge_columns();
         for ((column, host), card) in columns.iter().zip(host.gauge_row()).zip(card.gauge_row()) {

@@ -184,6 +184,6 @@ impl Model for Dew {
         }
         (self.shown, self.state) = (shown, state);
         self.take_hand()?;
-        self.renew_card()
+        self.renew_card(self.has_been_touched())
     }
 }

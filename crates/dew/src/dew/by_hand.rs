@@ -159,13 +159,19 @@ impl Dew {
         self.as_set_up.get_or_insert(before);
         self.keep_sound_faster();
         self.state.hand = Some(self.as_it_is());
-        self.renew_card()
+        self.renew_card(true)
     }
 
-    /// A card that takes the steps gets to know what has changed.
-    pub(crate) fn renew_card(&mut self) -> Result<(), ModelError> {
+    /// True where a hand has changed something, in this state or in one before.
+    pub(crate) fn has_been_touched(&self) -> bool {
+        self.as_set_up.is_some()
+    }
+
+    /// A card that takes the steps gets to know the state; and what a hand has changed, if anything, for which it is set up anew.
+    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no card"))]
+    pub(crate) fn renew_card(&mut self, anew: bool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
-        self.tell_card()?;
+        self.tell_card(anew)?;
         Ok(())
     }
 

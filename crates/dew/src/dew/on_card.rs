@@ -70,11 +70,21 @@ impl Dew {
         Ok(())
     }
 
-    /// Hands the state to the card, where there is one, with the settings as they are now.
-    pub(crate) fn tell_card(&mut self) -> Result<(), ModelError> {
-        let Some(card) = &self.card else { return Ok(()) };
-        let gpu = card.gpu();
-        self.open_card(gpu).map_err(|error| failed(&error))
+    /// Hands the state to the card, where there is one. It is set up anew, its shaders compiled again, where settings have changed or there is
+    /// too little room.
+    pub(crate) fn tell_card(&mut self, anew: bool) -> Result<(), ModelError> {
+        let needed = self.state.air.len() + self.most_to_come();
+        match &mut self.card {
+            None => Ok(()),
+            Some(card) if !anew && card.filling()[1] >= needed => {
+                card.send(&self.state);
+                Ok(())
+            }
+            Some(card) => {
+                let gpu = card.gpu();
+                self.open_card(gpu).map_err(|error| failed(&error))
+            }
+        }
     }
 
     /// Parcels that can come in by inlets while so many steps are taken as are ordered at once.
