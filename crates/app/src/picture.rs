@@ -167,12 +167,11 @@ impl Picture {
     }
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
-        let resized = self.pictures.resize(drawn.size, drawn.samples)?;
+        self.pictures.resize(drawn.size, drawn.samples)?;
         let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
-        self.shown = Some(self.pictures.show(&moment, &self.hand, drawn.look, paper)?);
-        if resized || self.on_screen.is_none() {
-            self.on_screen = Some(self.screen.show(&self.pictures.view()));
-        }
+        let shown = self.pictures.show(&moment, &self.hand, drawn.look, paper)?;
+        self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
+        self.shown = Some(shown);
         Ok(())
     }
 

@@ -232,3 +232,65 @@ fn a_film_is_recorded_and_stills_and_scenes_are_saved() {
     assert!(folder.path().join("gas-maxwell.png").exists() && stage.has("Record a film"));
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }
+
+/// A short run of two boxes of balls, as `corpuscle run` leaves it.
+fn finished_run(folder: &std::path::Path) {
+    let text = corpuscle::scene::builtin("gas/free-expansion").unwrap().text;
+    let shorter = [("run.until_s", "0.5"), ("run.frame_every_s", "0.05"), ("run.gauge_every_s", "0.05")];
+    let shorter: Vec<_> = shorter.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+    let scene = corpuscle::scene::Scene::parse(text, "gas/free-expansion", &shorter).unwrap();
+    let mut simulation = corpuscle::Simulation::open(scene, std::path::Path::new("")).unwrap();
+    let mut recorder = corpuscle::Recorder::create(folder, &simulation, Default::default()).unwrap();
+    simulation.run(&mut [&mut recorder], &false.into(), &mut |_| {}).unwrap();
+}
+
+#[test]
+fn a_finished_run_is_scrubbed_and_its_gauges_are_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    finished_run(&run);
+    let start = corpuscle_app::Start::Run(run);
+    let Some(mut stage) = stage::stage_in("a finished run", egui::Theme::Light, start) else { return };
+    stage.until(SOON, "it is open", |window| !window.is_waiting() && window.snapshot().is_some());
+    stage.window_mut().save_into(folder.path().to_owned());
+    stage.key(egui::Key::Space);
+    stage.run(Duration::from_millis(300));
+    // Back and forth: the frame nearest to where the bar is touched is shown, the same each time.
+    let mut shown = Vec::new();
+    for part in [0.8, 0.2, 0.8] {
+        stage.touch_bar(part);
+        let time = f64::from(part) * 0.5;
+        stage.until(SOON, "its time is shown", |window| {
+            window.snapshot().is_some_and(|snapshot| (snapshot.frame.time - time).abs() < 0.026)
+        });
+        shown.push(stage.window().snapshot().unwrap().frame.sets[0].position.clone());
+    }
+    assert!(shown[0] == shown[2] && shown[0] != shown[1]);
+    stage.click("Save plot 1 as a table");
+    let tables: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let table = tables.iter().find(|path| path.extension().is_some_and(|end| end == "csv")).expect("a table");
+    let text = std::fs::read_to_string(table).unwrap();
+    // Series, time and value, as often as the gauges were written.
+    let times: Vec<f64> = text.lines().skip(1).map(|row| row.split(',').nth(1).unwrap().parse().unwrap()).collect();
+    assert!(times.len() == 11 && times[0] == 0.0 && (times[10] - 0.5).abs() < 1e-9, "{text}");
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+#[test]
+fn a_scene_is_saved_as_it_was_changed() {
+    let Some(mut stage) = waiting("saving a scene", "Free expansion") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    stage.window_mut().save_into(folder.path().to_owned());
+    stage.type_into("Number, ", "300");
+    stage.choose("Save the scene as changed");
+    let file = folder.path().join("gas-free-expansion-changed.toml");
+    let text = std::fs::read_to_string(&file).unwrap_or_else(|error| {
+        panic!(
+            "{error}: {:?} {:?}",
+            stage.window().fault(),
+            std::fs::read_dir(folder.path()).unwrap().collect::<Vec<_>>()
+        )
+    });
+    let scene = corpuscle::scene::Scene::parse(&text, "changed", &[]).unwrap();
+    assert_eq!(scene.gas().unwrap().species[0].count, Some(300));
+}

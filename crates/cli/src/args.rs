@@ -178,7 +178,7 @@ fn film_length(text: &str) -> Result<f64, String> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// A GPU if there is one, else the CPU
+    /// `run`: a GPU if there is one and the scene is large enough, else the CPU; `validate`, `bench`: the CPU
     Auto,
     /// The CPU, all cores
     Cpu,

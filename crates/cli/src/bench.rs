@@ -13,7 +13,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     let with = corpuscle_validate::BenchOptions { quick: options.quick, gpu };
     let mut rates = Vec::new();
     for bench in select(benches(), |bench| bench.name, &options.names)? {
-        if with.gpu.is_some() && !bench.name.starts_with("flood/") {
+        if with.gpu.is_some() && bench.name.starts_with("gas/") {
             eprintln!("{} left out: it computes on the CPU only", bench.name);
             continue;
         }

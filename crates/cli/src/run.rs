@@ -10,7 +10,7 @@ use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
 use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
-use corpuscle::{Filming, Recorder, Simulation, Sink};
+use corpuscle::{Choice, Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -66,14 +66,23 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
 
 fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Recorder)> {
     let (mut simulation, recorder) = Recorder::resume(folder)?;
-    compute_on(backend, &mut simulation)?;
+    match backend {
+        // Lest a run change hands, and its last digits, because it was interrupted.
+        Backend::Auto => eprintln!("going on on the CPU; `--backend gpu` goes on on a graphics card"),
+        _ => compute_on(backend, &mut simulation)?,
+    }
     Ok((simulation, recorder))
 }
 
 /// Has the steps taken where they are asked for.
 fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpuscle::Error> {
     match backend {
-        Backend::Auto | Backend::Cpu => Ok(()),
+        Backend::Auto => {
+            let Choice { is_gpu, why } = simulation.use_best();
+            eprintln!("computing on the {}: {why}", if is_gpu { "graphics card" } else { "CPU" });
+            Ok(())
+        }
+        Backend::Cpu => Ok(()),
         Backend::Gpu => simulation.use_gpu(),
     }
 }

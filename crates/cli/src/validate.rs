@@ -21,7 +21,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         if options.fast && case.slow {
             continue;
         }
-        if with.gpu.is_some() && !case.name.starts_with("flood/") {
+        if with.gpu.is_some() && case.name.starts_with("gas/") {
             eprintln!("{} left out: it computes on the CPU only", case.name);
             continue;
         }

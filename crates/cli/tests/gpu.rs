@@ -39,24 +39,48 @@ fn dew_runs_on_the_card() {
         let error = on_card["ledger"][quantity]["relative_error"].as_f64().unwrap();
         assert!(error.abs() < 1e-6, "{quantity}: {error}");
     }
-    let refused = place.run(&["run", "dew/glassware", "--backend", "gpu", "-o", "refused"]).expect_status(2);
-    assert!(refused.stderr.contains("\"open\"") && refused.stderr.contains("--backend cpu"), "{}", refused.stderr);
-    assert!(!place.path("refused").exists(), "a run that was refused leaves no folder");
 }
 
 #[test]
-fn what_the_card_cannot_compute_is_refused_by_name() {
-    if !has_device("a refusal by the card") {
+fn a_flood_whose_particles_are_split_runs_on_the_card() {
+    if !has_device("splitting on the card") {
         return;
     }
     let place = Place::new();
-    let refused = place
-        .run(&["run", "flood/cloudburst", "--set", "flood.refinement={}", "--backend", "gpu", "-o", "refused"])
-        .expect_status(2);
-    assert!(
-        refused.stderr.contains("[flood.refinement]") && refused.stderr.contains("--backend cpu"),
-        "{}",
-        refused.stderr
-    );
-    assert!(!place.path("refused").exists(), "a run that was refused leaves no folder");
+    let summary = place
+        .run(&[
+            "run",
+            "flood/cloudburst",
+            "--set",
+            "flood.refinement={}",
+            "--until",
+            "300",
+            "--backend",
+            "gpu",
+            "--json",
+        ])
+        .expect_status(0)
+        .json();
+    assert_eq!((&summary["backend"], &summary["status"]), (&"gpu".into(), &"done".into()));
+    let error = summary["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
+    assert!(error.abs() < 1e-6, "{error}");
+}
+
+/// Where it computes is said, and why; software in place of a card, as where this is tested, is not chosen.
+#[test]
+fn a_backend_is_chosen_and_said() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    let few = place.run(&["run", "lake.toml", "-o", "few"]).expect_status(0);
+    assert!(few.stderr.contains("computing on the CPU") && few.stderr.contains("too few"), "{}", few.stderr);
+    let gas = place.run(&["run", "gas/mixing", "--until", "0.01", "-o", "gas"]).expect_status(0);
+    assert!(gas.stderr.contains("computing on the CPU: a gas"), "{}", gas.stderr);
+    let finer = ["run", "flood/dam-break", "--until", "0.1", "--backend", "auto", "--json", "-o", "many"];
+    let many = place.run(&finer).expect_status(0);
+    let why = match corpuscle::gpu::Gpu::open().map(|gpu| gpu.kind) {
+        Ok(corpuscle::gpu::GpuKind::Card) => "computing on the graphics card",
+        Ok(corpuscle::gpu::GpuKind::Software) => "computing on the CPU: there is no graphics card, only software",
+        Err(_) => "computing on the CPU: there is no graphics card",
+    };
+    assert!(many.stderr.contains(why), "{why}: {}", many.stderr);
 }

@@ -15,6 +15,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "gpu")]
+mod backend;
 mod by_hand;
 mod error;
 #[cfg(feature = "film")]
@@ -43,6 +45,8 @@ pub use corpuscle_record as record;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
+#[cfg(feature = "gpu")]
+pub use backend::{Choice, FEWEST_ON_CARD};
 pub use by_hand::ByHand;
 pub use error::Error;
 #[cfg(feature = "film")]

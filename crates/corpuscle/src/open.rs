@@ -38,16 +38,33 @@ impl Simulation {
     /// Where there is no card, or it cannot compute this scene: nothing has changed then.
     #[cfg(feature = "gpu")]
     pub fn use_gpu(&mut self) -> Result<(), Error> {
-        let name = self.model().name();
+        if self.model().name() == "gas" {
+            return Err(self.on_processor_only());
+        }
+        self.use_this_gpu(corpuscle_gpu::Gpu::open()?)
+    }
+
+    /// [`Simulation::use_gpu`] with a card that is open.
+    ///
+    /// # Errors
+    /// As [`Simulation::use_gpu`].
+    #[cfg(feature = "gpu")]
+    pub fn use_this_gpu(&mut self, gpu: corpuscle_gpu::Gpu) -> Result<(), Error> {
         let model: &mut dyn Any = self.model_mut();
         if let Some(flood) = model.downcast_mut::<Flood>() {
-            return Ok(flood.use_card(corpuscle_gpu::Gpu::open()?)?);
+            return Ok(flood.use_card(gpu)?);
         }
         if let Some(dew) = model.downcast_mut::<Dew>() {
-            return Ok(dew.use_card(corpuscle_gpu::Gpu::open()?)?);
+            return Ok(dew.use_card(gpu)?);
         }
+        Err(self.on_processor_only())
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_processor_only(&self) -> Error {
+        let name = self.model().name();
         let what = format!("the model {name} computes on the CPU only: leave `--backend gpu` out");
-        Err(ModelError::Setup(what).into())
+        ModelError::Setup(what).into()
     }
 
     fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {

@@ -59,7 +59,8 @@ fn built_in_floods_go_as_on_the_processor() {
 }
 
 /// Time to go: some fifty steps and more, so that there are drops.
-const DEW: [(&str, f64); 3] = [("dew/pane", 0.15), ("dew/lens", 0.1), ("dew/three-boundaries", 0.008)];
+const DEW: [(&str, f64); 4] =
+    [("dew/pane", 0.15), ("dew/lens", 0.1), ("dew/three-boundaries", 0.008), ("dew/glassware", 0.03)];
 
 /// Drops on the processor beside air on the card are the same drops, so their numbers are the same too.
 #[test]

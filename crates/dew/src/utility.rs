@@ -10,10 +10,10 @@ use crate::solids::Surface;
 use rayon::prelude::*;
 
 /// It is looked for air that no longer matters once in so many steps.
-const STEPS: u64 = 10;
+pub(crate) const STEPS: u64 = 10;
 
 /// Taken out is only what has gone on by this, so that air that matters does not see the hole, in smoothing lengths.
-const FARTHER: f64 = 2.0;
+pub(crate) const FARTHER: f64 = 2.0;
 
 /// Distances are compared after a way of this, in smoothing lengths.
 const WAY: f64 = 0.05;

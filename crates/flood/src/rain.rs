@@ -183,7 +183,8 @@ impl Ground {
         [self.bounds.x_min + column as f64 * size[0], self.bounds.y_min + row as f64 * size[1]]
     }
 
-    fn centres(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    /// The middles of the cells.
+    pub fn centres(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let size = self.size();
         (0..self.columns * self.rows).map(move |cell| {
             let corner = self.corner(cell);

@@ -9,7 +9,9 @@ use crate::arrangement::{Arrangement, IMAGE};
 use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use corpuscle_scene::Refinement as Settings;
+use corpuscle_sph::FEWEST;
 use corpuscle_sph::kernel::cubic_spline;
+use rayon::prelude::*;
 
 /// Water slower than this Froude number is not split: a lake stays as it is.
 const SLOWEST: f64 = 0.05;
@@ -43,13 +45,20 @@ impl Refinement {
         Self { widest: 2.0 * spacing * spacing, smallest: settings.smallest * volume, largest: 1.1 * volume }
     }
 
+    /// The area for which a particle may stand, m2, the smallest volume of a half, m3, and the largest of what is merged, m3.
+    #[cfg(feature = "gpu")]
+    pub fn numbers(&self) -> [f64; 3] {
+        [self.widest, self.smallest, self.largest]
+    }
+
     /// The side of the square for which a particle may stand at most, m.
     pub fn widest(&self) -> f64 {
         self.widest.sqrt()
     }
 
-    /// Merges and splits particles that stand as arranged, or have moved a little since. What is merged into another is left with no
-    /// volume; whether there is any. New particles come last.
+    /// Merges and splits particles that stand as arranged, or have moved a little since. Two are merged where each is the nearest that
+    /// the other can be merged with, so that it does not matter who is asked first. What is merged into another is left with no volume;
+    /// whether there is any. New particles come last.
     pub fn refine(
         &self,
         particles: &mut Vec<Particle>,
@@ -59,12 +68,15 @@ impl Refinement {
         next_id: &mut u64,
     ) -> bool {
         let mut merged = false;
-        for number in 0..arrangement.real.len() {
+        let of_number = |number: usize| self.partner(number, particles, arrangement);
+        let partners: Vec<Option<usize>> =
+            (0..arrangement.real.len()).into_par_iter().with_min_len(FEWEST).map(of_number).collect();
+        for (number, partner) in partners.iter().enumerate() {
             let particle = particles[number];
-            if self.is_small(&particle) {
-                let partner = self.partner(number, particles, arrangement);
-                let both = partner.map(|partner| joined(&particle, &particles[partner]));
-                if let (Some(partner), Some(both)) = (partner, both.filter(|both| !obstacles.hold([both.x, both.y]))) {
+            if let Some(partner) = *partner {
+                let is_mutual = partners[partner] == Some(number) && number < partner;
+                let both = is_mutual.then(|| joined(&particle, &particles[partner]));
+                if let Some(both) = both.filter(|both| !obstacles.hold([both.x, both.y])) {
                     particles[number] = both;
                     (particles[partner].volume, particles[partner].weight) = (0.0, 0.0);
                     merged = true;
@@ -94,9 +106,12 @@ impl Refinement {
         is_water(particle) && particle.area() < MERGED * self.widest && particle.volume < 0.75 * self.largest
     }
 
-    /// The nearest particle with which one can be merged.
+    /// The nearest particle with which one can be merged, where it is small.
     fn partner(&self, number: usize, particles: &[Particle], arrangement: &Arrangement) -> Option<usize> {
         let own = &particles[number];
+        if !self.is_small(own) {
+            return None;
+        }
         let mut nearest: Option<(f64, usize)> = None;
         for (place, _) in neighbours(number, arrangement) {
             let near = arrangement.particle[place] as usize;
@@ -162,7 +177,7 @@ fn halves(particle: &Particle, axis: [f64; 2], id: u64) -> [Particle; 2] {
     [half(-1.0, particle.id), half(1.0, id)]
 }
 
-/// Two particles as one: at their centre of mass, with the momentum of both.
+/// Two particles as one: at their centre of mass, with the momentum of both, standing for the area of both.
 fn joined(one: &Particle, other: &Particle) -> Particle {
     let volume = one.volume + other.volume;
     let mean = |of: fn(&Particle) -> f64| (one.volume * of(one) + other.volume * of(other)) / volume;
@@ -174,6 +189,7 @@ fn joined(one: &Particle, other: &Particle) -> Particle {
         ax: mean(|particle| particle.ax),
         ay: mean(|particle| particle.ay),
         next_h: one.next_h.max(other.next_h) / CLOSER,
+        depth: volume / (one.area() + other.area()),
         id: one.id.min(other.id),
         volume,
         weight: one.weight + other.weight,
@@ -215,6 +231,7 @@ mod tests {
         fn what_is_joined_holds_what_both_held(one in particle(), other in particle()) {
             let both = joined(&one, &other);
             prop_assert_eq!(both.volume, one.volume + other.volume);
+            prop_assert!((both.area() / (one.area() + other.area()) - 1.0).abs() < 1e-13);
             prop_assert!(close(sums(&[both]), sums(&[one, other]), both.volume));
         }
     }

@@ -482,14 +482,6 @@ fn a_lost_card_ends_with_an_error_and_the_state_of_before() {
 }
 
 #[test]
-fn what_is_not_there_yet_is_refused_by_name() {
-    let Some(gpu) = require_gpu("the flood on the card") else { return };
-    let mut flood = open(&VALLEY.replace("friction.chezy = 40", "refinement = {}"));
-    let error = flood.use_card(gpu).unwrap_err().to_string();
-    assert!(error.contains("[flood.refinement]") && error.contains("--backend cpu"), "{error}");
-}
-
-#[test]
 fn what_a_hand_changes_is_changed_on_the_card() {
     let Some(gpu) = require_gpu("a hand's changes on the card") else { return };
     let (mut host, mut card) = (open(DAM), on_card(DAM, &gpu));

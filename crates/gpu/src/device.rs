@@ -89,7 +89,7 @@ impl Gpu {
     pub fn request(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
-            required_limits: limits(&adapter.limits()),
+            required_limits: limits(&adapter.limits(), Self::rank(adapter) == rank(wgpu::DeviceType::Cpu)),
             ..wgpu::DeviceDescriptor::default()
         }
     }
@@ -122,12 +122,15 @@ impl Gpu {
     }
 }
 
-/// The portable floor, but as much memory as there is.
-fn limits(most: &wgpu::Limits) -> wgpu::Limits {
+/// The portable floor, but as much memory as there is. Software takes uniform buffers as storage besides: see `Kernel`.
+fn limits(most: &wgpu::Limits, software: bool) -> wgpu::Limits {
+    let floor = wgpu::Limits::default();
+    let storage = floor.max_storage_buffers_per_shader_stage;
     wgpu::Limits {
+        max_storage_buffers_per_shader_stage: if software { storage + 2 } else { storage },
         max_storage_buffer_binding_size: most.max_storage_buffer_binding_size,
         max_buffer_size: most.max_buffer_size,
-        ..wgpu::Limits::default()
+        ..floor
     }
 }
 

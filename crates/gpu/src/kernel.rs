@@ -1,6 +1,6 @@
 //! Programs that compute.
 
-use crate::{Gpu, ShaderLibrary, join};
+use crate::{Gpu, GpuKind, ShaderLibrary, join};
 
 /// Threads in a group of every kernel that has one thread for each particle or cell.
 pub const THREADS: u32 = 256;
@@ -28,7 +28,7 @@ impl Kernel {
     /// # Panics
     /// Where a piece is missing from `library` or the shader is wrong, which a test of all shaders finds.
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
-        let joined = join(name, text, library).expect("a test joins every shader");
+        let joined = for_device(gpu, join(name, text, library).expect("a test joins every shader"));
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(joined.into()),
@@ -65,6 +65,16 @@ impl Kernel {
             entries: &entries,
         });
         Task { pipeline: self.pipeline.clone(), bindings }
+    }
+}
+
+/// The text as a device takes it. Mesa's software Vulkan puts what uniform buffers hold into its programs wherever a loop or a choice
+/// depends on them alone, and compiles anew at each dispatch: most of its time went there, and memory that it never gives back. What
+/// lies in a storage buffer it leaves alone.
+fn for_device(gpu: &Gpu, text: String) -> String {
+    match gpu.kind {
+        GpuKind::Software => text.replace("var<uniform>", "var<storage, read>"),
+        GpuKind::Card => text,
     }
 }
 

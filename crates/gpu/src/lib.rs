@@ -19,7 +19,7 @@ pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;
 pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
-pub use shader::{ShaderLibrary, join};
+pub use shader::{SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use texture::{read_rgba8, texture_2d};
 pub use wgpu;

@@ -9,6 +9,9 @@ use std::collections::HashSet;
 /// Pieces that shaders can import: name, which is that of the file without `.wgsl`, and text.
 pub type ShaderLibrary<'a> = &'a [(&'a str, &'a str)];
 
+/// The piece `sums_before`: the sum of a number over the threads of a group before each, and over all. Its groups have 256 threads.
+pub const SUMS_BEFORE: (&str, &str) = ("sums_before", include_str!("sums_before.wgsl"));
+
 /// The text of a shader with everything it imports before it; `name` is for errors.
 ///
 /// # Errors

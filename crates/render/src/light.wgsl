@@ -48,8 +48,13 @@ fn sunshine_by(taps: i32, place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
 
 // Light that a matt surface of a colour gives back.
 fn matt(colour: vec3f, normal: vec3f, shine: f32) -> vec3f {
-    let sun = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine;
-    return colour * (sun / PI * 2.0 + light_from_all_round(normal));
+    return matt_turned(colour, dot(normal, view.sun.xyz), normal.z, shine);
+}
+
+// The same by the cosines of its normal to the sun and upwards.
+fn matt_turned(colour: vec3f, to_sun: f32, upwards: f32, shine: f32) -> vec3f {
+    let sun = view.sunlight.rgb * max(to_sun, 0.0) * shine;
+    return colour * (sun / PI * 2.0 + light_from_all_round(upwards));
 }
 
 // Part of light that a smooth surface mirrors, by the cosine of the angle of incidence (Schlick, Computer Graphics Forum 13,

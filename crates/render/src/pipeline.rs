@@ -38,11 +38,6 @@ impl Recipe<'_> {
         self.build(gpu, "fragment", Some(format.into()), None)
     }
 
-    /// The same with another fragment entry point.
-    pub(crate) fn flat_by(&self, gpu: &Gpu, entry: &str, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
-        self.build(gpu, entry, Some(format.into()), None)
-    }
-
     /// A pipeline that draws into colours of a format, and keeps what is nearest.
     pub(crate) fn nearest(&self, gpu: &Gpu, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
         self.build(gpu, "fragment", Some(format.into()), Some(wgpu::CompareFunction::Greater))

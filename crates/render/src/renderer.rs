@@ -52,25 +52,57 @@ impl Renderer {
         things: &mut [&mut dyn Drawable],
         overlay: Option<&Image>,
     ) {
+        let mut encoder = self.encoder();
+        self.record(&mut encoder, target, stage, camera, light, things);
+        self.tone.draw(&self.gpu, &mut encoder, target, light.is_lit(), overlay);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Draws things into a target and leaves linear light there, for an [`Inlay`](crate::Inlay) to make a picture of. Returns before
+    /// the device is done.
+    pub fn draw_light(
+        &self,
+        target: &Target,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        things: &mut [&mut dyn Drawable],
+    ) {
+        let mut encoder = self.encoder();
+        self.record(&mut encoder, target, stage, camera, light, things);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") })
+    }
+
+    /// The passes before colours are those of a picture.
+    fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &Target,
+        stage: &Stage,
+        camera: &Camera,
+        light: &Light,
+        things: &mut [&mut dyn Drawable],
+    ) {
         let gpu = &self.gpu;
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size());
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("picture") });
         if light.throws_shadows() {
-            draw_shadows(&mut encoder, &view, things);
+            draw_shadows(encoder, &view, things);
         }
         if light.is_lit() {
             for thing in things.iter_mut() {
-                let (encoder, view, size) = (&mut encoder, &view.group, target.drawn_size());
+                let (view, size) = (&view.group, target.drawn_size());
                 thing.draw_before(&mut Before { gpu, encoder, view, size });
             }
         }
-        self.draw_opaque(&mut encoder, target, &view, light, things);
+        self.draw_opaque(encoder, target, &view, light, things);
         for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {
-            draw_through(gpu, &mut encoder, target, &view, *thing);
+            draw_through(gpu, encoder, target, &view, *thing);
         }
-        self.tone.draw(gpu, &mut encoder, target, [light.is_lit(), !light.throws_shadows()], overlay);
-        gpu.queue.submit([encoder.finish()]);
     }
 
     /// The picture in a target. Waits for the device.

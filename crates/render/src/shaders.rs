@@ -3,7 +3,7 @@
 use corpuscle_gpu::{Gpu, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 9] = [
+const LIBRARY: [(&str, &str); 10] = [
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
@@ -12,6 +12,7 @@ const LIBRARY: [(&str, &str); 9] = [
     ("cap", include_str!("caps/cap.wgsl")),
     ("droplet", include_str!("fluid/droplet.wgsl")),
     ("fluid", include_str!("fluid/fluid.wgsl")),
+    ("press", include_str!("tone/press.wgsl")),
     ("smoothing", include_str!("fluid/smoothing.wgsl")),
 ];
 

@@ -54,11 +54,6 @@ impl Target {
         })
     }
 
-    /// The finished picture on the device, to be shown there: sRGB bytes, as `Rgba8Unorm`.
-    pub fn picture_view(&self) -> wgpu::TextureView {
-        self.picture.create_view(&wgpu::TextureViewDescriptor::default())
-    }
-
     /// Width and height in samples: of everything but the finished picture.
     pub fn drawn_size(&self) -> [u32; 2] {
         self.size.map(|length| length * self.samples)

@@ -51,11 +51,13 @@ fn world_at_pixel(pixel: vec2f, depth: f32) -> vec3f {
 
 // The line of sight through a place.
 fn ray_through(place: vec3f) -> Ray {
-    if view.eye.w > 0.5 {
-        return Ray(view.eye.xyz, normalize(place - view.eye.xyz));
-    }
-    let before = dot(place - view.eye.xyz, view.forward.xyz);
-    return Ray(place - before * view.forward.xyz, view.forward.xyz);
+    let from_eye = place - view.eye.xyz;
+    let aside = place - dot(from_eye, view.forward.xyz) * view.forward.xyz;
+    let perspective = view.eye.w > 0.5;
+    return Ray(
+        select(aside, view.eye.xyz, perspective),
+        select(view.forward.xyz, normalize(from_eye), perspective),
+    );
 }
 
 // The line of sight through a pixel.
@@ -81,8 +83,6 @@ fn depth_at(place: vec3f) -> f32 {
 
 // Height of a pixel at a place.
 fn pixel_at(place: vec3f) -> f32 {
-    if view.eye.w > 0.5 {
-        return view.forward.w * max(dot(place - view.eye.xyz, view.forward.xyz), 1e-4);
-    }
-    return view.forward.w;
+    let before = max(dot(place - view.eye.xyz, view.forward.xyz), 1e-4);
+    return view.forward.w * select(1.0, before, view.eye.w > 0.5);
 }

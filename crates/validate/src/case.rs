@@ -42,9 +42,9 @@ pub struct Case {
 }
 
 impl Case {
-    /// Runs it, its floods on the card where `options` names one.
+    /// Runs it, its floods and its dew on the card where `options` names one.
     pub fn rows(&self, options: &Options) -> Vec<Row> {
-        crate::flood::device::on_card(options.gpu.clone(), || (self.run)(options))
+        crate::device::on_card(options.gpu.clone(), || (self.run)(options))
     }
 }
 
@@ -55,7 +55,7 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Missing data is a failure instead.
     pub require_data: bool,
-    /// The card that takes the steps of floods, where one does.
+    /// The card that takes the steps of floods and of dew, where one does.
     pub gpu: Option<corpuscle_gpu::Gpu>,
     /// What cases have drawn, for a report.
     charts: RefCell<Vec<Chart>>,

@@ -5,6 +5,7 @@
 
 mod bench;
 mod case;
+mod device;
 mod dew;
 mod flood;
 mod gas;

@@ -25,6 +25,7 @@ pub fn chart(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, chart: &Ch
         .allow_zoom(false)
         .allow_drag(false)
         .show_background(false)
+        .x_grid_spacer(uniform_grid_spacer(move |input| steps(&input, log[0])))
         .y_grid_spacer(uniform_grid_spacer(move |input| steps(&input, log[1])))
         .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.35))
         .x_axis_label(label(&chart.x))
@@ -60,7 +61,7 @@ pub fn chart(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, chart: &Ch
 }
 
 /// At most five steps of a grid across a plot, at round numbers 1, 2 or 5 times a power of ten (of a logarithm at whole ones), and bolder
-/// ones at ten and a hundred times as many: powers of ten alone leave a plot of this height with one number or none.
+/// ones at ten and a hundred times as many: powers of ten alone leave a plot of this size with one number or none.
 fn steps(input: &GridInput, logarithmic: bool) -> [f64; 3] {
     let step = step((input.bounds.1 - input.bounds.0).max(f64::MIN_POSITIVE), 5);
     [1.0, 10.0, 100.0].map(|times| times * if logarithmic { step.max(1.0) } else { step })

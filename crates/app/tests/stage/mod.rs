@@ -154,6 +154,20 @@ impl Stage {
         self.harness.step();
     }
 
+    /// Touches the bar of a finished run's time, in parts of its length.
+    pub fn touch_bar(&mut self, part: f32) {
+        let bar = |label: String| label.starts_with("Time ");
+        let rect = self.harness.get_by(|node| node.role() == Role::Slider && node.label().is_some_and(bar)).rect();
+        let at = rect.min + vec2(part, 0.5) * rect.size();
+        self.harness.hover_at(at);
+        self.harness.step();
+        self.harness.drag_at(at);
+        self.harness.step();
+        self.harness.drop_at(at);
+        self.harness.step();
+        self.harness.step();
+    }
+
     /// Opens a file as if it was dropped on the window.
     pub fn drop_file(&mut self, path: &std::path::Path) {
         let context = self.harness.ctx.clone();

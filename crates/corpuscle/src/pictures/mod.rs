@@ -182,8 +182,13 @@ impl Studio {
         things: &mut [&mut dyn Drawable],
         overlay: Overlay,
     ) -> Result<Shown, Error> {
-        let image = if self.overlaid { Some(overlay.image(stage, camera, self.target.size)?) } else { None };
-        self.renderer.draw(&self.target, stage, camera, light, things, image.as_ref());
-        Ok(Shown { stage: *stage, camera: *camera, on_paper: !light.is_lit(), overlay })
+        let quick = !self.overlaid && self.look == Look::Simple && self.target.samples == 1;
+        if quick {
+            self.renderer.draw_light(&self.target, stage, camera, light, things);
+        } else {
+            let image = if self.overlaid { Some(overlay.image(stage, camera, self.target.size)?) } else { None };
+            self.renderer.draw(&self.target, stage, camera, light, things, image.as_ref());
+        }
+        Ok(Shown { stage: *stage, camera: *camera, on_paper: !light.is_lit(), finished: !quick, overlay })
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Hand, Moment, Pictures, Subject};
 use crate::Error;
-use corpuscle_gpu::{Gpu, Image, wgpu};
-use corpuscle_render::{Camera, Overlay, Stage, Target};
+use corpuscle_gpu::{Gpu, Image};
+use corpuscle_render::{Camera, Inlay, InlayPainter, Overlay, Stage, Target};
 
 /// How much work a picture may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,6 +24,8 @@ pub struct Shown {
     pub camera: Camera,
     /// True where it is a drawing on paper, false where it is lit.
     pub on_paper: bool,
+    /// False where linear light was left, as quick pictures are.
+    pub finished: bool,
     /// What is to lie over it.
     pub overlay: Overlay,
 }
@@ -34,7 +36,7 @@ impl Pictures {
         self.studio.renderer.gpu()
     }
 
-    /// Draws a moment and leaves the picture on the device ([`Pictures::view`]), without its overlay, on paper of a colour (linear
+    /// Draws a moment and leaves the picture on the device ([`Pictures::inlay`]), without its overlay, on paper of a colour (linear
     /// light) where it is a drawing. Returns before the device is done.
     ///
     /// # Errors
@@ -76,8 +78,13 @@ impl Pictures {
         }
     }
 
-    /// The picture on the device.
-    pub fn view(&self) -> wgpu::TextureView {
-        self.studio.target.picture_view()
+    /// What was shown last, ready to be laid into a window.
+    pub fn inlay(&self, shown: &Shown, painter: &InlayPainter) -> Inlay {
+        let target = &self.studio.target;
+        if shown.finished {
+            painter.finished(self.gpu(), target)
+        } else {
+            painter.light(self.gpu(), target, !shown.on_paper)
+        }
     }
 }

@@ -1,14 +1,50 @@
-// What the particles of each solid sum up to in a step: a group for each solid.
-#import dew_card
+// What the particles of each solid sum up to in a step, and to what they are brought where the temperature that they are held at changes: a
+// group for each solid. The latter is the twin of `hold` in `dew.rs` and of `Table::at`.
+#import dew_solids
 
-@group(0) @binding(1) var<storage, read> solids: array<Solid>;
+@group(0) @binding(1) var<storage, read_write> solids: array<Solid>;
 @group(0) @binding(2) var<storage, read_write> bodies: array<Body>;
+@group(0) @binding(3) var<storage, read> status: Status;
+@group(0) @binding(4) var<storage, read> rows: array<Row>;
 
 // Heat through the surface, heat it was held against, how stiff.
 var<workgroup> sums: array<vec3f, 256>;
 
 fn joined(a: vec3f, b: vec3f) -> vec3f {
     return vec3f(a.xy + b.xy, max(a.z, b.z));
+}
+
+// From one time to another, s.
+fn between(a: Account, b: Account) -> f32 {
+    return (b.sum - a.sum) - (b.lacking - a.lacking);
+}
+
+// The temperature at a time, by the rows of a body, of which there is one at least; at a jump the one after it.
+fn held_at(body: Body, time: Account) -> f32 {
+    var temperature = rows[body.first_row].temperature;
+    for (var k = body.first_row; k < body.end_row; k++) {
+        let since = between(rows[k].time, time);
+        if since < 0.0 {
+            break;
+        }
+        temperature = rows[k].temperature;
+        if k + 1u < body.end_row {
+            let whole = between(rows[k].time, rows[k + 1u].time);
+            let part = select(1.0, min(since / whole, 1.0), whole > 0.0);
+            temperature += part * (rows[k + 1u].temperature - temperature);
+        }
+    }
+    return temperature;
+}
+
+fn hold(body: Body, thread: u32) {
+    if body.first_row >= body.end_row {
+        return;
+    }
+    let temperature = held_at(body, add(status.time, status.step));
+    for (var i = body.first + thread; i < body.end; i += 256u) {
+        solids[i].temperature = Account(temperature, 0.0);
+    }
 }
 
 @compute @workgroup_size(256)
@@ -18,6 +54,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         own = joined(own, vec3f(solids[i].flow, solids[i].held, solids[i].stiff));
     }
     sums[thread] = own;
+    hold(bodies[group.x], thread);
     workgroupBarrier();
     for (var half = 128u; half > 0u; half /= 2u) {
         if thread < half {

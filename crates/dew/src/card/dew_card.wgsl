@@ -1,4 +1,4 @@
-// What the kernels of humid air share: numbers of the run, parcels of air, particles of solids, and what the host learns of a step.
+// What the kernels of humid air share: numbers of the run, parcels of air, and what the host learns of a step.
 
 // Air as it comes in by a face: m/s, K and part of the mass from the ambient air's; where a new layer stands, m beyond the face.
 struct Inlet {
@@ -81,9 +81,20 @@ struct Parameters {
     ambient_pressure: f32,
     // 0, which no compiler knows: see `add`.
     zero: u32,
+    // How far beyond an open side the last parcel of a full column stands, m, by axis; with more parcels than this the host has to make room.
+    deepest: vec3f,
+    full: u32,
+    // Where the distances to solids are known: the first node, m, nodes per metre, and how many; air is of low utility beyond this
+    // distance, m, and taken out beyond that, after so long, s.
+    field_corner: vec3f,
+    per_node: f32,
+    nodes: vec3u,
+    low_beyond: f32,
+    useless_beyond: f32,
+    low_after: f32,
+    spare: vec2f,
     // By low and high x, y, z.
     inlets: array<Inlet, 6>,
-    fan: array<Fan, 8>,
 }
 
 // Flags.
@@ -97,17 +108,23 @@ const SATURATES = 8u;
 const REFUSES_FAST = 16u;
 // What diffuses is relative humidity.
 const RELATIVE = 32u;
+// Air of low utility is looked for.
+const TENDS = 64u;
 
 // Faces.
 const WALL = 0u;
 const PERIODIC = 1u;
 const INLET = 2u;
 const OUTLET = 3u;
+const OPEN = 4u;
 
 // Roles; those of a face have its number, twice the axis and 1 for the high side, in higher bits.
 const INSIDE = 0u;
 const COMING = 1u;
 const LEAVING = 2u;
+const OUTSIDE = 3u;
+const STILL = 4u;
+const IDLE = 5u;
 const FACE_BITS = 4u;
 const ROLE_MASK = 15u;
 
@@ -138,7 +155,9 @@ struct Particle {
     role: u32,
     // What the Laplacian is multiplied by so that it is exact where particles stand as they do.
     evenness: f32,
-    unused: vec2f,
+    // For how long it has been of low utility, s.
+    idle: f32,
+    unused: f32,
 }
 
 // What neighbours read of a parcel; its pressure over the square of the density, Pa m6/kg2.
@@ -152,72 +171,6 @@ struct Column {
     // What of the vapour diffuses: its part of the mass, or relative humidity.
     humidity: f32,
     unused: f32,
-}
-
-// A particle of a solid, its image, or a ghost sample.
-struct Site {
-    place: vec3f,
-    // Over that of a parcel.
-    volume: f32,
-    // Conductivities with which the air is warmed and the solid, W/(m K).
-    to_air: f32,
-    to_solid: f32,
-    // Part of the heat at the surface that goes to the solid.
-    part: f32,
-    flags: u32,
-    particle: u32,
-    // Its pairs in the list of conductances.
-    first: u32,
-    end: u32,
-    // J/K.
-    capacity: f32,
-}
-
-// Flags of sites.
-const BOUNDARY = 1u;
-const NEAR_SURFACE = 2u;
-const JOINS_DENSITY = 4u;
-const REPELS = 8u;
-const GHOST = 16u;
-const HELD = 32u;
-
-// Water on a solid's particle when the host last told, and gained since, kg.
-struct Water {
-    told: f32,
-    unused: f32,
-    gained: Account,
-}
-
-// What else changes of a solid's particle; its temperature is counted from the ambient air's, K.
-struct Solid {
-    temperature: Account,
-    // Heat through the surface, W, and heat that it was held against, J, in the last step; how stiff diffusion was, 1/s.
-    flow: f32,
-    held: f32,
-    stiff: f32,
-}
-
-// What air sees of a solid's particle in a step, and what it gets.
-struct Surface {
-    temperature: f32,
-    water: f32,
-    // Part of the evaporation asked for that there is water for.
-    share: f32,
-    // Heat from the air, W, and with that through the solid, W; water, kg/s; conductances to air and within, W/K.
-    heat: f32,
-    all_heat: f32,
-    gain: f32,
-    conductance: f32,
-    unused: f32,
-}
-
-// A solid: its particles, and what they sum up to: W, J, 1/s.
-struct Body {
-    first: u32,
-    end: u32,
-    flow: f32,
-    stiff: f32,
-    held: Account,
 }
 
 // What a group of threads sums up over its parcels: numbers, and temperature, vapour and fog, of those that came and went; what
@@ -251,12 +204,18 @@ struct Status {
     // Over the mass of a parcel: water that diffused in and out over faces, and energy, J/kg.
     diffused: Account4,
     fogged: Account,
-    unused: vec2f,
+    // Time since the state was sent, s.
+    time: Account,
     // How far the air before each inlet has come since its last layer, m.
     phase: array<Account, 6>,
     // What air beyond each outlet is faster by, m/s.
     before: array<f32, 6>,
-    spare: vec2f,
+    // When it was last looked for air of low utility, s since the state was sent; and the number of the batch's first step, from one that is
+    // a multiple of `TURN`.
+    seen: Account,
+    turn: u32,
+    spare: u32,
+    more_spare: vec2u,
     // How long the steps were, s.
     lengths: array<f32, 64>,
 }
@@ -266,8 +225,13 @@ const ARRIVED = 1u;
 const BROKEN = 2u;
 // The host has said until when to go on.
 const SPOKEN = 3u;
+// There may be too little room for what comes in the next step.
+const FULL = 4u;
 
 const FAR = 3.0e38;
+
+// It is looked for air of low utility once in so many steps: see `utility.rs`.
+const TURN = 10u;
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 

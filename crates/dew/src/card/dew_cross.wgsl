@@ -1,6 +1,8 @@
-// Each parcel gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell. Twin of `cross` and
-// `cross_faces` in `faces/mod.rs`.
+// Each parcel gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell and before open sides.
+// Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::look` in `faces/open.rs`.
 #import dew_neighbours
+#import dew_columns
+#import dew_utility
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
@@ -8,6 +10,7 @@
 @group(0) @binding(4) var<storage, read_write> places: array<vec2u>;
 @group(0) @binding(5) var<storage, read_write> keys: array<u32>;
 @group(0) @binding(6) var<storage, read_write> partials: array<Partial>;
+@group(0) @binding(7) var<storage, read_write> before: array<BeforeColumn>;
 
 // How far air goes on beyond an open face, in smoothing lengths.
 const BEYOND = 2.0;
@@ -22,16 +25,33 @@ fn depth_beyond(place: vec3f, number: u32) -> f32 {
     return select(place[axis] - parameters.high[axis], parameters.low[axis] - place[axis], number % 2u == 0u);
 }
 
-// The first face that air passes beyond which a place lies.
-fn beyond(place: vec3f) -> u32 {
+struct Beyond {
+    // The face that air passes beyond which a place lies, an open one before others.
+    number: u32,
+    // Whether it lies beyond two faces or more, one of them open.
+    is_edge: bool,
+}
+
+// Twin of `Room::beyond` and `Room::is_beyond_edge`.
+fn beyond(place: vec3f) -> Beyond {
+    var passed = NOWHERE;
+    var open = NOWHERE;
+    var count = 0u;
     for (var number = 0u; number < 6u; number++) {
         let axis = number / 2u;
         let is_beyond = select(place[axis] >= parameters.high[axis], place[axis] < parameters.low[axis], number % 2u == 0u);
-        if is_beyond && face(number) >= INLET {
-            return number;
+        if !is_beyond {
+            continue;
+        }
+        count += 1u;
+        if face(number) >= INLET && passed == NOWHERE {
+            passed = number;
+        }
+        if face(number) == OPEN && open == NOWHERE {
+            open = number;
         }
     }
-    return NOWHERE;
+    return Beyond(select(open, passed, open == NOWHERE), open != NOWHERE && count > 1u);
 }
 
 // Twin of `Particle::leave`.
@@ -41,23 +61,78 @@ fn leave(particle: ptr<function, Particle>, number: u32, speed: f32) {
     (*particle).velocity[number / 2u] = outward * max(outward * speed, parameters.slowest);
 }
 
+fn booked(particle: Particle) -> vec4f {
+    return vec4f(1.0, value(particle.temperature), value(particle.vapour), particle.fog);
+}
+
 // Whether it has gone for good.
 fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
     let role = (*particle).role & ROLE_MASK;
-    let number = beyond((*particle).place);
-    let held = vec4f(1.0, value((*particle).temperature), value((*particle).vapour), (*particle).fog);
-    if role == INSIDE && number != NOWHERE {
-        went[thread] = held;
-        leave(particle, number, (*particle).velocity[number / 2u]);
+    let beyond = beyond((*particle).place);
+    let number = beyond.number;
+    let held = booked(*particle);
+    if (role == INSIDE || role == IDLE) && number != NOWHERE {
+        // What no longer mattered is booked as gone.
+        went[thread] = select(vec4f(0.0), held, role == INSIDE);
+        if beyond.is_edge {
+            return true;
+        }
+        if face(number) == OPEN {
+            (*particle).role = OUTSIDE | (number << FACE_BITS);
+        } else {
+            leave(particle, number, (*particle).velocity[number / 2u]);
+        }
     } else if role == LEAVING {
         let left = (*particle).role >> FACE_BITS;
         leave(particle, left, (*particle).velocity[left / 2u] + status.before[left]);
-    } else if role == COMING && number == NOWHERE {
+    } else if (role == COMING || role == OUTSIDE) && number == NOWHERE {
         (*particle).role = INSIDE;
         came[thread] = held;
     }
-    let is_leaving = ((*particle).role & ROLE_MASK) == LEAVING;
-    return is_leaving && !(depth_beyond((*particle).place, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
+    let now = (*particle).role & ROLE_MASK;
+    return (now == LEAVING || now == OUTSIDE) && !(depth_beyond((*particle).place, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
+}
+
+// What a parcel in the room before an open side adds to its column, and how far beyond one outside is.
+fn tell_columns(particle: Particle) {
+    if (particle.role & ROLE_MASK) == OUTSIDE {
+        let number = particle.role >> FACE_BITS;
+        atomicMax(&before[column_of(number, particle.place)].outermost, bits_of_depth(depth_beyond(particle.place, number)));
+    }
+    for (var number = 0u; number < 6u; number++) {
+        if particle.role != INSIDE || face(number) != OPEN || depth_beyond(particle.place, number) <= -parameters.h {
+            continue;
+        }
+        // Towards the pressure of the air outside: see `move_outside`.
+        let outward = select(1.0, -1.0, number % 2u == 0u);
+        let along = particle.velocity[number / 2u];
+        let inward = max(-outward * along, 0.0);
+        let sound = parameters.sound;
+        let rise = sound * (particle.density / parameters.rest_density - 1.0) + 0.5 * inward * inward / sound;
+        let column = column_of(number, particle.place);
+        atomicAdd(&before[column].velocity, units_of(along + outward * rise));
+        atomicAdd(&before[column].count, 1u);
+    }
+}
+
+// Whether a parcel is taken out that has been of no use for long. Twin of `tend_utility`.
+fn tend(particle: ptr<function, Particle>, thread: u32) -> bool {
+    let role = (*particle).role;
+    if role != INSIDE && role != IDLE {
+        return false;
+    }
+    let utility = utility(*particle);
+    if role == INSIDE && utility != MATTERS {
+        went[thread] += booked(*particle);
+        (*particle).role = IDLE;
+        (*particle).idle = 0.0;
+    } else if role == IDLE && utility == MATTERS {
+        came[thread] += booked(*particle);
+        (*particle).role = INSIDE;
+    } else if role == IDLE {
+        (*particle).idle += (status.time.sum - status.seen.sum) - (status.time.lacking - status.seen.lacking);
+    }
+    return utility == USELESS;
 }
 
 @compute @workgroup_size(256)
@@ -73,7 +148,11 @@ fn main(
         var particle = particles[i];
         var cell = status.cells - 1u;
         if !cross_over(&particle, thread) {
-            cell = cell_at(particle.place);
+            tell_columns(particle);
+            let is_turn = is_set(TENDS) && (status.turn + status.steps) % TURN == 0u;
+            if !(is_turn && tend(&particle, thread)) {
+                cell = cell_at(particle.place);
+            }
         }
         particles[i] = particle;
         places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));

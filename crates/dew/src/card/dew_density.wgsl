@@ -84,9 +84,17 @@ fn is_before_outlet(place: vec3f) -> bool {
 
 fn density_of(particle: Particle, filling: f32) -> f32 {
     let density = parameters.density * filling;
-    if (particle.role & ROLE_MASK) == LEAVING {
-        // Beyond an outlet the air is as it is at rest.
+    let role = particle.role & ROLE_MASK;
+    if role == LEAVING || role == STILL || role == IDLE {
+        // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
         return parameters.rest_density;
+    }
+    if role == OUTSIDE {
+        // What comes in has come from rest (Bernoulli).
+        let number = particle.role >> FACE_BITS;
+        let velocity = particle.velocity[number / 2u];
+        let inward = max(select(-velocity, velocity, number % 2u == 0u), 0.0) / parameters.sound;
+        return parameters.rest_density * (1.0 - 0.5 * inward * inward);
     }
     if is_before_outlet(particle.place) {
         // Where air would flow back in there is none beyond: that must not suck.

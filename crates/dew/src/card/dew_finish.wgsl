@@ -1,6 +1,6 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
 // `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
-#import dew_card
+#import dew_solids
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> partials: array<Partial>;
@@ -32,13 +32,18 @@ fn book(all: Partial) {
     let step = status.step;
     status.came = add4(status.came, all.came);
     status.went = add4(status.went, all.went);
-    if is_set(IS_PASSED) {
+    // Beyond faces, and to air of low utility.
+    if is_set(IS_PASSED) || is_set(TENDS) {
         let water = step * all.diffused.y;
         let energy = step * (parameters.heat_capacity * all.diffused.x + parameters.latent_heat * all.diffused.y);
         status.diffused = add4(status.diffused, max(vec4f(water, -water, energy, -energy), vec4f(0.0)));
     }
     status.fogged = add(status.fogged, all.fogged);
+    if (status.turn + status.steps) % TURN == 0u {
+        status.seen = status.time;
+    }
     status.elapsed = add(status.elapsed, step);
+    status.time = add(status.time, step);
     status.lengths[min(status.steps, 63u)] = step;
     status.steps += 1u;
     let low = status.particle_steps.x + status.particles;
@@ -57,6 +62,8 @@ fn decide() {
         status.halted = BROKEN;
     } else if status.elapsed.sum + status.step > status.until {
         status.halted = ARRIVED;
+    } else if status.particles > parameters.full {
+        status.halted = FULL;
     } else {
         status.halted = GOING;
     }

@@ -10,6 +10,7 @@
 @group(0) @binding(4) var<storage, read_write> particles: array<Particle>;
 @group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
+@group(0) @binding(9) var<uniform> fans: array<Fan, 1024>;
 
 // What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
 struct Rates {
@@ -164,7 +165,7 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
 fn driving(particle: Particle) -> vec3f {
     var driven = parameters.driven;
     for (var number = 0u; number < parameters.fans; number++) {
-        let fan = parameters.fan[number];
+        let fan = fans[number];
         if all(particle.place >= fan.low) && all(particle.place < fan.high) {
             driven += fan.rate * max(fan.speed - dot(particle.velocity, fan.direction), 0.0) * fan.direction;
         }

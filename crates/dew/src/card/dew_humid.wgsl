@@ -1,5 +1,5 @@
 // Saturation, and what passes between air and the surface of a solid. Twin of `humid_air.rs` and of `Exchange::flux`.
-#import dew_card
+#import dew_solids
 
 // The constants of `humid_air.rs` (Bolton 1980, equation 10), and molar mass of water over that of dry air.
 const AT_ZERO = 611.2;

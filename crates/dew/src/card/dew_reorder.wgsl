@@ -1,6 +1,6 @@
 // Brings the air into the order of its cells; parcels in the last cell, which have gone, are out of the count. Twin of
-// `Arrangement::arrange`.
-#import dew_card
+// `Arrangement::arrange`. Air outside open sides gets its velocity. Twin of `move_outside` in `faces/open.rs`.
+#import dew_columns
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
@@ -8,13 +8,21 @@
 @group(0) @binding(4) var<storage, read> particles: array<Particle>;
 @group(0) @binding(5) var<storage, read_write> ordered: array<Particle>;
 @group(0) @binding(6) var<storage, read_write> spots: array<vec4f>;
+@group(0) @binding(7) var<storage, read> columns: array<OutsideColumn>;
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     let staying = start[status.cells - 1u];
     if i < staying {
-        let particle = particles[order[i]];
+        var particle = particles[order[i]];
+        if (particle.role & ROLE_MASK) == OUTSIDE {
+            let number = particle.role >> FACE_BITS;
+            particle.velocity = vec3f(0.0);
+            particle.velocity[number / 2u] = columns[column_of(number, particle.place)].velocity;
+            particle.acceleration = vec3f(0.0);
+            particle.spreading = vec3f(0.0);
+        }
         ordered[i] = particle;
         spots[i] = vec4f(particle.place, 0.0);
     }

@@ -1,11 +1,9 @@
-//! Numbers as the shaders see them: `dew_card.wgsl` has the same in the same order.
+//! Numbers as the shaders see them: `dew_card.wgsl`, `dew_solids.wgsl` and `dew_columns.wgsl` have the same in the same order.
 //!
 //! Single precision has some 7 digits. They are not to be spent on where the room is, nor on the 300 K and the part of vapour that all
 //! air has in common: places are counted from the middle of the room, temperature and vapour from those of the ambient air. What grows by
 //! little in a step is kept as a sum with what it has too much.
 
-use crate::air::{Particle, Role};
-use crate::room::Room;
 use bytemuck::{Pod, Zeroable};
 
 /// Air as it comes in by a face.
@@ -31,8 +29,8 @@ pub(crate) struct CardFan {
     pub unused: f32,
 }
 
-/// Fans that there is room for.
-pub(crate) const MOST_FANS: usize = 8;
+/// Fans that there is room for: 48 KiB of the 64 that every device has for numbers of this kind.
+pub(crate) const MOST_FANS: usize = 1024;
 
 /// Numbers of the run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
@@ -83,8 +81,16 @@ pub(super) struct Parameters {
     pub saturated: f32,
     pub ambient_pressure: f32,
     pub zero: u32,
+    pub deepest: [f32; 3],
+    pub full: u32,
+    pub field_corner: [f32; 3],
+    pub per_node: f32,
+    pub nodes: [u32; 3],
+    pub low_beyond: f32,
+    pub useless_beyond: f32,
+    pub low_after: f32,
+    pub spare: [f32; 2],
     pub inlets: [Inlet; 6],
-    pub fan: [CardFan; MOST_FANS],
 }
 
 /// Values of [`Parameters::flags`].
@@ -94,16 +100,14 @@ pub(super) const FOGS: u32 = 4;
 pub(super) const SATURATES: u32 = 8;
 pub(super) const REFUSES_FAST: u32 = 16;
 pub(super) const RELATIVE: u32 = 32;
+pub(super) const TENDS: u32 = 64;
 
 /// What the faces do.
 pub(super) const WALL: u32 = 0;
 pub(super) const PERIODIC: u32 = 1;
 pub(super) const INLET: u32 = 2;
 pub(super) const OUTLET: u32 = 3;
-
-const INSIDE: u32 = 0;
-const COMING: u32 = 1;
-const LEAVING: u32 = 2;
+pub(super) const OPEN: u32 = 4;
 
 /// A sum and what it has too much.
 pub(super) type Account = [f32; 2];
@@ -135,7 +139,8 @@ pub(super) struct CardParticle {
     pub vapour: Account,
     pub role: u32,
     pub evenness: f32,
-    pub unused: [f32; 2],
+    pub idle: f32,
+    pub unused: f32,
 }
 
 /// A particle of a solid, its image, or a ghost sample.
@@ -190,7 +195,29 @@ pub(super) struct CardBody {
     pub flow: f32,
     pub stiff: f32,
     pub held: Account,
+    pub first_row: u32,
+    pub end_row: u32,
 }
+
+/// A temperature at which a solid is held, and when.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardRow {
+    pub time: Account,
+    pub temperature: f32,
+    pub unused: f32,
+}
+
+/// A column of air outside an open side: see `dew_columns.wgsl`.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct OutsideColumn {
+    pub velocity: f32,
+    pub is_free: u32,
+}
+
+/// Bytes of a `BeforeColumn`, of `dew_columns.wgsl` too.
+pub(super) type BeforeColumn = [u32; 3];
 
 /// Bytes of a `Column`, a `Surface`, a `Partial`, and of what is summed before faces.
 pub(super) type Column = [f32; 12];
@@ -211,6 +238,9 @@ impl Account4 {
         [0, 1, 2, 3].map(|k| value([self.sum[k], self.lacking[k]]))
     }
 }
+
+/// It is looked for air of low utility once in so many steps.
+pub(super) const TURN: u32 = crate::utility::STEPS as u32;
 
 /// Steps that can be ordered at once.
 pub(super) const MOST_STEPS: usize = 64;
@@ -233,97 +263,17 @@ pub(super) struct Status {
     pub went: Account4,
     pub diffused: Account4,
     pub fogged: Account,
-    pub unused: [f32; 2],
+    pub time: Account,
     pub phase: [Account; 6],
     pub before: [f32; 6],
-    pub spare: [f32; 2],
+    pub seen: Account,
+    pub turn: u32,
+    pub spare: u32,
+    pub more_spare: [u32; 2],
     pub lengths: [f32; MOST_STEPS],
 }
 
-/// Values of [`Status::halted`]: broken down; and the host has said until when to go on.
+/// Values of [`Status::halted`]: broken down; the host has said until when to go on; more air may come than there is room for.
 pub(super) const BROKEN: u32 = 2;
 pub(super) const SPOKEN: u32 = 3;
-
-/// Where the shaders count from.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Origin {
-    pub room: Room,
-    /// Temperature, K, and part of the mass that is vapour.
-    pub temperature: f64,
-    pub vapour: f64,
-}
-
-impl Origin {
-    fn middle(&self, axis: usize) -> f64 {
-        0.5 * (self.room.low[axis] + self.room.high[axis])
-    }
-
-    /// A place from the middle of the room.
-    pub fn relative(&self, place: [f64; 3]) -> [f32; 3] {
-        [0, 1, 2].map(|axis| (place[axis] - self.middle(axis)) as f32)
-    }
-
-    /// The same for a parcel: rounding must not put it over a high face.
-    fn parcel(&self, place: [f64; 3]) -> [f32; 3] {
-        let (high, relative) = (self.relative(self.room.high), self.relative(place));
-        [0, 1, 2].map(|axis| {
-            let is_inside = place[axis] < self.room.high[axis];
-            if is_inside { relative[axis].min(high[axis].next_down()) } else { relative[axis] }
-        })
-    }
-
-    pub fn to_card(self, particle: &Particle) -> CardParticle {
-        let narrow = |vector: [f64; 3]| vector.map(|along| along as f32);
-        CardParticle {
-            place: self.parcel(particle.position),
-            density: particle.density as f32,
-            velocity: narrow(particle.velocity),
-            fog: particle.fog as f32,
-            acceleration: narrow(particle.acceleration),
-            spreading: narrow(particle.spreading),
-            id: particle.id as u32,
-            temperature: account(particle.temperature - self.temperature),
-            vapour: account(particle.vapour - self.vapour),
-            role: role(particle.role),
-            evenness: 1.0,
-            ..CardParticle::default()
-        }
-    }
-
-    pub fn to_host(self, particle: &CardParticle) -> Particle {
-        let wide = |vector: [f32; 3]| vector.map(f64::from);
-        let place = wide(particle.place);
-        Particle {
-            position: [0, 1, 2].map(|axis| place[axis] + self.middle(axis)),
-            velocity: wide(particle.velocity),
-            acceleration: wide(particle.acceleration),
-            spreading: wide(particle.spreading),
-            temperature: value(particle.temperature) + self.temperature,
-            vapour: value(particle.vapour) + self.vapour,
-            fog: f64::from(particle.fog),
-            density: f64::from(particle.density),
-            id: u64::from(particle.id),
-            role: role_of(particle.role),
-            idle: 0.0,
-        }
-    }
-}
-
-/// As `dew_card.wgsl` has roles. Those of low utility and of open sides are refused before the run starts.
-fn role(role: Role) -> u32 {
-    let of_face = |kind: u32, axis: u8, side: u8| kind | ((2 * u32::from(axis) + u32::from(side)) << 4);
-    match role {
-        Role::Coming(axis, side) => of_face(COMING, axis, side),
-        Role::Leaving(axis, side) => of_face(LEAVING, axis, side),
-        Role::Inside | Role::Outside(..) | Role::Still | Role::Gone | Role::Idle => INSIDE,
-    }
-}
-
-fn role_of(role: u32) -> Role {
-    let face = (role >> 4) as u8;
-    match role & 15 {
-        COMING => Role::Coming(face / 2, face % 2),
-        LEAVING => Role::Leaving(face / 2, face % 2),
-        _ => Role::Inside,
-    }
-}
+pub(super) const FULL: u32 = 4;

@@ -6,17 +6,23 @@
 //!
 //! What single precision is spent on: see `layout.rs`.
 
+mod field;
 mod layout;
 mod numbers;
+mod origin;
 mod solids;
 mod tasks;
 
 pub(crate) use layout::MOST_FANS;
 
 use crate::dew::{Dew, State};
+use crate::faces::OpenSide;
 use bytemuck::Zeroable;
 use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
-use layout::{CardBody, CardParticle, CardSolid, CardWater, MOST_STEPS, Origin, Parameters, Status};
+use layout::{
+    CardBody, CardParticle, CardRow, CardSolid, CardWater, MOST_STEPS, OutsideColumn, Parameters, Status, TURN,
+};
+use origin::Origin;
 use solids::CardSolids;
 use std::time::Instant;
 use tasks::Tasks;
@@ -28,7 +34,11 @@ pub(crate) struct Card {
     tasks: Tasks,
     origin: Origin,
     bodies: Vec<CardBody>,
+    /// Times, s, and temperatures, K, at which solids are held where they change.
+    held_rows: Vec<[f64; 2]>,
     status: Status,
+    /// The time of the state that was sent, s.
+    sent_at: f64,
     /// Parcels that there is room for.
     room: usize,
     /// Water on the particles of the solids when it was last told, kg.
@@ -37,8 +47,11 @@ pub(crate) struct Card {
     held_before: Vec<f64>,
     /// Whether the host has not the air that is here.
     ahead: bool,
-    /// Time spent on steps, s.
-    busy: f64,
+    /// Wall-clock time spent on steps, s.
+    pub busy: f64,
+    /// Batches of steps until the device is lost.
+    #[cfg(test)]
+    pub lost_after: Option<u32>,
 }
 
 /// Parcels that came or went: sums of their temperature above 0 °C, K, vapour and fog, parts of the mass.
@@ -67,10 +80,18 @@ pub(crate) struct Progress {
     /// Heat that came from each solid held at a temperature, J.
     pub held_heat: Vec<f64>,
     pub inlet_phase: [[f64; 2]; 3],
+    /// When it was last looked for air of low utility, s.
+    pub utility_seen: f64,
     /// m/s.
     pub fastest: f64,
     /// Whether the next step is too short to go on, or the air faster than sound where that is refused.
     pub broken: bool,
+    /// Whether the next step may bring more air than there is room for.
+    pub full: bool,
+}
+
+fn outside_column(&is_free: &bool) -> OutsideColumn {
+    OutsideColumn { is_free: u32::from(is_free), ..OutsideColumn::default() }
 }
 
 impl Card {
@@ -81,9 +102,11 @@ impl Card {
             temperature: dew.settings.ambient_temperature,
             vapour: dew.settings.ambient_vapour,
         };
-        let parameters = Parameters::of(dew, origin);
+        let mut parameters = Parameters::of(dew, origin, room);
+        let field = field::tell_field(&mut parameters, dew, origin);
         let solids = CardSolids::new(&gpu, dew, origin, &parameters)?;
-        let tasks = Tasks::new(&gpu, room, &parameters, &solids)?;
+        let outside: Vec<OutsideColumn> = dew.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
+        let tasks = Tasks::new(&gpu, room, &parameters, &numbers::card_fans(dew, origin), &solids, &outside, &field)?;
         let cells = parameters.cells.iter().product::<u32>() + 1;
         let held_before = vec![0.0; solids.bodies.len()];
         Ok(Self {
@@ -91,24 +114,23 @@ impl Card {
             tasks,
             origin,
             bodies: solids.bodies,
+            held_rows: solids.rows,
             // One more cell holds what has gone.
             status: Status { cells, ..Status::zeroed() },
+            sent_at: 0.0,
             room,
             water_told: vec![0.0; solids.count],
             held_before,
             ahead: false,
             busy: 0.0,
+            #[cfg(test)]
+            lost_after: None,
         })
     }
 
     /// The device.
     pub fn gpu(&self) -> Gpu {
         self.gpu.clone()
-    }
-
-    /// Wall-clock time spent on steps, s.
-    pub fn busy(&self) -> f64 {
-        self.busy
     }
 
     /// Bytes held on the device.
@@ -133,6 +155,13 @@ impl Card {
         write(&self.tasks.particles, bytemuck::cast_slice(&air));
         write(&self.tasks.solids, bytemuck::cast_slice(&solids));
         write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
+        let row = |&[time, kelvin]: &[f64; 2]| CardRow {
+            time: layout::account(time - state.time),
+            temperature: (kelvin - self.origin.temperature) as f32,
+            unused: 0.0,
+        };
+        let rows: Vec<CardRow> = self.held_rows.iter().map(row).collect();
+        write(&self.tasks.rows, bytemuck::cast_slice(&rows));
         self.tell_water(&state.water_on);
         self.held_before.fill(0.0);
         let phases = state.inlet_phase.as_flattened();
@@ -141,9 +170,12 @@ impl Card {
             particles: air.len() as u32,
             step: state.time_step as f32,
             next_id: state.next_id as u32,
+            seen: layout::account(state.utility_seen - state.time),
+            turn: (state.steps % u64::from(TURN)) as u32,
             phase: std::array::from_fn(|number| layout::account(phases[number])),
             ..Status::zeroed()
         };
+        self.sent_at = state.time;
         self.ahead = false;
     }
 
@@ -188,6 +220,8 @@ impl Card {
 
     /// Takes `count` steps, or fewer: only up to `until` s from now.
     pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
+        #[cfg(test)]
+        self.lose();
         let count = count.min(MOST_STEPS) as u32;
         self.status = Status {
             halted: layout::SPOKEN,
@@ -197,6 +231,9 @@ impl Card {
             until: until as f32,
             next_id: self.status.next_id,
             phase: self.status.phase,
+            time: self.status.time,
+            seen: self.status.seen,
+            turn: (self.status.turn + self.status.steps) % TURN,
             ..Status::zeroed()
         };
         let began = Instant::now();
@@ -212,6 +249,16 @@ impl Card {
         self.busy += began.elapsed().as_secs_f64();
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies))
+    }
+
+    /// Loses the device where it is time.
+    #[cfg(test)]
+    fn lose(&mut self) {
+        match &mut self.lost_after {
+            Some(0) => self.gpu.device.destroy(),
+            Some(batches) => *batches -= 1,
+            None => {}
+        }
     }
 
     fn progress(&mut self, bodies: &[CardBody]) -> Progress {
@@ -230,9 +277,11 @@ impl Card {
             diffused: self.status.diffused.values(),
             fogged: layout::value(self.status.fogged),
             held_heat,
+            utility_seen: self.sent_at + layout::value(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
             fastest: f64::from(fastest).sqrt(),
             broken: halted == layout::BROKEN,
+            full: halted == layout::FULL,
         }
     }
 

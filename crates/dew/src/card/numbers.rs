@@ -1,8 +1,10 @@
 //! The numbers of a run, as the shaders want them.
 
-use super::layout::{self, CardFan, Inlet, Origin, Parameters};
+use super::layout::{self, CardFan, Inlet, MOST_FANS, Parameters};
+use super::origin::Origin;
 use crate::dew::Dew;
 use crate::faces::BEYOND;
+use crate::fan::Fan;
 use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
 use crate::room::Face;
 use crate::settings::{Condensation, Humidity};
@@ -14,26 +16,32 @@ fn narrow(vector: [f64; 3]) -> [f32; 3] {
     vector.map(|along| along as f32)
 }
 
+/// The fans of a model, and room for more.
+pub(super) fn card_fans(dew: &Dew, origin: Origin) -> [CardFan; MOST_FANS] {
+    let told = |fan: &Fan| {
+        let [low, high] = fan.corners();
+        CardFan {
+            low: origin.relative(low),
+            high: origin.relative(high),
+            rate: fan.rate() as f32,
+            speed: fan.speed() as f32,
+            direction: narrow(fan.direction()),
+            unused: 0.0,
+        }
+    };
+    std::array::from_fn(|number| dew.fans.get(number).map_or_else(CardFan::default, told))
+}
+
 impl Parameters {
-    /// Of a model.
-    pub fn of(dew: &Dew, origin: Origin) -> Self {
-        let mut new = Self { flags: flags(dew), ..Self::default() };
+    /// Of a model, on a card with room for so many parcels.
+    pub fn of(dew: &Dew, origin: Origin, room: usize) -> Self {
+        let full = room.saturating_sub(dew.most_in_a_step()) as u32;
+        let mut new = Self { flags: flags(dew), full, ..Self::default() };
         new.tell_room(dew, origin);
         new.tell_air(dew);
         new.tell_kernels(dew);
         new.tell_inlets(dew);
-        new.fans = dew.fans.len().min(layout::MOST_FANS) as u32;
-        for (told, fan) in new.fan.iter_mut().zip(&dew.fans) {
-            let [low, high] = fan.corners();
-            *told = CardFan {
-                low: origin.relative(low),
-                high: origin.relative(high),
-                rate: fan.rate() as f32,
-                speed: fan.speed() as f32,
-                direction: narrow(fan.direction()),
-                unused: 0.0,
-            };
-        }
+        new.fans = dew.fans.len().min(MOST_FANS) as u32;
         new
     }
 
@@ -49,7 +57,9 @@ impl Parameters {
         }
         (self.corner, self.per_cell) = (origin.relative(corner), (1.0 / h) as f32);
         self.cells = size.map(|length| (length / h).ceil() as u32);
-        self.apart = narrow(room.apart(dew.scale.spacing));
+        let apart = room.apart(dew.scale.spacing);
+        self.apart = narrow(apart);
+        self.deepest = narrow(apart.map(|apart| crate::faces::deepest_outside(h, apart)));
         self.counts = room.counts(dew.scale.spacing).map(|count| count as u32);
     }
 
@@ -112,7 +122,7 @@ impl Parameters {
                     velocity: narrow(inflow.velocity),
                     temperature: (inflow.temperature - dew.settings.ambient_temperature) as f32,
                     vapour: (inflow.vapour - dew.settings.ambient_vapour) as f32,
-                    behind: (((BEYOND * dew.scale.h() / apart).ceil() - 0.5) * apart) as f32,
+                    behind: crate::faces::before_inlet(dew.scale.h(), apart) as f32,
                     unused: [0.0; 2],
                 };
             }
@@ -125,8 +135,8 @@ fn rule(face: &Face) -> u32 {
         Face::Wall => layout::WALL,
         Face::Periodic => layout::PERIODIC,
         Face::Inlet(_) => layout::INLET,
-        // Open sides are refused before the run starts.
-        Face::Outlet | Face::Open => layout::OUTLET,
+        Face::Outlet => layout::OUTLET,
+        Face::Open => layout::OPEN,
     }
 }
 
@@ -140,6 +150,7 @@ fn flags(dew: &Dew) -> u32 {
         (settings.fog || parcels, layout::SATURATES),
         (dew.wetting.is_some(), layout::REFUSES_FAST),
         (settings.humidity == Humidity::Relative, layout::RELATIVE),
+        (settings.low_utility.is_some(), layout::TENDS),
     ];
     all.into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag)).sum()
 }

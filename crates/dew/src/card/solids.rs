@@ -1,11 +1,14 @@
 //! Solids as the shaders see them: their particles, what air is near, and how heat goes through them.
 
-use super::layout::{self, CardBody, CardSite, Origin, Parameters};
+use super::layout::{self, CardBody, CardSite, Parameters};
+use super::origin::Origin;
 use crate::contact::Contact;
 use crate::dew::Dew;
+use crate::humid_air::ZERO_CELSIUS;
 use crate::settings::WallTreatment;
 use crate::solids::Site;
 use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
+use corpuscle_scene::Table;
 
 /// What is told once of the solids.
 #[derive(Debug)]
@@ -20,8 +23,10 @@ pub(super) struct CardSolids {
     pub pairs: wgpu::Buffer,
     /// Particles.
     pub count: usize,
-    /// The solids, by their ranges of particles.
+    /// The solids, by their ranges of particles and of rows.
     pub bodies: Vec<CardBody>,
+    /// Times, s, and temperatures, K, at which solids are held where they change.
+    pub rows: Vec<[f64; 2]>,
 }
 
 impl CardSolids {
@@ -50,8 +55,14 @@ impl CardSolids {
         let first = |wanted: u32| sites.partition_point(|site| cell(site) < wanted) as u32;
         let start: Vec<u32> = (0..=cells).map(first).collect();
         let of_body = |body: u32| particles.partition_point(|particle| particle.body < body) as u32;
+        let mut rows = Vec::new();
         let bodies = (0..dew.solids.bodies.len() as u32)
-            .map(|body| CardBody { first: of_body(body), end: of_body(body + 1), ..CardBody::default() })
+            .map(|body| {
+                let first_row = rows.len() as u32;
+                rows.extend(changes(dew, body as usize));
+                let (first, end, end_row) = (of_body(body), of_body(body + 1), rows.len() as u32);
+                CardBody { first, end, first_row, end_row, ..CardBody::default() }
+            })
             .collect();
         Ok(Self {
             start: filled(gpu, "first sites of cells", &start)?,
@@ -60,8 +71,16 @@ impl CardSolids {
             pairs: filled(gpu, "conductances", &pairs)?,
             count: own.len(),
             bodies,
+            rows,
         })
     }
+}
+
+/// Times, s, and temperatures, K, at which a body is held, where they change.
+fn changes(dew: &Dew, body: usize) -> Vec<[f64; 2]> {
+    let rows = dew.held_to.get(body).and_then(Option::as_ref).map_or(&[][..], Table::rows);
+    let kelvin = |&[time, celsius]: &[f64; 2]| [time, celsius + ZERO_CELSIUS];
+    if rows.len() > 1 { rows.iter().map(kelvin).collect() } else { Vec::new() }
 }
 
 fn of_contact(dew: &Dew, origin: Origin, contact: &Contact) -> Vec<CardSite> {

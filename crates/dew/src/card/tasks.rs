@@ -1,17 +1,22 @@
 //! The passes of a step, each with what it works on.
 
 use super::layout::{
-    Before, CardBody, CardParticle, CardSolid, CardWater, Column, Parameters, Partial, Status, Surface,
+    Before, BeforeColumn, CardBody, CardFan, CardParticle, CardRow, CardSolid, CardWater, Column, MOST_FANS,
+    OutsideColumn, Parameters, Partial, Status, Surface,
 };
 use super::solids::{CardSolids, filled};
-use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, storage, uniform, wgpu};
+use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
 const LIBRARY: &[(&str, &str)] = &[
+    SUMS_BEFORE,
     ("dew_card", include_str!("dew_card.wgsl")),
+    ("dew_columns", include_str!("dew_columns.wgsl")),
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),
     ("dew_humid", include_str!("dew_humid.wgsl")),
     ("dew_saturate", include_str!("dew_saturate.wgsl")),
+    ("dew_solids", include_str!("dew_solids.wgsl")),
+    ("dew_utility", include_str!("dew_utility.wgsl")),
 ];
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
@@ -27,6 +32,7 @@ pub(super) struct Tasks {
     pub solids: wgpu::Buffer,
     pub waters: wgpu::Buffer,
     pub bodies: wgpu::Buffer,
+    pub rows: wgpu::Buffer,
     /// Bytes held.
     pub bytes: u64,
     groups: wgpu::Buffer,
@@ -35,6 +41,8 @@ pub(super) struct Tasks {
     /// Where air passes a face.
     let_in: Option<Task>,
     cross: Task,
+    /// Where there is a side that is open.
+    outside: Option<Task>,
     reorder: Task,
     density: Task,
     /// What solids exchange with the air, where there are any: before the forces, and after.
@@ -45,12 +53,22 @@ pub(super) struct Tasks {
 }
 
 impl Tasks {
-    /// For so many parcels of air at most.
-    pub fn new(gpu: &Gpu, count: usize, parameters: &Parameters, solids: &CardSolids) -> Result<Self, GpuError> {
+    /// For so many parcels of air at most, with columns outside open sides.
+    pub fn new(
+        gpu: &Gpu,
+        count: usize,
+        parameters: &Parameters,
+        fans: &[CardFan; MOST_FANS],
+        solids: &CardSolids,
+        outside: &[OutsideColumn],
+        field: &[f32],
+    ) -> Result<Self, GpuError> {
         let CardSolids { start: site_start, sites, own, pairs, .. } = solids;
         let cells = parameters.cells.iter().product::<u32>() as usize + 1;
         let is_passed = parameters.flags & super::layout::IS_PASSED != 0;
         let parameters = uniform(gpu, "parameters of the air", parameters);
+        let fans = uniform(gpu, "fans", fans);
+        let rows = storage::<CardRow>(gpu, "temperatures held", solids.rows.len())?;
         let status = storage::<Status>(gpu, "status", 1)?;
         let groups = storage::<[u32; 3]>(gpu, "groups", 6)?;
         let particles = storage::<CardParticle>(gpu, "air", count)?;
@@ -60,6 +78,10 @@ impl Tasks {
         let columns = storage::<Column>(gpu, "columns of air", count)?;
         let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
         let before = storage::<Before>(gpu, "sums before faces", count.div_ceil(THREADS as usize))?;
+        let columns_before = storage::<BeforeColumn>(gpu, "sums before columns", outside.len())?;
+        let is_open = !outside.is_empty();
+        let outside = filled(gpu, "columns outside", outside)?;
+        let field = filled(gpu, "distances to solids", field)?;
         let states = storage::<CardSolid>(gpu, "states of solids", solids.count)?;
         let waters = storage::<CardWater>(gpu, "water on solids", solids.count)?;
         let surfaces = storage::<Surface>(gpu, "surfaces", solids.count)?;
@@ -83,8 +105,17 @@ impl Tasks {
         Ok(Self {
             drift: shader!("dew_drift", [all, status, particles, before]),
             let_in: is_passed.then(|| shader!("dew_let_in", [all, status, particles, before, groups])),
-            cross: shader!("dew_cross", [all, status, particles, sort.counts, sort.places, keys, partials]),
-            reorder: shader!("dew_reorder", [None, status, sort.start, sort.order, particles, ordered, spots]),
+            cross: shader!(
+                "dew_cross",
+                [all, status, particles, sort.counts, sort.places, keys, partials, columns_before, field]
+            ),
+            outside: is_open.then(|| {
+                shader!(
+                    "dew_outside",
+                    [all, status, particles, columns_before, outside, sort.counts, sort.places, keys, groups]
+                )
+            }),
+            reorder: shader!("dew_reorder", [all, status, sort.start, sort.order, particles, ordered, spots, outside]),
             density: shader!(
                 "dew_density",
                 [all, status, sort.start, spots, ordered, particles, columns, *site_start, *sites]
@@ -94,12 +125,12 @@ impl Tasks {
             }),
             forces: shader!(
                 "dew_forces",
-                [all, status, sort.start, columns, particles, *site_start, *sites, surfaces, partials]
+                [all, status, sort.start, columns, particles, *site_start, *sites, surfaces, partials, fans]
             ),
             take_up: has_solids.then(|| {
                 [
                     shader!("dew_take_up", [all, status, sort.start, spots, particles, *own, surfaces, states, waters]),
-                    shader!("dew_bodies", [all, states, bodies]),
+                    shader!("dew_bodies", [all, states, bodies, status, rows]),
                 ]
             }),
             finish: shader!("dew_finish", [all, status, partials, groups, bodies, *own]),
@@ -108,6 +139,7 @@ impl Tasks {
             solids: states,
             waters,
             bodies,
+            rows,
             bytes,
             groups,
             sort,
@@ -129,6 +161,9 @@ impl Tasks {
             let_in.run(pass, 1);
         }
         self.cross.run_as_told(pass, groups, SLOTS.particles);
+        if let Some(outside) = &self.outside {
+            outside.run(pass, 1);
+        }
         self.sort.sort(pass, groups, SLOTS);
         self.reorder.run_as_told(pass, groups, SLOTS.particles);
         self.density.run_as_told(pass, groups, SLOTS.particles);

@@ -2,6 +2,7 @@
 
 use super::{Dew, State};
 use crate::card::{Card, Crossed, MOST_FANS, Progress};
+use crate::faces::deepest_outside;
 use crate::room::Face;
 use crate::wetting::WettingState;
 use corpuscle_gpu::{Gpu, GpuError};
@@ -36,7 +37,7 @@ impl Dew {
 
     /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
     pub fn seconds_on_card(&self) -> Option<f64> {
-        self.card.as_ref().map(Card::busy)
+        self.card.as_ref().map(|card| card.busy)
     }
 
     /// Bytes held on the card.
@@ -46,26 +47,20 @@ impl Dew {
 
     /// What this model has that there is no twin of on the card.
     fn missing_on_card(&self) -> Vec<&'static str> {
-        let is_open = self.room.faces.as_flattened().contains(&Face::Open);
-        let changes = self.held_to.iter().flatten().any(|table| table.rows().len() > 1);
-        let all = [
-            (is_open, "a side that is \"open\" ([dew.faces])"),
-            (self.settings.low_utility.is_some(), "[dew.low_utility]"),
-            (changes, "a solid held at a temperature that changes (temperature_c)"),
-            (self.fans.len() > MOST_FANS, "more than eight fans ([[dew.fan]])"),
-        ];
+        let all = [(self.fans.len() > MOST_FANS, "more than 1024 fans ([[dew.fan]])")];
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
     /// Makes room on a card for the air that there is, and for more where air comes in, and hands the state over.
     fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
-        let (count, come) = (self.state.air.len(), self.most_to_come());
+        let (count, come) = (self.state.air.len(), self.most_in_a_step());
         self.open_card_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
     }
 
     fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut card = Card::new(gpu, room, self)?;
         card.send(&self.state);
+        card.busy = self.seconds_on_card().unwrap_or(0.0);
         self.card = Some(card);
         Ok(())
     }
@@ -73,7 +68,7 @@ impl Dew {
     /// Hands the state to the card, where there is one. It is set up anew, its shaders compiled again, where settings have changed or there is
     /// too little room.
     pub(crate) fn tell_card(&mut self, anew: bool) -> Result<(), ModelError> {
-        let needed = self.state.air.len() + self.most_to_come();
+        let needed = self.state.air.len() + self.most_in_a_step();
         match &mut self.card {
             None => Ok(()),
             Some(card) if !anew && card.filling()[1] >= needed => {
@@ -87,18 +82,18 @@ impl Dew {
         }
     }
 
-    /// Parcels that can come in by inlets while so many steps are taken as are ordered at once.
-    fn most_to_come(&self) -> usize {
+    /// Parcels that can come in a step: a layer before each inlet, and outside open sides as many as stand there in all.
+    pub(crate) fn most_in_a_step(&self) -> usize {
         let counts = self.room.counts(self.scale.spacing);
         let apart = self.room.apart(self.scale.spacing);
-        let longest = self.settings.cfl * self.scale.h() / self.air.sound_speed;
-        let of_face = |(number, face): (usize, &Face)| match face {
-            Face::Inlet(inflow) => {
-                let axis = number / 2;
-                let way = inflow.velocity[axis].abs() * longest * TOGETHER as f64;
-                ((way / apart[axis]) as usize + 2) * counts[(axis + 1) % 3] * counts[(axis + 2) % 3]
-            }
-            _ => 0,
+        let of_face = |(number, face): (usize, &Face)| {
+            let axis = number / 2;
+            let layers = match face {
+                Face::Inlet(_) => 1,
+                Face::Open => (deepest_outside(self.scale.h(), apart[axis]) / apart[axis]).ceil() as usize,
+                _ => 0,
+            };
+            layers * counts[(axis + 1) % 3] * counts[(axis + 2) % 3]
         };
         self.room.faces.as_flattened().iter().enumerate().map(of_face).sum()
     }
@@ -136,8 +131,6 @@ impl Dew {
                 return Ok(None);
             }
             let count = self.steps_to_drops();
-            let is_whole = count == self.wetting.as_ref().map_or(TOGETHER, |wetting| wetting.steps());
-            self.make_room(is_whole)?;
             let Some(card) = &mut self.card else { break };
             let progress = card.advance(time - self.state.time, count as usize)?;
             self.book_progress(&progress);
@@ -145,6 +138,10 @@ impl Dew {
             if progress.broken {
                 let last = progress.lengths.last().copied().unwrap_or(progress.step);
                 return Ok(self.check_step(progress.fastest, last, progress.step).err());
+            }
+            if progress.full {
+                self.make_room()?;
+                continue;
             }
             // To the card, which rounds more coarsely, a step that ends at that time may end after it.
             if progress.lengths.is_empty() {
@@ -164,15 +161,12 @@ impl Dew {
     }
 
     /// Takes more room on the card where the air that is to come might not find any.
-    fn make_room(&mut self, is_whole: bool) -> Result<(), GpuError> {
-        let Some(card) = self.card.as_ref().filter(|_| is_whole) else { return Ok(()) };
-        let ([filled, room], come) = (card.filling(), self.most_to_come());
-        if come == 0 || filled + come <= room {
-            return Ok(());
-        }
-        let gpu = card.gpu();
+    fn make_room(&mut self) -> Result<(), GpuError> {
         self.fetch_from_card()?;
-        self.open_card(gpu)
+        match self.card.as_ref().map(Card::gpu) {
+            Some(gpu) => self.open_card(gpu),
+            None => Ok(()),
+        }
     }
 
     /// Drops take over what condensed, where it is their turn, and the card is told what water there is then.
@@ -234,44 +228,11 @@ impl Dew {
         state.time_step = progress.step;
         state.next_id = progress.next_id;
         state.inlet_phase = progress.inlet_phase;
+        if self.settings.low_utility.is_some() {
+            state.utility_seen = progress.utility_seen;
+        }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::air::Properties;
-    use crate::dew::Setup;
-    use crate::room::{Inflow, Room};
-    use crate::settings::Settings;
-    use corpuscle_gpu::require_gpu;
-    use corpuscle_model::Model;
-
-    const WARM: f64 = 300.0;
-
-    fn duct() -> Dew {
-        let inlet = Face::Inlet(Inflow { velocity: [0.097, 0.0, 0.0], temperature: WARM + 1.0, vapour: 0.01 });
-        let faces = [[inlet, Face::Outlet], [Face::Wall; 2], [Face::Periodic; 2]];
-        let room = Room { low: [0.0; 3], high: [0.02, 0.012, 0.01], faces };
-        let (settings, air) = (Settings::new(0.002, WARM, 0.01), Properties::at_room_temperature(0.5));
-        let setup = Setup { settings, air, room, bodies: Vec::new(), fans: Vec::new(), seed: 1 };
-        Dew::new(&setup, |_| [WARM, 0.01]).unwrap()
-    }
-
-    #[test]
-    fn more_room_is_taken_where_air_that_comes_might_find_none() {
-        let Some(gpu) = require_gpu("room on the card") else { return };
-        let mut cards = [(); 2].map(|()| duct());
-        let come = cards[0].most_to_come();
-        let scarce = cards[0].state.air.len() + come - 1;
-        cards[0].open_card_with(gpu.clone(), scarce).unwrap();
-        cards[1].use_card(gpu).unwrap();
-        for dew in &mut cards {
-            dew.advance_to(0.05, &AtomicBool::new(false)).unwrap();
-        }
-        let [with_more, plain] = &cards;
-        assert!(come > 0 && with_more.card.as_ref().unwrap().filling()[1] > scarce);
-        assert!(with_more.state.next_id > with_more.state.air.len() as u64, "some have come");
-        assert!(with_more.state.air == plain.state.air && with_more.state.water == plain.state.water);
-    }
-}
+mod tests;

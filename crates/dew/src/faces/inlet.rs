@@ -1,6 +1,6 @@
 //! Air that comes in by inlets, layer by layer.
 
-use super::{BEYOND, placed};
+use super::{before_inlet, placed};
 use crate::air::Particle;
 use crate::dew::Dew;
 use crate::room::{Face, Inflow};
@@ -24,8 +24,7 @@ impl Dew {
         self.state.inlet_phase[axis][side] += inflow.velocity[axis].abs() * step;
         while self.state.inlet_phase[axis][side] >= apart[axis] {
             self.state.inlet_phase[axis][side] -= apart[axis];
-            let depth = ((BEYOND * self.scale.h() / apart[axis]).ceil() - 0.5) * apart[axis];
-            let behind = depth - self.state.inlet_phase[axis][side];
+            let behind = before_inlet(self.scale.h(), apart[axis]) - self.state.inlet_phase[axis][side];
             let others = [(axis + 1) % 3, (axis + 2) % 3];
             for b in 0..counts[others[1]] {
                 for a in 0..counts[others[0]] {

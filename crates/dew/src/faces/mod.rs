@@ -4,6 +4,8 @@ mod inlet;
 mod open;
 
 pub use open::OpenSide;
+#[cfg(feature = "gpu")]
+pub(crate) use open::deepest as deepest_outside;
 
 use crate::air::{Particle, Role};
 use crate::dew::Dew;
@@ -12,6 +14,11 @@ use crate::solids::{Body, Searched};
 
 /// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
 pub(crate) const BEYOND: f64 = 2.0;
+
+/// How far before an inlet a new layer of parcels stands, m; they are `apart` m apart, and `h` is the smoothing length.
+pub(crate) fn before_inlet(h: f64, apart: f64) -> f64 {
+    ((BEYOND * h / apart).ceil() - 0.5) * apart
+}
 
 /// Air starts no nearer to a solid's surface than this, in spacings.
 const CLEARANCE: f64 = 0.25;

@@ -10,6 +10,12 @@ use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
 use crate::room::{Face, Room};
 
+/// How far beyond an open side the last parcel of a full column stands, m, nearer than what is let go of; parcels are `apart` m apart, and
+/// `h` is the smoothing length. A ten-thousandth more, so that rounding does not tell whether there is room for one.
+pub(crate) fn deepest(h: f64, apart: f64) -> f64 {
+    ((BEYOND * h / apart - 0.5).ceil() - 0.5 + 1e-4) * apart
+}
+
 /// The columns of air outside an open side.
 #[derive(Debug, Clone)]
 pub struct OpenSide {
@@ -62,7 +68,13 @@ impl OpenSide {
 
     /// How far beyond the side the last of a full column stands at the start, m.
     fn deepest(&self, scale: &Scale) -> f64 {
-        ((BEYOND * scale.h() / self.apart[self.axis]).ceil() - 0.5) * self.apart[self.axis]
+        deepest(scale.h(), self.apart[self.axis])
+    }
+
+    /// Columns that no solid stands in.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn free(&self) -> &[bool] {
+        &self.free
     }
 
     /// The place in the midst of a column so far beyond the side, m.

@@ -80,7 +80,14 @@ struct Parameters {
     widest_h: f32,
     // 0, which compilers cannot tell.
     zero: u32,
-    unused: vec2f,
+    // The area for which a particle may stand, m2, the smallest volume of a half and the largest of what is merged, m3; 0 where particles
+    // are not split and merged.
+    widest: f32,
+    smallest: f32,
+    largest: f32,
+    unused_a: f32,
+    unused_b: f32,
+    unused_c: f32,
 }
 
 const BALANCED = 0u;

@@ -2,6 +2,7 @@
 // `Ground::drops` in `rain.rs` and of `flood/weather.rs`. One group.
 #import flood_places
 #import flood_wetness
+#import sums_before
 
 @group(0) @binding(6) var<storage, read_write> ground: array<Patch>;
 @group(0) @binding(7) var<storage, read> sums: array<vec4f>;
@@ -15,7 +16,6 @@ const ONCE = 6u;
 const SCATTER = 0.7;
 
 var<workgroup> of_threads: array<vec4f, 256>;
-var<workgroup> running: array<u32, 256>;
 // Particles now, the identity of the next, and 1 where it is time.
 var<workgroup> now: vec3u;
 
@@ -57,24 +57,6 @@ fn book(rained: f32, given: f32, infiltrated: f32, momentum: f32) {
     book_momentum(&all, -momentum);
     all.wetted = all.clock.sum;
     status = all;
-}
-
-// The sum of `value` over the threads before this one, and over all (Hillis and Steele 1986).
-fn sums_before(thread: u32, value: u32) -> vec2u {
-    running[thread] = value;
-    workgroupBarrier();
-    for (var step = 1u; step < 256u; step *= 2u) {
-        var sum = running[thread];
-        if thread >= step {
-            sum += running[thread - step];
-        }
-        workgroupBarrier();
-        running[thread] = sum;
-        workgroupBarrier();
-    }
-    let all = vec2u(running[thread] - value, running[255]);
-    workgroupBarrier();
-    return all;
 }
 
 fn fall(cell: u32, number: u32, id: u32) {

@@ -5,7 +5,8 @@
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group; and where
-// it rains or soaks in, a thread for each particle, a thread for each cell of the ground, one group; a thread for each particle in the air.
+// it rains or soaks in, a thread for each particle, a thread for each cell of the ground, one group; a thread for each particle in the air;
+// and where particles are split and merged, a thread for each particle.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
 // Zones, structures and tables: see `works.rs`.
@@ -15,6 +16,11 @@ const FAR = 3.0e38;
 
 // It rains once in so many steps.
 const RAINS = 8u;
+
+// Particles are split and merged once in so many steps, as in `flood/step.rs`.
+const REFINED = 8u;
+
+const SLOTS = 9u;
 
 // Where `works` says where the levels of the sides are.
 const LEVELS = 12u;
@@ -110,6 +116,7 @@ fn decide() {
     let is_going = status.halted == GOING;
     let ground = parameters.patches.x * parameters.patches.y;
     let is_wetting = ground > 0u && (status.steps_before + status.steps) % RAINS == 0u;
+    let is_refining = parameters.widest > 0.0 && (status.steps_before + status.steps) % REFINED == 0u;
     let counts = array(
         (status.particles + 255u) / 256u,
         (status.cells + 255u) / 256u,
@@ -119,8 +126,9 @@ fn decide() {
         select(0u, (ground + 255u) / 256u, is_wetting),
         select(0u, 1u, is_wetting),
         select(0u, (parameters.in_air + 255u) / 256u, status.falling > 0u),
+        select(0u, (status.particles + 255u) / 256u, is_refining),
     );
-    for (var slot = 0u; slot < 8u; slot++) {
+    for (var slot = 0u; slot < SLOTS; slot++) {
         groups[3u * slot] = select(0u, counts[slot], is_going);
         groups[3u * slot + 1u] = 1u;
         groups[3u * slot + 2u] = 1u;

@@ -1,15 +1,23 @@
 // Rain on each cell of the ground, what soaks in of its film, and what its particles are to gain and to give. Twin of `Ground::wet` in
 // `rain.rs` and of `infiltration.rs`, whose formulas stand here without differences of large numbers.
-#import flood_places
+#import flood_accounts
 #import flood_wetness
 
-@group(0) @binding(6) var<storage, read_write> ground: array<Patch>;
+@group(0) @binding(1) var<storage, read> status: Status;
+// Zones, tables, structures and what they owe: see `works.rs`.
+@group(0) @binding(2) var<storage, read> works: array<u32>;
+@group(0) @binding(3) var<storage, read_write> ground: array<Patch>;
 // Of each cell: area covered, and depth taken of particles since.
-@group(0) @binding(7) var<storage, read_write> tallies: array<u32>;
+@group(0) @binding(4) var<storage, read_write> tallies: array<u32>;
 // Kind and numbers of each law.
-@group(0) @binding(8) var<storage, read> laws: array<vec4f>;
+@group(0) @binding(5) var<storage, read> laws: array<vec4f>;
 // What each group of cells adds up, and after them what each group of particles does.
-@group(0) @binding(9) var<storage, read_write> sums: array<vec4f>;
+@group(0) @binding(6) var<storage, read_write> sums: array<vec4f>;
+// Rain by a function: the first time by the clock, s, times a second, and how many; then for each time the rate in each cell, m/s. See
+// `rates.rs`.
+@group(0) @binding(7) var<storage, read> rates: array<f32>;
+
+const RATES = 3u;
 
 const CONSTANT = 1.0;
 const HORTON = 2.0;
@@ -21,6 +29,10 @@ const ITERATIONS = 20u;
 const SHARED_FROM = 0.5;
 
 var<workgroup> of_threads: array<vec2f, 256>;
+
+fn work_pair(at: u32) -> vec2f {
+    return vec2f(bitcast<f32>(works[at]), bitcast<f32>(works[at + 1u]));
+}
 
 // Rain since it was last looked at, m, by the rows that the host has told.
 fn rain_fallen() -> f32 {
@@ -42,6 +54,20 @@ fn rain_fallen() -> f32 {
         }
     }
     return sum;
+}
+
+// The same of rain that a function gives: its rate in the middle of the time, linearly between those that the host has told.
+fn rain_by_function(cell: u32) -> f32 {
+    let times = u32(rates[2]);
+    if times == 0u {
+        return 0.0;
+    }
+    let at = max((0.5 * (status.wetted + status.clock.sum) - rates[0]) * rates[1], 0.0);
+    let row = min(u32(at), times - 2u);
+    let cells = parameters.patches.x * parameters.patches.y;
+    let before = rates[RATES + row * cells + cell];
+    let after = rates[RATES + (row + 1u) * cells + cell];
+    return (before + min(at - f32(row), 1.0) * (after - before)) * (status.clock.sum - status.wetted);
 }
 
 // 1 - e^-x.
@@ -110,7 +136,7 @@ fn wet(cell: u32) -> vec2f {
     let covered = f32(tallies[2u * cell]) / AREA;
     tallies[2u * cell] = 0u;
     tallies[2u * cell + 1u] = 0u;
-    let rain = rain_fallen() * own.factor * area;
+    let rain = (rain_fallen() + rain_by_function(cell)) * own.factor * area;
     var booked = vec2f(rain, 0.0);
     own.film += rain;
     let asked = demand(laws[own.law], soaked.sum, step);

@@ -70,7 +70,11 @@ pub(super) struct Parameters {
     pub widest_h: f32,
     /// 0, which compilers cannot tell.
     pub zero: u32,
-    pub unused: [f32; 2],
+    /// Of splitting and merging, as [`crate::refinement::Refinement`] has them; `widest` is 0 where there is none.
+    pub widest: f32,
+    pub smallest: f32,
+    pub largest: f32,
+    pub unused: [f32; 3],
 }
 
 /// Scheme paper.
@@ -207,6 +211,9 @@ pub(super) struct Patch {
     pub demand: f32,
     pub is_deep: u32,
 }
+
+/// What is to become of a particle that may be split or merged.
+pub(super) type Plan = [u32; 2];
 
 /// The parts of a metre in which the ground counts what it takes of particles.
 pub(super) const DEPTH: f64 = 1e10;

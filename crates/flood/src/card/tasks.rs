@@ -1,11 +1,12 @@
 //! The passes of a step, each with what it works on.
 
 use super::air::Air;
-use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Slopes, Status};
+use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Plan, Slopes, Status};
+use super::resource::Resource;
 use super::walls::Walls;
 use super::weather::Weather;
 use super::works::Works;
-use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SortSlots, THREADS, Task, sort_blocks, storage, uniform, wgpu};
+use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SUMS_BEFORE, THREADS, Task, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
 const LIBRARY: &[(&str, &str)] = &[
@@ -24,16 +25,9 @@ const LIBRARY: &[(&str, &str)] = &[
     ("flood_air", include_str!("flood_air.wgsl")),
     ("flood_sums", include_str!("flood_sums.wgsl")),
     ("flood_paper", include_str!("flood_paper.wgsl")),
+    SUMS_BEFORE,
+    ("flood_refinement", include_str!("flood_refinement.wgsl")),
 ];
-
-/// Slots of the numbers of groups: see `flood_finish.wgsl`.
-const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
-
-/// Slots beyond those of the sort: particles that it rains on, and cells of the ground.
-const WEATHER: [u64; 2] = [4, 5];
-
-/// The slot of particles in the air.
-const IN_AIR: u64 = 7;
 
 /// Everything on the device.
 #[derive(Debug)]
@@ -44,70 +38,36 @@ pub(super) struct Tasks {
     pub births: wgpu::Buffer,
     /// Bytes held.
     pub bytes: u64,
-    sorted: wgpu::Buffer,
-    groups: wgpu::Buffer,
-    sort: CellSort,
+    pub sorted: wgpu::Buffer,
+    pub groups: wgpu::Buffer,
+    pub sort: CellSort,
     /// Water beyond sides held at levels, and structures, where there are any.
-    carry: Option<Task>,
-    regulate: Option<Task>,
-    drift: Task,
+    pub carry: Option<Task>,
+    pub regulate: Option<Task>,
+    pub drift: Task,
+    /// Splitting and merging, where they are asked for: what is to become of each particle, room for halves, and what becomes of it.
+    pub refine: Option<[Task; 3]>,
     /// Where water comes in.
-    bear: Option<Task>,
+    pub bear: Option<Task>,
     /// Rain and infiltration, where there are any: area covered, cells of the ground, what particles get; and drops.
-    weather: Option<[Task; 3]>,
-    drops: Option<Task>,
+    pub weather: Option<[Task; 3]>,
+    pub drops: Option<Task>,
     /// What falls, and what of it has landed.
-    land: Option<[Task; 2]>,
-    leave: Task,
-    reorder: Task,
-    reach_own: Task,
-    reach_rows: Task,
-    reach: Task,
-    density: Task,
+    pub land: Option<[Task; 2]>,
+    pub leave: Task,
+    pub reorder: Task,
+    pub reach_own: Task,
+    pub reach_rows: Task,
+    pub reach: Task,
+    pub density: Task,
     /// In scheme balanced.
-    gradients: Option<Task>,
+    pub gradients: Option<Task>,
     /// What obstacles do, where there are any.
-    push: Option<Task>,
-    on_obstacles: Option<Task>,
-    obstacles: u32,
-    forces: Task,
-    finish: Task,
-}
-
-/// What a shader works on.
-enum Resource<'a> {
-    Buffer(&'a wgpu::Buffer),
-    Texture(&'a wgpu::TextureView),
-    /// The shader leaves it alone.
-    Unused,
-}
-
-impl<'a> Resource<'a> {
-    fn binding(&self) -> Option<wgpu::BindingResource<'a>> {
-        match *self {
-            Self::Buffer(buffer) => Some(buffer.as_entire_binding()),
-            Self::Texture(texture) => Some(wgpu::BindingResource::TextureView(texture)),
-            Self::Unused => None,
-        }
-    }
-}
-
-impl<'a> From<&'a wgpu::Buffer> for Resource<'a> {
-    fn from(buffer: &'a wgpu::Buffer) -> Self {
-        Self::Buffer(buffer)
-    }
-}
-
-impl From<&()> for Resource<'_> {
-    fn from((): &()) -> Self {
-        Self::Unused
-    }
-}
-
-impl<'a> From<&'a wgpu::TextureView> for Resource<'a> {
-    fn from(texture: &'a wgpu::TextureView) -> Self {
-        Self::Texture(texture)
-    }
+    pub push: Option<Task>,
+    pub on_obstacles: Option<Task>,
+    pub obstacles: u32,
+    pub forces: Task,
+    pub finish: Task,
 }
 
 impl Tasks {
@@ -123,10 +83,11 @@ impl Tasks {
         weather: Option<&Weather>,
         air: Option<&Air>,
         is_paper: bool,
+        refines: bool,
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
-        let groups = storage::<[u32; 3]>(gpu, "groups", 8)?;
+        let groups = storage::<[u32; 3]>(gpu, "groups", 9)?;
         let particles = storage::<CardParticle>(gpu, "particles", count)?;
         let sorted = storage::<CardParticle>(gpu, "particles in order", count)?;
         let keys = storage::<u32>(gpu, "numbers of particles", count)?;
@@ -143,7 +104,11 @@ impl Tasks {
         let pushes = if walls.count > 0 { Walls::pushes(gpu, count)? } else { storage::<[f32; 4]>(gpu, "pushes", 0)? };
         let of_particles = [&pushes, &particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
         let of_cells = [&own, &along_rows, &reaches, &sort.counts, &sort.places, &sort.start, &sort.order];
-        let bytes: u64 = of_particles.into_iter().chain(of_cells).map(wgpu::Buffer::size).sum();
+        let planned = if refines { count } else { 0 };
+        let plans = storage::<Plan>(gpu, "plans", planned)?;
+        let tallies = storage::<u32>(gpu, "tallies of plans", 3 + planned.div_ceil(THREADS as usize))?;
+        let of_particles = of_particles.into_iter().chain([&plans, &tallies]);
+        let bytes: u64 = of_particles.chain(of_cells).map(wgpu::Buffer::size).sum();
         let bytes = bytes + weather.map_or(0, Weather::bytes);
         let task = |name, text, resources: &[Resource<'_>]| {
             Kernel::new(gpu, name, text, LIBRARY).on_those(gpu, resources.iter().map(Resource::binding))
@@ -166,6 +131,16 @@ impl Tasks {
                 "flood_drift",
                 [parameters, status, particles, walls.outlines, walls.knocks, partials, *rough]
             ),
+            refine: refines.then(|| {
+                [
+                    shader!(
+                        "flood_plans",
+                        [parameters, walls.outlines, status, particles, sort.start, sites, plans, tallies]
+                    ),
+                    shader!("flood_halves", [(), (), status, tallies, groups, plans]),
+                    shader!("flood_refine", [parameters, walls.outlines, particles, plans, tallies]),
+                ]
+            }),
             regulate: works.has_structures.then(|| {
                 shader!(
                     "flood_regulate",
@@ -189,12 +164,12 @@ impl Tasks {
                 )
             }),
             weather: weather.map(|weather| {
-                let Weather { ground, tallies, laws, sums, .. } = weather;
+                let Weather { ground, tallies, laws, sums, rates, .. } = weather;
                 [
                     shader!("flood_cover", [parameters, status, particles, *tallies]),
                     shader!(
                         "flood_wet",
-                        [parameters, status, (), (), works.buffer, (), *ground, *tallies, *laws, *sums]
+                        [parameters, status, works.buffer, *ground, *tallies, *laws, *sums, rates.buffer]
                     ),
                     shader!("flood_share", [parameters, status, particles, *ground, *tallies, *sums]),
                 ]
@@ -293,75 +268,5 @@ impl Tasks {
             groups,
             sort,
         })
-    }
-
-    /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
-    pub fn steps(&self, pass: &mut wgpu::ComputePass<'_>, count: u32) {
-        self.finish.run(pass, 1);
-        for _ in 0..count {
-            self.step(pass);
-        }
-    }
-
-    /// Brings the particles into the order of new cells. The status says that the next step is 0 s long, so that nothing moves.
-    pub fn arrange(&self, gpu: &Gpu, status: &Status) {
-        let threads = |count: u32| [count.div_ceil(THREADS), 1, 1];
-        let blocks = [sort_blocks(status.cells as usize) as u32, 1, 1];
-        let groups = [threads(status.particles), threads(status.cells), blocks, [1, 1, 1]];
-        gpu.queue.write_buffer(&self.status, 0, bytemuck::bytes_of(status));
-        gpu.queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&groups));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        self.leave.run_as_told(&mut pass, &self.groups, SLOTS.particles);
-        self.sort(&mut pass);
-        drop(pass);
-        encoder.copy_buffer_to_buffer(&self.sorted, 0, &self.particles, 0, self.particles.size());
-        gpu.queue.submit([encoder.finish()]);
-    }
-
-    /// Sorts what has counted itself, and finds how far each cell must look.
-    fn sort(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let groups = &self.groups;
-        self.sort.sort(pass, groups, SLOTS);
-        self.reorder.run_as_told(pass, groups, SLOTS.particles);
-        self.reach_own.run_as_told(pass, groups, SLOTS.cells);
-        self.reach_rows.run_as_told(pass, groups, SLOTS.cells);
-        self.reach.run_as_told(pass, groups, SLOTS.cells);
-    }
-
-    fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
-        let groups = &self.groups;
-        if let Some(carry) = &self.carry {
-            carry.run_as_told(pass, groups, SLOTS.particles);
-        }
-        self.drift.run_as_told(pass, groups, SLOTS.particles);
-        for task in [&self.regulate, &self.bear].into_iter().flatten() {
-            task.run(pass, 1);
-        }
-        if let Some([land, landed]) = &self.land {
-            land.run_as_told(pass, groups, IN_AIR);
-            landed.run(pass, 1);
-        }
-        if let Some(tasks) = &self.weather {
-            let [particles, cells] = WEATHER;
-            for (task, slot) in tasks.iter().zip([particles, cells, particles]) {
-                task.run_as_told(pass, groups, slot);
-            }
-        }
-        if let Some(drops) = &self.drops {
-            drops.run(pass, 1);
-        }
-        self.leave.run_as_told(pass, groups, SLOTS.particles);
-        self.sort(pass);
-        self.density.run_as_told(pass, groups, SLOTS.particles);
-        if let Some(gradients) = &self.gradients {
-            gradients.run_as_told(pass, groups, SLOTS.particles);
-        }
-        if let (Some(push), Some(on_obstacles)) = (&self.push, &self.on_obstacles) {
-            push.run_as_told(pass, groups, SLOTS.particles);
-            on_obstacles.run(pass, self.obstacles);
-        }
-        self.forces.run_as_told(pass, groups, SLOTS.particles);
-        self.finish.run(pass, 1);
     }
 }

@@ -1,6 +1,7 @@
 //! The ground that rain falls on, as the shaders have it.
 
 use super::layout::{DEPTH, Parameters, Patch};
+use super::rates::Rates;
 use crate::infiltration::Law;
 use crate::rain::{Ground, Wetness};
 use corpuscle_gpu::{Gpu, GpuError, THREADS, read, storage, wgpu};
@@ -12,6 +13,7 @@ pub(super) struct Weather {
     pub tallies: wgpu::Buffer,
     pub laws: wgpu::Buffer,
     pub sums: wgpu::Buffer,
+    pub rates: Rates,
     /// As they are at the start: dry.
     patches: Vec<Patch>,
 }
@@ -41,6 +43,7 @@ impl Weather {
             tallies: storage::<[u32; 2]>(gpu, "tallies of the ground", patches.len())?,
             laws: storage::<[f32; 4]>(gpu, "laws of infiltration", laws.len())?,
             sums: storage::<[f32; 4]>(gpu, "sums of the weather", groups(patches.len()) + groups(count))?,
+            rates: Rates::new(gpu, ground)?,
             patches,
         };
         gpu.queue.write_buffer(&weather.laws, 0, bytemuck::cast_slice(&laws));
@@ -49,7 +52,10 @@ impl Weather {
 
     /// Bytes held.
     pub fn bytes(&self) -> u64 {
-        [&self.ground, &self.tallies, &self.laws, &self.sums].into_iter().map(wgpu::Buffer::size).sum()
+        [&self.ground, &self.tallies, &self.laws, &self.sums, &self.rates.buffer]
+            .into_iter()
+            .map(wgpu::Buffer::size)
+            .sum()
     }
 
     /// Hands over what stands on the ground and in it.

@@ -3,7 +3,6 @@
 use super::{DENSITY, Flood, State, open};
 use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Water};
 use crate::inflow::Source;
-use crate::rain::{Ground, Intensity};
 use corpuscle_gpu::{Gpu, GpuError};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Scheme as SchemeName;
@@ -23,15 +22,8 @@ impl Flood {
     /// Lets a graphics card take the steps, in single precision.
     ///
     /// # Errors
-    /// [`ModelError::Setup`] where the scene has something that the card's program has not yet, or the card too little memory.
+    /// [`ModelError::Setup`] where the card has too little memory.
     pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
-        let missing = self.missing_on_card();
-        if !missing.is_empty() {
-            let what = missing.join(", ");
-            return Err(ModelError::Setup(format!(
-                "the graphics card cannot yet compute this flood: it has {what}. Run it with `--backend cpu`"
-            )));
-        }
         self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }
 
@@ -47,25 +39,32 @@ impl Flood {
 
     /// Makes room on a card for the particles that there are, and for more where water comes in, and hands the state over.
     pub(super) fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
-        let depth = self.volume / (self.spacing * self.spacing);
-        let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let count = self.state.particles.len();
         let falling = self.state.falling.len();
         let holds = !self.structures.held.is_empty() || self.surroundings.edges.holds_level();
         let comes_in = !self.sources.is_empty() || self.ground.is_some() || holds;
         let films = self.films();
-        let room = falling + if comes_in { 2 * (count + films) + MOST_BIRTHS } else { count };
+        let grows = comes_in || self.refinement.is_some();
+        let room = falling + if grows { 2 * (count + films) + MOST_BIRTHS } else { count };
+        self.open_card_with(gpu, room)
+    }
+
+    /// The same with room for so many particles.
+    fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
+        let depth = self.volume / (self.spacing * self.spacing);
+        let scheme = open::balanced_parameters(&self.settings, depth, self.h);
         let paper = self.paper();
         let setting = Setting {
             surroundings: &self.surroundings,
             scheme: &scheme,
             paper: (self.settings.scheme == SchemeName::Paper).then_some(&paper),
-            falling,
+            falling: self.state.falling.len(),
             fall_step: self.fall_step(),
             roughness: &self.roughness,
             sources: &self.sources,
             structures: &self.structures,
             ground: self.ground.as_ref(),
+            refinement: self.refinement.as_ref(),
             seed: self.seed,
             shortest_step: self.shortest_step(),
             volume: self.volume,
@@ -75,13 +74,6 @@ impl Flood {
         let card = Card::new(gpu, room, &setting)?;
         self.card = Some(card);
         self.send_to_card()
-    }
-
-    /// What this flood has that there is no twin of on the card.
-    fn missing_on_card(&self) -> Vec<&'static str> {
-        let rain_by_function = matches!(&self.ground, Some(Ground { intensity: Intensity::Function(_), .. }));
-        let all = [(self.refinement.is_some(), "[flood.refinement]"), (rain_by_function, "rain by a function")];
-        all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
     /// Hands the state to the card, and takes more room there if there is too little.
@@ -173,7 +165,7 @@ impl Flood {
             let now = began + done.elapsed;
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
             let Some(card) = &mut self.card else { break };
-            let progress = card.advance(now, time - now, look - now, &births)?;
+            let progress = card.advance(now, time - now, look - now, &births, self.ground.as_ref())?;
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
@@ -232,5 +224,77 @@ impl Flood {
         state.momentum.inflow.add(DENSITY * progress.momentum_gained);
         state.momentum.outflow.add(DENSITY * progress.momentum_lost);
         self.surroundings.time = state.time;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::require_gpu;
+    use corpuscle_model::Model;
+    use corpuscle_scene::Scene;
+    use corpuscle_terrain::Terrain;
+    use std::path::Path;
+    use std::sync::Arc;
+
+    /// Water that runs down as a sheet, so that all of it is split, and more than once.
+    const SHEET: &str = r#"
+run.until_s = 60
+terrain.plane = { extent = { length_m = 80, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
+[flood]
+spacing_m = 1
+spacing_depth_m = 0.5
+refinement = {}
+edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
+water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
+"#;
+
+    fn sheet() -> Flood {
+        let mut scene = Scene::parse(SHEET, "sheet", &[]).unwrap();
+        scene.resolve_defaults();
+        let scene = scene.flood().unwrap();
+        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+        Flood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+    }
+
+    #[test]
+    fn more_room_is_taken_where_halves_might_find_none() {
+        let Some(gpu) = require_gpu("room on the card") else { return };
+        let mut sheets = [(); 2].map(|()| sheet());
+        let count = sheets[0].state.particles.len();
+        let scarce = count + count / 2; // Enough until the next look at it.
+        sheets[0].open_card_with(gpu.clone(), scarce).unwrap();
+        sheets[1].use_card(gpu.clone()).unwrap();
+        for sheet in &mut sheets {
+            sheet.advance_to(24.0, &AtomicBool::new(false)).unwrap();
+        }
+        let [with_more, plain] = &sheets;
+        let (now, room) = (with_more.state.particles.len(), with_more.card.as_ref().unwrap().room());
+        assert!(now > scarce && room > scarce, "{count} became {now}, room for {scarce} for {room}");
+        // Laid out anew in cells of another size, so summed up in another order.
+        let in_plenty = plain.state.particles.len();
+        assert!(now.abs_diff(in_plenty) < in_plenty / 20, "{now} and {in_plenty}");
+        assert!((with_more.stored() / plain.stored() - 1.0).abs() < 1e-6);
+    }
+
+    /// Without any room water stays whole, and none is lost.
+    #[test]
+    fn what_finds_no_room_stays_whole() {
+        let Some(gpu) = require_gpu("no room on the card") else { return };
+        let (mut host, mut card) = (sheet(), sheet());
+        host.advance_to(8.0, &AtomicBool::new(false)).unwrap();
+        while !host.state.steps.is_multiple_of(8) {
+            host.step().unwrap();
+        }
+        let (count, volume) = (host.state.particles.len(), host.stored());
+        card.restore(&host.save()).unwrap();
+        card.open_card_with(gpu, count + 3).unwrap();
+        let on_card = card.card.as_mut().unwrap();
+        assert_eq!(on_card.advance(0.0, 10.0, 1e-6, &[], None).unwrap().steps, 1);
+        on_card.fetch(&mut card.state.particles, &card.surroundings.terrain).unwrap();
+        host.step().unwrap();
+        assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());
+        assert!(card.state.particles.len() <= count + 3, "{} became {}", count, card.state.particles.len());
+        assert!((card.stored() / volume - 1.0).abs() < 1e-6);
     }
 }

@@ -20,14 +20,16 @@ pub(super) fn widest(settings: &Settings, refinement: Option<&Refinement>) -> f6
 }
 
 impl Flood {
-    /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does. A graphics card cannot ask it: steps are
-    /// the processor's from then on.
+    /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does. A graphics card is told of it ahead, at
+    /// some times; one with too little memory for that takes no more steps.
     pub fn rain(&mut self, rain: RainFunction) {
         let widest = widest(&self.settings, self.refinement.as_ref());
         let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, widest);
         self.state.wetness = ground.dry();
         self.ground = Some(ground);
         #[cfg(feature = "gpu")]
+        if let Some(card) = self.card.take()
+            && self.open_card(card.gpu()).is_err()
         {
             self.card = None;
         }

@@ -4,12 +4,12 @@
 //! [`CellSort::places`], the cell and what the count was before. [`CellSort::sort`] does the rest and leaves the counts at zero.
 //! Particles of one cell come in the order of their keys, so that the result is the same however the threads ran.
 
-use crate::{Gpu, GpuError, Kernel, ShaderLibrary, THREADS, Task, storage};
+use crate::{Gpu, GpuError, Kernel, SUMS_BEFORE, ShaderLibrary, THREADS, Task, storage};
 
 /// Counts that one group of threads adds up.
 const BLOCK: usize = 1024;
 
-const LIBRARY: ShaderLibrary<'_> = &[("sort_groups", include_str!("sort_groups.wgsl"))];
+const LIBRARY: ShaderLibrary<'_> = &[("sort_groups", include_str!("sort_groups.wgsl")), SUMS_BEFORE];
 
 /// Memory and kernels for sorting at most so many particles into at most so many cells.
 #[derive(Debug)]

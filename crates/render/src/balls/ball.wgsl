@@ -46,6 +46,24 @@ fn corner_of(vertex: u32) -> vec2f {
     return vec2f(sqrt(3.0) * side, select(-1.0, 2.0, side == 0.0));
 }
 
+// How a sphere is seen: the line of sight through its middle, what is to the right and up, and the radius of its outline.
+struct Round {
+    sight: vec3f,
+    right: vec3f,
+    up: vec3f,
+    reach: f32,
+}
+
+fn round_of(ball: vec4f) -> Round {
+    let sight = ray_through(ball.xyz).direction;
+    // The cone of lines that touch the sphere cuts the plane through its centre in a larger circle.
+    let distance = length(ball.xyz - view.eye.xyz);
+    let wider = distance / sqrt(max(distance * distance - ball.w * ball.w, 1e-12));
+    let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.z) > 0.9);
+    let right = normalize(cross(sight, aside));
+    return Round(sight, right, cross(right, sight), ball.w * select(1.0, wider, view.eye.w > 0.5));
+}
+
 // From the middle of a sphere to the nearest point of a line of sight.
 fn beside(sight: Ray, ball: vec4f) -> vec3f {
     let from_centre = sight.origin - ball.xyz;

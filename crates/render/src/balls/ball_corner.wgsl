@@ -13,19 +13,9 @@ struct Corner {
 fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let number = vertex / 3u;
     let ball = sphere(number);
-    let centre = ball.xyz;
-    let sight = ray_through(centre);
-    // The cone of lines that touch the sphere cuts the plane through its centre in a larger circle.
-    var reach = ball.w;
-    if view.eye.w > 0.5 {
-        let distance = length(centre - view.eye.xyz);
-        reach = ball.w * distance / sqrt(max(distance * distance - ball.w * ball.w, 1e-12));
-    }
-    let aside = select(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.0), abs(sight.direction.z) > 0.9);
-    let right = normalize(cross(sight.direction, aside));
-    let up = cross(right, sight.direction);
+    let round = round_of(ball);
     let corner = corner_of(vertex);
-    let place = centre + reach * (corner.x * right + corner.y * up);
+    let place = ball.xyz + round.reach * (corner.x * round.right + corner.y * round.up);
     return Corner(view.clip_from_world * vec4f(place, 1.0), place, ball, colour_of(number), number);
 }
 

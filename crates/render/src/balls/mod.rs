@@ -99,7 +99,7 @@ impl BallPainter {
         Self {
             opaque: recipe.opaque(gpu),
             cast: recipe.cast(gpu, "throw_shadow"),
-            matt: recipe.opaque_by(gpu, "fragment_matt"),
+            matt: Recipe { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..recipe }.opaque(gpu),
             discs: Recipe { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }.opaque(gpu),
             layout,
             seen,

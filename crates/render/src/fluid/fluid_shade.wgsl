@@ -86,7 +86,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let down = max(dot(refract(-view.sun.xyz, normal, INDEX), -normal), 0.3);
     let left = exp(-fluid.absorption.rgb * (path + path * steep / down));
     let shine = sunshine_by(FEW_SHADOW_TAPS, place, normal, vec2f(pixel));
-    let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal);
+    let daylight = view.sunlight.rgb * max(dot(normal, view.sun.xyz), 0.0) * shine * 0.4 + light_from_all_round(normal.z);
     let inner = ground * left + fluid.colour.rgb * daylight * (1.0 - left);
 
     let fresnel = mirrored(cosine, STRAIGHT) * closed;

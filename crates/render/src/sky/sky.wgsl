@@ -40,8 +40,8 @@ fn sky(direction: vec3f) -> vec3f {
     return seen + disc * 20.0 * view.sunlight.rgb;
 }
 
-// Light that comes from all round on a surface.
-fn light_from_all_round(normal: vec3f) -> vec3f {
+// Light that comes from all round on a surface, by the cosine of its normal upwards.
+fn light_from_all_round(upwards: f32) -> vec3f {
     let overhead = mix(view.horizon.rgb, view.above.rgb, 0.5);
-    return view.sunlight.w * mix(view.below.rgb, overhead, 0.5 + 0.5 * normal.z);
+    return view.sunlight.w * mix(view.below.rgb, overhead, 0.5 + 0.5 * upwards);
 }

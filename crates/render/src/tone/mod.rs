@@ -9,7 +9,6 @@ use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
 #[derive(Debug)]
 pub(crate) struct Tone {
     pipeline: wgpu::RenderPipeline,
-    plain: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
 }
 
@@ -38,19 +37,17 @@ impl Tone {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let plain = recipe.flat_by(gpu, "fragment_plain", PICTURE_FORMAT);
-        Self { pipeline: recipe.flat(gpu, PICTURE_FORMAT), plain, layout }
+        Self { pipeline: recipe.flat(gpu, PICTURE_FORMAT), layout }
     }
 
-    /// Draws the finished picture. `pressed` is false where colours are to stay as they are; `quick` leaves edges hard where there is
-    /// one sample a pixel and no overlay. The overlay has the picture's size
-    /// and its opacity multiplied in.
+    /// Draws the finished picture. `pressed` is false where colours are to stay as they are. The overlay has the picture's size and its
+    /// opacity multiplied in.
     pub(crate) fn draw(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         target: &Target,
-        [pressed, quick]: [bool; 2],
+        pressed: bool,
         overlay: Option<&Image>,
     ) {
         let overlay = overlay.filter(|image| [image.width, image.height] == target.size);
@@ -66,8 +63,7 @@ impl Tone {
             })],
             ..wgpu::RenderPassDescriptor::default()
         });
-        let plain = quick && target.samples == 1 && overlay.is_none();
-        pass.set_pipeline(if plain { &self.plain } else { &self.pipeline });
+        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.draw(0..3, 0..1);
     }

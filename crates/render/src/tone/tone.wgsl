@@ -1,4 +1,5 @@
 // From linear light to the bytes of a picture: samples averaged, highlights pressed, the overlay laid over.
+#import press
 
 struct Tone {
     // Samples each way in a pixel.
@@ -17,28 +18,6 @@ struct Tone {
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
     return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
-
-// Presses highlights below 1 and leaves base colours as they are (Khronos PBR Neutral tone mapper, 2024).
-fn press(colour: vec3f) -> vec3f {
-    let start = 0.8 - 0.04;
-    let least = min(colour.r, min(colour.g, colour.b));
-    let offset = select(0.04, least - 6.25 * least * least, least < 0.08);
-    let base = colour - offset;
-    let peak = max(base.r, max(base.g, base.b));
-    if peak < start {
-        return base;
-    }
-    let room = 1.0 - start;
-    let pressed = 1.0 - room * room / (peak + room - start);
-    let grey = 1.0 - 1.0 / (0.15 * (peak - pressed) + 1.0);
-    return mix(base * pressed / peak, vec3f(pressed), grey);
-}
-
-// sRGB from linear light (IEC 61966-2-1).
-fn encode(colour: vec3f) -> vec3f {
-    let high = 1.055 * pow(max(colour, vec3f(0.0)), vec3f(1.0 / 2.4)) - 0.055;
-    return select(high, 12.92 * colour, colour <= vec3f(0.0031308));
 }
 
 // The mean of a pixel's samples.
@@ -93,14 +72,6 @@ fn between(pixel: vec2u, offset: vec2f) -> vec3f {
     let upper = mix(pixel_at(low), pixel_at(vec2u(high.x, low.y)), part.x);
     let lower = mix(pixel_at(vec2u(low.x, high.y)), pixel_at(high), part.x);
     return mix(upper, lower, part.y);
-}
-
-// One sample a pixel as it is, without softened edges and without an overlay. An entry point of its own: software in place of a card
-// computes both sides of every branch.
-@fragment
-fn fragment_plain(@builtin(position) place: vec4f) -> @location(0) vec4f {
-    let sample = max(textureLoad(light, vec2u(place.xy), 0).rgb, vec3f(0.0));
-    return vec4f(encode(select(min(sample, vec3f(1.0)), press(sample), tone.pressed == 1u)), 1.0);
 }
 
 @fragment

@@ -1,6 +1,7 @@
 //! Rates of the dew model: steps of air particles in a second of wall-clock time, heat and humidity on.
 
 use super::advance;
+use crate::bench::Clock;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
@@ -8,7 +9,6 @@ use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room, Settings, Setup};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_solids::{Pose, Shape, Solid};
-use std::time::Instant;
 
 pub(crate) const BENCHES: &[Bench] = &[
     Bench {
@@ -31,11 +31,44 @@ const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, dens
 /// Steps before the clock is started: the lattice has gone.
 const STIRRED: u64 = 40;
 
+/// Steps between two looks on a card: each look brings the air back.
+const STEPS_ON_CARD: f64 = 20.0;
+
 fn rate(name: &str, side: usize, options: &BenchOptions) -> Vec<Rate> {
-    measure(name, side, if options.quick { 2.0 } else { 8.0 }).into_iter().collect()
+    measure(name, side, options).unwrap_or_default().into_iter().collect()
 }
 
-fn measure(name: &str, side: usize, seconds: f64) -> Result<Rate, ModelError> {
+/// The rate; none where the card cannot compute this.
+fn measure(name: &str, side: usize, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
+    let seconds = if options.quick { 2.0 } else { 8.0 };
+    let mut dew = plate(side)?;
+    let Some(mut clock) = Clock::start(options, |gpu| dew.use_card(gpu)) else { return Ok(None) };
+    let steps = if clock.device.is_some() { STEPS_ON_CARD } else { 1.001 };
+    let ahead = |dew: &mut Dew| advance(dew, dew.time() + steps * dew.time_step());
+    while dew.steps() < STIRRED {
+        ahead(&mut dew)?;
+    }
+    let before = dew.particle_steps();
+    clock.restart(dew.seconds_on_card());
+    while clock.seconds(dew.seconds_on_card()) < seconds {
+        ahead(&mut dew)?;
+    }
+    let particles = dew.air().len();
+    Ok(Some(Rate {
+        name: name.into(),
+        particles,
+        dimensions: 3,
+        packing: None,
+        threads: clock.threads(),
+        rate: (dew.particle_steps() - before) as f64 / clock.seconds(dew.seconds_on_card()),
+        rate_unit: "particle_steps_per_s".into(),
+        bytes_per_particle: dew.bytes_on_card().unwrap_or(dew.bytes() as u64) as f64 / particles as f64,
+        device: clock.device,
+    }))
+}
+
+/// Stirred air over a cold plate, `side` parcels each way.
+fn plate(side: usize) -> Result<Dew, ModelError> {
     let temperature = ZERO_CELSIUS + 25.0;
     let vapour = HumidAir::with_relative_humidity(temperature, 101_325.0, 0.7).mass_fraction();
     let length = side as f64 * SPACING;
@@ -61,28 +94,21 @@ fn measure(name: &str, side: usize, seconds: f64) -> Result<Rate, ModelError> {
     let mut dew = Dew::new(&setup, |_| [temperature, vapour])?;
     let wave = |at: f64| 0.05 * (std::f64::consts::TAU * at / length).sin();
     dew.stir(|[x, y, _]| [wave(y), wave(x), 0.0]);
-    while dew.steps() < STIRRED {
-        ahead(&mut dew)?;
-    }
-    let (start, before) = (Instant::now(), dew.particle_steps());
-    while start.elapsed().as_secs_f64() < seconds {
-        ahead(&mut dew)?;
-    }
-    Ok(Rate {
-        name: name.into(),
-        particles: dew.air().len(),
-        dimensions: 3,
-        packing: None,
-        threads: rayon::current_num_threads(),
-        rate: (dew.particle_steps() - before) as f64 / start.elapsed().as_secs_f64(),
-        rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: dew.bytes() as f64 / dew.air().len() as f64,
-        device: None,
-    })
+    Ok(dew)
 }
 
-/// A step or so.
-fn ahead(dew: &mut Dew) -> Result<(), ModelError> {
-    let time = dew.time() + 1.001 * dew.time_step();
-    advance(dew, time)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::require_gpu;
+
+    #[test]
+    fn a_bench_of_dew_runs_on_the_card() {
+        let Some(gpu) = require_gpu("a bench of dew") else { return };
+        let name = Some(gpu.name.clone());
+        let options = BenchOptions { quick: true, gpu: Some(gpu) };
+        let rate = measure("dew/plate", 12, &options).unwrap().unwrap();
+        assert!(rate.device == name && rate.threads == 0 && rate.particles > 1000, "{rate:?}");
+        assert!(rate.rate > 0.0 && rate.bytes_per_particle > 100.0, "{rate:?}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Air pressed on solids stays outside them.
 
-use super::{advance, rows};
+use super::{advance, ready, rows};
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::{Particle, Properties};
 use corpuscle_dew::solids::{Body, Material};
@@ -168,6 +168,7 @@ fn press(case: &Pressed, walls: WallTreatment) -> Result<Found, ModelError> {
     };
     let mut dew = Dew::new(&setup, |_| [WARM, VAPOUR])?;
     dew.stir(|_| case.velocity);
+    let mut dew = ready(dew)?;
     let (mut deepest, mut gaps, mut layers, mut spent) = (f64::INFINITY, Vec::new(), Vec::new(), 0.0);
     let looks = 150;
     for look in 1..=looks {

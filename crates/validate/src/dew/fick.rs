@@ -1,6 +1,6 @@
 //! Vapour diffuses from moist air into dry.
 
-use super::{advance, column, rows};
+use super::{advance, column, ready, rows};
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
@@ -29,7 +29,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let settings = Settings { gravity: [0.0; 3], ..Settings::new(SPACING, temperature, 0.0) };
     let setup =
         Setup { settings, air, room: column(2.0 * half, SPACING), bodies: Vec::new(), fans: Vec::new(), seed: 1 };
-    let mut dew = Dew::new(&setup, |[x, ..]| [temperature, if x < half { moist } else { 0.0 }])?;
+    let mut dew = ready(Dew::new(&setup, |[x, ..]| [temperature, if x < half { moist } else { 0.0 }])?)?;
     advance(&mut dew, 1.0)?;
     let exact = |x: f64| erfc(x / (2.0 * (air.vapour_diffusivity * 1.0).sqrt()));
     let found: Vec<(f64, f64)> =

@@ -1,6 +1,6 @@
 //! Water and energy of a run in which everything happens that moves them.
 
-use super::{advance, rows};
+use super::{advance, ledger_rounding, ready, rows};
 use crate::{Case, Options, Row};
 use corpuscle_dew::{Dew, open};
 use corpuscle_model::{Model, ModelError};
@@ -44,7 +44,7 @@ pub(super) const LOW_UTILITY: &str = "low_utility = { distance = 2.0, after_s = 
 /// The model of a scene.
 pub(super) fn dew_of(text: &str) -> Result<Dew, ModelError> {
     let scene = Scene::parse(text, "case", &[]).map_err(|error| ModelError::Setup(error.to_string()))?;
-    open(scene.dew().ok_or_else(|| ModelError::Setup("no scene of dew".into()))?, 1, Path::new(""))
+    ready(open(scene.dew().ok_or_else(|| ModelError::Setup("no scene of dew".into()))?, 1, Path::new(""))?)
 }
 
 /// A gauge by its header.
@@ -68,7 +68,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let whole = dew_of(SCENE)?;
     let errors = dew.ledger().balances.into_iter().map(|balance| {
         let measure = if balance.quantity == "water_kg" { "water_error" } else { "energy_error" };
-        Row::at_most(LEDGER.name, measure, balance.relative_error().abs(), "", 1e-10)
+        Row::at_most(LEDGER.name, measure, balance.relative_error().abs(), "", ledger_rounding())
     });
     let happened = [
         ("condensed_kg", wettest, "kg"),

@@ -11,7 +11,8 @@ mod pane;
 mod slide;
 mod two_slabs;
 
-use crate::{Case, Row};
+use crate::Case;
+use crate::device::{card, rounding, rows};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room};
 use corpuscle_model::{Model, ModelError};
@@ -34,9 +35,18 @@ fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
     dew.advance_to(time, &AtomicBool::new(false))
 }
 
-/// Rows of a case, or the row of its failure.
-fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
-    result.unwrap_or_else(|error| vec![Row::broken(case, &error.to_string())])
+/// Air that is set up, on the card where one takes the steps.
+fn ready(mut dew: Dew) -> Result<Dew, ModelError> {
+    if let Some(gpu) = card() {
+        dew.use_card(gpu)?;
+    }
+    Ok(dew)
+}
+
+/// The bound of relative errors in the ledger. The card books in single precision what it keeps as two numbers, the sum and what rounding
+/// added to it: each amount is rounded to 6e-8 of itself.
+fn ledger_rounding() -> f64 {
+    rounding(1e-10, 1e-6)
 }
 
 /// Particles across a column, along y and along z.

@@ -1,8 +1,10 @@
 //! Drops on an upright pane: when they slide, what merging keeps, and how sizes are spread.
 
+use super::rows;
+use crate::device::refuse_on_card;
 use crate::{Case, Options, Row};
 use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Site, WATER_DENSITY};
-use corpuscle_model::ExactSum;
+use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -19,10 +21,15 @@ const GRAVITY: f64 = 9.81;
 const PRESSURE: f64 = 101_325.0;
 
 fn slide(_: &Options) -> Vec<Row> {
+    rows(SLIDE.name, measure())
+}
+
+fn measure() -> Result<Vec<Row>, ModelError> {
     let name = SLIDE.name;
+    refuse_on_card("drops, which stay with the CPU")?;
     let [left, mass, momentum] = merging_errors();
     let exponent = size_exponent();
-    vec![
+    Ok(vec![
         Row::at_most(name, "largest_relative_error_of_sliding_radius", largest_sliding_error(), "", 0.05),
         Row::at_most(name, "relative_error_of_2_mm", (sliding_radius(1.288e-4, 90.0) / 2e-3 - 1.0).abs(), "", 0.05),
         Row::at_most(name, "drops_left_of_2000", left, "", 1000.0),
@@ -36,7 +43,7 @@ fn slide(_: &Options) -> Vec<Row> {
             -8.0 / 3.0,
             "shown beside Le Fevre & Rose (1966)",
         ),
-    ]
+    ])
 }
 
 fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> DropLaws {

@@ -1,6 +1,6 @@
 //! Heat between two slabs: warming up against the error function, and steady flux.
 
-use super::{ACROSS, advance, column, rows, slab};
+use super::{ACROSS, advance, column, ready, rows, slab};
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
@@ -82,7 +82,7 @@ fn warming(steel: Option<Material>) -> Result<[f64; 2], ModelError> {
     }
     let room = column(2.0 * LAYERS as f64 * SPACING, SPACING);
     let setup = Setup { settings: still(), air, room, bodies, fans: Vec::new(), seed: 1 };
-    let mut dew = Dew::new(&setup, |_| [WARM, 0.0])?;
+    let mut dew = ready(Dew::new(&setup, |_| [WARM, 0.0])?)?;
     let time = 16.0;
     advance(&mut dew, time)?;
     let effusivity = |m: Material| (m.conductivity * m.heat_capacity * m.density).sqrt();
@@ -137,7 +137,7 @@ fn flux_error(ratio: f64, mean: Mean) -> Result<f64, ModelError> {
     let room = column(layers as f64 * SPACING, SPACING);
     let setup = Setup { settings: Settings { mean, ..still() }, air, room, bodies, fans: Vec::new(), seed: 1 };
     let face = (PLATE + THICK) as f64 * SPACING;
-    let mut dew = Dew::new(&setup, |[x, ..]| [contact + (WARM - contact) * (x - face) / length, 0.0])?;
+    let mut dew = ready(Dew::new(&setup, |[x, ..]| [contact + (WARM - contact) * (x - face) / length, 0.0])?)?;
     // Several times the time of the slowest part, L^2 / (pi^2 / 4 kappa).
     let slowest = length * length / (0.25 * std::f64::consts::PI.powi(2) * air.heat_diffusivity());
     advance(&mut dew, 4.0 * slowest)?;

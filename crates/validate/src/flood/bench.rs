@@ -1,6 +1,7 @@
 //! Rates of the flood model.
 
 use super::{run, settings, water_everywhere};
+use crate::bench::Clock;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::Flood;
 use corpuscle_model::{Model, ModelError};
@@ -8,7 +9,6 @@ use corpuscle_scene::{Edge, Edges, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 pub(crate) const BENCHES: &[Bench] = &[
     Bench {
@@ -43,14 +43,14 @@ fn rate(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) ->
 fn measure(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
     let seconds = if options.quick { 0.2 * MEASURED } else { MEASURED };
     let mut flood = waves(scheme, particles)?;
-    let Some(mut clock) = Clock::start(&mut flood, options) else { return Ok(None) };
+    let Some(mut clock) = Clock::start(options, |gpu| flood.use_card(gpu)) else { return Ok(None) };
     let stop = AtomicBool::new(false);
     let steps = if clock.device.is_some() { STEPS_ON_CARD } else { STEPS };
     let ahead = |flood: &mut Flood| flood.advance_to(flood.time() + f64::from(steps) * flood.time_step(), &stop);
     ahead(&mut flood)?;
     let before = flood.particle_steps();
-    clock.restart(&flood);
-    while clock.seconds(&flood) < seconds {
+    clock.restart(flood.seconds_on_card());
+    while clock.seconds(flood.seconds_on_card()) < seconds {
         ahead(&mut flood)?;
     }
     let work = (flood.particle_steps() - before) as f64;
@@ -59,44 +59,13 @@ fn measure(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions)
         particles: flood.particles().len(),
         dimensions: 2,
         packing: None,
-        threads: if clock.device.is_some() { 0 } else { rayon::current_num_threads() },
-        rate: work / clock.seconds(&flood),
+        threads: clock.threads(),
+        rate: work / clock.seconds(flood.seconds_on_card()),
         rate_unit: "particle_steps_per_s".into(),
         bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64
             / flood.particles().len() as f64,
         device: clock.device,
     }))
-}
-
-/// Time spent on steps: the wall clock's, or what a card says.
-struct Clock {
-    device: Option<String>,
-    began: Instant,
-    before: f64,
-}
-
-impl Clock {
-    /// Has the card take the steps, where one is to; none where it cannot, which it tells.
-    fn start(flood: &mut Flood, options: &BenchOptions) -> Option<Self> {
-        let device = options.gpu.as_ref().map(|gpu| gpu.name.clone());
-        if let Some(gpu) = &options.gpu
-            && let Err(error) = flood.use_card(gpu.clone())
-        {
-            eprintln!("left out: {error}");
-            return None;
-        }
-        Some(Self { device, began: Instant::now(), before: 0.0 })
-    }
-
-    fn restart(&mut self, flood: &Flood) {
-        self.began = Instant::now();
-        self.before = flood.seconds_on_card().unwrap_or(0.0);
-    }
-
-    fn seconds(&self, flood: &Flood) -> f64 {
-        let on_card = flood.seconds_on_card().map(|busy| busy - self.before);
-        on_card.unwrap_or_else(|| self.began.elapsed().as_secs_f64())
-    }
 }
 
 /// Water a metre deep, 1 m apart, with friction, waving over ground with a relief of its own.

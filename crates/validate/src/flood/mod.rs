@@ -3,7 +3,7 @@
 pub(crate) mod bench;
 mod channel;
 mod dam_break;
-pub(crate) mod device;
+mod device;
 mod ea_test5;
 mod isolated_building;
 mod lake;
@@ -18,12 +18,13 @@ mod thacker;
 mod triangular_obstacle;
 mod weather;
 
-use crate::{Case, Row};
+use crate::Case;
+use crate::device::rows;
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
 use corpuscle_terrain::{Bounds, Terrain};
-use device::{is_card, ready};
+use device::ready;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -90,16 +91,6 @@ fn run(settings: &Settings, terrain: &Arc<Terrain>, water: &[InitialWater], time
     let mut flood = ready(Flood::with_water(settings, SEED, Path::new("."), Arc::clone(terrain), water)?)?;
     flood.advance_to(time, &AtomicBool::new(false))?;
     Ok(flood)
-}
-
-/// Rows of a case, or the row of its failure; a case that a card cannot compute is skipped.
-fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
-    result.unwrap_or_else(|error| {
-        vec![match &error {
-            ModelError::Setup(why) if is_card() => Row::skipped(case, why),
-            _ => Row::broken(case, &error.to_string()),
-        }]
-    })
 }
 
 /// Order of convergence from the errors at two spacings, the second `ratio` times the first.

@@ -1,6 +1,7 @@
 //! What splitting and merging of particles gains, on a dry front and under rain.
 
 use super::dam_break::{self, DAM, TIME, UPSTREAM};
+use super::device::{rounding, water_rounding};
 use super::weather::Plane;
 use super::{GRAVITY, rows};
 use crate::{Case, Row};
@@ -66,8 +67,8 @@ fn refinement() -> Result<Vec<Row>, ModelError> {
         gain("ritter_sheet_depth_gain", without.depth, with.depth, 1.3),
         gain("ritter_sheet_velocity_gain", without.velocity, with.velocity, 2.0),
         gain("ritter_sheet_strip_gain", without.strips, with.strips, 4.0),
-        at_most("ritter_water_relative_error", ledger.balances[0].relative_error().abs(), "", 1e-12),
-        at_most("ritter_momentum_relative_error", ledger.balances[1].relative_error().abs(), "", 1e-12),
+        at_most("ritter_water_relative_error", ledger.balances[0].relative_error().abs(), "", water_rounding()),
+        at_most("ritter_momentum_relative_error", ledger.balances[1].relative_error().abs(), "", rounding(1e-12, 1e-6)),
         Row::beside(
             name,
             "ritter_sheet_depth_error_4m",
@@ -80,7 +81,7 @@ fn refinement() -> Result<Vec<Row>, ModelError> {
         at_most("rain_depth_error", fine_rain, "", 0.06),
         gain("rain_depth_gain", dry_rain, fine_rain, 4.0),
         at_most("rain_outflow_error", plane.error_of_outflow(&fine).abs(), "", 0.01),
-        at_most("rain_water_relative_error", fine.ledger().balances[0].relative_error().abs(), "", 1e-12),
+        at_most("rain_water_relative_error", fine.ledger().balances[0].relative_error().abs(), "", water_rounding()),
     ])
 }
 

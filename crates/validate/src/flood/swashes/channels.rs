@@ -1,6 +1,5 @@
 //! Steady flow along channels, rain included.
 
-use super::super::device::refuse_on_card;
 use super::super::{GRAVITY, run, settings, strip, water_everywhere};
 use super::profile::Profile;
 use corpuscle_flood::Flood;
@@ -57,7 +56,6 @@ impl Channel {
         let (depth, velocity) = (|x, _| self.profile.depth_at(x), |x, _| [self.profile.velocity_at(x), 0.0]);
         let mut flood = run(&settings, &terrain, &[water_everywhere(bounds, depth, velocity)], 0.0)?;
         if let Some(rain) = rain {
-            refuse_on_card("rain by a function")?;
             flood.rain(Box::new(move |x, _, _| if (0.0..length).contains(&x) { rain } else { 0.0 }));
         }
         flood.advance_to(self.time, &AtomicBool::new(false))?;
@@ -133,7 +131,6 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> 
             if along <= 3600.0 { 0.5 * 5e-5 * shape * swell } else { 0.0 }
         }));
     };
-    refuse_on_card("rain by a function")?;
     let flood = joined(&settings, &start, 500.0, [-0.09; 2], rain)?;
     Ok(exact.error(&flood, width(spacing)))
 }

@@ -1,0 +1,104 @@
+//! Parcels of air from the host's numbers to the shaders' and back.
+
+use super::layout::{CardParticle, account, value};
+use crate::air::{Particle, Role};
+use crate::room::Room;
+
+/// Roles, as `dew_card.wgsl` has them.
+const INSIDE: u32 = 0;
+const COMING: u32 = 1;
+const LEAVING: u32 = 2;
+const OUTSIDE: u32 = 3;
+const STILL: u32 = 4;
+const IDLE: u32 = 5;
+
+/// Where the shaders count from.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Origin {
+    pub room: Room,
+    /// Temperature, K, and part of the mass that is vapour.
+    pub temperature: f64,
+    pub vapour: f64,
+}
+
+impl Origin {
+    fn middle(&self, axis: usize) -> f64 {
+        0.5 * (self.room.low[axis] + self.room.high[axis])
+    }
+
+    /// A place from the middle of the room.
+    pub fn relative(&self, place: [f64; 3]) -> [f32; 3] {
+        [0, 1, 2].map(|axis| (place[axis] - self.middle(axis)) as f32)
+    }
+
+    /// The same for a parcel: rounding must not put it over a high face.
+    fn parcel(&self, place: [f64; 3]) -> [f32; 3] {
+        let (high, relative) = (self.relative(self.room.high), self.relative(place));
+        [0, 1, 2].map(|axis| {
+            let is_inside = place[axis] < self.room.high[axis];
+            if is_inside { relative[axis].min(high[axis].next_down()) } else { relative[axis] }
+        })
+    }
+
+    pub fn to_card(self, particle: &Particle) -> CardParticle {
+        let narrow = |vector: [f64; 3]| vector.map(|along| along as f32);
+        CardParticle {
+            place: self.parcel(particle.position),
+            density: particle.density as f32,
+            velocity: narrow(particle.velocity),
+            fog: particle.fog as f32,
+            acceleration: narrow(particle.acceleration),
+            spreading: narrow(particle.spreading),
+            id: particle.id as u32,
+            temperature: account(particle.temperature - self.temperature),
+            vapour: account(particle.vapour - self.vapour),
+            role: role(particle.role),
+            evenness: 1.0,
+            idle: particle.idle as f32,
+            ..CardParticle::default()
+        }
+    }
+
+    pub fn to_host(self, particle: &CardParticle) -> Particle {
+        let wide = |vector: [f32; 3]| vector.map(f64::from);
+        let place = wide(particle.place);
+        Particle {
+            position: [0, 1, 2].map(|axis| place[axis] + self.middle(axis)),
+            velocity: wide(particle.velocity),
+            acceleration: wide(particle.acceleration),
+            spreading: wide(particle.spreading),
+            temperature: value(particle.temperature) + self.temperature,
+            vapour: value(particle.vapour) + self.vapour,
+            fog: f64::from(particle.fog),
+            density: f64::from(particle.density),
+            id: u64::from(particle.id),
+            role: role_of(particle.role),
+            idle: f64::from(particle.idle),
+        }
+    }
+}
+
+/// As `dew_card.wgsl` has roles. None that has gone is there at the end of a step.
+fn role(role: Role) -> u32 {
+    let of_face = |kind: u32, axis: u8, side: u8| kind | ((2 * u32::from(axis) + u32::from(side)) << 4);
+    match role {
+        Role::Coming(axis, side) => of_face(COMING, axis, side),
+        Role::Leaving(axis, side) => of_face(LEAVING, axis, side),
+        Role::Outside(axis, side) => of_face(OUTSIDE, axis, side),
+        Role::Still => STILL,
+        Role::Idle => IDLE,
+        Role::Inside | Role::Gone => INSIDE,
+    }
+}
+
+fn role_of(role: u32) -> Role {
+    let face = (role >> 4) as u8;
+    match role & 15 {
+        COMING => Role::Coming(face / 2, face % 2),
+        LEAVING => Role::Leaving(face / 2, face % 2),
+        OUTSIDE => Role::Outside(face / 2, face % 2),
+        STILL => Role::Still,
+        IDLE => Role::Idle,
+        _ => Role::Inside,
+    }
+}

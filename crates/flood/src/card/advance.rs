@@ -1,0 +1,245 @@
+//! Batches of steps, and what they did.
+
+use super::Card;
+use super::layout::{self, CardBirth, Grid, Status};
+use crate::rain::Ground;
+use corpuscle_gpu::{GpuError, read, wgpu};
+use std::time::Instant;
+
+/// Size of a cell over the mean reach, as on the CPU in scheme balanced.
+const CELL_OVER_REACH: f64 = 0.6;
+
+/// The same in scheme paper.
+const CELL_OVER_REACH_PAPER: f64 = 1.4;
+
+/// The cells are laid out anew after so many steps; in between the host reads no more than it must.
+const LAID_OUT: u64 = 64;
+
+/// A batch of steps takes about so long at most, s: then the host looks whether it is to stop.
+const BATCH: f64 = 0.2;
+
+/// A particle that is to come from a source.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Birth {
+    /// Time from now, s.
+    pub time: f64,
+    pub source: usize,
+    pub velocity: [f64; 2],
+}
+
+/// What a batch of steps did.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Progress {
+    pub steps: u64,
+    pub particle_steps: u64,
+    pub elapsed: f64,
+    /// The next step, s.
+    pub step: f64,
+    /// Volumes, m3, and momentum over density, m4/s.
+    pub outflow: f64,
+    pub inflow: f64,
+    pub momentum_lost: f64,
+    pub momentum_gained: f64,
+    pub rained: f64,
+    pub infiltrated: f64,
+    pub from_outside: [f64; 2],
+    pub mean_h: f64,
+    /// How many of the births have been, and the identity of the next new particle.
+    pub born: usize,
+    pub next_id: u64,
+    /// Whether the next step is too short to go on.
+    pub broken: bool,
+}
+
+impl Progress {
+    /// Nothing yet; `step` is the next one.
+    pub fn none(step: f64) -> Self {
+        Self {
+            steps: 0,
+            particle_steps: 0,
+            elapsed: 0.0,
+            step,
+            outflow: 0.0,
+            inflow: 0.0,
+            momentum_lost: 0.0,
+            momentum_gained: 0.0,
+            rained: 0.0,
+            infiltrated: 0.0,
+            from_outside: [0.0; 2],
+            mean_h: 0.0,
+            born: 0,
+            next_id: 0,
+            broken: false,
+        }
+    }
+
+    /// With what was done after it.
+    pub fn and(self, later: Self) -> Self {
+        Self {
+            steps: self.steps + later.steps,
+            particle_steps: self.particle_steps + later.particle_steps,
+            elapsed: self.elapsed + later.elapsed,
+            outflow: self.outflow + later.outflow,
+            inflow: self.inflow + later.inflow,
+            momentum_lost: self.momentum_lost + later.momentum_lost,
+            momentum_gained: self.momentum_gained + later.momentum_gained,
+            rained: self.rained + later.rained,
+            infiltrated: self.infiltrated + later.infiltrated,
+            born: self.born + later.born,
+            ..later
+        }
+    }
+}
+
+impl Card {
+    /// Whether the room may not do for `births` more, and where particles are split for half of them, until it is time to ask again; none
+    /// where it is not time to.
+    pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
+        let horizon = LAID_OUT as f64 * f64::from(self.parameters.longest_step);
+        let particles = self.status.particles as usize;
+        // What is split faster stays whole until there is more room.
+        let halves = if self.parameters.widest > 0.0 { particles / 2 } else { 0 };
+        self.steps.is_multiple_of(LAID_OUT)
+            && particles + self.status.falling as usize + halves + births(horizon) > self.room
+    }
+
+    /// Takes some steps from the time `now` s, up to `until` s from there or to the first after `look` s, while `births` come, the earliest
+    /// first. It rains on `ground`.
+    pub fn advance(
+        &mut self,
+        now: f64,
+        until: f64,
+        look: f64,
+        births: &[Birth],
+        ground: Option<&Ground>,
+    ) -> Result<Progress, GpuError> {
+        if self.steps.is_multiple_of(LAID_OUT) {
+            self.lay_out()?;
+            let [sum, lacking] = self.status.clock;
+            self.status.wetted -= sum - lacking;
+            let longest_step = self.step_to_come();
+            self.status.clock = [0.0; 2];
+            (self.clock_began, self.dry_before) = (now, -f64::from(self.status.wetted).min(0.0));
+            if let (Some(weather), Some(ground)) = (&self.weather, ground) {
+                weather.rates.tell(&self.gpu, ground, now, self.dry_before, (LAID_OUT + 1) as f64 * longest_step);
+            }
+        }
+        let births: Vec<_> = births
+            .iter()
+            .map(|birth| CardBirth {
+                velocity: birth.velocity.map(|along| along as f32),
+                time: (birth.time + now - self.clock_began) as f32,
+                zone: self.works.sources[birth.source],
+            })
+            .collect();
+        let horizon = (LAID_OUT + 1) as f64 * f64::from(self.parameters.longest_step);
+        self.works.tell(&self.gpu, self.clock_began, self.dry_before, horizon);
+        self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
+        let to_layout = LAID_OUT - self.steps % LAID_OUT;
+        let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
+        let count = planned.min(self.batch).min(to_layout as u32);
+        self.status = Status {
+            halted: layout::SPOKEN,
+            steps_before: self.status.steps_before.wrapping_add(self.status.steps),
+            steps: 0,
+            particle_steps: [0; 2],
+            until: until as f32,
+            look: look as f32,
+            births: births.len() as u32,
+            born: 0,
+            elapsed: [0.0; 2],
+            rained: [0.0; 2],
+            infiltrated: [0.0; 2],
+            outflow: [0.0; 2],
+            inflow: [0.0; 2],
+            momentum_lost: [0.0; 2],
+            momentum_gained: [0.0; 2],
+            ..self.status
+        };
+        let began = Instant::now();
+        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        self.tasks.steps(&mut pass, count);
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        let took = began.elapsed().as_secs_f64();
+        self.busy += took;
+        self.batch =
+            if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) }.min(LAID_OUT as u32);
+        self.steps += u64::from(self.status.steps);
+        self.ahead |= self.status.steps > 0;
+        Ok(self.progress())
+    }
+
+    /// Twice as long a step as the next, or as those since the cells were last laid out, s; the longest that there can be, at most.
+    fn step_to_come(&self) -> f64 {
+        let mean = self.status.clock[0] / LAID_OUT as f32;
+        f64::from((2.0 * mean.max(self.status.step)).min(self.parameters.longest_step))
+    }
+
+    fn progress(&self) -> Progress {
+        let Status { steps, particle_steps: [low, high], step, halted, mean_h, .. } = self.status;
+        let total = |[sum, lacking]: [f32; 2]| f64::from(sum) - f64::from(lacking);
+        Progress {
+            steps: u64::from(steps),
+            particle_steps: (u64::from(high) << 32) + u64::from(low),
+            elapsed: total(self.status.elapsed),
+            step: f64::from(step),
+            outflow: total(self.status.outflow),
+            inflow: total(self.status.inflow),
+            momentum_lost: total(self.status.momentum_lost),
+            momentum_gained: total(self.status.momentum_gained),
+            rained: total(self.status.rained),
+            infiltrated: total(self.status.infiltrated),
+            from_outside: self.status.from_outside.map(f64::from),
+            mean_h: f64::from(mean_h),
+            born: self.status.born as usize,
+            next_id: u64::from(self.status.next_id),
+            broken: halted == layout::BROKEN,
+        }
+    }
+
+    /// Lays the cells over the water as it stands, as [`corpuscle_sph::Cells`] does.
+    fn lay_out(&mut self) -> Result<(), GpuError> {
+        let Status { low, high, mean_h, particles, .. } = self.status;
+        let any = particles > 0;
+        let over_reach = if self.parameters.scheme == layout::PAPER { CELL_OVER_REACH_PAPER } else { CELL_OVER_REACH };
+        let cell_over_h = over_reach * f64::from(self.parameters.reach_over_h);
+        let [mut low, mut high] =
+            [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));
+        let mut smallest = if any { cell_over_h * f64::from(mean_h) } else { self.bounds.size()[0] };
+        if self.weather.is_some() || self.status.falling > 0 {
+            // Drops fall anywhere.
+            let [west, east, south, north] = self.parameters.bounds.map(f64::from);
+            (low, high) = ([low[0].min(west), low[1].min(south)], [high[0].max(east), high[1].max(north)]);
+            smallest = if any { smallest } else { cell_over_h * f64::from(self.parameters.new_h) };
+        }
+        let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
+        let most = (self.most_cells - 1) as f64;
+        let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);
+        let mut cell = smallest;
+        while columns_and_rows(cell).iter().product::<f64>() > most {
+            cell *= 1.1;
+        }
+        let [columns, rows] = columns_and_rows(cell).map(|number| number as u32);
+        self.parameters.grid = Grid {
+            corner: low.map(|value| value as f32),
+            cell: cell as f32,
+            per_cell: (1.0 / cell) as f32,
+            columns,
+            rows,
+            unused: [0.0; 2],
+        };
+        self.parameters.farthest = (2.0 * f64::from(self.parameters.largest_h) / cell) as u32 + 1;
+        // One more cell holds what has left.
+        self.status.cells = columns * rows + 1;
+        self.gpu.queue.write_buffer(&self.tasks.parameters, 0, bytemuck::bytes_of(&self.parameters));
+        self.tasks.arrange(&self.gpu, &Status { step: 0.0, ..self.status });
+        let arranged: Status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        self.status.particles = arranged.particles;
+        Ok(())
+    }
+}

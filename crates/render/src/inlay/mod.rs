@@ -1,0 +1,117 @@
+//! Pictures laid into a pass of others, such as that of a window.
+//!
+//! A toolkit's own shader for images filters in two ways and takes one; software in place of a graphics card computes both, and took ten
+//! times as long. A picture that was drawn quickly comes from its linear light without a finished picture in between.
+
+use crate::{Target, shaders};
+use corpuscle_gpu::{Gpu, wgpu};
+
+/// Lays pictures into passes that draw into one format; holds what all pictures share.
+#[derive(Debug)]
+pub struct InlayPainter {
+    finished: wgpu::RenderPipeline,
+    light: wgpu::RenderPipeline,
+    pressed: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// A picture on the device, ready to be laid into a pass.
+#[derive(Debug, Clone)]
+pub struct Inlay {
+    pipeline: wgpu::RenderPipeline,
+    group: wgpu::BindGroup,
+}
+
+impl InlayPainter {
+    /// A painter for passes of a format.
+    pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
+        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("inlay"),
+            entries: &[wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            }],
+        });
+        let module = shaders::module(gpu, "inlay", include_str!("inlay.wgsl"));
+        let build = |entry, pressed| pipeline(gpu, &module, &layout, format, entry, pressed);
+        Self {
+            finished: build("fragment_finished", false),
+            light: build("fragment_light", false),
+            pressed: build("fragment_light", true),
+            layout,
+        }
+    }
+
+    /// The finished picture of a target ([`Renderer::draw`](crate::Renderer::draw)), as it is in files.
+    pub fn finished(&self, gpu: &Gpu, target: &Target) -> Inlay {
+        self.inlay(gpu, &self.finished, &target.picture)
+    }
+
+    /// The light in a target with one sample a pixel ([`Renderer::draw_light`](crate::Renderer::draw_light)): highlights pressed, or
+    /// colours as they are; edges stay hard.
+    pub fn light(&self, gpu: &Gpu, target: &Target, pressed: bool) -> Inlay {
+        self.inlay(gpu, if pressed { &self.pressed } else { &self.light }, &target.colour)
+    }
+
+    fn inlay(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline, texture: &wgpu::Texture) -> Inlay {
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("inlay"),
+            layout: &self.layout,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
+        });
+        Inlay { pipeline: pipeline.clone(), group }
+    }
+}
+
+impl Inlay {
+    /// Fills the pass's viewport with the picture.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::BindGroupLayout,
+    format: wgpu::TextureFormat,
+    entry: &str,
+    pressed: bool,
+) -> wgpu::RenderPipeline {
+    let constants = [("pressed", f64::from(u8::from(pressed))), ("linear", f64::from(u8::from(format.is_srgb())))];
+    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("inlay"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("inlay"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}

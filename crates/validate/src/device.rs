@@ -1,0 +1,49 @@
+//! Where the floods and the dew of cases are computed.
+
+use crate::Row;
+use corpuscle_gpu::Gpu;
+use corpuscle_model::ModelError;
+use std::cell::RefCell;
+
+thread_local! {
+    /// The card that takes the steps of the case that this thread runs, if one does.
+    static CARD: RefCell<Option<Gpu>> = const { RefCell::new(None) };
+}
+
+/// Lets a card take the steps of all models that `case` sets up.
+pub(crate) fn on_card<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
+    let before = CARD.replace(gpu);
+    let result = case();
+    CARD.replace(before);
+    result
+}
+
+/// The card that takes the steps, if one does.
+pub(crate) fn card() -> Option<Gpu> {
+    CARD.with_borrow(Clone::clone)
+}
+
+/// Whether a card takes the steps.
+pub(crate) fn is_card() -> bool {
+    CARD.with_borrow(Option::is_some)
+}
+
+/// The bound of a measure that is exact but for rounding: of double precision on the CPU, or of single precision on the card.
+pub(crate) fn rounding(double: f64, single: f64) -> f64 {
+    if is_card() { single } else { double }
+}
+
+/// Refuses what the card's program has not.
+pub(crate) fn refuse_on_card(what: &str) -> Result<(), ModelError> {
+    if is_card() { Err(ModelError::Setup(format!("the graphics card cannot yet compute {what}"))) } else { Ok(()) }
+}
+
+/// Rows of a case, or the row of its failure; a case that a card cannot compute is skipped.
+pub(crate) fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
+    result.unwrap_or_else(|error| {
+        vec![match &error {
+            ModelError::Setup(why) if is_card() => Row::skipped(case, why),
+            _ => Row::broken(case, &error.to_string()),
+        }]
+    })
+}
