@@ -351,6 +351,9 @@ pub struct BenchOptions {
     /// Less time for each: a quick look, with more scatter
     #[arg(long)]
     pub quick: bool,
+    /// Time each pass of a step on the graphics card too
+    #[arg(long)]
+    pub passes: bool,
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,

@@ -3,7 +3,7 @@
 use super::Card;
 use super::layout::{self, CardBirth, Grid, Status};
 use crate::rain::Ground;
-use corpuscle_gpu::{GpuError, read, wgpu};
+use corpuscle_gpu::{GpuError, Pass, read, wgpu};
 use std::time::Instant;
 
 /// Size of a cell over the mean reach, as on the CPU in scheme balanced.
@@ -160,13 +160,15 @@ impl Card {
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
         self.tasks.steps(&mut pass, count);
         drop(pass);
+        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let took = began.elapsed().as_secs_f64();
         self.busy += took;
+        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.batch =
             if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) }.min(LAID_OUT as u32);
         self.steps += u64::from(self.status.steps);

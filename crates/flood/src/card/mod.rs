@@ -22,7 +22,7 @@ pub(crate) use state::Water;
 
 use crate::rain::Intensity;
 use air::Air;
-use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS};
 use corpuscle_terrain::Bounds;
 use layout::{Origin, Parameters, Status};
 use state::DoneToObstacles;
@@ -34,6 +34,9 @@ use works::Works;
 /// Cells a particle, and at least: what the sort goes through beside the particles.
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
+
+/// More cells are no work for one thread each.
+const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
 
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
@@ -65,6 +68,8 @@ pub(crate) struct Card {
     ahead: bool,
     /// Time spent on steps, s.
     busy: f64,
+    /// Where passes are timed.
+    pub stopwatch: Option<Stopwatch>,
     /// As it was when the water was handed over.
     done_before: DoneToObstacles,
 }
@@ -96,7 +101,7 @@ impl Card {
             parameters.drop_h = setting.h as f32;
         }
         let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
-        let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
+        let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
         let tasks = Tasks::new(
             &gpu,
             count,
@@ -130,6 +135,7 @@ impl Card {
             batch: 4,
             ahead: false,
             busy: 0.0,
+            stopwatch: None,
             done_before: DoneToObstacles::default(),
         })
     }

@@ -3,7 +3,7 @@
 use super::{DENSITY, Flood, State, open};
 use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Water};
 use crate::inflow::Source;
-use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,6 +30,18 @@ impl Flood {
     /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
     pub fn seconds_on_card(&self) -> Option<f64> {
         self.card.as_ref().map(Card::busy)
+    }
+
+    /// From now on the card times its passes, which makes them wait for one another. Nothing changes where it has no clock.
+    pub fn time_passes(&mut self) {
+        if let Some(card) = &mut self.card {
+            card.stopwatch = Stopwatch::new(&card.gpu());
+        }
+    }
+
+    /// What each pass has taken on the card since [`Flood::time_passes`].
+    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+        self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
     }
 
     /// Bytes held on the card.

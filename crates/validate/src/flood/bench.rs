@@ -1,71 +1,47 @@
 //! Rates of the flood model.
 
 use super::{run, settings, water_everywhere};
-use crate::bench::Clock;
+use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::Flood;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Edges, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 pub(crate) const BENCHES: &[Bench] = &[
     Bench {
         name: "flood/balanced-60k",
         about: "Scheme balanced, everything on, 60,000 particles in waves over rough ground.",
+        needs_card: false,
         run: |options| rate("flood/balanced-60k", Scheme::Balanced, 60_000, options),
     },
     Bench {
         name: "flood/balanced-1m",
         about: "Scheme balanced, everything on, a million particles in waves over rough ground.",
+        needs_card: false,
         run: |options| rate("flood/balanced-1m", Scheme::Balanced, 1_000_000, options),
+    },
+    Bench {
+        name: "flood/balanced-10m",
+        about: "Scheme balanced, everything on, ten million particles in waves over rough ground.",
+        needs_card: true,
+        run: |options| rate("flood/balanced-10m", Scheme::Balanced, 10_000_000, options),
     },
     Bench {
         name: "flood/paper-60k",
         about: "Scheme paper, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
+        needs_card: false,
         run: |options| rate("flood/paper-60k", Scheme::Paper, 60_000, options),
     },
 ];
 
-/// Seconds of wall-clock time measured.
-const MEASURED: f64 = 10.0;
+/// Two steps at a time; 64 on a card, as each look brings the water back.
+const MEASURING: Measuring = Measuring { name: "", dimensions: 2, settling: 1, steps: [2.0, 64.0], seconds: 10.0 };
 
-/// Steps between two looks at the clock: on a card more, as each look brings the water back.
-const STEPS: u32 = 2;
-const STEPS_ON_CARD: u32 = 64;
-
-fn rate(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Vec<Rate> {
-    measure(name, scheme, particles, options).unwrap_or_default().into_iter().collect()
-}
-
-/// The rate; none where the card does not compute this scheme.
-fn measure(name: &str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
-    let seconds = if options.quick { 0.2 * MEASURED } else { MEASURED };
-    let mut flood = waves(scheme, particles)?;
-    let Some(mut clock) = Clock::start(options, |gpu| flood.use_card(gpu)) else { return Ok(None) };
-    let stop = AtomicBool::new(false);
-    let steps = if clock.device.is_some() { STEPS_ON_CARD } else { STEPS };
-    let ahead = |flood: &mut Flood| flood.advance_to(flood.time() + f64::from(steps) * flood.time_step(), &stop);
-    ahead(&mut flood)?;
-    let before = flood.particle_steps();
-    clock.restart(flood.seconds_on_card());
-    while clock.seconds(flood.seconds_on_card()) < seconds {
-        ahead(&mut flood)?;
-    }
-    let work = (flood.particle_steps() - before) as f64;
-    Ok(Some(Rate {
-        name: name.into(),
-        particles: flood.particles().len(),
-        dimensions: 2,
-        packing: None,
-        threads: clock.threads(),
-        rate: work / clock.seconds(flood.seconds_on_card()),
-        rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64
-            / flood.particles().len() as f64,
-        device: clock.device,
-    }))
+fn rate(name: &'static str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Vec<Rate> {
+    let measured = waves(scheme, particles).and_then(|flood| Measuring { name, ..MEASURING }.rate(flood, options));
+    measured.unwrap_or_default().into_iter().collect()
 }
 
 /// Water a metre deep, 1 m apart, with friction, waving over ground with a relief of its own.
