@@ -8,8 +8,8 @@
 @group(0) @binding(3) var<storage, read> reaches: array<f32>;
 // Place, weight and reach of each.
 @group(0) @binding(4) var<storage, read> sites: array<vec4f>;
-@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(6) var<storage, read_write> columns: array<Column>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(6) var<storage, read_write> columns: array<PackedColumn>;
 @group(0) @binding(7) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(8) var<storage, read> walls: array<WallSite>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
@@ -34,8 +34,10 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
         }
         let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
+            let across = columns_round(parameters.grid, truth, reach, row);
             let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let end = start[line + across.y + 1u];
+            for (var j = start[line + across.x]; j < end; j++) {
                 let site = sites[j];
                 let there = shown(mirror, site.xy);
                 let r = max(distance(there, place), 2e-12 * h);
@@ -98,7 +100,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    var particle = particles[i];
+    var particle = unpacked(particles[i]);
     let seen = densities(i, particle.place, particle.weight, particle.h);
     let density = beside(seen, coverage(particle.place, particle.h));
     let ground = ground_under(parameters, nodes, particle.place);
@@ -112,7 +114,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ahead = particle.velocity + 0.5 * status.step * particle.acceleration;
     // From here on it holds what obstacles push.
     particle.acceleration = vec2f(0.0);
-    particles[i] = particle;
+    particles[i] = packed(particle);
     let surface = particle.ground + particle.depth;
-    columns[i] = Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h);
+    columns[i] = packed_column(Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h));
 }

@@ -8,11 +8,11 @@
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> reaches: array<f32>;
-@group(0) @binding(4) var<storage, read> columns: array<Column>;
-@group(0) @binding(5) var<storage, read> slopes: array<Slopes>;
+@group(0) @binding(4) var<storage, read> columns: array<PackedColumn>;
+@group(0) @binding(5) var<storage, read> slopes: array<PackedSlopes>;
 // Their accelerations are the push of obstacles.
-@group(0) @binding(6) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(7) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(6) var<storage, read> sorted: array<Packed>;
+@group(0) @binding(7) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
 @group(0) @binding(10) var rough: texture_2d<f32>;
@@ -48,6 +48,7 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     let gravity = parameters.gravity;
     let h = 1.0 / own.per_h;
     let ground = own.surface - own.depth;
+    let wave_speed = sqrt(gravity * own.depth);
     let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
     var force = vec2f(0.0);
     var from_outside = vec2f(0.0);
@@ -61,16 +62,19 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
         }
         let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
+            let across = columns_round(parameters.grid, truth, reach, row);
             let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
-                var near = columns[j];
-                let there = shown(mirror, near.place);
+            let end = start[line + across.y + 1u];
+            for (var j = start[line + across.x]; j < end; j++) {
+                let here = columns[j].place_area_per_h;
+                let there = shown(mirror, here.xy);
                 let e = there - own.place;
                 let r = max(length(e), 2e-12 * h);
-                if r * min(own.per_h, near.per_h) >= 2.0 || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / near.per_h)) {
+                if r * min(own.per_h, here.w) >= 2.0 || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / here.w)) {
                     continue;
                 }
-                var slope = slopes[j];
+                var near = column_of(here, columns[j].velocity_surface_depth);
+                var slope = unpacked_slopes(slopes[j]);
                 if k > 0u {
                     slope = mirrored(slope, mirror);
                     near.surface += step_up(mirror, parameters, nodes, near.place);
@@ -102,8 +106,8 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
                 // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the acoustic Riemann problem.
                 let depth_i = max(surface_i - middle, 1e-6 * own.depth);
                 let depth_j = max(surface_j - middle, 1e-6 * near.depth);
-                let impedance_i = depth_i * sloped.wave_speed;
-                let impedance_j = depth_j * slope.wave_speed;
+                let impedance_i = depth_i * wave_speed;
+                let impedance_j = depth_j * sqrt(gravity * near.depth);
                 let per_sum = 1.0 / (impedance_i + impedance_j);
                 let both = impedance_i * impedance_j * per_sum;
                 let pressures = 0.5 * gravity * (impedance_j * depth_i * depth_i + impedance_i * depth_j * depth_j) * per_sum;
@@ -121,7 +125,7 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     }
     let volume = own.depth * own.area;
     let slide = -gravity * sloped.ground * sloped.alone;
-    let pushed = sorted[i].acceleration;
+    let pushed = bitcast<vec2f>(sorted[i].acceleration_and_volume.xy);
     return Force(slide - (force + pushed) / volume, slide * volume - from_outside - pushed);
 }
 
@@ -137,7 +141,7 @@ fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force:
     (*particle).acceleration = force.acceleration;
     let squeeze = 2.0 * (*particle).h * max(-(sloped.u.x + sloped.v.y), 0.0);
     let pull = sqrt((*particle).h * length(force.acceleration));
-    let longest = parameters.cfl * (*particle).h / max(sloped.wave_speed + squeeze, pull);
+    let longest = parameters.cfl * (*particle).h / max(sqrt(parameters.gravity * own.depth) + squeeze, pull);
     let velocity = (*particle).velocity + 0.5 * status.step * force.acceleration;
     let factor = slowed(parameters, roughness_at(parameters, rough, place), velocity, (*particle).depth, 0.5 * status.step);
     (*particle).velocity = factor * velocity;
@@ -155,11 +159,11 @@ fn main(
     let i = id.x;
     sums[thread] = NOTHING;
     if i < status.particles {
-        let own = columns[i];
-        let sloped = slopes[i];
-        var particle = sorted[i];
+        let own = unpacked_column(columns[i]);
+        let sloped = unpacked_slopes(slopes[i]);
+        var particle = unpacked(sorted[i]);
         sums[thread] = pushed(&particle, own, sloped, on_one(i, own, sloped));
-        particles[i] = particle;
+        particles[i] = packed(particle);
     }
     let all = summed(thread);
     if thread == 0u {
