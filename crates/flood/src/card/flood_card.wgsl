@@ -85,9 +85,10 @@ struct Parameters {
     widest: f32,
     smallest: f32,
     largest: f32,
-    unused_a: f32,
-    unused_b: f32,
-    unused_c: f32,
+    // Where lists of neighbours begin, how far the next entry of one is off, and how many neighbours a list takes: see `flood_near`.
+    near_first: u32,
+    near_stride: u32,
+    most_near: u32,
 }
 
 const BALANCED = 0u;

@@ -1,11 +1,9 @@
 // How many particles stand here, so how deep the water is, and the ground under it. Twin of `density.rs` and of `find_depths` and
 // `fill_columns` in `balanced/mod.rs`.
 #import flood_walls
+#import flood_near
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> reaches: array<f32>;
 // Place, weight and reach of each.
 @group(0) @binding(4) var<storage, read> sites: array<vec4f>;
 @group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
@@ -17,18 +15,22 @@
 // Least depth beyond an edge whose level falls below the ground, over the depth as it was.
 const SHALLOWEST_STAGE = 1e-3;
 
-// Number density, that of particles like this one, and how the first changes with h.
+// Neighbours within this much more than the reach are written down too: who reads the list rounds otherwise.
+const CLOSE_BY = 1.00001;
+
+// Number density, that of particles like this one, and how the first changes with h. Writes the neighbours down.
 fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     let per_h = 1.0 / h;
     let own = spline(0.0, per_h);
     var number = 0.0;
     var weighted = 0.0;
     var r_slope = 0.0;
+    var listed = 0u;
     let mirrors = mirrors_round(parameters, place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, place);
-        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
+        let reach = max(longest_reach(truth), 2.0 * h);
         if !sees(mirror, parameters, place, reach) {
             continue;
         }
@@ -41,7 +43,15 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
                 let site = sites[j];
                 let there = shown(mirror, site.xy);
                 let r = max(distance(there, place), 2e-12 * h);
-                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
+                let is_near = r < CLOSE_BY * max(2.0 * h, site.w);
+                if !is_near || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
+                    continue;
+                }
+                listed += 1u;
+                if listed <= parameters.most_near {
+                    neighbours[place_in_list(listed, i)] = j | (k << MIRROR_BITS);
+                }
+                if r >= 2.0 * h {
                     continue;
                 }
                 let w = spline(r, per_h);
@@ -51,6 +61,7 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
             }
         }
     }
+    neighbours[place_in_list(0u, i)] = listed;
     number += own;
     return vec3f(number, own + weighted / weight, (r_slope - 2.0 * number) / h);
 }

@@ -44,6 +44,9 @@ fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
 
 // The mirror of a number below MIRRORS, 0 being none.
 fn mirror(number: u32, parameters: Parameters) -> Mirror {
+    if number == 0u {
+        return Mirror(vec2f(1.0), vec2f(0.0), vec2f(0.0), true, true);
+    }
     let beyond = vec2i(i32((number + 1u) % 3u), i32(((number + 3u) / 3u) % 3u)) - 1;
     let x = along(beyond.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.xy);
     let y = along(beyond.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.zw);

@@ -1,10 +1,8 @@
 // First-order exact slopes of surface and velocity. Twin of `balanced/gradients.rs`.
 #import flood_walls
+#import flood_near
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> reaches: array<f32>;
 @group(0) @binding(4) var<storage, read> columns: array<PackedColumn>;
 @group(0) @binding(5) var<storage, read> particles: array<Packed>;
 @group(0) @binding(6) var<storage, read_write> slopes: array<PackedSlopes>;
@@ -72,44 +70,31 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var surface_step = 0.0;
     var velocity_step = 0.0;
     var ground_step = 0.0;
-    let mirrors = mirrors_round(parameters, own.place);
-    for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, parameters);
-        let truth = behind(mirror, own.place);
-        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
-        if !sees(mirror, parameters, own.place, reach) {
+    var walk = walk_round(i);
+    while next_near(&walk, own.place, 2.0 * h) {
+        let mirror = mirror(walk.mirror, parameters);
+        let here = columns[walk.near].place_area_per_h;
+        let there = shown(mirror, here.xy);
+        let e = there - own.place;
+        let r = max(length(e), 2e-12 * h);
+        if r >= 2.0 * h || (walk.mirror > 0u && !has_image(mirror, parameters, there, 2.0 / here.w)) {
             continue;
         }
-        let cells = cells_round(parameters.grid, truth, reach);
-        for (var row = cells.y; row <= cells.w; row++) {
-            let across = columns_round(parameters.grid, truth, reach, row);
-            let line = row * parameters.grid.columns;
-            let end = start[line + across.y + 1u];
-            for (var j = start[line + across.x]; j < end; j++) {
-                let here = columns[j].place_area_per_h;
-                let there = shown(mirror, here.xy);
-                let e = there - own.place;
-                let r = max(length(e), 2e-12 * h);
-                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / here.w)) {
-                    continue;
-                }
-                let near = column_of(here, columns[j].velocity_surface_depth);
-                // The gradient of W at i is slope / r * e.
-                let weight = spline_slope(r, own.per_h) / r * near.area * e;
-                moment += vec3f(weight.x * e.x, weight.x * e.y, weight.y * e.y);
-                var ds = near.surface - own.surface;
-                if k > 0u {
-                    ds += step_up(mirror, parameters, nodes, near.place);
-                }
-                let dv = mirror.sign * near.velocity - own.velocity;
-                surface += weight * ds;
-                u += weight * dv.x;
-                v += weight * dv.y;
-                surface_step = max(surface_step, abs(ds));
-                ground_step = max(ground_step, abs(ds - (near.depth - own.depth)));
-                velocity_step = max(velocity_step, dot(dv, dv));
-            }
+        let near = column_of(here, columns[walk.near].velocity_surface_depth);
+        // The gradient of W at i is slope / r * e.
+        let weight = spline_slope(r, own.per_h) / r * near.area * e;
+        moment += vec3f(weight.x * e.x, weight.x * e.y, weight.y * e.y);
+        var ds = near.surface - own.surface;
+        if walk.mirror > 0u {
+            ds += step_up(mirror, parameters, nodes, near.place);
         }
+        let dv = mirror.sign * near.velocity - own.velocity;
+        surface += weight * ds;
+        u += weight * dv.x;
+        v += weight * dv.y;
+        surface_step = max(surface_step, abs(ds));
+        ground_step = max(ground_step, abs(ds - (near.depth - own.depth)));
+        velocity_step = max(velocity_step, dot(dv, dv));
     }
     let b = renormalisation(moment);
     let wave = sqrt(parameters.gravity * own.depth);

@@ -38,8 +38,20 @@ const FEWEST_CELLS: usize = 65_536;
 /// More cells are no work for one thread each.
 const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
 
+/// Neighbours that a particle keeps a list of, at most: few have more.
+const MOST_NEAR: usize = 36;
+
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
+
+/// Neighbours for whose lists there is room; scheme paper has none.
+fn most_near(gpu: &Gpu, count: usize, cells: usize, setting: &Setting<'_>) -> usize {
+    if setting.paper.is_some() {
+        return 0;
+    }
+    let entries = (gpu.most_bytes() / 4) as usize;
+    (entries.saturating_sub(cells) / count.max(1)).saturating_sub(1).min(MOST_NEAR)
+}
 
 /// Water on a card.
 #[derive(Debug)]
@@ -102,6 +114,10 @@ impl Card {
         }
         let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
         let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
+        let most_near = most_near(&gpu, count, most_cells, setting);
+        parameters.near_first = most_cells as u32;
+        parameters.near_stride = count as u32;
+        parameters.most_near = most_near as u32;
         let tasks = Tasks::new(
             &gpu,
             count,
@@ -114,6 +130,7 @@ impl Card {
             air.as_ref(),
             setting.paper.is_some(),
             setting.refinement.is_some(),
+            most_near,
         )?;
         let status = Status::default();
         Ok(Self {
@@ -163,5 +180,11 @@ impl Card {
     /// Particles in the air that there is room for.
     pub fn room_in_air(&self) -> usize {
         self.air.as_ref().map_or(0, |air| air.room)
+    }
+
+    /// Takes lists of neighbours of another length, as far as there is room.
+    #[cfg(test)]
+    pub fn list(&mut self, most_near: u32) {
+        self.parameters.most_near = most_near.min(self.parameters.most_near);
     }
 }
