@@ -12,3 +12,4 @@ mod gas;
 
 pub use bench::{Bench, BenchOptions, Rate, benches};
 pub use case::{Case, Options, Row, cases};
+pub use flood::bench::bench_water;

@@ -8,6 +8,7 @@ mod ground;
 mod layout;
 mod rates;
 mod resource;
+mod seen;
 mod setting;
 mod state;
 mod steps;
@@ -16,16 +17,19 @@ mod walls;
 mod weather;
 mod works;
 
-pub(crate) use advance::{Birth, Progress};
+pub(crate) use advance::{Birth, Progress, Watch};
+pub(crate) use seen::Shown;
 pub(crate) use setting::Setting;
 pub(crate) use state::Water;
 
 use crate::rain::Intensity;
 use air::Air;
-use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_gpu::{Gpu, GpuError, wgpu};
 use corpuscle_terrain::Bounds;
 use layout::{Origin, Parameters, Status};
+use seen::Seen;
 use state::DoneToObstacles;
+use std::sync::OnceLock;
 use tasks::Tasks;
 use walls::Walls;
 use weather::Weather;
@@ -47,6 +51,10 @@ pub(crate) struct Card {
     works: Works,
     weather: Option<Weather>,
     air: Option<Air>,
+    /// The nodes of the ground.
+    nodes: wgpu::TextureView,
+    /// What others draw, where they do.
+    seen: OnceLock<Seen>,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -119,6 +127,8 @@ impl Card {
             works,
             weather,
             air,
+            nodes,
+            seen: OnceLock::new(),
             parameters,
             origin,
             bounds,
