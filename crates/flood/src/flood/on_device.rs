@@ -25,7 +25,8 @@ impl Flood {
 
     /// Goes on to `time`, s, as [`Model::advance_to`] does, and tells `show` after each step about what
     /// time it is, s, and where the particles are on the card. Until it arrives, or `stop` becomes true, nothing comes back but a few
-    /// numbers every 64 steps, so what draws them need not wait. Without a card nobody is told.
+    /// numbers every 64 steps, so what draws them need not wait; before a time that is waited for, and before a look at the maps, the same may be
+    /// shown again. Without a card nobody is told.
     ///
     /// # Errors
     /// Those of `advance_to`, and [`ModelError::Device`] where the card has too little memory.
@@ -39,7 +40,13 @@ impl Flood {
             return self.advance_to(time, stop);
         }
         let shown = self.particles_shown(0.0);
-        self.advance_on_card(time, stop, &mut Some(Watch { shown, show, stop }))
+        let mut latest = self.state.time;
+        // A guess may have been too late: time does not go back.
+        let mut show = |time: f64, particles: &DeviceParticles| {
+            latest = latest.max(time);
+            show(latest, particles);
+        };
+        self.advance_on_card(time, stop, &mut Some(Watch { shown, show: &mut show, stop }))
     }
 
     fn particles_shown(&self, since: f64) -> Shown {
