@@ -118,11 +118,11 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     assert_eq!((times.len(), shown.steps()), (90, 90));
     assert!(times.is_sorted() && (times[89] / shown.time() - 1.0).abs() < 0.1, "{times:?} {}", shown.time());
     last.sort_unstable_by_key(|particle| particle.id);
-    assert_eq!(last, seen(&shown, &gpu).0);
-    // Nobody's looking changes what the water does.
-    plain.advance_to(shown.time(), &AtomicBool::new(false)).unwrap();
+    assert!(last == seen(&shown, &gpu).0);
+    // Looking does not change what the water does. A little more, lest rounding take the last step for less.
+    plain.advance_to(shown.time() + 1e-3 * shown.time_step(), &AtomicBool::new(false)).unwrap();
     assert_eq!(plain.steps(), 90);
-    assert_eq!(plain.save(), shown.save());
+    assert!(plain.particles() == shown.particles());
 }
 
 #[test]

@@ -9,8 +9,7 @@ use corpuscle_flood::obstacle_shapes;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
     Axes, BallStyle, Balls, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key,
-    KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides,
-    natural_colours,
+    KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -145,10 +144,8 @@ impl FloodPicture {
                 things.push(fluid);
             } else {
                 let water = &mut self.water;
-                let droplets: Vec<Droplet> = sets
-                    .iter()
-                    .flat_map(|set| water.droplets(time, set, |place| field.slope_at(place)))
-                    .collect();
+                let droplets: Vec<Droplet> =
+                    sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
                 self.sides.fill(gpu, &self.field, &droplets);
                 fluid.fill(gpu, droplets);
                 things.extend([&mut self.sides as &mut dyn Drawable, fluid]);

@@ -1,8 +1,8 @@
 //! Batches of steps, and what they did.
 
-use super::{Card, Shown};
 use super::layout::{self, CardBirth, Grid, Status};
 use super::tasks::Tasks;
+use super::{Card, Shown};
 use crate::rain::Ground;
 use corpuscle_gpu::{DeviceParticles, GpuError, read, wgpu};
 use std::sync::atomic::{AtomicBool, Ordering};

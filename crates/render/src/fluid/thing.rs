@@ -50,7 +50,8 @@ impl Fluid {
     /// Takes these particles instead of those before. What has no finite place is left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
         let all: Vec<Instance> = droplets.into_iter().filter_map(|droplet| droplet.instance(&self.stage)).collect();
-        self.droplets = all.chunks(MOST).map(|part| Batch::Counted(instances(gpu, "droplets", part), part.len() as u32)).collect();
+        self.droplets =
+            all.chunks(MOST).map(|part| Batch::Counted(instances(gpu, "droplets", part), part.len() as u32)).collect();
     }
 
     /// Takes water that lies on the device instead of the particles before, as it is when the picture is drawn.

@@ -66,9 +66,8 @@ impl Tasks {
         let memory = [table()?, table()?];
         let sort = CellSort::new(gpu, room, cells, sizes, keys)?;
         let start = &sort.start;
-        let foam = |before, after| {
-            on(gpu, &kernels.foam, &[water, start, settled, matter, fresh, before, after, &instances])
-        };
+        let foam =
+            |before, after| on(gpu, &kernels.foam, &[water, start, settled, matter, fresh, before, after, &instances]);
         Ok(Self {
             begin: on(gpu, &kernels.begin, &[water, seen, sizes, &groups]),
             count: on(gpu, &kernels.count, &[water, seen, sizes, &sort.counts, &sort.places, keys]),

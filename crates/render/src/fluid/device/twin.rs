@@ -91,9 +91,8 @@ fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) 
 
 fn compare(device: &[Instance], host: &[Instance]) {
     assert_eq!(device.len(), host.len());
-    let apart = |one: &[f32], other: &[f32]| {
-        one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max)
-    };
+    let apart =
+        |one: &[f32], other: &[f32]| one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
     for (one, other) in device.iter().zip(host) {
         assert!(apart(&one.place, &other.place) < NEAR, "{one:?} {other:?}");
         assert!(apart(&one.normal, &other.normal) < LIKE, "{one:?} {other:?}");
