@@ -130,7 +130,8 @@ impl Picture {
         // What is shown is drawn anew after it, in the window's size.
         self.drawn = None;
         self.pictures.resize(STILL_SIZE, 2)?;
-        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
+        let moment =
+            Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container };
         self.pictures.still(&moment, &self.hand)
     }
 
@@ -168,7 +169,8 @@ impl Picture {
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
+        let moment =
+            Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container };
         let shown = self.pictures.show(&moment, &self.hand, drawn.look, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         self.shown = Some(shown);

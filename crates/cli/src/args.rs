@@ -354,6 +354,9 @@ pub struct BenchOptions {
     /// Time each pass of a step on the graphics card too
     #[arg(long)]
     pub passes: bool,
+    /// Floods on the graphics card: pictures a second as well, 1920 x 1080, one a step
+    #[arg(long)]
+    pub draw: bool,
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,

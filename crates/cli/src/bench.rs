@@ -1,5 +1,7 @@
 //! `corpuscle bench`.
 
+mod drawn;
+
 use crate::args::{Backend, BenchOptions};
 use crate::output::{number, print, print_json};
 use crate::select::select;
@@ -21,7 +23,11 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
             eprintln!("{} left out: it is for a graphics card", bench.name);
             continue;
         }
-        for rate in (bench.run)(&with) {
+        let drawn = match &with.gpu {
+            Some(gpu) if options.draw => drawn::drawn(bench.name, gpu, options.quick)?,
+            _ => None,
+        };
+        for rate in (bench.run)(&with).into_iter().chain(drawn) {
             let line = line(&rate);
             if as_json {
                 eprint!("{line}");

@@ -47,7 +47,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let mut draw = |index: usize| -> Result<(f64, Image), corpuscle::Error> {
         let frame = files.read(index)?;
         let container = at_start.map(|container| walls.container(container, frame.time));
-        let image = pictures.draw(&Moment { frame: &frame, paths: &paths, container })?;
+        let image = pictures.draw(&Moment { frame: &frame, on_device: None, paths: &paths, container })?;
         Ok((frame.time, image))
     };
     if options.film {

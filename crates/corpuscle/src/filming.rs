@@ -38,7 +38,12 @@ impl Filming {
 
     fn add(&mut self, model: &dyn Model) -> Result<(), Error> {
         let (frame, paths) = (model.frame(), model.paths());
-        let image = self.pictures.draw(&Moment { frame: &frame, paths: &paths, container: model.container() })?;
+        let image = self.pictures.draw(&Moment {
+            frame: &frame,
+            on_device: None,
+            paths: &paths,
+            container: model.container(),
+        })?;
         Ok(self.film.as_mut().map_or(Ok(()), |film| film.add(&image.rgba))?)
     }
 }

@@ -5,6 +5,8 @@ mod exchange;
 mod model;
 #[cfg(feature = "gpu")]
 mod on_card;
+#[cfg(feature = "gpu")]
+mod on_device;
 mod open;
 mod placed;
 mod regulate;
@@ -107,6 +109,14 @@ impl Flood {
         match self.settings.scheme {
             SchemeName::Balanced => 1.0,
             SchemeName::Paper => 0.5,
+        }
+    }
+
+    /// Distance of particles as they are shown where all are shown with the same, m: scheme paper's stand for no area.
+    fn spacing_shown(&self) -> Option<f64> {
+        match self.settings.scheme {
+            SchemeName::Balanced => None,
+            SchemeName::Paper => Some(self.settings.paper.radius_m.map_or(self.spacing, |radius| 2.0 * radius)),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::{Gpu, GpuError};
 use bytemuck::{NoUninit, Pod};
 use wgpu::BufferUsages;
 
-/// Memory for shaders to work on, filled with zeros; it can be written and read from outside. At least one element long, as no
+/// Memory for shaders to work on and to draw from, filled with zeros; it can be written and read from outside. At least one element long, as no
 /// device binds nothing.
 ///
 /// # Errors
@@ -15,7 +15,8 @@ pub fn storage<T>(gpu: &Gpu, label: &'static str, length: usize) -> Result<wgpu:
     if bytes > most {
         return Err(GpuError::Memory { name: gpu.name.clone(), what: label, bytes, most });
     }
-    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | BufferUsages::INDIRECT;
+    let told = BufferUsages::INDIRECT | BufferUsages::VERTEX;
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | told;
     let buffer = buffer(gpu, label, bytes, usage);
     gpu.check()?;
     Ok(buffer)

@@ -39,7 +39,7 @@ pub use colour::{ColourTable, linear};
 pub use drawable::{Before, Drawable, Through};
 pub use error::RenderError;
 pub use floor::Floor;
-pub use fluid::{Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
+pub use fluid::{DeviceWater, Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use inlay::{Inlay, InlayPainter};
 pub use light::{Backdrop, Light};
 pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineLook, Mark, Overlay};

@@ -13,3 +13,4 @@ mod gas;
 
 pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
 pub use case::{Case, Options, Row, cases};
+pub use flood::bench::bench_water;

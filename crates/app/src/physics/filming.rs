@@ -37,7 +37,8 @@ impl Filming {
             return Ok(());
         }
         let (frame, paths, container) = subject.look();
-        let image = self.pictures.still(&Moment { frame: &frame, paths: &paths, container }, &self.hand)?;
+        let image =
+            self.pictures.still(&Moment { frame: &frame, on_device: None, paths: &paths, container }, &self.hand)?;
         self.film.add(&image.rgba)?;
         self.next = subject.time() + self.every;
         Ok(())

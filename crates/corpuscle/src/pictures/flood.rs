@@ -8,8 +8,8 @@ use corpuscle_drawing::text;
 use corpuscle_flood::obstacle_shapes;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
-    Axes, BallStyle, Balls, ColourTable, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key, KeyPlace, Lens,
-    Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
+    Axes, BallStyle, Balls, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key,
+    KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -44,6 +44,8 @@ pub(super) struct FloodPicture {
     buildings: Vec<Solid>,
     field: HeightField,
     water: Water,
+    /// Of particles that lie on the device, once there were any.
+    device_water: Option<DeviceWater>,
     sides: WaterSides,
     fluid: Option<Fluid>,
     /// How many times clearer or more turbid the water is than clear deep water.
@@ -92,6 +94,7 @@ impl FloodPicture {
             floor: Floor::new(&studio.renderer, base),
             field,
             water: Water::default(),
+            device_water: None,
             sides: WaterSides::new(&studio.renderer, &stage),
             fluid: None,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
@@ -124,21 +127,29 @@ impl FloodPicture {
         }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
         things.extend(discs.iter_mut().map(|set| set as &mut dyn Drawable));
-        if self.depth.is_none() && studio.look == Look::Full && !sets.is_empty() {
-            let radii = || sets.iter().flat_map(|set| &set.radius);
-            let mean = radii().sum::<f64>() / radii().count() as f64;
+        let radius = moment.on_device.map(|particles| 0.5 * particles.spacing).or_else(|| mean_radius(&sets));
+        if let Some(radius) = radius.filter(|_| self.depth.is_none() && studio.look == Look::Full) {
             let within = Some([self.stage.from, self.stage.to].map(|corner| [corner.x, corner.y]));
-            let style = || FluidStyle { within, ..FluidStyle::water(mean).turbid(self.turbid) };
+            let style = || FluidStyle { within, ..FluidStyle::water(radius).turbid(self.turbid) };
             // Its style is that of the first particles there are, so that it does not change in a film.
             let fluid = self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &self.stage, style()));
-            let (water, field) = (&mut self.water, &self.field);
-            let droplets: Vec<Droplet> = sets
-                .iter()
-                .flat_map(|set| water.droplets(moment.frame.time, set, |place| field.slope_at(place)))
-                .collect();
-            self.sides.fill(gpu, &self.field, &droplets);
-            fluid.fill(gpu, droplets);
-            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
+            let (time, field) = (moment.frame.time, &self.field);
+            if let Some(particles) = moment.on_device {
+                let water = match &mut self.device_water {
+                    Some(water) => water,
+                    none => none.insert(DeviceWater::new(gpu, &self.stage, field, self.heights)?),
+                };
+                water.update(gpu, time, particles)?;
+                fluid.draw_from(water);
+                things.push(fluid);
+            } else {
+                let water = &mut self.water;
+                let droplets: Vec<Droplet> =
+                    sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
+                self.sides.fill(gpu, &self.field, &droplets);
+                fluid.fill(gpu, droplets);
+                things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
+            }
         }
         studio.take(&self.stage, &camera, &light, &mut things, overlay)
     }
@@ -175,6 +186,12 @@ impl FloodPicture {
             ..Overlay::default()
         }
     }
+}
+
+/// Mean radius of the particles, m; none where there are none.
+fn mean_radius(sets: &[ParticleSet]) -> Option<f64> {
+    let radii = || sets.iter().flat_map(|set| &set.radius);
+    (!sets.is_empty()).then(|| radii().sum::<f64>() / radii().count() as f64)
 }
 
 /// Particles with their heights drawn so many times higher than they are.

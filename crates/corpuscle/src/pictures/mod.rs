@@ -9,13 +9,14 @@ mod show;
 mod viewpoint;
 
 use crate::{Error, Simulation};
-use corpuscle_gpu::{Gpu, Image};
+use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 use corpuscle_model::{Container, Frame, Path};
 use corpuscle_render::{
     BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
     TubePainter,
 };
-use corpuscle_scene::ModelScene;
+use corpuscle_scene::{Flood, ModelScene};
+use corpuscle_terrain::Terrain;
 use dew::DewPicture;
 use flood::FloodPicture;
 use gas::GasPicture;
@@ -52,6 +53,9 @@ impl Default for PictureSettings {
 pub struct Moment<'a> {
     /// The particles.
     pub frame: &'a Frame,
+    /// Those of a flood as buffers of the device that draws, in place of the frame's: only the full look draws them, where the ground
+    /// does not show depth.
+    pub on_device: Option<&'a DeviceParticles>,
     /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
     pub paths: &'a [Path],
     /// The box round the particles.
@@ -105,19 +109,8 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than it can hold.
     pub fn open_on(gpu: &Gpu, simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        let renderer = Renderer::new(gpu);
-        let target = Target::new(gpu, settings.size, settings.samples)?;
         let scene = simulation.scene();
-        let viewpoints = settings.viewpoints.into_iter();
-        let stations = match simulation.terrain() {
-            Some(ground) => viewpoints.map(|at| Station::on_ground(at, ground, settings.heights)).collect(),
-            None => viewpoints.map(Station::plain).collect(),
-        };
-        let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
-        let caps = CapPainter::new(&renderer);
-        let fluids = FluidPainter::new(&renderer);
-        let (hand, look, paper, overlaid) = (Hand::default(), Look::Full, [1.0; 3], true);
-        let studio = Studio { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid };
+        let studio = Studio::new(gpu, &settings, simulation.terrain().map(|ground| &**ground))?;
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
             ModelScene::Dew(dew) => {
@@ -135,6 +128,16 @@ impl Pictures {
             }
         };
         Ok(Self { studio, title: scene.title.clone(), subject })
+    }
+
+    /// Makes ready to draw a flood that is of no scene, on a device that is open already.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the pictures are larger than the device can hold.
+    pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
+        let studio = Studio::new(gpu, &settings, Some(ground))?;
+        let flood = FloodPicture::new(&studio, flood, ground, settings.ground, settings.heights)?;
+        Ok(Self { studio, title: String::new(), subject: Subject::Flood(Box::new(flood)) })
     }
 
     /// The device that draws, by its name.
@@ -162,6 +165,21 @@ impl Subject {
 }
 
 impl Studio {
+    fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
+        let renderer = Renderer::new(gpu);
+        let target = Target::new(gpu, settings.size, settings.samples)?;
+        let viewpoints = settings.viewpoints.iter().copied();
+        let stations = match ground {
+            Some(ground) => viewpoints.map(|at| Station::on_ground(at, ground, settings.heights)).collect(),
+            None => viewpoints.map(Station::plain).collect(),
+        };
+        let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
+        let caps = CapPainter::new(&renderer);
+        let fluids = FluidPainter::new(&renderer);
+        let (hand, look, paper, overlaid) = (Hand::default(), Look::Full, [1.0; 3], true);
+        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid })
+    }
+
     /// Width of a picture over its height.
     fn aspect(&self) -> f64 {
         let [width, height] = self.target.size;

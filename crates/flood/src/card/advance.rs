@@ -1,9 +1,11 @@
 //! Batches of steps, and what they did.
 
-use super::Card;
 use super::layout::{self, CardBirth, Grid, Status};
+use super::tasks::Tasks;
+use super::{Card, Shown};
 use crate::rain::Ground;
-use corpuscle_gpu::{GpuError, Pass, read, wgpu};
+use corpuscle_gpu::{DeviceParticles, GpuError, Pass, read, wgpu};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Size of a cell over the mean reach, as on the CPU in scheme balanced.
@@ -25,6 +27,15 @@ pub(crate) struct Birth {
     pub time: f64,
     pub source: usize,
     pub velocity: [f64; 2],
+}
+
+/// Who looks at the particles after each step, on the device.
+pub(crate) struct Watch<'a> {
+    pub shown: Shown,
+    /// Is told the time, s, as far as the host knows it without asking, and where the particles are.
+    pub show: &'a mut dyn FnMut(f64, &DeviceParticles),
+    /// Whether this was the last.
+    pub stop: &'a AtomicBool,
 }
 
 /// What a batch of steps did.
@@ -104,7 +115,7 @@ impl Card {
     }
 
     /// Takes some steps from the time `now` s, up to `until` s from there or to the first after `look` s, while `births` come, the earliest
-    /// first. It rains on `ground`.
+    /// first. It rains on `ground`. Nothing comes back between two steps, whoever watches.
     pub fn advance(
         &mut self,
         now: f64,
@@ -112,6 +123,7 @@ impl Card {
         look: f64,
         births: &[Birth],
         ground: Option<&Ground>,
+        watch: &mut Option<Watch<'_>>,
     ) -> Result<Progress, GpuError> {
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
@@ -137,7 +149,8 @@ impl Card {
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
-        let count = planned.min(self.batch).min(to_layout as u32);
+        let batch = if watch.is_some() { LAID_OUT as u32 } else { self.batch };
+        let count = planned.min(batch).min(to_layout as u32);
         self.status = Status {
             halted: layout::SPOKEN,
             steps_before: self.status.steps_before.wrapping_add(self.status.steps),
@@ -158,22 +171,45 @@ impl Card {
         };
         let began = Instant::now();
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
-        let mut encoder =
-            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
-        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
-        self.tasks.steps(&mut pass, count);
-        drop(pass);
-        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
-        self.gpu.queue.submit([encoder.finish()]);
+        match watch {
+            None => self.order(|tasks, pass| tasks.steps(pass, count)),
+            Some(watch) => self.order_watched(count, now, watch)?,
+        }
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let took = began.elapsed().as_secs_f64();
         self.busy += took;
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
-        self.batch =
-            if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) }.min(LAID_OUT as u32);
+        if watch.is_none() {
+            let next = if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) };
+            self.batch = next.min(LAID_OUT as u32);
+        }
         self.steps += u64::from(self.status.steps);
         self.ahead |= self.status.steps > 0;
         Ok(self.progress())
+    }
+
+    /// Has the device do something.
+    fn order(&mut self, task: impl FnOnce(&Tasks, &mut Pass<'_>)) {
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
+        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
+        task(&self.tasks, &mut pass);
+        drop(pass);
+        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Orders so many steps from the time `now` s on, one by one, and shows what each leaves.
+    fn order_watched(&mut self, count: u32, now: f64, watch: &mut Watch<'_>) -> Result<(), GpuError> {
+        for step in 0..count {
+            self.order(|tasks, pass| if step == 0 { tasks.steps(pass, 1) } else { tasks.step(pass) });
+            let time = now + f64::from(step + 1) * f64::from(self.status.step);
+            (watch.show)(time, &self.seen(watch.shown)?);
+            if watch.stop.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Twice as long a step as the next, or as those since the cells were last laid out, s; the longest that there can be, at most.

@@ -8,6 +8,7 @@ mod ground;
 mod layout;
 mod rates;
 mod resource;
+mod seen;
 mod setting;
 mod state;
 mod steps;
@@ -16,16 +17,19 @@ mod walls;
 mod weather;
 mod works;
 
-pub(crate) use advance::{Birth, Progress};
+pub(crate) use advance::{Birth, Progress, Watch};
+pub(crate) use seen::Shown;
 pub(crate) use setting::Setting;
 pub(crate) use state::Water;
 
 use crate::rain::Intensity;
 use air::Air;
-use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS};
+use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS, wgpu};
 use corpuscle_terrain::Bounds;
 use layout::{Origin, Parameters, Status};
+use seen::Seen;
 use state::DoneToObstacles;
+use std::sync::OnceLock;
 use tasks::Tasks;
 use walls::Walls;
 use weather::Weather;
@@ -62,6 +66,10 @@ pub(crate) struct Card {
     works: Works,
     weather: Option<Weather>,
     air: Option<Air>,
+    /// The nodes of the ground.
+    nodes: wgpu::TextureView,
+    /// What others draw, where they do.
+    seen: OnceLock<Seen>,
     parameters: Parameters,
     origin: Origin,
     bounds: Bounds,
@@ -141,6 +149,8 @@ impl Card {
             works,
             weather,
             air,
+            nodes,
+            seen: OnceLock::new(),
             parameters,
             origin,
             bounds,

@@ -74,6 +74,9 @@ impl Card {
             ..Status::default()
         };
         (self.steps, self.ahead, self.clock_began) = (0, false, water.time);
+        // Steps begin with these anyway: what is seen before them reads them too.
+        self.gpu.queue.write_buffer(&self.tasks.parameters, 0, bytemuck::bytes_of(&self.parameters));
+        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
     }
 
     /// Brings the water back, where there is any news of it.

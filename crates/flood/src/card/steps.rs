@@ -51,7 +51,8 @@ impl Tasks {
         self.reach.run_as_told(pass, groups, SLOTS.cells);
     }
 
-    fn step(&self, pass: &mut Pass<'_>) {
+    /// Takes one step more, where there is to be one.
+    pub fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.groups;
         if let Some(carry) = &self.carry {
             carry.run_as_told(pass, groups, SLOTS.particles);

@@ -9,7 +9,7 @@ use super::works::Works;
 use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SUMS_BEFORE, THREADS, Task, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
-const LIBRARY: &[(&str, &str)] = &[
+pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_card", include_str!("flood_card.wgsl")),
     ("flood_friction", include_str!("flood_friction.wgsl")),
     ("flood_ground", include_str!("flood_ground.wgsl")),

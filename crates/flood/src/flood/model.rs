@@ -6,7 +6,6 @@ use crate::gauges::{LineGauge, PointGauge};
 use crate::particle::Particle;
 use crate::rain::Wetness;
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
-use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Columns of an obstacle: the force on it, and its sum over time.
@@ -49,7 +48,7 @@ impl Model for Flood {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.card.is_some() {
-            return self.advance_on_card(time, stop);
+            return self.advance_on_card(time, stop, &mut None);
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -69,10 +68,7 @@ impl Model for Flood {
         let count = order.len() + self.state.falling.len();
         let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
         let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
-        let radius = |particle: &Particle| match self.settings.scheme {
-            SchemeName::Balanced => 0.5 * particle.area().sqrt(),
-            SchemeName::Paper => self.settings.paper.radius_m.unwrap_or(0.5 * self.spacing),
-        };
+        let radius = |particle: &Particle| 0.5 * self.spacing_shown().unwrap_or(particle.area().sqrt());
         let terrain = &self.surroundings.terrain;
         let on_ground = order.into_iter().map(|particle| {
             let (x, y) = (particle.x + since * particle.u, particle.y + since * particle.v);

@@ -1,7 +1,7 @@
 //! A flood whose steps the graphics card takes.
 
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Water};
+use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Watch, Water};
 use crate::inflow::Source;
 use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{ExactSum, ModelError};
@@ -143,7 +143,12 @@ impl Flood {
         Ok(())
     }
 
-    pub(super) fn advance_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+    pub(super) fn advance_on_card(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        watch: &mut Option<Watch<'_>>,
+    ) -> Result<(), ModelError> {
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -152,7 +157,7 @@ impl Flood {
             let look = self.state.next_look as f64 * self.map_period;
             let steps = self.state.steps;
             self.make_room().map_err(|error| failed(&error))?;
-            let done = self.advance_to_look(time, look, stop).map_err(|error| failed(&error))?;
+            let done = self.advance_to_look(time, look, stop, watch).map_err(|error| failed(&error))?;
             if done.broken {
                 return self.check(done.step);
             }
@@ -169,7 +174,13 @@ impl Flood {
     }
 
     /// Goes on to `time`, or to the first step that ends at `look` or after. What is here changes only when all of it has come back.
-    fn advance_to_look(&mut self, time: f64, look: f64, stop: &AtomicBool) -> Result<Progress, GpuError> {
+    fn advance_to_look(
+        &mut self,
+        time: f64,
+        look: f64,
+        stop: &AtomicBool,
+        watch: &mut Option<Watch<'_>>,
+    ) -> Result<Progress, GpuError> {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
         let mut owed = self.state.owed.clone();
@@ -177,7 +188,7 @@ impl Flood {
             let now = began + done.elapsed;
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
             let Some(card) = &mut self.card else { break };
-            let progress = card.advance(now, time - now, look - now, &births, self.ground.as_ref())?;
+            let progress = card.advance(now, time - now, look - now, &births, self.ground.as_ref(), watch)?;
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
@@ -313,7 +324,7 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
         card.restore(&host.save()).unwrap();
         card.open_card_with(gpu, count + 3).unwrap();
         let on_card = card.card.as_mut().unwrap();
-        assert_eq!(on_card.advance(0.0, 10.0, 1e-6, &[], None).unwrap().steps, 1);
+        assert_eq!(on_card.advance(0.0, 10.0, 1e-6, &[], None, &mut None).unwrap().steps, 1);
         on_card.fetch(&mut card.state.particles, &card.surroundings.terrain).unwrap();
         host.step().unwrap();
         assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());

@@ -1,6 +1,7 @@
 //! A particle of a fluid, as it is drawn.
 
 use crate::Stage;
+use corpuscle_gpu::wgpu;
 use glam::{DVec2, DVec3};
 
 /// A particle of a fluid, as it is drawn: a ball, or flattened along a direction.
@@ -58,7 +59,32 @@ impl Droplet {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Instance {
-    place: [f32; 4],
-    normal: [f32; 4],
-    matter: [f32; 4],
+    pub place: [f32; 4],
+    pub normal: [f32; 4],
+    pub matter: [f32; 4],
+}
+
+/// Particles on the device that are drawn in one go.
+#[derive(Debug, Clone)]
+pub(super) enum Batch {
+    /// So many.
+    Counted(wgpu::Buffer, u32),
+    /// As many as four numbers on the device tell: corners, particles, the firsts of both, from byte `at` of `told` on.
+    Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64 },
+}
+
+impl Batch {
+    /// Draws a quad for each.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
+        match self {
+            Self::Counted(instances, count) => {
+                pass.set_vertex_buffer(0, instances.slice(..));
+                pass.draw(0..4, 0..*count);
+            }
+            Self::Told { instances, told, at } => {
+                pass.set_vertex_buffer(0, instances.slice(..));
+                pass.draw_indirect(told, *at);
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@
 //! Whatever does arithmetic pixel by pixel is a compute shader: fragment shaders only draw sprites and copy.
 
 mod bindings;
+mod device;
 mod droplet;
 mod layers;
 mod painter;
@@ -25,6 +26,7 @@ mod water;
 #[cfg(test)]
 mod picture;
 
+pub use device::DeviceWater;
 pub use droplet::Droplet;
 pub use painter::FluidPainter;
 pub use passes::FluidPass;

@@ -82,10 +82,7 @@ impl Fluid {
         pass.set_bind_group(0, frame.view, &[]);
         pass.set_bind_group(1, &settings, &[]);
         pass.set_pipeline(pipeline);
-        for (buffer, count) in &self.droplets {
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..4, 0..*count);
-        }
+        self.droplets.iter().for_each(|batch| batch.draw(&mut pass));
     }
 
     fn smooth(&self, layers: &Layers, frame: &mut Through<'_>) {

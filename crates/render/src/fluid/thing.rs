@@ -1,8 +1,8 @@
 //! A fluid in a picture.
 
-use super::droplet::Instance;
+use super::droplet::{Batch, Instance};
 use super::layers::Layers;
-use super::{Droplet, FluidPainter, FluidPass, FluidStyle};
+use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::buffer::{instances, uniform};
 use crate::{Drawable, RenderError, Stage, Through};
 use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
@@ -21,8 +21,7 @@ pub struct Fluid {
     /// `Direction` of smoothing.wgsl.
     pub(super) along_rows: wgpu::Buffer,
     pub(super) along_columns: wgpu::Buffer,
-    /// Buffers, and how many particles are in each.
-    pub(super) droplets: Vec<(wgpu::Buffer, u32)>,
+    pub(super) droplets: Vec<Batch>,
     layers: Option<Layers>,
     /// Where passes are timed, what each took.
     times: Option<Vec<(FluidPass, Duration)>>,
@@ -51,7 +50,13 @@ impl Fluid {
     /// Takes these particles instead of those before. What has no finite place is left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
         let all: Vec<Instance> = droplets.into_iter().filter_map(|droplet| droplet.instance(&self.stage)).collect();
-        self.droplets = all.chunks(MOST).map(|part| (instances(gpu, "droplets", part), part.len() as u32)).collect();
+        self.droplets =
+            all.chunks(MOST).map(|part| Batch::Counted(instances(gpu, "droplets", part), part.len() as u32)).collect();
+    }
+
+    /// Takes water that lies on the device instead of the particles before, as it is when the picture is drawn.
+    pub fn draw_from(&mut self, water: &DeviceWater) {
+        self.droplets = water.droplets().into_iter().collect();
     }
 
     /// Times each pass of the pictures to come, which makes them wait for one another.

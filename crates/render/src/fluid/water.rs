@@ -12,7 +12,7 @@ const DISC: f64 = 1.4;
 /// Their thickness over their width.
 const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
-const REACH: f64 = 2.0;
+pub(super) const REACH: f64 = 2.0;
 /// Steeper than this no water stands.
 const STEEPEST: f64 = 1.0;
 /// How often it is looked whether some does: each time what is within reach of each particle.
@@ -26,7 +26,7 @@ const CLOSED: [f64; 2] = [1.6, 2.8];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
 const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
-const LIFE: f64 = 4.0;
+pub(super) const LIFE: f64 = 4.0;
 
 /// Makes discs that lie in the water's surface of the particles of shallow water, and balls of those in the air. Remembers the
 /// foam on them from picture to picture, so that it goes with the water and fades.

@@ -14,38 +14,55 @@ pub(crate) const BENCHES: &[Bench] = &[
         name: "flood/balanced-60k",
         about: "Scheme balanced, everything on, 60,000 particles in waves over rough ground.",
         needs_card: false,
-        run: |options| rate("flood/balanced-60k", Scheme::Balanced, 60_000, options),
+        run: |options| rate("flood/balanced-60k", options),
     },
     Bench {
         name: "flood/balanced-1m",
         about: "Scheme balanced, everything on, a million particles in waves over rough ground.",
         needs_card: false,
-        run: |options| rate("flood/balanced-1m", Scheme::Balanced, 1_000_000, options),
+        run: |options| rate("flood/balanced-1m", options),
     },
     Bench {
         name: "flood/balanced-10m",
         about: "Scheme balanced, everything on, ten million particles in waves over rough ground.",
         needs_card: true,
-        run: |options| rate("flood/balanced-10m", Scheme::Balanced, 10_000_000, options),
+        run: |options| rate("flood/balanced-10m", options),
     },
     Bench {
         name: "flood/paper-60k",
         about: "Scheme paper, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
         needs_card: false,
-        run: |options| rate("flood/paper-60k", Scheme::Paper, 60_000, options),
+        run: |options| rate("flood/paper-60k", options),
     },
 ];
+
+/// Scheme and particles of each.
+const WATERS: [(&str, Scheme, usize); 4] = [
+    ("flood/balanced-60k", Scheme::Balanced, 60_000),
+    ("flood/balanced-1m", Scheme::Balanced, 1_000_000),
+    ("flood/balanced-10m", Scheme::Balanced, 10_000_000),
+    ("flood/paper-60k", Scheme::Paper, 60_000),
+];
+
+/// The water of a bench of the flood, by its name, and the ground that it waves over: for whoever draws it. None for any other bench.
+///
+/// # Errors
+/// Those of setting it up.
+pub fn bench_water(name: &str) -> Result<Option<(Flood, Arc<Terrain>)>, ModelError> {
+    let of_it = WATERS.into_iter().find(|water| water.0 == name);
+    of_it.map(|(_, scheme, particles)| waves(scheme, particles)).transpose()
+}
 
 /// Two steps at a time; 64 on a card, as each look brings the water back.
 const MEASURING: Measuring = Measuring { name: "", dimensions: 2, settling: 1, steps: [2.0, 64.0], seconds: 10.0 };
 
-fn rate(name: &'static str, scheme: Scheme, particles: usize, options: &BenchOptions) -> Vec<Rate> {
-    let measured = waves(scheme, particles).and_then(|flood| Measuring { name, ..MEASURING }.rate(flood, options));
-    measured.unwrap_or_default().into_iter().collect()
+fn rate(name: &'static str, options: &BenchOptions) -> Vec<Rate> {
+    let measure = |(flood, _)| Measuring { name, ..MEASURING }.rate(flood, options);
+    bench_water(name).and_then(|water| water.map_or(Ok(None), measure)).unwrap_or_default().into_iter().collect()
 }
 
 /// Water a metre deep, 1 m apart, with friction, waving over ground with a relief of its own.
-fn waves(scheme: Scheme, particles: usize) -> Result<Flood, ModelError> {
+fn waves(scheme: Scheme, particles: usize) -> Result<(Flood, Arc<Terrain>), ModelError> {
     let side = (particles as f64).sqrt();
     let bounds = Bounds { x_min: 0.0, x_max: side, y_min: 0.0, y_max: side };
     let terrain = Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()));
@@ -56,5 +73,6 @@ fn waves(scheme: Scheme, particles: usize) -> Result<Flood, ModelError> {
     settings.manning = Manning::Number(if scheme == Scheme::Paper { 0.0 } else { 0.03 });
     let ground = Arc::clone(&terrain);
     let depth = move |x: f64, y: f64| 1.0 + 0.1 * (0.05 * x).sin() - ground.height(x, y);
-    run(&settings, &terrain, &[water_everywhere(bounds, depth, |_, y| [(0.07 * y).sin(), 0.0])], 0.0)
+    let flood = run(&settings, &terrain, &[water_everywhere(bounds, depth, |_, y| [(0.07 * y).sin(), 0.0])], 0.0)?;
+    Ok((flood, terrain))
 }

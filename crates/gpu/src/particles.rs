@@ -1,0 +1,73 @@
+//! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
+//! nothing comes to the host.
+
+use crate::{Gpu, GpuError, read, storage};
+
+/// The piece `device_particles`: a buffer of particles as shaders have it.
+pub const DEVICE_PARTICLES: (&str, &str) = ("device_particles", include_str!("device_particles.wgsl"));
+
+/// Bytes before the first particle.
+const HEADER: usize = 16;
+
+/// A particle as the device has it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct DeviceParticle {
+    /// Place from [`DeviceParticles::origin`], m.
+    pub place: [f32; 3],
+    /// Distance to its neighbours, m.
+    pub spacing: f32,
+    /// Velocity, m/s.
+    pub velocity: [f32; 3],
+    /// Depth of the water under it, m; 0 for one in the air.
+    pub depth: f32,
+    /// Its volume, m3; 0 where there is no particle.
+    pub volume: f32,
+    /// Lasting identity: its lowest 32 bits.
+    pub id: u32,
+    /// Nothing.
+    pub unused: [u32; 2],
+}
+
+/// Particles on a device.
+#[derive(Debug, Clone)]
+pub struct DeviceParticles {
+    /// Their number as `u32`, 12 bytes of nothing, and the particles: `DeviceParticles` of the piece. In any order; some may be
+    /// no particles.
+    pub buffer: wgpu::Buffer,
+    /// Particles that there is room for.
+    pub room: usize,
+    /// The place that places are counted from, m.
+    pub origin: [f64; 3],
+    /// How far apart they are on the whole, m: what is made for them is made for this.
+    pub spacing: f64,
+}
+
+impl DeviceParticles {
+    /// Room for so many; still none.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`].
+    pub fn new(gpu: &Gpu, room: usize, origin: [f64; 3], spacing: f64) -> Result<Self, GpuError> {
+        let bytes = HEADER + room.max(1) * size_of::<DeviceParticle>();
+        Ok(Self { buffer: storage::<u8>(gpu, "particles as seen", bytes)?, room, origin, spacing })
+    }
+
+    /// Takes these instead of those before, as many as there is room for.
+    pub fn write(&self, gpu: &Gpu, particles: &[DeviceParticle]) {
+        let count = particles.len().min(self.room);
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&[count as u32, 0, 0, 0]));
+        gpu.queue.write_buffer(&self.buffer, HEADER as u64, bytemuck::cast_slice(&particles[..count]));
+    }
+
+    /// Brings them to the host. Waits for the device.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn read(&self, gpu: &Gpu) -> Result<Vec<DeviceParticle>, GpuError> {
+        let count = read::<u32>(gpu, &self.buffer, 1)?[0] as usize;
+        let bytes = read::<u8>(gpu, &self.buffer, HEADER + count.min(self.room) * size_of::<DeviceParticle>())?;
+        let particles: Vec<DeviceParticle> = bytemuck::pod_collect_to_vec(&bytes[HEADER..]);
+        Ok(particles.into_iter().filter(|particle| particle.volume > 0.0).collect())
+    }
+}

@@ -1,0 +1,169 @@
+//! Water that is drawn where it lies: discs made on the device of particles on the device. Twin of [`Water`](super::Water), in single
+//! precision.
+//!
+//! ```text
+//! begin    how many particles there are                             water_begin.wgsl
+//! count    into cells, by the device's sort                         water_count.wgsl
+//! told     how many are drawn                                       water_told.wgsl
+//! columns  in the order of the cells, with the ground's slope       water_columns.wgsl
+//! settle   what stands too steep is taken down, until none does     water_settle.wgsl, water_settled.wgsl
+//! calm     heights and velocities of planes through neighbours      water_calm.wgsl
+//! discs    in the surface, with the foam that comes now             water_discs.wgsl
+//! foam     spread, and remembered by ids                            water_foam.wgsl
+//! ```
+
+mod kernels;
+mod tasks;
+#[cfg(test)]
+mod twin;
+
+use super::droplet::Batch;
+use super::water::{LIFE, REACH};
+use crate::{HeightField, RenderError, Stage};
+use corpuscle_gpu::{DeviceParticles, Gpu, storage, uniform, wgpu};
+use glam::{DVec2, DVec3};
+use kernels::Kernels;
+use tasks::{Tasks, entries};
+
+/// Cells a particle, and at least, at most.
+const CELLS_A_PARTICLE: usize = 4;
+const FEWEST_CELLS: usize = 65_536;
+
+/// Stands for no height in `water_device.wgsl`.
+const NO_HEIGHT: f32 = 1e30;
+
+/// Where the draw is told, bytes from the start of the slots: see `water_begin.wgsl`.
+const DRAW: u64 = 72;
+
+/// Makes discs of the particles of shallow water on the device, and balls of those in the air. Remembers the foam on them from picture
+/// to picture.
+#[derive(Debug)]
+pub struct DeviceWater {
+    kernels: Kernels,
+    stage: Stage,
+    /// How many times higher than they are heights are drawn.
+    raise: f64,
+    ground: Ground,
+    /// `Water` of water_device.wgsl.
+    settings: wgpu::Buffer,
+    /// For the particles drawn last.
+    drawn: Option<(DeviceParticles, Tasks)>,
+    /// Of the last picture, s.
+    time: Option<f64>,
+}
+
+/// The ground's nodes on the device.
+#[derive(Debug)]
+struct Ground {
+    heights: wgpu::Buffer,
+    corner: DVec2,
+    per_metre: DVec2,
+    nodes: [u32; 2],
+}
+
+/// `Water` of water_device.wgsl.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
+struct Settings {
+    shift: [f32; 3],
+    raise: f32,
+    corner: [f32; 2],
+    per_cell: f32,
+    unit: f32,
+    ground_corner: [f32; 2],
+    ground_per_metre: [f32; 2],
+    ground_nodes: [u32; 2],
+    columns: u32,
+    rows: u32,
+    room: u32,
+    memory: u32,
+    left: f32,
+    unused: f32,
+}
+
+impl DeviceWater {
+    /// Water on a stage, on ground whose heights are drawn `raise` times higher than they are, as those of the field are already.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] for more nodes than the device can hold.
+    pub fn new(gpu: &Gpu, stage: &Stage, field: &HeightField, raise: f64) -> Result<Self, RenderError> {
+        let heights = storage::<f32>(gpu, "heights of the ground", field.heights.len())?;
+        let known = |height: &f32| if height.is_finite() { *height } else { NO_HEIGHT };
+        let known: Vec<f32> = field.heights.iter().map(known).collect();
+        gpu.queue.write_buffer(&heights, 0, bytemuck::cast_slice(&known));
+        let ground = Ground {
+            heights,
+            corner: DVec2::from(field.origin) - stage.centre().truncate(),
+            per_metre: 1.0 / DVec2::from(field.cell),
+            nodes: field.nodes.map(|count| count as u32),
+        };
+        let settings = uniform(gpu, "water", &Settings::default());
+        Ok(Self { kernels: Kernels::new(gpu), stage: *stage, raise, ground, settings, drawn: None, time: None })
+    }
+
+    /// Takes these particles at a time, s, not before that of the last call. What is made of them follows on the device.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] for more particles than there is room for.
+    pub fn update(&mut self, gpu: &Gpu, time: f64, particles: &DeviceParticles) -> Result<(), RenderError> {
+        let settings = self.settings(time, particles);
+        if self.drawn.as_ref().is_none_or(|(drawn, _)| drawn.buffer != particles.buffer) {
+            let cells = most_cells(particles) + 2;
+            let tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground.heights, &self.settings)?;
+            self.drawn = Some((particles.clone(), tasks));
+        }
+        self.time = Some(time);
+        gpu.queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&settings));
+        if let Some((_, tasks)) = &mut self.drawn {
+            tasks.run(gpu);
+        }
+        Ok(())
+    }
+
+    /// The particles as they are drawn; nothing before the first update.
+    pub(super) fn droplets(&self) -> Option<Batch> {
+        let (_, tasks) = self.drawn.as_ref()?;
+        Some(Batch::Told { instances: tasks.instances.clone(), told: tasks.groups.clone(), at: DRAW })
+    }
+
+    fn settings(&self, time: f64, particles: &DeviceParticles) -> Settings {
+        let Self { stage, ground, .. } = self;
+        let half = 0.5 * (stage.to - stage.from).truncate();
+        let [x, y, z] = particles.origin;
+        let shift = DVec3::new(x, y, self.raise * z) - stage.centre();
+        let [columns, rows, cell] = cells(half, particles);
+        Settings {
+            shift: shift.as_vec3().into(),
+            raise: self.raise as f32,
+            corner: (-half).as_vec2().into(),
+            per_cell: (1.0 / cell) as f32,
+            unit: (1.0 / stage.unit()) as f32,
+            ground_corner: ground.corner.as_vec2().into(),
+            ground_per_metre: ground.per_metre.as_vec2().into(),
+            ground_nodes: ground.nodes,
+            columns: columns as u32,
+            rows: rows as u32,
+            room: particles.room as u32,
+            memory: entries(particles.room) as u32 - 1,
+            left: self.time.map_or(0.0, |before| (-(time - before).max(0.0) / LIFE).exp()) as f32,
+            unused: 0.0,
+        }
+    }
+}
+
+fn most_cells(particles: &DeviceParticles) -> usize {
+    (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS)
+}
+
+/// Columns and rows of cells over twice `half` m, and their size, m: as wide as a particle looks, or wider where there would be too many.
+fn cells(half: DVec2, particles: &DeviceParticles) -> [f64; 3] {
+    let most = most_cells(particles) as f64;
+    let mut cell = REACH * particles.spacing;
+    loop {
+        let [columns, rows] = [half.x, half.y].map(|half| (2.0 * half / cell).floor() + 1.0);
+        if columns * rows <= most {
+            return [columns, rows, cell];
+        }
+        cell *= 1.1;
+    }
+}

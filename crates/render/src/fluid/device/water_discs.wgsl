@@ -1,0 +1,80 @@
+// Discs that lie in the water's surface, and the foam that comes on them now; balls of what is in the air. Twin of `disc` and `in_air`
+// in `water.rs`.
+#import water_planes
+
+@group(0) @binding(4) var<storage, read> matter: array<vec4u>;
+// A particle as it is drawn: `Instance` of droplet.rs.
+struct Instance {
+    place: vec3f,
+    radius: f32,
+    normal: vec3f,
+    flatness: f32,
+    matter: vec4f,
+}
+@group(0) @binding(5) var<storage, read_write> instances: array<Instance>;
+@group(0) @binding(6) var<storage, read_write> foam: array<f32>;
+
+const PI = 3.14159265;
+// Radius of the discs, in distances between particles, and their thickness over their width.
+const DISC = 1.4;
+const FLATNESS = 0.12;
+// See `water.rs`.
+const TRAPPED = vec2f(1.2, 5.0);
+const CLOSED = vec2f(1.6, 2.8);
+const ENERGY = vec2f(0.5, 6.0);
+// Foam on what is in the air.
+const SPRAY = 0.15;
+// Ids by which patterns of foam differ.
+const PATTERNS = 4096u;
+
+// Where a value is between two: 0 at the first, 1 at the second.
+fn part(value: f32, between: vec2f) -> f32 {
+    return clamp((value - between.x) / (between.y - between.x), 0.0, 1.0);
+}
+
+fn volume(i: u32) -> f32 {
+    return bitcast<f32>(matter[i].x);
+}
+
+fn pattern(i: u32) -> f32 {
+    return f32(matter[i].y % PATTERNS);
+}
+
+fn in_air(i: u32) -> Instance {
+    let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
+    let place = water.unit * sites[i].xyz;
+    return Instance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
+}
+
+fn disc(i: u32) -> Instance {
+    let own = sites[i];
+    let fit = fit_at(i);
+    var slope = vec2f(fit.east.x, fit.north.x);
+    slope *= min(1.0, STEEPEST / max(length(slope), 1e-12));
+    let normal = normalize(vec3f(-slope, 1.0));
+    let radius = DISC * own.w;
+    let reach = REACH * own.w;
+    let middle = vec3f(own.xy, fit.here.x) - FLATNESS * radius * normal;
+    // How fast the water of a disc runs together.
+    let closing = -(fit.east.y + fit.north.z) * reach;
+    let velocity = bitcast<vec2f>(matter[i].zw);
+    foam[i] = part(closing, TRAPPED) * part(0.5 * dot(velocity, velocity), ENERGY) * part(fit.weight, CLOSED);
+    let depth = 4.0 * volume(i) / (PI * reach * reach);
+    return Instance(
+        water.unit * middle,
+        water.unit * radius,
+        normal,
+        FLATNESS,
+        vec4f(depth, 0.0, water.unit * reach, pattern(i)),
+    );
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i < start[of_ground(water)] {
+        instances[i] = disc(i);
+    } else if i < start[of_ground(water) + 1u] {
+        instances[i] = in_air(i);
+    }
+}

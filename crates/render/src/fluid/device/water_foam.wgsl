@@ -1,0 +1,55 @@
+// Foam spreads, and single particles are not flecked; it is what comes now, or what is left of what was. Twin of `foam_around` and
+// `Water::keep_foam` in `water.rs`.
+#import water_device
+
+@group(0) @binding(0) var<uniform> water: Water;
+@group(0) @binding(1) var<storage, read> start: array<u32>;
+@group(0) @binding(2) var<storage, read> sites: array<vec4f>;
+@group(0) @binding(3) var<storage, read> matter: array<vec4u>;
+@group(0) @binding(4) var<storage, read> foam: array<f32>;
+@group(0) @binding(5) var<storage, read> before: array<f32>;
+// Bits of what will be before: of numbers that are not negative, the greater has the greater bits. Where particles share a place in the
+// memory, the most foam stays, whichever comes first.
+@group(0) @binding(6) var<storage, read_write> after: array<atomic<u32>>;
+// Particles as they are drawn, of twelve numbers: `Instance` of droplet.rs.
+@group(0) @binding(7) var<storage, read_write> instances: array<f32>;
+
+// Less foam is forgotten.
+const LEAST = 0.01;
+// Where foam stands in an instance.
+const NUMBERS = 12u;
+const FOAM = 9u;
+
+fn foam_around(i: u32) -> f32 {
+    let own = sites[i];
+    let reach = REACH * own.w;
+    let low = cell_at(water, own.xy - reach);
+    let high = cell_at(water, own.xy + reach);
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var row = low.y; row <= high.y; row++) {
+        let end = start[row * water.columns + high.x + 1u];
+        for (var k = start[row * water.columns + low.x]; k < end; k++) {
+            let away = sites[k].xy - own.xy;
+            let left = max(1.0 - dot(away, away) / (reach * reach), 0.0);
+            let share = left * left * left;
+            sum += share * foam[k];
+            weights += share;
+        }
+    }
+    return sum / weights;
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    if i >= start[of_ground(water)] {
+        return;
+    }
+    let slot = matter[i].y & water.memory;
+    let now = max(foam_around(i), water.left * before[slot]);
+    instances[NUMBERS * i + FOAM] = now;
+    if now > LEAST {
+        atomicMax(&after[slot], bitcast<u32>(now));
+    }
+}
