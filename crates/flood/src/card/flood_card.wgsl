@@ -85,7 +85,7 @@ struct Parameters {
     widest: f32,
     smallest: f32,
     largest: f32,
-    // Where lists of neighbours begin, how far the next entry of one is off, and how many neighbours a list takes: see `flood_near`.
+    // Where lists of neighbours begin, how far the next four numbers of one are off, and how many neighbours a list takes: see `flood_near`.
     near_first: u32,
     near_stride: u32,
     most_near: u32,

@@ -25,7 +25,7 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     var number = 0.0;
     var weighted = 0.0;
     var r_slope = 0.0;
-    var listed = 0u;
+    var notes: Notes;
     let mirrors = mirrors_round(parameters, place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
@@ -47,10 +47,7 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
                 if !is_near || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
                     continue;
                 }
-                listed += 1u;
-                if listed <= parameters.most_near {
-                    neighbours[place_in_list(listed, i)] = j | (k << MIRROR_BITS);
-                }
+                note(&notes, i, j, k);
                 if r >= 2.0 * h {
                     continue;
                 }
@@ -61,7 +58,7 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
             }
         }
     }
-    neighbours[place_in_list(0u, i)] = listed;
+    finish_notes(notes, i);
     number += own;
     return vec3f(number, own + weighted / weight, (r_slope - 2.0 * number) / h);
 }

@@ -74,7 +74,7 @@ pub(super) struct Parameters {
     pub widest: f32,
     pub smallest: f32,
     pub largest: f32,
-    /// Lists of neighbours: where they begin, how far the next entry of one is off, and how many neighbours a list takes.
+    /// Lists of neighbours: where they begin, how far the next four numbers of one are off, and how many neighbours a list takes.
     pub near_first: u32,
     pub near_stride: u32,
     pub most_near: u32,

@@ -43,7 +43,7 @@ const FEWEST_CELLS: usize = 65_536;
 const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
 
 /// Neighbours that a particle keeps a list of, at most: few have more.
-const MOST_NEAR: usize = 36;
+const MOST_NEAR: usize = 35;
 
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
@@ -53,8 +53,8 @@ fn most_near(gpu: &Gpu, count: usize, cells: usize, setting: &Setting<'_>) -> us
     if setting.paper.is_some() {
         return 0;
     }
-    let entries = (gpu.most_bytes() / 4) as usize;
-    (entries.saturating_sub(cells) / count.max(1)).saturating_sub(1).min(MOST_NEAR)
+    let fours = (gpu.most_bytes() / 16) as usize;
+    (4 * (fours.saturating_sub(cells.div_ceil(4)) / count.max(1))).saturating_sub(1).min(MOST_NEAR)
 }
 
 /// Water on a card.
@@ -123,7 +123,7 @@ impl Card {
         let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
         let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
         let most_near = most_near(&gpu, count, most_cells, setting);
-        parameters.near_first = most_cells as u32;
+        parameters.near_first = most_cells.div_ceil(4) as u32;
         parameters.near_stride = count as u32;
         parameters.most_near = most_near as u32;
         let tasks = Tasks::new(

@@ -100,8 +100,8 @@ impl Tasks {
         let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
         let own = storage::<f32>(gpu, "reaches", cells)?;
         let along_rows = storage::<f32>(gpu, "reaches of rows", cells)?;
-        // Reaches in cells come first.
-        let near = storage::<u32>(gpu, "neighbours", cells + count * (1 + most_near))?;
+        // Reaches in cells come first, and each list begins with its length.
+        let near = storage::<[u32; 4]>(gpu, "neighbours", cells.div_ceil(4) + count * (1 + most_near).div_ceil(4))?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
         let pushes = if walls.count > 0 { Walls::pushes(gpu, count)? } else { storage::<[f32; 4]>(gpu, "pushes", 0)? };
         let of_particles = [&pushes, &particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];

@@ -340,7 +340,8 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
             pool.use_card(gpu.clone()).unwrap();
             pool.card.as_mut().unwrap().list(most);
             pool.advance_to(1.0, &AtomicBool::new(false)).unwrap();
-            pool.save()
+            // What the clock shows depends, in its last digits, on how many steps were ordered at once.
+            pool.state.particles
         });
         assert!(all == some && all == none);
     }
