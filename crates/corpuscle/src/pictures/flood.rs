@@ -140,16 +140,16 @@ impl FloodPicture {
                     none => none.insert(DeviceWater::new(gpu, &self.stage, field, self.heights)?),
                 };
                 water.update(gpu, time, particles)?;
+                self.sides.draw_from(water);
                 fluid.draw_from(water);
-                things.push(fluid);
             } else {
                 let water = &mut self.water;
                 let droplets: Vec<Droplet> =
                     sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
                 self.sides.fill(gpu, &self.field, &droplets);
                 fluid.fill(gpu, droplets);
-                things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
             }
+            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
         }
         studio.take(&self.stage, &camera, &light, &mut things, overlay)
     }
