@@ -351,6 +351,9 @@ pub struct BenchOptions {
     /// Less time for each: a quick look, with more scatter
     #[arg(long)]
     pub quick: bool,
+    /// Time each pass of a step on the graphics card too
+    #[arg(long)]
+    pub passes: bool,
     /// Floods on the graphics card: pictures a second as well, 1920 x 1080, one a step
     #[arg(long)]
     pub draw: bool,

@@ -6,17 +6,21 @@ use crate::args::{Backend, BenchOptions};
 use crate::output::{number, print, print_json};
 use crate::select::select;
 use corpuscle::gpu::Gpu;
-use corpuscle_validate::{Rate, benches};
+use corpuscle_validate::{PassTime, Rate, benches};
 use std::process::ExitCode;
 
 /// Measures rates and prints them as they come.
 pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let gpu = if options.backend == Backend::Gpu { Some(Gpu::open().map_err(corpuscle::Error::from)?) } else { None };
-    let with = corpuscle_validate::BenchOptions { quick: options.quick, gpu };
+    let with = corpuscle_validate::BenchOptions { quick: options.quick, passes: options.passes && gpu.is_some(), gpu };
     let mut rates = Vec::new();
     for bench in select(benches(), |bench| bench.name, &options.names)? {
         if with.gpu.is_some() && bench.name.starts_with("gas/") {
             eprintln!("{} left out: it computes on the CPU only", bench.name);
+            continue;
+        }
+        if with.gpu.is_none() && bench.needs_card {
+            eprintln!("{} left out: it is for a graphics card", bench.name);
             continue;
         }
         let drawn = match &with.gpu {
@@ -39,14 +43,20 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// A rate as people read it.
+/// A rate as people read it, with what its passes take.
 fn line(rate: &Rate) -> String {
     let Rate { name, particles, dimensions, threads, rate_unit, .. } = rate;
     let on = rate.device.clone().unwrap_or_else(|| format!("{threads} threads"));
     let packing = rate.packing.map(|packing| format!(", packing {packing}")).unwrap_or_default();
-    format!(
-        "{name:28} {:>11} {rate_unit}  ({particles} particles, {dimensions}D{packing}, {on}, {} bytes a particle)\n",
-        number(rate.rate),
-        number(rate.bytes_per_particle)
-    )
+    let of_what = match particles {
+        0 => on,
+        _ => format!(
+            "{particles} particles, {dimensions}D{packing}, {on}, {} bytes a particle",
+            number(rate.bytes_per_particle)
+        ),
+    };
+    let passes = rate.passes.iter().map(|PassTime { name, times_a_step, seconds_a_step }| {
+        format!("    {name:24} {:>11} µs a step  ({} times)\n", number(1e6 * seconds_a_step), number(*times_a_step))
+    });
+    format!("{name:28} {:>11} {rate_unit}  ({of_what})\n{}", number(rate.rate), passes.collect::<String>())
 }

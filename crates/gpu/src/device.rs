@@ -47,6 +47,10 @@ impl Faults {
 }
 
 impl Gpu {
+    /// What a device must have to time kernels; it is asked for where it is there, and nothing but [`crate::Stopwatch`] needs it.
+    pub(crate) const TIMING: wgpu::Features =
+        wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+
     /// Opens the best device: a card of its own, then one built in, then software. The first that keeps to the portable floor
     /// is taken.
     ///
@@ -85,10 +89,11 @@ impl Gpu {
         Self { device, queue, name: info.name, kind, faults }
     }
 
-    /// What a device is asked for: the portable floor, and as much memory as there is.
+    /// What a device is asked for: the portable floor, as much memory as there is, and its clock if it has one.
     pub fn request(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
+            required_features: adapter.features() & Self::TIMING,
             required_limits: limits(&adapter.limits(), Self::rank(adapter) == rank(wgpu::DeviceType::Cpu)),
             ..wgpu::DeviceDescriptor::default()
         }

@@ -1,6 +1,6 @@
 //! Programs that compute.
 
-use crate::{Gpu, GpuKind, ShaderLibrary, join};
+use crate::{Gpu, GpuKind, Pass, ShaderLibrary, join};
 
 /// Threads in a group of every kernel that has one thread for each particle or cell.
 pub const THREADS: u32 = 256;
@@ -18,6 +18,7 @@ pub struct Kernel {
 /// A kernel with what it works on.
 #[derive(Debug)]
 pub struct Task {
+    name: &'static str,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
 }
@@ -64,7 +65,7 @@ impl Kernel {
             layout: &self.pipeline.get_bind_group_layout(0),
             entries: &entries,
         });
-        Task { pipeline: self.pipeline.clone(), bindings }
+        Task { name: self.name, pipeline: self.pipeline.clone(), bindings }
     }
 }
 
@@ -80,19 +81,21 @@ fn for_device(gpu: &Gpu, text: String) -> String {
 
 impl Task {
     /// Does it with so many groups of threads.
-    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, groups: u32) {
+    pub fn run(&self, pass: &mut Pass<'_>, groups: u32) {
         self.set(pass);
-        pass.dispatch_workgroups(groups, 1, 1);
+        pass.pass.dispatch_workgroups(groups, 1, 1);
+        pass.mark(self.name);
     }
 
     /// Does it with as many groups as the three numbers at `slot` of `groups` say, each slot being 12 bytes: the device itself decides.
-    pub fn run_as_told(&self, pass: &mut wgpu::ComputePass<'_>, groups: &wgpu::Buffer, slot: u64) {
+    pub fn run_as_told(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slot: u64) {
         self.set(pass);
-        pass.dispatch_workgroups_indirect(groups, 12 * slot);
+        pass.pass.dispatch_workgroups_indirect(groups, 12 * slot);
+        pass.mark(self.name);
     }
 
-    fn set(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bindings, &[]);
+    fn set(&self, pass: &mut Pass<'_>) {
+        pass.pass.set_pipeline(&self.pipeline);
+        pass.pass.set_bind_group(0, &self.bindings, &[]);
     }
 }

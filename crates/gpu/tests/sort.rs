@@ -1,6 +1,6 @@
 //! The counting sort on the device sorts as one sorts.
 
-use corpuscle_gpu::{CellSort, Gpu, SortSlots, THREADS, read, require_gpu, sort_blocks, storage, wgpu};
+use corpuscle_gpu::{CellSort, Gpu, Pass, SortSlots, THREADS, read, require_gpu, sort_blocks, storage, wgpu};
 
 /// Sorts particles of the given cells, with keys that run against their numbers; `order` and `start`.
 fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
@@ -23,7 +23,7 @@ fn sorted(gpu: &Gpu, cell_of: &[u32], cells: usize) -> (Vec<u32>, Vec<u32>) {
     write(&sort.counts, bytemuck::cast_slice(&counts));
     write(&sort.places, bytemuck::cast_slice(&places));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+    let mut pass = Pass::begin(&mut encoder, None);
     sort.sort(&mut pass, &groups, SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 });
     drop(pass);
     gpu.queue.submit([encoder.finish()]);

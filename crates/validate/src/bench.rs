@@ -1,9 +1,12 @@
 //! What a bench is and what it gives.
 
-use corpuscle_gpu::Gpu;
-use corpuscle_model::ModelError;
+use corpuscle_dew::Dew;
+use corpuscle_flood::Flood;
+use corpuscle_gpu::{Gpu, Taken};
+use corpuscle_model::{Model, ModelError};
 use serde::Serialize;
 use std::sync::LazyLock;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// A rate measured on this machine.
@@ -29,6 +32,20 @@ pub struct Rate {
     pub rate_unit: String,
     /// Memory of the model over its particles.
     pub bytes_per_particle: f64,
+    /// What each pass of a step takes on the card, where that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub passes: Vec<PassTime>,
+}
+
+/// What a pass takes on a graphics card.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassTime {
+    /// The name of its kernel.
+    pub name: &'static str,
+    /// How often it is done in a step.
+    pub times_a_step: f64,
+    /// Time in a step by the card's own clock, s.
+    pub seconds_a_step: f64,
 }
 
 /// A scene whose cost matters.
@@ -38,6 +55,8 @@ pub struct Bench {
     pub name: &'static str,
     /// What it measures, in a sentence.
     pub about: &'static str,
+    /// Whether it is for a graphics card only.
+    pub needs_card: bool,
     /// Runs it.
     pub run: fn(&BenchOptions) -> Vec<Rate>,
 }
@@ -49,49 +68,127 @@ pub struct BenchOptions {
     pub quick: bool,
     /// The graphics card to compute on; else the CPU.
     pub gpu: Option<Gpu>,
+    /// Whether each pass of a step is timed on the card.
+    pub passes: bool,
 }
 
 /// All benches.
 pub fn benches() -> &'static [Bench] {
     static ALL: LazyLock<Vec<Bench>> = LazyLock::new(|| {
-        [crate::flood::bench::BENCHES, crate::gas::bench::BENCHES, crate::dew::bench::BENCHES].concat()
+        use crate::{card_copy, dew, flood, gas};
+        [flood::bench::BENCHES, gas::bench::BENCHES, dew::bench::BENCHES, card_copy::BENCHES].concat()
     });
     &ALL
 }
 
-/// Time spent on steps: the wall clock's, or what a card says.
-pub(crate) struct Clock {
-    /// The card, where one takes the steps.
-    pub device: Option<String>,
-    began: Instant,
-    before: f64,
+/// A model whose steps are counted, here or on a card.
+pub(crate) trait Stepped: Model {
+    /// Time of the next step, s.
+    fn time_step(&self) -> f64;
+    /// Bytes held on the CPU.
+    fn bytes(&self) -> usize;
+    /// Lets a card take the steps.
+    fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError>;
+    /// What the card spent on steps, s.
+    fn seconds_on_card(&self) -> Option<f64>;
+    /// Bytes held on the card.
+    fn bytes_on_card(&self) -> Option<u64>;
+    /// From now on passes are timed.
+    fn time_passes(&mut self);
+    /// What they have taken since.
+    fn pass_times(&self) -> Vec<(&'static str, Taken)>;
 }
 
-impl Clock {
-    /// Has the card take the steps by `use_card`, where one is to; none where it cannot, which it tells.
-    pub fn start(options: &BenchOptions, use_card: impl FnOnce(Gpu) -> Result<(), ModelError>) -> Option<Self> {
-        if let Some(Err(error)) = options.gpu.clone().map(use_card) {
+macro_rules! stepped {
+    ($model:ty) => {
+        impl Stepped for $model {
+            fn time_step(&self) -> f64 {
+                self.time_step()
+            }
+            fn bytes(&self) -> usize {
+                self.bytes()
+            }
+            fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+                self.use_card(gpu)
+            }
+            fn seconds_on_card(&self) -> Option<f64> {
+                self.seconds_on_card()
+            }
+            fn bytes_on_card(&self) -> Option<u64> {
+                self.bytes_on_card()
+            }
+            fn time_passes(&mut self) {
+                self.time_passes();
+            }
+            fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+                self.pass_times()
+            }
+        }
+    };
+}
+
+stepped!(Flood);
+stepped!(Dew);
+
+/// How a rate is measured.
+pub(crate) struct Measuring {
+    pub name: &'static str,
+    pub dimensions: usize,
+    /// Steps before the clock is started.
+    pub settling: u64,
+    /// Steps between two looks at the clock: here, and on a card, where each look brings the state back.
+    pub steps: [f64; 2],
+    /// Wall-clock time, s.
+    pub seconds: f64,
+}
+
+impl Measuring {
+    /// The rate of a model, or none with a line that says so where the card cannot compute it.
+    pub fn rate<M: Stepped>(&self, mut model: M, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
+        if let Some(Err(error)) = options.gpu.clone().map(|gpu| model.use_card(gpu)) {
             eprintln!("left out: {error}");
-            return None;
+            return Ok(None);
         }
         let device = options.gpu.as_ref().map(|gpu| gpu.name.clone());
-        Some(Self { device, began: Instant::now(), before: 0.0 })
-    }
-
-    /// Starts from 0; `on_card` is the time that the card says it has spent, s.
-    pub fn restart(&mut self, on_card: Option<f64>) {
-        self.began = Instant::now();
-        self.before = on_card.unwrap_or(0.0);
-    }
-
-    /// Seconds since; `on_card` is the time that the card says it has spent, s.
-    pub fn seconds(&self, on_card: Option<f64>) -> f64 {
-        let on_card = on_card.map(|busy| busy - self.before);
-        on_card.unwrap_or_else(|| self.began.elapsed().as_secs_f64())
-    }
-
-    /// Threads of the CPU that took the steps.
-    pub fn threads(&self) -> usize {
-        if self.device.is_some() { 0 } else { rayon::current_num_threads() }
+        let steps = self.steps[usize::from(device.is_some())];
+        let ahead = |model: &mut M| model.advance_to(model.time() + steps * model.time_step(), &AtomicBool::new(false));
+        while model.steps() < self.settling {
+            ahead(&mut model)?;
+        }
+        let (began, busy, before) = (Instant::now(), model.seconds_on_card(), model.particle_steps());
+        let spent = |model: &M| match (model.seconds_on_card(), busy) {
+            (Some(now), Some(before)) => now - before,
+            _ => began.elapsed().as_secs_f64(),
+        };
+        while spent(&model) < if options.quick { 0.2 * self.seconds } else { self.seconds } {
+            ahead(&mut model)?;
+        }
+        let particles = model.particles();
+        let mut rate = Rate {
+            name: self.name.into(),
+            particles,
+            dimensions: self.dimensions,
+            packing: None,
+            threads: if device.is_some() { 0 } else { rayon::current_num_threads() },
+            rate: (model.particle_steps() - before) as f64 / spent(&model),
+            rate_unit: "particle_steps_per_s".into(),
+            bytes_per_particle: model.bytes_on_card().unwrap_or(model.bytes() as u64) as f64 / particles as f64,
+            device,
+            passes: Vec::new(),
+        };
+        if options.passes {
+            let steps = model.steps();
+            model.time_passes();
+            ahead(&mut model)?;
+            let steps = (model.steps() - steps) as f64;
+            let a_step = |(name, taken): (&'static str, Taken)| PassTime {
+                name,
+                times_a_step: f64::from(taken.times) / steps,
+                seconds_a_step: taken.total.as_secs_f64() / steps,
+            };
+            rate.passes = model.pass_times().into_iter().map(a_step).collect();
+            rate.passes.sort_by(|a, b| b.seconds_a_step.total_cmp(&a.seconds_a_step));
+        }
+        Ok(Some(rate))
     }
 }

@@ -4,12 +4,13 @@
 //! A [`Bench`] runs a scene whose cost matters and gives [`Rate`]s.
 
 mod bench;
+mod card_copy;
 mod case;
 mod device;
 mod dew;
 mod flood;
 mod gas;
 
-pub use bench::{Bench, BenchOptions, Rate, benches};
+pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
 pub use case::{Case, Options, Row, cases};
 pub use flood::bench::bench_water;

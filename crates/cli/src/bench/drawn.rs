@@ -49,6 +49,7 @@ pub(super) fn drawn(name: &str, gpu: &Gpu, is_quick: bool) -> anyhow::Result<Opt
         rate: pace.rate()?,
         rate_unit: "pictures_per_s".into(),
         bytes_per_particle: flood.bytes_on_card().unwrap_or(0) as f64 / particles as f64,
+        passes: Vec::new(),
     }))
 }
 

@@ -18,7 +18,7 @@ pub(crate) use layout::MOST_FANS;
 use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
 use bytemuck::Zeroable;
-use corpuscle_gpu::{Gpu, GpuError, read, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Pass, Stopwatch, read, wgpu};
 use layout::{
     CardBody, CardParticle, CardRow, CardSolid, CardWater, MOST_STEPS, OutsideColumn, Parameters, Status, TURN,
 };
@@ -49,6 +49,8 @@ pub(crate) struct Card {
     ahead: bool,
     /// Wall-clock time spent on steps, s.
     pub busy: f64,
+    /// Where passes are timed.
+    pub stopwatch: Option<Stopwatch>,
     /// Batches of steps until the device is lost.
     #[cfg(test)]
     pub lost_after: Option<u32>,
@@ -123,6 +125,7 @@ impl Card {
             held_before,
             ahead: false,
             busy: 0.0,
+            stopwatch: None,
             #[cfg(test)]
             lost_after: None,
         })
@@ -240,13 +243,15 @@ impl Card {
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dew") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
         self.tasks.steps(&mut pass, count);
         drop(pass);
+        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
         self.busy += began.elapsed().as_secs_f64();
+        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies))
     }

@@ -5,7 +5,9 @@ use super::layout::{
     OutsideColumn, Parameters, Partial, Status, Surface,
 };
 use super::solids::{CardSolids, filled};
-use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu};
+use corpuscle_gpu::{
+    CellSort, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
+};
 
 /// Pieces that the shaders import.
 const LIBRARY: &[(&str, &str)] = &[
@@ -147,14 +149,14 @@ impl Tasks {
     }
 
     /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
-    pub fn steps(&self, pass: &mut wgpu::ComputePass<'_>, count: u32) {
+    pub fn steps(&self, pass: &mut Pass<'_>, count: u32) {
         self.finish.run(pass, 1);
         for _ in 0..count {
             self.step(pass);
         }
     }
 
-    fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
+    fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.groups;
         self.drift.run_as_told(pass, groups, SLOTS.particles);
         if let Some(let_in) = &self.let_in {

@@ -5,7 +5,7 @@ use crate::card::{Card, Crossed, MOST_FANS, Progress};
 use crate::faces::deepest_outside;
 use crate::room::Face;
 use crate::wetting::WettingState;
-use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::ModelError;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -38,6 +38,18 @@ impl Dew {
     /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
     pub fn seconds_on_card(&self) -> Option<f64> {
         self.card.as_ref().map(|card| card.busy)
+    }
+
+    /// From now on the card times its passes, which makes them wait for one another. Nothing changes where it has no clock.
+    pub fn time_passes(&mut self) {
+        if let Some(card) = &mut self.card {
+            card.stopwatch = Stopwatch::new(&card.gpu());
+        }
+    }
+
+    /// What each pass has taken on the card since [`Dew::time_passes`].
+    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+        self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
     }
 
     /// Bytes held on the card.

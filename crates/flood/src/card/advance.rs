@@ -4,7 +4,7 @@ use super::layout::{self, CardBirth, Grid, Status};
 use super::tasks::Tasks;
 use super::{Card, Shown};
 use crate::rain::Ground;
-use corpuscle_gpu::{DeviceParticles, GpuError, read, wgpu};
+use corpuscle_gpu::{DeviceParticles, GpuError, Pass, read, wgpu};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -178,6 +178,7 @@ impl Card {
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let took = began.elapsed().as_secs_f64();
         self.busy += took;
+        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         if watch.is_none() {
             let next = if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) };
             self.batch = next.min(LAID_OUT as u32);
@@ -188,17 +189,18 @@ impl Card {
     }
 
     /// Has the device do something.
-    fn order(&self, task: impl FnOnce(&Tasks, &mut wgpu::ComputePass<'_>)) {
+    fn order(&mut self, task: impl FnOnce(&Tasks, &mut Pass<'_>)) {
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("flood") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
         task(&self.tasks, &mut pass);
         drop(pass);
+        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
     }
 
     /// Orders so many steps from the time `now` s on, one by one, and shows what each leaves.
-    fn order_watched(&self, count: u32, now: f64, watch: &mut Watch<'_>) -> Result<(), GpuError> {
+    fn order_watched(&mut self, count: u32, now: f64, watch: &mut Watch<'_>) -> Result<(), GpuError> {
         for step in 0..count {
             self.order(|tasks, pass| if step == 0 { tasks.steps(pass, 1) } else { tasks.step(pass) });
             let time = now + f64::from(step + 1) * f64::from(self.status.step);

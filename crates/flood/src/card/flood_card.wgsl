@@ -85,9 +85,10 @@ struct Parameters {
     widest: f32,
     smallest: f32,
     largest: f32,
-    unused_a: f32,
-    unused_b: f32,
-    unused_c: f32,
+    // Where lists of neighbours begin, how far the next entry of one is off, and how many neighbours a list takes: see `flood_near`.
+    near_first: u32,
+    near_stride: u32,
+    most_near: u32,
 }
 
 const BALANCED = 0u;
@@ -113,6 +114,31 @@ struct Particle {
     surface_slope: vec2f,
     id: u32,
     outside: u32,
+}
+
+// A particle as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
+struct Packed {
+    place_and_velocity: vec4u,
+    acceleration_and_volume: vec4u,
+    h_and_depth: vec4u,
+    slope_and_id: vec4u,
+}
+
+fn unpacked(packed: Packed) -> Particle {
+    let a = bitcast<vec4f>(packed.place_and_velocity);
+    let b = bitcast<vec4f>(packed.acceleration_and_volume);
+    let c = bitcast<vec4f>(packed.h_and_depth);
+    let d = packed.slope_and_id;
+    return Particle(a.xy, a.zw, b.xy, b.z, b.w, c.x, c.y, c.z, c.w, bitcast<vec2f>(d.xy), d.z, d.w);
+}
+
+fn packed(particle: Particle) -> Packed {
+    return Packed(
+        bitcast<vec4u>(vec4f(particle.place, particle.velocity)),
+        bitcast<vec4u>(vec4f(particle.acceleration, particle.volume, particle.weight)),
+        bitcast<vec4u>(vec4f(particle.h, particle.next_h, particle.depth, particle.ground)),
+        vec4u(bitcast<vec2u>(particle.surface_slope), particle.id, particle.outside),
+    );
 }
 
 // A sum that does not forget what is small (Kahan 1965): the sum and what it lacks.

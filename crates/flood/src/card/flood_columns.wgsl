@@ -12,21 +12,62 @@ struct Column {
     per_h: f32,
 }
 
+// Columns as they lie in memory, sixteen bytes at a time, as `Packed`: who looks for neighbours needs the first half of those out of reach.
+struct PackedColumn {
+    place_area_per_h: vec4f,
+    velocity_surface_depth: vec4f,
+}
+
+fn column_of(here: vec4f, water: vec4f) -> Column {
+    return Column(here.xy, water.xy, water.z, water.w, here.z, here.w);
+}
+
+fn unpacked_column(packed: PackedColumn) -> Column {
+    return column_of(packed.place_area_per_h, packed.velocity_surface_depth);
+}
+
+fn packed_column(column: Column) -> PackedColumn {
+    let here = vec4f(column.place, column.area, column.per_h);
+    return PackedColumn(here, vec4f(column.velocity, column.surface, column.depth));
+}
+
 struct Slopes {
     // Renormalisation matrix B (symmetric): xx, xy, yy.
     renormalisation: vec3f,
-    // 1 at rest, 0 in motion.
-    rest: f32,
+    // 1 for what is not of this water.
+    outside: f32,
     surface: vec2f,
     ground: vec2f,
     u: vec2f,
     v: vec2f,
-    wave_speed: f32,
-    // 1 without neighbours, 0 with enough of them.
+    // 1 at rest, 0 in motion; 1 without neighbours, 0 with enough of them: only the particle itself asks for these.
+    rest: f32,
     alone: f32,
-    // 1 for what is not of this water.
-    outside: f32,
-    unused: f32,
+}
+
+// Slopes as they lie in memory.
+struct PackedSlopes {
+    renormalisation_outside: vec4f,
+    surface_and_ground: vec4f,
+    u_and_v: vec4f,
+    rest_and_alone: vec4f,
+}
+
+fn unpacked_slopes(packed: PackedSlopes) -> Slopes {
+    let a = packed.renormalisation_outside;
+    let b = packed.surface_and_ground;
+    let c = packed.u_and_v;
+    let d = packed.rest_and_alone;
+    return Slopes(a.xyz, a.w, b.xy, b.zw, c.xy, c.zw, d.x, d.y);
+}
+
+fn packed_slopes(slopes: Slopes) -> PackedSlopes {
+    return PackedSlopes(
+        vec4f(slopes.renormalisation, slopes.outside),
+        vec4f(slopes.surface, slopes.ground),
+        vec4f(slopes.u, slopes.v),
+        vec4f(slopes.rest, slopes.alone, 0.0, 0.0),
+    );
 }
 
 // The depth in which two particles push each other, at most, over the smaller of theirs.

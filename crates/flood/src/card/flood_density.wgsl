@@ -1,15 +1,13 @@
 // How many particles stand here, so how deep the water is, and the ground under it. Twin of `density.rs` and of `find_depths` and
 // `fill_columns` in `balanced/mod.rs`.
 #import flood_walls
+#import flood_near
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> reaches: array<f32>;
 // Place, weight and reach of each.
 @group(0) @binding(4) var<storage, read> sites: array<vec4f>;
-@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(6) var<storage, read_write> columns: array<Column>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(6) var<storage, read_write> columns: array<PackedColumn>;
 @group(0) @binding(7) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(8) var<storage, read> walls: array<WallSite>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
@@ -17,29 +15,43 @@
 // Least depth beyond an edge whose level falls below the ground, over the depth as it was.
 const SHALLOWEST_STAGE = 1e-3;
 
-// Number density, that of particles like this one, and how the first changes with h.
+// Neighbours within this much more than the reach are written down too: who reads the list rounds otherwise.
+const CLOSE_BY = 1.00001;
+
+// Number density, that of particles like this one, and how the first changes with h. Writes the neighbours down.
 fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
     let per_h = 1.0 / h;
     let own = spline(0.0, per_h);
     var number = 0.0;
     var weighted = 0.0;
     var r_slope = 0.0;
+    var listed = 0u;
     let mirrors = mirrors_round(parameters, place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
         let truth = behind(mirror, place);
-        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
+        let reach = max(longest_reach(truth), 2.0 * h);
         if !sees(mirror, parameters, place, reach) {
             continue;
         }
         let cells = cells_round(parameters.grid, truth, reach);
         for (var row = cells.y; row <= cells.w; row++) {
+            let across = columns_round(parameters.grid, truth, reach, row);
             let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let end = start[line + across.y + 1u];
+            for (var j = start[line + across.x]; j < end; j++) {
                 let site = sites[j];
                 let there = shown(mirror, site.xy);
                 let r = max(distance(there, place), 2e-12 * h);
-                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
+                let is_near = r < CLOSE_BY * max(2.0 * h, site.w);
+                if !is_near || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, site.w)) {
+                    continue;
+                }
+                listed += 1u;
+                if listed <= parameters.most_near {
+                    neighbours[place_in_list(listed, i)] = j | (k << MIRROR_BITS);
+                }
+                if r >= 2.0 * h {
                     continue;
                 }
                 let w = spline(r, per_h);
@@ -49,6 +61,7 @@ fn densities(i: u32, place: vec2f, weight: f32, h: f32) -> vec3f {
             }
         }
     }
+    neighbours[place_in_list(0u, i)] = listed;
     number += own;
     return vec3f(number, own + weighted / weight, (r_slope - 2.0 * number) / h);
 }
@@ -98,7 +111,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    var particle = particles[i];
+    var particle = unpacked(particles[i]);
     let seen = densities(i, particle.place, particle.weight, particle.h);
     let density = beside(seen, coverage(particle.place, particle.h));
     let ground = ground_under(parameters, nodes, particle.place);
@@ -112,7 +125,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ahead = particle.velocity + 0.5 * status.step * particle.acceleration;
     // From here on it holds what obstacles push.
     particle.acceleration = vec2f(0.0);
-    particles[i] = particle;
+    particles[i] = packed(particle);
     let surface = particle.ground + particle.depth;
-    columns[i] = Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h);
+    columns[i] = packed_column(Column(particle.place, ahead, surface, particle.depth, 1.0 / density.y, 1.0 / particle.h));
 }

@@ -6,7 +6,7 @@
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 // Outlines of obstacles: see `flood_outlines`.
 @group(0) @binding(3) var<storage, read> outlines: array<u32>;
 // Impulses of particles that are put back, east and north for each obstacle, in KNOCK; and last how many there were.
@@ -119,9 +119,9 @@ fn main(
     sums[thread] = 0.0;
     let i = id.x;
     if i < status.particles {
-        var particle = particles[i];
+        var particle = unpacked(particles[i]);
         sums[thread] = moved(&particle);
-        particles[i] = particle;
+        particles[i] = packed(particle);
     }
     workgroupBarrier();
     for (var half = 128u; half > 0u; half /= 2u) {

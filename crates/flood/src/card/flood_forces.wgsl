@@ -1,18 +1,16 @@
 // Pair forces, the second half of the step's acceleration, and what a group's particles sum up to. Twin of `balanced/forces.rs`, of
 // `take_over` in `balanced/mod.rs` and of the second push in `flood/step.rs`.
 #import flood_columns
+#import flood_near
 #import flood_friction
 #import flood_sums
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> reaches: array<f32>;
-@group(0) @binding(4) var<storage, read> columns: array<Column>;
-@group(0) @binding(5) var<storage, read> slopes: array<Slopes>;
+@group(0) @binding(4) var<storage, read> columns: array<PackedColumn>;
+@group(0) @binding(5) var<storage, read> slopes: array<PackedSlopes>;
 // Their accelerations are the push of obstacles.
-@group(0) @binding(6) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(7) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(6) var<storage, read> sorted: array<Packed>;
+@group(0) @binding(7) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
 @group(0) @binding(10) var rough: texture_2d<f32>;
@@ -48,80 +46,71 @@ fn on_one(i: u32, own: Column, sloped: Slopes) -> Force {
     let gravity = parameters.gravity;
     let h = 1.0 / own.per_h;
     let ground = own.surface - own.depth;
+    let wave_speed = sqrt(gravity * own.depth);
     let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
     var force = vec2f(0.0);
     var from_outside = vec2f(0.0);
-    let mirrors = mirrors_round(parameters, own.place);
-    for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, parameters);
-        let truth = behind(mirror, own.place);
-        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
-        if !sees(mirror, parameters, own.place, reach) {
+    var walk = walk_round(i);
+    while next_near(&walk, own.place, 2.0 * h) {
+        let mirror = mirror(walk.mirror, parameters);
+        let here = columns[walk.near].place_area_per_h;
+        let there = shown(mirror, here.xy);
+        let e = there - own.place;
+        let r = max(length(e), 2e-12 * h);
+        if r * min(own.per_h, here.w) >= 2.0 || (walk.mirror > 0u && !has_image(mirror, parameters, there, 2.0 / here.w)) {
             continue;
         }
-        let cells = cells_round(parameters.grid, truth, reach);
-        for (var row = cells.y; row <= cells.w; row++) {
-            let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
-                var near = columns[j];
-                let there = shown(mirror, near.place);
-                let e = there - own.place;
-                let r = max(length(e), 2e-12 * h);
-                if r * min(own.per_h, near.per_h) >= 2.0 || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / near.per_h)) {
-                    continue;
-                }
-                var slope = slopes[j];
-                if k > 0u {
-                    slope = mirrored(slope, mirror);
-                    near.surface += step_up(mirror, parameters, nodes, near.place);
-                    near.velocity *= mirror.sign;
-                }
-                let per_r = 1.0 / r;
-
-                // Pair area A = V_i V_j [B_i grad W(h_i) + B_j grad W(h_j)], antisymmetric in i and j.
-                let b = spline_slope(r, own.per_h) * sloped.renormalisation + spline_slope(r, near.per_h) * slope.renormalisation;
-                let area = turned(b, e) * (near.area * own.area * per_r);
-
-                // Reconstruction to the middle, surface and velocity along the pair (positive from i to j).
-                let surface_step = near.surface - own.surface;
-                let surface_i = own.surface + 0.5 * limited(2.0 * dot(e, sloped.surface) - surface_step, surface_step);
-                let surface_j = near.surface - 0.5 * limited(2.0 * dot(e, slope.surface) - surface_step, surface_step);
-                let along_i = dot(e, own.velocity) * per_r;
-                let along_j = dot(e, near.velocity) * per_r;
-                let step = along_j - along_i;
-                let change_i = (e.x * dot(e, sloped.u) + e.y * dot(e, sloped.v)) * per_r;
-                let change_j = (e.x * dot(e, slope.u) + e.y * dot(e, slope.v)) * per_r;
-                let w_i = along_i + 0.5 * limited(2.0 * change_i - step, step);
-                let w_j = along_j - 0.5 * limited(2.0 * change_j - step, step);
-
-                // Ground in the middle from heights and slopes at both ends (cubic Hermite).
-                let bend = dot(sloped.ground - slope.ground, e);
-                var middle = 0.5 * ((near.surface - near.depth) + ground) + 0.125 * bend;
-                middle = max(max(middle, own.surface - SHARED * own.depth), near.surface - SHARED * near.depth);
-
-                // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the acoustic Riemann problem.
-                let depth_i = max(surface_i - middle, 1e-6 * own.depth);
-                let depth_j = max(surface_j - middle, 1e-6 * near.depth);
-                let impedance_i = depth_i * sloped.wave_speed;
-                let impedance_j = depth_j * slope.wave_speed;
-                let per_sum = 1.0 / (impedance_i + impedance_j);
-                let both = impedance_i * impedance_j * per_sum;
-                let pressures = 0.5 * gravity * (impedance_j * depth_i * depth_i + impedance_i * depth_j * depth_j) * per_sum;
-                let pressure = max(pressures + both * (w_i - w_j), 0.0);
-
-                // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
-                let own_depth = max(own.surface - middle, 0.0);
-                let ground_push = own_pressure - 0.5 * gravity * own_depth * own_depth;
-                // Artificial viscosity at signal speed (after Monaghan 1997).
-                let drag = max(dot(area, e) * per_r, 0.0) * both * parameters.viscosity * (own.velocity - near.velocity);
-                force += area * (pressure + ground_push) + drag;
-                from_outside += area * (pressure * slope.outside + ground_push) + drag * slope.outside;
-            }
+        var near = column_of(here, columns[walk.near].velocity_surface_depth);
+        var slope = unpacked_slopes(slopes[walk.near]);
+        if walk.mirror > 0u {
+            slope = mirrored(slope, mirror);
+            near.surface += step_up(mirror, parameters, nodes, near.place);
+            near.velocity *= mirror.sign;
         }
+        let per_r = 1.0 / r;
+
+        // Pair area A = V_i V_j [B_i grad W(h_i) + B_j grad W(h_j)], antisymmetric in i and j.
+        let b = spline_slope(r, own.per_h) * sloped.renormalisation + spline_slope(r, near.per_h) * slope.renormalisation;
+        let area = turned(b, e) * (near.area * own.area * per_r);
+
+        // Reconstruction to the middle, surface and velocity along the pair (positive from i to j).
+        let surface_step = near.surface - own.surface;
+        let surface_i = own.surface + 0.5 * limited(2.0 * dot(e, sloped.surface) - surface_step, surface_step);
+        let surface_j = near.surface - 0.5 * limited(2.0 * dot(e, slope.surface) - surface_step, surface_step);
+        let along_i = dot(e, own.velocity) * per_r;
+        let along_j = dot(e, near.velocity) * per_r;
+        let step = along_j - along_i;
+        let change_i = (e.x * dot(e, sloped.u) + e.y * dot(e, sloped.v)) * per_r;
+        let change_j = (e.x * dot(e, slope.u) + e.y * dot(e, slope.v)) * per_r;
+        let w_i = along_i + 0.5 * limited(2.0 * change_i - step, step);
+        let w_j = along_j - 0.5 * limited(2.0 * change_j - step, step);
+
+        // Ground in the middle from heights and slopes at both ends (cubic Hermite).
+        let bend = dot(sloped.ground - slope.ground, e);
+        var middle = 0.5 * ((near.surface - near.depth) + ground) + 0.125 * bend;
+        middle = max(max(middle, own.surface - SHARED * own.depth), near.surface - SHARED * near.depth);
+
+        // Hydrostatic reconstruction (Audusse et al. 2004, eq. 2.9) and the acoustic Riemann problem.
+        let depth_i = max(surface_i - middle, 1e-6 * own.depth);
+        let depth_j = max(surface_j - middle, 1e-6 * near.depth);
+        let impedance_i = depth_i * wave_speed;
+        let impedance_j = depth_j * sqrt(gravity * near.depth);
+        let per_sum = 1.0 / (impedance_i + impedance_j);
+        let both = impedance_i * impedance_j * per_sum;
+        let pressures = 0.5 * gravity * (impedance_j * depth_i * depth_i + impedance_i * depth_j * depth_j) * per_sum;
+        let pressure = max(pressures + both * (w_i - w_j), 0.0);
+
+        // At rest the own column's pressure against the middle cancels it exactly; in motion the symmetric form acts.
+        let own_depth = max(own.surface - middle, 0.0);
+        let ground_push = own_pressure - 0.5 * gravity * own_depth * own_depth;
+        // Artificial viscosity at signal speed (after Monaghan 1997).
+        let drag = max(dot(area, e) * per_r, 0.0) * both * parameters.viscosity * (own.velocity - near.velocity);
+        force += area * (pressure + ground_push) + drag;
+        from_outside += area * (pressure * slope.outside + ground_push) + drag * slope.outside;
     }
     let volume = own.depth * own.area;
     let slide = -gravity * sloped.ground * sloped.alone;
-    let pushed = sorted[i].acceleration;
+    let pushed = bitcast<vec2f>(sorted[i].acceleration_and_volume.xy);
     return Force(slide - (force + pushed) / volume, slide * volume - from_outside - pushed);
 }
 
@@ -137,7 +126,7 @@ fn pushed(particle: ptr<function, Particle>, own: Column, sloped: Slopes, force:
     (*particle).acceleration = force.acceleration;
     let squeeze = 2.0 * (*particle).h * max(-(sloped.u.x + sloped.v.y), 0.0);
     let pull = sqrt((*particle).h * length(force.acceleration));
-    let longest = parameters.cfl * (*particle).h / max(sloped.wave_speed + squeeze, pull);
+    let longest = parameters.cfl * (*particle).h / max(sqrt(parameters.gravity * own.depth) + squeeze, pull);
     let velocity = (*particle).velocity + 0.5 * status.step * force.acceleration;
     let factor = slowed(parameters, roughness_at(parameters, rough, place), velocity, (*particle).depth, 0.5 * status.step);
     (*particle).velocity = factor * velocity;
@@ -155,11 +144,11 @@ fn main(
     let i = id.x;
     sums[thread] = NOTHING;
     if i < status.particles {
-        let own = columns[i];
-        let sloped = slopes[i];
-        var particle = sorted[i];
+        let own = unpacked_column(columns[i]);
+        let sloped = unpacked_slopes(slopes[i]);
+        var particle = unpacked(sorted[i]);
         sums[thread] = pushed(&particle, own, sloped, on_one(i, own, sloped));
-        particles[i] = particle;
+        particles[i] = packed(particle);
     }
     let all = summed(thread);
     if thread == 0u {

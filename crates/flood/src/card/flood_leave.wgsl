@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> places: array<vec2u>;
 @group(0) @binding(5) var<storage, read_write> keys: array<u32>;
@@ -112,11 +112,11 @@ fn main(
     sums[thread] = vec4f(0.0);
     let i = id.x;
     if i < status.particles {
-        var particle = particles[i];
+        var particle = unpacked(particles[i]);
         if particle.volume > 0.0 {
             let booked = kept(&particle);
             sums[thread] = vec4f(booked.xy, max(booked.z, 0.0), max(-booked.z, 0.0));
-            particles[i] = particle;
+            particles[i] = packed(particle);
         }
         var cell = status.cells - 1u;
         if !is_gone(particle) {

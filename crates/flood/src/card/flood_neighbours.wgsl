@@ -44,6 +44,9 @@ fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
 
 // The mirror of a number below MIRRORS, 0 being none.
 fn mirror(number: u32, parameters: Parameters) -> Mirror {
+    if number == 0u {
+        return Mirror(vec2f(1.0), vec2f(0.0), vec2f(0.0), true, true);
+    }
     let beyond = vec2i(i32((number + 1u) % 3u), i32(((number + 3u) / 3u) % 3u)) - 1;
     let x = along(beyond.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.xy);
     let y = along(beyond.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.zw);
@@ -87,6 +90,26 @@ fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
     let low = max((place - reach - grid.corner) * grid.per_cell, vec2f(0.0));
     let high = max((place + reach - grid.corner) * grid.per_cell, vec2f(0.0));
     return vec4u(min(vec2u(low), last), min(vec2u(high), last));
+}
+
+// Cells are taken to be this much thicker than they are: who lies on their border may be in either.
+const BORDER = 0.01;
+
+// First and last column of those cells of a row in which there may be something within `reach` of a place: less than `cells_round` has, in
+// rows that pass the place by. None: the first comes after the last.
+fn columns_round(grid: Grid, place: vec2f, reach: f32, row: u32) -> vec2u {
+    let border = BORDER * grid.cell;
+    let south = grid.corner.y + f32(row) * grid.cell - border;
+    // What is beyond the first and the last row stands in these.
+    let from_south = select(south - place.y, 0.0, row == 0u);
+    let from_north = select(place.y - (south + grid.cell + 2.0 * border), 0.0, row + 1u == grid.rows);
+    let apart = max(max(from_south, from_north), 0.0);
+    if apart > reach {
+        return vec2u(1u, 0u);
+    }
+    let half = sqrt(reach * reach - apart * apart) + border;
+    let ends = max((place.x + vec2f(-half, half) - grid.corner.x) * grid.per_cell, vec2f(0.0));
+    return min(vec2u(ends), vec2u(grid.columns - 1u));
 }
 
 fn cell_at(grid: Grid, place: vec2f) -> u32 {

@@ -7,7 +7,7 @@
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 // Place, weight and reach of each.
 @group(0) @binding(3) var<storage, read> sites: array<vec4f>;
-@group(0) @binding(4) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> parcels: array<Parcel>;
 @group(0) @binding(6) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(7) var<storage, read> walls: array<WallSite>;
@@ -22,10 +22,13 @@ fn number_density(i: u32, place: vec2f, h: f32) -> f32 {
         if !sees(mirror, parameters, place, h) {
             continue;
         }
-        let cells = cells_round(parameters.grid, behind(mirror, place), h);
+        let truth = behind(mirror, place);
+        let cells = cells_round(parameters.grid, truth, h);
         for (var row = cells.y; row <= cells.w; row++) {
+            let across = columns_round(parameters.grid, truth, h, row);
             let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let end = start[line + across.y + 1u];
+            for (var j = start[line + across.x]; j < end; j++) {
                 let site = sites[j];
                 let there = shown(mirror, site.xy);
                 let way = there - place;
@@ -62,7 +65,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    var particle = particles[i];
+    var particle = unpacked(particles[i]);
     let number = number_density(i, particle.place, particle.h);
     let relative = particle.volume * number + covered(particle.place, particle.h);
     particle.depth = relative;
@@ -70,7 +73,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     particle.ground = ground_under(parameters, nodes, particle.place).x;
     // From here on it holds what obstacles push.
     particle.acceleration = vec2f(0.0);
-    particles[i] = particle;
+    particles[i] = packed(particle);
     let density = parameters.rest_density * relative;
     parcels[i] = Parcel(
         particle.place,

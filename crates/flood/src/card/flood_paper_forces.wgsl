@@ -9,8 +9,8 @@
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> parcels: array<Parcel>;
 // Their accelerations are the push of obstacles.
-@group(0) @binding(4) var<storage, read> sorted: array<Particle>;
-@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read> sorted: array<Packed>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(6) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(7) var nodes: texture_2d<f32>;
 @group(0) @binding(8) var rough: texture_2d<f32>;
@@ -25,10 +25,13 @@ fn by_pairs(i: u32, own: Parcel) -> vec2f {
         if !sees(mirror, parameters, own.place, h) {
             continue;
         }
-        let cells = cells_round(parameters.grid, behind(mirror, own.place), h);
+        let truth = behind(mirror, own.place);
+        let cells = cells_round(parameters.grid, truth, h);
         for (var row = cells.y; row <= cells.w; row++) {
+            let across = columns_round(parameters.grid, truth, h, row);
             let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let end = start[line + across.y + 1u];
+            for (var j = start[line + across.x]; j < end; j++) {
                 let near = parcels[j];
                 let there = shown(mirror, near.place);
                 let e = there - own.place;
@@ -65,7 +68,7 @@ fn control(particle: Particle) -> vec2f {
 
 // Accelerates a particle; what it adds to the sums.
 fn pushed(i: u32) -> Sums {
-    var particle = sorted[i];
+    var particle = unpacked(sorted[i]);
     let place = particle.place;
     var acceleration = vec2f(0.0);
     if particle.outside == 0u {
@@ -81,7 +84,7 @@ fn pushed(i: u32) -> Sums {
         particle.velocity = factor * velocity;
         booked = particle.volume * (velocity.x + velocity.y) * (factor - 1.0);
     }
-    particles[i] = particle;
+    particles[i] = packed(particle);
     return Sums(booked, particle.next_h, particle.volume * acceleration, FAR, place, place);
 }
 

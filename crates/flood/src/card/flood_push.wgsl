@@ -3,8 +3,8 @@
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> columns: array<Column>;
-@group(0) @binding(3) var<storage, read> slopes: array<Slopes>;
+@group(0) @binding(2) var<storage, read> columns: array<PackedColumn>;
+@group(0) @binding(3) var<storage, read> slopes: array<PackedSlopes>;
 @group(0) @binding(4) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(5) var<storage, read> walls: array<WallSite>;
 // Takes the push in place of the acceleration, over the density of water, m4/s2: `flood_forces` adds it.
@@ -22,16 +22,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    let own = columns[i];
+    let own = unpacked_column(columns[i]);
     let h = 1.0 / own.per_h;
     var push = vec2f(0.0);
     var by_walls = vec2f(0.0);
     var obstacle = 0u;
     if is_near(parameters.walls, own.place, 2.0 * h) {
         let gravity = parameters.gravity;
-        let sloped = slopes[i];
+        let sloped = unpacked_slopes(slopes[i]);
         let b = sloped.renormalisation;
         let ground = own.surface - own.depth;
+        let wave_speed = sqrt(gravity * own.depth);
         let own_pressure = 0.5 * gravity * own.depth * own.depth * (1.0 - sloped.rest);
         var nearest = 2.0 * h;
         let cells = cells_round(parameters.walls, own.place, 2.0 * h);
@@ -56,7 +57,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 var across = dot(own.velocity, site.normal);
                 // Towards the wall the flow across it ebbs; where the slopes say otherwise they are noise.
                 across = select(sign(across) * min(abs(at_wall), abs(across)), 0.0, at_wall * across <= 0.0);
-                let impact = depth * sloped.wave_speed * across * dot(e, site.normal) / r;
+                let impact = depth * wave_speed * across * dot(e, site.normal) / r;
                 let pressure = max(0.5 * gravity * depth * depth + impact, 0.0);
                 let own_depth = max(own.surface - middle, 0.0);
                 let ground_push = own_pressure - 0.5 * gravity * own_depth * own_depth;

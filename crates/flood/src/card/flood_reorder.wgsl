@@ -6,8 +6,8 @@
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> order: array<u32>;
-@group(0) @binding(4) var<storage, read> particles: array<Particle>;
-@group(0) @binding(5) var<storage, read_write> sorted: array<Particle>;
+@group(0) @binding(4) var<storage, read> particles: array<Packed>;
+@group(0) @binding(5) var<storage, read_write> sorted: array<Packed>;
 // Place, weight and reach of each.
 @group(0) @binding(6) var<storage, read_write> sites: array<vec4f>;
 
@@ -16,12 +16,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     let left = start[status.cells - 1u];
     if i < left {
-        var particle = particles[order[i]];
+        var particle = unpacked(particles[order[i]]);
         // Where nothing moves, particles are only laid out anew.
         if status.step > 0.0 {
             particle.h = particle.next_h;
         }
-        sorted[i] = particle;
+        sorted[i] = packed(particle);
         sites[i] = vec4f(particle.place, particle.weight, parameters.reach_over_h * particle.h);
     }
     if i == 0u {

@@ -1,13 +1,11 @@
 // First-order exact slopes of surface and velocity. Twin of `balanced/gradients.rs`.
 #import flood_walls
+#import flood_near
 
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> reaches: array<f32>;
-@group(0) @binding(4) var<storage, read> columns: array<Column>;
-@group(0) @binding(5) var<storage, read> particles: array<Particle>;
-@group(0) @binding(6) var<storage, read_write> slopes: array<Slopes>;
+@group(0) @binding(4) var<storage, read> columns: array<PackedColumn>;
+@group(0) @binding(5) var<storage, read> particles: array<Packed>;
+@group(0) @binding(6) var<storage, read_write> slopes: array<PackedSlopes>;
 @group(0) @binding(7) var<storage, read> wall_start: array<u32>;
 @group(0) @binding(8) var<storage, read> walls: array<WallSite>;
 @group(0) @binding(9) var nodes: texture_2d<f32>;
@@ -63,7 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    let own = columns[i];
+    let own = unpacked_column(columns[i]);
     let h = 1.0 / own.per_h;
     var moment = vec3f(0.0);
     var surface = vec2f(0.0);
@@ -72,41 +70,31 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var surface_step = 0.0;
     var velocity_step = 0.0;
     var ground_step = 0.0;
-    let mirrors = mirrors_round(parameters, own.place);
-    for (var k = 0u; k < mirrors; k++) {
-        let mirror = mirror(k, parameters);
-        let truth = behind(mirror, own.place);
-        let reach = max(reaches[cell_at(parameters.grid, truth)], 2.0 * h);
-        if !sees(mirror, parameters, own.place, reach) {
+    var walk = walk_round(i);
+    while next_near(&walk, own.place, 2.0 * h) {
+        let mirror = mirror(walk.mirror, parameters);
+        let here = columns[walk.near].place_area_per_h;
+        let there = shown(mirror, here.xy);
+        let e = there - own.place;
+        let r = max(length(e), 2e-12 * h);
+        if r >= 2.0 * h || (walk.mirror > 0u && !has_image(mirror, parameters, there, 2.0 / here.w)) {
             continue;
         }
-        let cells = cells_round(parameters.grid, truth, reach);
-        for (var row = cells.y; row <= cells.w; row++) {
-            let line = row * parameters.grid.columns;
-            for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
-                let near = columns[j];
-                let there = shown(mirror, near.place);
-                let e = there - own.place;
-                let r = max(length(e), 2e-12 * h);
-                if r >= 2.0 * h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, parameters, there, 2.0 / near.per_h)) {
-                    continue;
-                }
-                // The gradient of W at i is slope / r * e.
-                let weight = spline_slope(r, own.per_h) / r * near.area * e;
-                moment += vec3f(weight.x * e.x, weight.x * e.y, weight.y * e.y);
-                var ds = near.surface - own.surface;
-                if k > 0u {
-                    ds += step_up(mirror, parameters, nodes, near.place);
-                }
-                let dv = mirror.sign * near.velocity - own.velocity;
-                surface += weight * ds;
-                u += weight * dv.x;
-                v += weight * dv.y;
-                surface_step = max(surface_step, abs(ds));
-                ground_step = max(ground_step, abs(ds - (near.depth - own.depth)));
-                velocity_step = max(velocity_step, dot(dv, dv));
-            }
+        let near = column_of(here, columns[walk.near].velocity_surface_depth);
+        // The gradient of W at i is slope / r * e.
+        let weight = spline_slope(r, own.per_h) / r * near.area * e;
+        moment += vec3f(weight.x * e.x, weight.x * e.y, weight.y * e.y);
+        var ds = near.surface - own.surface;
+        if walk.mirror > 0u {
+            ds += step_up(mirror, parameters, nodes, near.place);
         }
+        let dv = mirror.sign * near.velocity - own.velocity;
+        surface += weight * ds;
+        u += weight * dv.x;
+        v += weight * dv.y;
+        surface_step = max(surface_step, abs(ds));
+        ground_step = max(ground_step, abs(ds - (near.depth - own.depth)));
+        velocity_step = max(velocity_step, dot(dv, dv));
     }
     let b = renormalisation(moment);
     let wave = sqrt(parameters.gravity * own.depth);
@@ -116,11 +104,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let tilt = surface_step / max(TILT * ground_step, 1e-12 * own.depth);
     let calm = min(unrest, tilt);
     let alone = max(1.0 - (all.x + all.z) / COMPANY, 0.0);
-    let outside = select(0.0, 1.0, particles[i].outside > 0u);
+    let outside = select(0.0, 1.0, particles[i].slope_and_id.w > 0u);
     let ground_slope = ground_under(parameters, nodes, own.place).yz;
     var of_areas = b;
     if any(of_walls.xyz != vec3f(0.0)) {
         of_areas = renormalisation(all);
     }
-    slopes[i] = Slopes(of_areas, exp(-calm * calm), turned(b, surface), ground_slope, turned(b, u), turned(b, v), wave, alone, outside, 0.0);
+    let rest = exp(-calm * calm);
+    let sloped = Slopes(of_areas, outside, turned(b, surface), ground_slope, turned(b, u), turned(b, v), rest, alone);
+    slopes[i] = packed_slopes(sloped);
 }

@@ -74,7 +74,10 @@ pub(super) struct Parameters {
     pub widest: f32,
     pub smallest: f32,
     pub largest: f32,
-    pub unused: [f32; 3],
+    /// Lists of neighbours: where they begin, how far the next entry of one is off, and how many neighbours a list takes.
+    pub near_first: u32,
+    pub near_stride: u32,
+    pub most_near: u32,
 }
 
 /// Scheme paper.

@@ -24,7 +24,7 @@ pub(crate) use state::Water;
 
 use crate::rain::Intensity;
 use air::Air;
-use corpuscle_gpu::{Gpu, GpuError, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS, wgpu};
 use corpuscle_terrain::Bounds;
 use layout::{Origin, Parameters, Status};
 use seen::Seen;
@@ -39,8 +39,23 @@ use works::Works;
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 
+/// More cells are no work for one thread each.
+const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
+
+/// Neighbours that a particle keeps a list of, at most: few have more.
+const MOST_NEAR: usize = 36;
+
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
+
+/// Neighbours for whose lists there is room; scheme paper has none.
+fn most_near(gpu: &Gpu, count: usize, cells: usize, setting: &Setting<'_>) -> usize {
+    if setting.paper.is_some() {
+        return 0;
+    }
+    let entries = (gpu.most_bytes() / 4) as usize;
+    (entries.saturating_sub(cells) / count.max(1)).saturating_sub(1).min(MOST_NEAR)
+}
 
 /// Water on a card.
 #[derive(Debug)]
@@ -73,6 +88,8 @@ pub(crate) struct Card {
     ahead: bool,
     /// Time spent on steps, s.
     busy: f64,
+    /// Where passes are timed.
+    pub stopwatch: Option<Stopwatch>,
     /// As it was when the water was handed over.
     done_before: DoneToObstacles,
 }
@@ -104,7 +121,11 @@ impl Card {
             parameters.drop_h = setting.h as f32;
         }
         let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
-        let most_cells = (CELLS_A_PARTICLE * count).max(FEWEST_CELLS);
+        let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
+        let most_near = most_near(&gpu, count, most_cells, setting);
+        parameters.near_first = most_cells as u32;
+        parameters.near_stride = count as u32;
+        parameters.most_near = most_near as u32;
         let tasks = Tasks::new(
             &gpu,
             count,
@@ -117,6 +138,7 @@ impl Card {
             air.as_ref(),
             setting.paper.is_some(),
             setting.refinement.is_some(),
+            most_near,
         )?;
         let status = Status::default();
         Ok(Self {
@@ -140,6 +162,7 @@ impl Card {
             batch: 4,
             ahead: false,
             busy: 0.0,
+            stopwatch: None,
             done_before: DoneToObstacles::default(),
         })
     }
@@ -167,5 +190,11 @@ impl Card {
     /// Particles in the air that there is room for.
     pub fn room_in_air(&self) -> usize {
         self.air.as_ref().map_or(0, |air| air.room)
+    }
+
+    /// Takes lists of neighbours of another length, as far as there is room.
+    #[cfg(test)]
+    pub fn list(&mut self, most_near: u32) {
+        self.parameters.most_near = most_near.min(self.parameters.most_near);
     }
 }

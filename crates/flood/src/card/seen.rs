@@ -3,7 +3,9 @@
 use super::Card;
 use super::layout::CardDrop;
 use super::tasks::LIBRARY;
-use corpuscle_gpu::{DEVICE_PARTICLES, DeviceParticles, Gpu, GpuError, Kernel, THREADS, Task, storage, uniform, wgpu};
+use corpuscle_gpu::{
+    DEVICE_PARTICLES, DeviceParticles, Gpu, GpuError, Kernel, Pass, THREADS, Task, storage, uniform, wgpu,
+};
 
 /// Bytes of water in the air where there can be none: a binding has room for one drop.
 const NO_AIR: usize = 8 + size_of::<CardDrop>();
@@ -60,7 +62,7 @@ impl Seen {
         let numbers = [shown.since, shown.spacing.unwrap_or(0.0), shown.drop_spacing, 0.0].map(|value| value as f32);
         gpu.queue.write_buffer(&self.shown, 0, bytemuck::bytes_of(&numbers));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, None);
         self.task.run(&mut pass, (self.particles.room as u32).div_ceil(THREADS));
         drop(pass);
         gpu.queue.submit([encoder.finish()]);

@@ -2,7 +2,7 @@
 
 use super::layout::Status;
 use super::tasks::Tasks;
-use corpuscle_gpu::{Gpu, SortSlots, THREADS, sort_blocks, wgpu};
+use corpuscle_gpu::{Gpu, Pass, SortSlots, THREADS, sort_blocks, wgpu};
 
 /// Slots of the numbers of groups: see `flood_finish.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
@@ -18,7 +18,7 @@ const REFINED: u64 = 8;
 
 impl Tasks {
     /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
-    pub fn steps(&self, pass: &mut wgpu::ComputePass<'_>, count: u32) {
+    pub fn steps(&self, pass: &mut Pass<'_>, count: u32) {
         self.finish.run(pass, 1);
         for _ in 0..count {
             self.step(pass);
@@ -33,7 +33,7 @@ impl Tasks {
         gpu.queue.write_buffer(&self.status, 0, bytemuck::bytes_of(status));
         gpu.queue.write_buffer(&self.groups, 0, bytemuck::cast_slice(&groups));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, None);
         self.leave.run_as_told(&mut pass, &self.groups, SLOTS.particles);
         self.sort(&mut pass);
         drop(pass);
@@ -42,7 +42,7 @@ impl Tasks {
     }
 
     /// Sorts what has counted itself, and finds how far each cell must look.
-    fn sort(&self, pass: &mut wgpu::ComputePass<'_>) {
+    fn sort(&self, pass: &mut Pass<'_>) {
         let groups = &self.groups;
         self.sort.sort(pass, groups, SLOTS);
         self.reorder.run_as_told(pass, groups, SLOTS.particles);
@@ -52,7 +52,7 @@ impl Tasks {
     }
 
     /// Takes one step more, where there is to be one.
-    pub fn step(&self, pass: &mut wgpu::ComputePass<'_>) {
+    pub fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.groups;
         if let Some(carry) = &self.carry {
             carry.run_as_told(pass, groups, SLOTS.particles);

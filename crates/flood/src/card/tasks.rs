@@ -15,6 +15,7 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_ground", include_str!("flood_ground.wgsl")),
     ("flood_neighbours", include_str!("flood_neighbours.wgsl")),
     ("flood_columns", include_str!("flood_columns.wgsl")),
+    ("flood_near", include_str!("flood_near.wgsl")),
     ("flood_walls", include_str!("flood_walls.wgsl")),
     ("flood_outlines", include_str!("flood_outlines.wgsl")),
     ("flood_places", include_str!("flood_places.wgsl")),
@@ -84,6 +85,7 @@ impl Tasks {
         air: Option<&Air>,
         is_paper: bool,
         refines: bool,
+        most_near: usize,
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
@@ -96,14 +98,14 @@ impl Tasks {
         let slopes = storage::<Slopes>(gpu, "slopes", count)?;
         let births = storage::<CardBirth>(gpu, "particles to come", most_births)?;
         let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
-        let [own, along_rows, reaches] = ["reaches", "reaches of rows", "reaches in cells"];
-        let own = storage::<f32>(gpu, own, cells)?;
-        let along_rows = storage::<f32>(gpu, along_rows, cells)?;
-        let reaches = storage::<f32>(gpu, reaches, cells)?;
+        let own = storage::<f32>(gpu, "reaches", cells)?;
+        let along_rows = storage::<f32>(gpu, "reaches of rows", cells)?;
+        // Reaches in cells come first.
+        let near = storage::<u32>(gpu, "neighbours", cells + count * (1 + most_near))?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
         let pushes = if walls.count > 0 { Walls::pushes(gpu, count)? } else { storage::<[f32; 4]>(gpu, "pushes", 0)? };
         let of_particles = [&pushes, &particles, &sorted, &keys, &sites, &columns, &slopes, &births, &partials];
-        let of_cells = [&own, &along_rows, &reaches, &sort.counts, &sort.places, &sort.start, &sort.order];
+        let of_cells = [&own, &along_rows, &near, &sort.counts, &sort.places, &sort.start, &sort.order];
         let planned = if refines { count } else { 0 };
         let plans = storage::<Plan>(gpu, "plans", planned)?;
         let tallies = storage::<u32>(gpu, "tallies of plans", 3 + planned.div_ceil(THREADS as usize))?;
@@ -124,7 +126,7 @@ impl Tasks {
             carry: works.holds_level.then(|| {
                 shader!(
                     "flood_carry",
-                    [parameters, status, particles, sort.start, (), *nodes, reaches, walls.start, walls.sites]
+                    [parameters, status, particles, sort.start, (), *nodes, near, walls.start, walls.sites]
                 )
             }),
             drift: shader!(
@@ -144,17 +146,7 @@ impl Tasks {
             regulate: works.has_structures.then(|| {
                 shader!(
                     "flood_regulate",
-                    [
-                        parameters,
-                        status,
-                        particles,
-                        sort.start,
-                        works.buffer,
-                        *nodes,
-                        reaches,
-                        walls.start,
-                        walls.sites
-                    ]
+                    [parameters, status, particles, sort.start, works.buffer, *nodes, near, walls.start, walls.sites]
                 )
             }),
             bear: comes_in.then(|| {
@@ -188,7 +180,7 @@ impl Tasks {
                             sort.start,
                             (),
                             *nodes,
-                            reaches,
+                            near,
                             walls.start,
                             walls.sites,
                             air.buffer
@@ -201,7 +193,7 @@ impl Tasks {
             reorder: shader!("flood_reorder", [parameters, status, sort.start, sort.order, particles, sorted, sites]),
             reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
             reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),
-            reach: shader!("flood_reach", [parameters, along_rows, reaches]),
+            reach: shader!("flood_reach", [parameters, along_rows, near]),
             density: if is_paper {
                 shader!(
                     "flood_paper_density",
@@ -210,24 +202,13 @@ impl Tasks {
             } else {
                 shader!(
                     "flood_density",
-                    [parameters, status, sort.start, reaches, sites, sorted, columns, walls.start, walls.sites, *nodes]
+                    [parameters, status, sort.start, near, sites, sorted, columns, walls.start, walls.sites, *nodes]
                 )
             },
             gradients: (!is_paper).then(|| {
                 shader!(
                     "flood_slopes",
-                    [
-                        parameters,
-                        status,
-                        sort.start,
-                        reaches,
-                        columns,
-                        sorted,
-                        slopes,
-                        walls.start,
-                        walls.sites,
-                        *nodes
-                    ]
+                    [parameters, status, sort.start, near, columns, sorted, slopes, walls.start, walls.sites, *nodes]
                 )
             }),
             push: match (has_walls, is_paper) {
@@ -253,7 +234,7 @@ impl Tasks {
                 shader!(
                     "flood_forces",
                     [
-                        parameters, status, sort.start, reaches, columns, slopes, sorted, particles, partials, *nodes,
+                        parameters, status, sort.start, near, columns, slopes, sorted, particles, partials, *nodes,
                         *rough
                     ]
                 )

@@ -3,7 +3,7 @@
 use super::{DENSITY, Flood, State, open};
 use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Watch, Water};
 use crate::inflow::Source;
-use corpuscle_gpu::{Gpu, GpuError};
+use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,6 +30,18 @@ impl Flood {
     /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
     pub fn seconds_on_card(&self) -> Option<f64> {
         self.card.as_ref().map(Card::busy)
+    }
+
+    /// From now on the card times its passes, which makes them wait for one another. Nothing changes where it has no clock.
+    pub fn time_passes(&mut self) {
+        if let Some(card) = &mut self.card {
+            card.stopwatch = Stopwatch::new(&card.gpu());
+        }
+    }
+
+    /// What each pass has taken on the card since [`Flood::time_passes`].
+    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+        self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
     }
 
     /// Bytes held on the card.
@@ -260,8 +272,19 @@ edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
 water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
 "#;
 
-    fn sheet() -> Flood {
-        let mut scene = Scene::parse(SHEET, "sheet", &[]).unwrap();
+    /// Water between a wall, an open side and periodic ones, so that lists have neighbours in mirrors too.
+    const POOL: &str = r#"
+run.until_s = 60
+terrain.plane = { extent = { length_m = 24, width_m = 12, cell_m = 1 }, slope_east = -0.02 }
+[flood]
+spacing_m = 0.5
+spacing_depth_m = 0.5
+edges = { west = "wall", east = "open", south = "periodic", north = "periodic" }
+water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
+"#;
+
+    fn opened(scene: &str) -> Flood {
+        let mut scene = Scene::parse(scene, "scene", &[]).unwrap();
         scene.resolve_defaults();
         let scene = scene.flood().unwrap();
         let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
@@ -271,7 +294,7 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
     #[test]
     fn more_room_is_taken_where_halves_might_find_none() {
         let Some(gpu) = require_gpu("room on the card") else { return };
-        let mut sheets = [(); 2].map(|()| sheet());
+        let mut sheets = [(); 2].map(|()| opened(SHEET));
         let count = sheets[0].state.particles.len();
         let scarce = count + count / 2; // Enough until the next look at it.
         sheets[0].open_card_with(gpu.clone(), scarce).unwrap();
@@ -292,7 +315,7 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
     #[test]
     fn what_finds_no_room_stays_whole() {
         let Some(gpu) = require_gpu("no room on the card") else { return };
-        let (mut host, mut card) = (sheet(), sheet());
+        let (mut host, mut card) = (opened(SHEET), opened(SHEET));
         host.advance_to(8.0, &AtomicBool::new(false)).unwrap();
         while !host.state.steps.is_multiple_of(8) {
             host.step().unwrap();
@@ -307,5 +330,18 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
         assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());
         assert!(card.state.particles.len() <= count + 3, "{} became {}", count, card.state.particles.len());
         assert!((card.stored() / volume - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn neighbours_for_which_lists_have_no_room_are_looked_for_again() {
+        let Some(gpu) = require_gpu("lists of neighbours") else { return };
+        let [all, some, none] = [u32::MAX, 12, 0].map(|most| {
+            let mut pool = opened(POOL);
+            pool.use_card(gpu.clone()).unwrap();
+            pool.card.as_mut().unwrap().list(most);
+            pool.advance_to(1.0, &AtomicBool::new(false)).unwrap();
+            pool.save()
+        });
+        assert!(all == some && all == none);
     }
 }

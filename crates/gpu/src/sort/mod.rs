@@ -4,7 +4,7 @@
 //! [`CellSort::places`], the cell and what the count was before. [`CellSort::sort`] does the rest and leaves the counts at zero.
 //! Particles of one cell come in the order of their keys, so that the result is the same however the threads ran.
 
-use crate::{Gpu, GpuError, Kernel, SUMS_BEFORE, ShaderLibrary, THREADS, Task, storage};
+use crate::{Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, ShaderLibrary, THREADS, Task, storage};
 
 /// Counts that one group of threads adds up.
 const BLOCK: usize = 1024;
@@ -89,7 +89,7 @@ impl CellSort {
     }
 
     /// Sorts what was counted.
-    pub fn sort(&self, pass: &mut wgpu::ComputePass<'_>, groups: &wgpu::Buffer, slots: SortSlots) {
+    pub fn sort(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slots: SortSlots) {
         self.tasks.blocks.run_as_told(pass, groups, slots.blocks);
         self.tasks.totals.run_as_told(pass, groups, slots.once);
         self.tasks.starts.run_as_told(pass, groups, slots.cells);

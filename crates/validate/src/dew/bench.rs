@@ -1,25 +1,32 @@
 //! Rates of the dew model: steps of air particles in a second of wall-clock time, heat and humidity on.
 
-use super::advance;
-use crate::bench::Clock;
+use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room, Settings, Setup};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::ModelError;
 use corpuscle_solids::{Pose, Shape, Solid};
 
 pub(crate) const BENCHES: &[Bench] = &[
     Bench {
         name: "dew/plate-100k",
         about: "100,000 particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
+        needs_card: false,
         run: |options| rate("dew/plate-100k", 46, options),
     },
     Bench {
         name: "dew/plate-1m",
         about: "A million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
+        needs_card: false,
         run: |options| rate("dew/plate-1m", 100, options),
+    },
+    Bench {
+        name: "dew/plate-5m",
+        about: "Five million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
+        needs_card: true,
+        run: |options| rate("dew/plate-5m", 171, options),
     },
 ];
 
@@ -28,43 +35,12 @@ const SPACING: f64 = 2e-3;
 
 const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
 
-/// Steps before the clock is started: the lattice has gone.
-const STIRRED: u64 = 40;
+/// After so many steps the lattice has gone. A step at a time; on a card more, as each look brings the air back.
+const MEASURING: Measuring = Measuring { name: "", dimensions: 3, settling: 40, steps: [1.001, 20.0], seconds: 8.0 };
 
-/// Steps between two looks on a card: each look brings the air back.
-const STEPS_ON_CARD: f64 = 20.0;
-
-fn rate(name: &str, side: usize, options: &BenchOptions) -> Vec<Rate> {
-    measure(name, side, options).unwrap_or_default().into_iter().collect()
-}
-
-/// The rate; none where the card cannot compute this.
-fn measure(name: &str, side: usize, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
-    let seconds = if options.quick { 2.0 } else { 8.0 };
-    let mut dew = plate(side)?;
-    let Some(mut clock) = Clock::start(options, |gpu| dew.use_card(gpu)) else { return Ok(None) };
-    let steps = if clock.device.is_some() { STEPS_ON_CARD } else { 1.001 };
-    let ahead = |dew: &mut Dew| advance(dew, dew.time() + steps * dew.time_step());
-    while dew.steps() < STIRRED {
-        ahead(&mut dew)?;
-    }
-    let before = dew.particle_steps();
-    clock.restart(dew.seconds_on_card());
-    while clock.seconds(dew.seconds_on_card()) < seconds {
-        ahead(&mut dew)?;
-    }
-    let particles = dew.air().len();
-    Ok(Some(Rate {
-        name: name.into(),
-        particles,
-        dimensions: 3,
-        packing: None,
-        threads: clock.threads(),
-        rate: (dew.particle_steps() - before) as f64 / clock.seconds(dew.seconds_on_card()),
-        rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: dew.bytes_on_card().unwrap_or(dew.bytes() as u64) as f64 / particles as f64,
-        device: clock.device,
-    }))
+fn rate(name: &'static str, side: usize, options: &BenchOptions) -> Vec<Rate> {
+    let measured = plate(side).and_then(|dew| Measuring { name, ..MEASURING }.rate(dew, options));
+    measured.unwrap_or_default().into_iter().collect()
 }
 
 /// Stirred air over a cold plate, `side` parcels each way.
@@ -106,9 +82,11 @@ mod tests {
     fn a_bench_of_dew_runs_on_the_card() {
         let Some(gpu) = require_gpu("a bench of dew") else { return };
         let name = Some(gpu.name.clone());
-        let options = BenchOptions { quick: true, gpu: Some(gpu) };
-        let rate = measure("dew/plate", 12, &options).unwrap().unwrap();
+        let options = BenchOptions { quick: true, gpu: Some(gpu), passes: true };
+        let [rate] = &rate("dew/plate", 12, &options)[..] else { panic!("no rate") };
         assert!(rate.device == name && rate.threads == 0 && rate.particles > 1000, "{rate:?}");
         assert!(rate.rate > 0.0 && rate.bytes_per_particle > 100.0, "{rate:?}");
+        let forces = rate.passes.iter().find(|pass| pass.name == "dew_forces").expect("passes are timed");
+        assert!(forces.times_a_step == 1.0 && forces.seconds_a_step > 0.0, "{forces:?}");
     }
 }

@@ -1,37 +1,46 @@
 //! Rates of the flood model.
 
 use super::{run, settings, water_everywhere};
-use crate::bench::Clock;
+use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::Flood;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Edges, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 pub(crate) const BENCHES: &[Bench] = &[
     Bench {
         name: "flood/balanced-60k",
         about: "Scheme balanced, everything on, 60,000 particles in waves over rough ground.",
+        needs_card: false,
         run: |options| rate("flood/balanced-60k", options),
     },
     Bench {
         name: "flood/balanced-1m",
         about: "Scheme balanced, everything on, a million particles in waves over rough ground.",
+        needs_card: false,
         run: |options| rate("flood/balanced-1m", options),
+    },
+    Bench {
+        name: "flood/balanced-10m",
+        about: "Scheme balanced, everything on, ten million particles in waves over rough ground.",
+        needs_card: true,
+        run: |options| rate("flood/balanced-10m", options),
     },
     Bench {
         name: "flood/paper-60k",
         about: "Scheme paper, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
+        needs_card: false,
         run: |options| rate("flood/paper-60k", options),
     },
 ];
 
 /// Scheme and particles of each.
-const WATERS: [(&str, Scheme, usize); 3] = [
+const WATERS: [(&str, Scheme, usize); 4] = [
     ("flood/balanced-60k", Scheme::Balanced, 60_000),
     ("flood/balanced-1m", Scheme::Balanced, 1_000_000),
+    ("flood/balanced-10m", Scheme::Balanced, 10_000_000),
     ("flood/paper-60k", Scheme::Paper, 60_000),
 ];
 
@@ -44,44 +53,12 @@ pub fn bench_water(name: &str) -> Result<Option<(Flood, Arc<Terrain>)>, ModelErr
     of_it.map(|(_, scheme, particles)| waves(scheme, particles)).transpose()
 }
 
-/// Seconds of wall-clock time measured.
-const MEASURED: f64 = 10.0;
+/// Two steps at a time; 64 on a card, as each look brings the water back.
+const MEASURING: Measuring = Measuring { name: "", dimensions: 2, settling: 1, steps: [2.0, 64.0], seconds: 10.0 };
 
-/// Steps between two looks at the clock: on a card more, as each look brings the water back.
-const STEPS: u32 = 2;
-const STEPS_ON_CARD: u32 = 64;
-
-fn rate(name: &str, options: &BenchOptions) -> Vec<Rate> {
-    measure(name, options).unwrap_or_default().into_iter().collect()
-}
-
-/// The rate; none where the card does not compute this scheme.
-fn measure(name: &str, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
-    let seconds = if options.quick { 0.2 * MEASURED } else { MEASURED };
-    let Some((mut flood, _)) = bench_water(name)? else { return Ok(None) };
-    let Some(mut clock) = Clock::start(options, |gpu| flood.use_card(gpu)) else { return Ok(None) };
-    let stop = AtomicBool::new(false);
-    let steps = if clock.device.is_some() { STEPS_ON_CARD } else { STEPS };
-    let ahead = |flood: &mut Flood| flood.advance_to(flood.time() + f64::from(steps) * flood.time_step(), &stop);
-    ahead(&mut flood)?;
-    let before = flood.particle_steps();
-    clock.restart(flood.seconds_on_card());
-    while clock.seconds(flood.seconds_on_card()) < seconds {
-        ahead(&mut flood)?;
-    }
-    let work = (flood.particle_steps() - before) as f64;
-    Ok(Some(Rate {
-        name: name.into(),
-        particles: flood.particles().len(),
-        dimensions: 2,
-        packing: None,
-        threads: clock.threads(),
-        rate: work / clock.seconds(flood.seconds_on_card()),
-        rate_unit: "particle_steps_per_s".into(),
-        bytes_per_particle: flood.bytes_on_card().unwrap_or(flood.bytes() as u64) as f64
-            / flood.particles().len() as f64,
-        device: clock.device,
-    }))
+fn rate(name: &'static str, options: &BenchOptions) -> Vec<Rate> {
+    let measure = |(flood, _)| Measuring { name, ..MEASURING }.rate(flood, options);
+    bench_water(name).and_then(|water| water.map_or(Ok(None), measure)).unwrap_or_default().into_iter().collect()
 }
 
 /// Water a metre deep, 1 m apart, with friction, waving over ground with a relief of its own.

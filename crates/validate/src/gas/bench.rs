@@ -13,6 +13,7 @@ macro_rules! fluid {
             name: concat!("gas/", $dimensions, "d-", $packing, "-", $words),
             about: "Equal balls in a periodic box, event-driven, after five collisions of each; dimensions, packing and \
                     number by name.",
+            needs_card: false,
             run: |options| {
                 let name = concat!("gas/", $dimensions, "d-", $packing, "-", $words);
                 rate::<$dimensions>(name, $count, $packing, options)
@@ -68,6 +69,7 @@ fn measure<const D: usize>(name: &str, count: usize, packing: f64, seconds: f64)
         rate_unit: "collisions_per_s".into(),
         bytes_per_particle: gas.bytes() as f64 / count as f64,
         device: None,
+        passes: Vec::new(),
     })
 }
 

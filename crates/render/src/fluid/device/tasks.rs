@@ -3,7 +3,7 @@
 use super::super::droplet::Instance;
 use super::ground::Ground;
 use super::kernels::Kernels;
-use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, SortSlots, Task, storage, wgpu};
+use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Task, storage, wgpu};
 
 /// Slots of the numbers of groups: see `water_begin.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
@@ -101,7 +101,7 @@ impl Tasks {
     pub fn run(&mut self, gpu: &Gpu, ground: &Ground) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("water") });
         encoder.clear_buffer(&self.memory[1 - self.turn], 0, None);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = Pass::begin(&mut encoder, None);
         let groups = &self.groups;
         self.begin.run(&mut pass, 1);
         self.count.run_as_told(&mut pass, groups, SLOTS.particles);
