@@ -72,7 +72,7 @@ mod tests {
     use std::sync::atomic::AtomicBool;
 
     /// Mean difference of two pictures, of 255.
-    const SAME: f64 = 0.05;
+    const SAME: f64 = 0.01;
 
     fn difference(one: &Image, other: &Image) -> f64 {
         let sum: u64 = one.rgba.iter().zip(&other.rgba).map(|(one, other)| u64::from(one.abs_diff(*other))).sum();
@@ -87,11 +87,11 @@ mod tests {
     #[test]
     fn a_flood_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
         let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
-        let coarse = [("flood.spacing_m".to_owned(), "3".to_owned())];
-        let scene = Scene::parse(builtin("flood/valley").unwrap().text, "valley", &coarse).unwrap();
+        let coarse = [("flood.spacing_m".to_owned(), "2".to_owned())];
+        let scene = Scene::parse(builtin("flood/dam-break").unwrap().text, "dam", &coarse).unwrap();
         let mut simulation = Simulation::open(scene, Path::new("")).unwrap();
         simulation.use_this_gpu(gpu.clone()).unwrap();
-        simulation.model_mut().advance_to(30.0, &AtomicBool::new(false)).unwrap();
+        simulation.model_mut().advance_to(4.0, &AtomicBool::new(false)).unwrap();
         let settings = |ground| PictureSettings {
             size: [480, 270],
             samples: 1,
@@ -105,17 +105,13 @@ mod tests {
         let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundLook::Natural)).unwrap();
         let apart = difference(&image, &by_frame(&mut others, simulation.model()));
         println!("{apart} of 255");
-        if let Some(file) = std::env::var_os("CORPUSCLE_LOOK") {
-            std::fs::write(file, corpuscle_drawing::png::encode_rgba(image.width, image.height, &image.rgba).unwrap())
-                .unwrap();
-        }
         assert!(apart < SAME, "{apart}");
-        let nothing = Frame { time: 30.0, sets: Vec::new() };
+        let nothing = Frame { time: 4.0, sets: Vec::new() };
         let dry = others.draw(&Moment { frame: &nothing, on_device: None, paths: &[], container: None }).unwrap();
-        assert!(difference(&image, &dry) > 20.0 * SAME, "{}", difference(&image, &dry));
+        assert!(difference(&image, &dry) > 100.0 * SAME, "{}", difference(&image, &dry));
         // What the ground shows of the water is the host's to draw.
         let mut of_depth = Pictures::open(&simulation, settings(GroundLook::Depth)).unwrap();
         assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
-        assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 20.0 * SAME);
+        assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);
     }
 }
