@@ -1,6 +1,6 @@
 //! A film of a run while it runs.
 
-use crate::pictures::{Moment, PictureSettings, Pictures};
+use crate::pictures::{PictureSettings, Pictures};
 use crate::{Error, Simulation, Sink};
 use corpuscle_film::{Film, Format};
 use corpuscle_model::Model;
@@ -37,13 +37,7 @@ impl Filming {
     }
 
     fn add(&mut self, model: &dyn Model) -> Result<(), Error> {
-        let (frame, paths) = (model.frame(), model.paths());
-        let image = self.pictures.draw(&Moment {
-            frame: &frame,
-            on_device: None,
-            paths: &paths,
-            container: model.container(),
-        })?;
+        let image = self.pictures.draw_model(model)?;
         Ok(self.film.as_mut().map_or(Ok(()), |film| film.add(&image.rgba))?)
     }
 }

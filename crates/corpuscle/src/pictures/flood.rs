@@ -104,6 +104,11 @@ impl FloodPicture {
         })
     }
 
+    /// Whether the ground shows the water's depth in place of the water.
+    pub(super) fn shows_depth(&self) -> bool {
+        self.depth.is_some()
+    }
+
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let gpu = studio.renderer.gpu();
         let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
@@ -119,6 +124,7 @@ impl FloodPicture {
             Look::Simple if self.depth.is_none() => sets.iter().map(|set| self.discs(studio, set)).collect(),
             _ => Vec::new(),
         };
+        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
         let quick = studio.look == Look::Simple;
         self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
@@ -127,31 +133,38 @@ impl FloodPicture {
         }
         things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
         things.extend(discs.iter_mut().map(|set| set as &mut dyn Drawable));
-        let radius = moment.on_device.map(|particles| 0.5 * particles.spacing).or_else(|| mean_radius(&sets));
-        if let Some(radius) = radius.filter(|_| self.depth.is_none() && studio.look == Look::Full) {
-            let within = Some([self.stage.from, self.stage.to].map(|corner| [corner.x, corner.y]));
-            let style = || FluidStyle { within, ..FluidStyle::water(radius).turbid(self.turbid) };
-            // Its style is that of the first particles there are, so that it does not change in a film.
-            let fluid = self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, &self.stage, style()));
-            let (time, field) = (moment.frame.time, &self.field);
-            if let Some(particles) = moment.on_device {
-                let water = match &mut self.device_water {
-                    Some(water) => water,
-                    none => none.insert(DeviceWater::new(gpu, &self.stage, field, self.heights)?),
-                };
-                water.update(gpu, time, particles)?;
-                fluid.draw_from(water);
-                things.push(fluid);
-            } else {
-                let water = &mut self.water;
-                let droplets: Vec<Droplet> =
-                    sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
-                self.sides.fill(gpu, &self.field, &droplets);
-                fluid.fill(gpu, droplets);
-                things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
-            }
+        if let Some(fluid) = self.fluid.as_mut().filter(|_| is_wet) {
+            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
         }
         studio.take(&self.stage, &camera, &light, &mut things, overlay)
+    }
+
+    /// Takes the water of a moment, of these sets where it does not lie on the device; false where there is none.
+    fn fill_water(&mut self, studio: &Studio, moment: &Moment<'_>, sets: &[ParticleSet]) -> Result<bool, Error> {
+        let spacing = moment.on_device.map(|particles| particles.spacing);
+        let Some(radius) = spacing.map(|spacing| 0.5 * spacing).or_else(|| mean_radius(sets)) else { return Ok(false) };
+        let Self { stage, field, .. } = self;
+        let (gpu, time) = (studio.renderer.gpu(), moment.frame.time);
+        let within = Some([stage.from, stage.to].map(|corner| [corner.x, corner.y]));
+        let style = || FluidStyle { within, ..FluidStyle::water(radius).turbid(self.turbid) };
+        // Its style is that of the first particles there are, so that it does not change in a film.
+        let fluid = self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, stage, style()));
+        if let Some(particles) = moment.on_device {
+            let water = match &mut self.device_water {
+                Some(water) => water,
+                none => none.insert(DeviceWater::new(gpu, stage, field, self.heights)?),
+            };
+            water.update(gpu, time, particles)?;
+            self.sides.draw_from(water);
+            fluid.draw_from(water);
+        } else {
+            let water = &mut self.water;
+            let droplets: Vec<Droplet> =
+                sets.iter().flat_map(|set| water.droplets(time, set, |place| field.slope_at(place))).collect();
+            self.sides.fill(gpu, field, &droplets);
+            fluid.fill(gpu, droplets);
+        }
+        Ok(true)
     }
 
     /// Particles as balls, coloured by depth as maps are.

@@ -1,5 +1,6 @@
 //! Pictures of a run's moments: what is shown of each model, from where, in which colours.
 
+mod device;
 mod dew;
 mod flood;
 mod gas;
@@ -95,12 +96,12 @@ enum Subject {
 }
 
 impl Pictures {
-    /// Makes ready to draw a scene on the best device.
+    /// Makes ready to draw a scene: on the card that takes the steps of a flood, else on the best device.
     ///
     /// # Errors
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
     pub fn open(simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        let gpu = Gpu::open().map_err(RenderError::from)?;
+        let gpu = simulation.card().map_or_else(Gpu::open, Ok).map_err(RenderError::from)?;
         Self::open_on(&gpu, simulation, settings)
     }
 

@@ -1,6 +1,6 @@
 //! Water cut off at the borders of the ground: upright faces from the ground up to its surface.
 
-use super::Droplet;
+use super::{DeviceWater, Droplet};
 use crate::buffer::instances;
 use crate::pipeline::Recipe;
 use crate::{Drawable, HeightField, Renderer, Stage, shaders};
@@ -22,9 +22,9 @@ pub struct WaterSides {
 /// A corner as the device has it: place, and depth below the surface, all in stage units; the direction outwards.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Vertex {
-    place: [f32; 4],
-    outwards: [f32; 4],
+pub(super) struct Vertex {
+    pub place: [f32; 4],
+    pub outwards: [f32; 4],
 }
 
 /// A border of the ground.
@@ -57,29 +57,40 @@ impl WaterSides {
 
     /// Takes the water of these particles at the borders of this ground instead of that before.
     pub fn fill(&mut self, gpu: &Gpu, field: &HeightField, droplets: &[Droplet]) {
-        let mut all = Vec::new();
-        for border in borders(field) {
-            let levels = levels(field, &border, droplets);
-            for (pair, level) in border.nodes.windows(2).zip(levels.windows(2)) {
-                let [Some(from), Some(to)] = [level[0], level[1]] else { continue };
-                all.extend(self.face(field, [(pair[0], from), (pair[1], to)], border.outwards));
-            }
-        }
+        let all = faces(&self.stage, field, droplets);
         self.buffer = (!all.is_empty()).then(|| (instances(gpu, "sides of water", &all), all.len() as u32));
     }
 
-    /// Two triangles between two nodes from the ground to the water's surface.
-    fn face(&self, field: &HeightField, ends: [(usize, f64); 2], [x, y]: [f32; 2]) -> [Vertex; 6] {
-        let vertex = |(node, level): (usize, f64), is_low: bool| {
-            let [east, north] = field.place(node);
-            let ground = f64::from(field.heights[node]).min(level);
-            let [px, py, pz] = self.stage.place([east, north, if is_low { ground } else { level }]).into();
-            let deep = if is_low { self.stage.length(level - ground) } else { 0.0 };
-            Vertex { place: [px, py, pz, deep], outwards: [x, y, 0.0, 0.0] }
-        };
-        let [a, b] = ends;
-        [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(end, is_low)| vertex(end, is_low))
+    /// Takes those of water that lies on the device, as it is when the picture is drawn.
+    pub fn draw_from(&mut self, water: &DeviceWater) {
+        self.buffer = water.faces();
     }
+}
+
+/// The faces of water at the borders, corner by corner.
+pub(super) fn faces(stage: &Stage, field: &HeightField, droplets: &[Droplet]) -> Vec<Vertex> {
+    let mut all = Vec::new();
+    for border in borders(field) {
+        let levels = levels(field, &border, droplets);
+        for (pair, level) in border.nodes.windows(2).zip(levels.windows(2)) {
+            let [Some(from), Some(to)] = [level[0], level[1]] else { continue };
+            all.extend(face(stage, field, [(pair[0], from), (pair[1], to)], border.outwards));
+        }
+    }
+    all
+}
+
+/// Two triangles between two nodes from the ground to the water's surface.
+fn face(stage: &Stage, field: &HeightField, ends: [(usize, f64); 2], [x, y]: [f32; 2]) -> [Vertex; 6] {
+    let vertex = |(node, level): (usize, f64), is_low: bool| {
+        let [east, north] = field.place(node);
+        let ground = f64::from(field.heights[node]).min(level);
+        let [px, py, pz] = stage.place([east, north, if is_low { ground } else { level }]).into();
+        let deep = if is_low { stage.length(level - ground) } else { 0.0 };
+        Vertex { place: [px, py, pz, deep], outwards: [x, y, 0.0, 0.0] }
+    };
+    let [a, b] = ends;
+    [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(end, is_low)| vertex(end, is_low))
 }
 
 impl Drawable for WaterSides {

@@ -6,6 +6,7 @@ use corpuscle_gpu::{DEVICE_PARTICLES, Gpu, Kernel, ShaderLibrary};
 const LIBRARY: ShaderLibrary<'_> = &[
     DEVICE_PARTICLES,
     ("water_device", include_str!("water_device.wgsl")),
+    ("water_borders", include_str!("water_borders.wgsl")),
     ("water_planes", include_str!("water_planes.wgsl")),
 ];
 
@@ -21,6 +22,8 @@ pub(super) struct Kernels {
     pub calm: Kernel,
     pub discs: Kernel,
     pub foam: Kernel,
+    pub levels: Kernel,
+    pub faces: Kernel,
 }
 
 impl Kernels {
@@ -40,6 +43,8 @@ impl Kernels {
             calm: kernel!("water_calm"),
             discs: kernel!("water_discs"),
             foam: kernel!("water_foam"),
+            levels: kernel!("water_levels"),
+            faces: kernel!("water_faces"),
         }
     }
 }

@@ -10,8 +10,11 @@
 //! calm     heights and velocities of planes through neighbours      water_calm.wgsl
 //! discs    in the surface, with the foam that comes now             water_discs.wgsl
 //! foam     spread, and remembered by ids                            water_foam.wgsl
+//! levels   of the water at the borders of the ground                water_levels.wgsl
+//! faces    of the water there                                       water_faces.wgsl
 //! ```
 
+mod ground;
 mod kernels;
 mod tasks;
 #[cfg(test)]
@@ -20,17 +23,15 @@ mod twin;
 use super::droplet::Batch;
 use super::water::{LIFE, REACH};
 use crate::{HeightField, RenderError, Stage};
-use corpuscle_gpu::{DeviceParticles, Gpu, storage, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, uniform, wgpu};
 use glam::{DVec2, DVec3};
+use ground::Ground;
 use kernels::Kernels;
 use tasks::{Tasks, entries};
 
 /// Cells a particle, and at least, at most.
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
-
-/// Stands for no height in `water_device.wgsl`.
-const NO_HEIGHT: f32 = 1e30;
 
 /// Where the draw is told, bytes from the start of the slots: see `water_begin.wgsl`.
 const DRAW: u64 = 72;
@@ -50,15 +51,6 @@ pub struct DeviceWater {
     drawn: Option<(DeviceParticles, Tasks)>,
     /// Of the last picture, s.
     time: Option<f64>,
-}
-
-/// The ground's nodes on the device.
-#[derive(Debug)]
-struct Ground {
-    heights: wgpu::Buffer,
-    corner: DVec2,
-    per_metre: DVec2,
-    nodes: [u32; 2],
 }
 
 /// `Water` of water_device.wgsl.
@@ -87,16 +79,7 @@ impl DeviceWater {
     /// # Errors
     /// [`RenderError::Gpu`] for more nodes than the device can hold.
     pub fn new(gpu: &Gpu, stage: &Stage, field: &HeightField, raise: f64) -> Result<Self, RenderError> {
-        let heights = storage::<f32>(gpu, "heights of the ground", field.heights.len())?;
-        let known = |height: &f32| if height.is_finite() { *height } else { NO_HEIGHT };
-        let known: Vec<f32> = field.heights.iter().map(known).collect();
-        gpu.queue.write_buffer(&heights, 0, bytemuck::cast_slice(&known));
-        let ground = Ground {
-            heights,
-            corner: DVec2::from(field.origin) - stage.centre().truncate(),
-            per_metre: 1.0 / DVec2::from(field.cell),
-            nodes: field.nodes.map(|count| count as u32),
-        };
+        let ground = Ground::new(gpu, stage, field)?;
         let settings = uniform(gpu, "water", &Settings::default());
         Ok(Self { kernels: Kernels::new(gpu), stage: *stage, raise, ground, settings, drawn: None, time: None })
     }
@@ -109,13 +92,13 @@ impl DeviceWater {
         let settings = self.settings(time, particles);
         if self.drawn.as_ref().is_none_or(|(drawn, _)| drawn.buffer != particles.buffer) {
             let cells = most_cells(particles) + 2;
-            let tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground.heights, &self.settings)?;
+            let tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground, &self.settings)?;
             self.drawn = Some((particles.clone(), tasks));
         }
         self.time = Some(time);
         gpu.queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&settings));
         if let Some((_, tasks)) = &mut self.drawn {
-            tasks.run(gpu);
+            tasks.run(gpu, &self.ground);
         }
         Ok(())
     }
@@ -124,6 +107,11 @@ impl DeviceWater {
     pub(super) fn droplets(&self) -> Option<Batch> {
         let (_, tasks) = self.drawn.as_ref()?;
         Some(Batch::Told { instances: tasks.instances.clone(), told: tasks.groups.clone(), at: DRAW })
+    }
+
+    /// The faces of water at the borders, corner by corner, and how many corners; nothing before the first update.
+    pub(super) fn faces(&self) -> Option<(wgpu::Buffer, u32)> {
+        self.drawn.as_ref().map(|_| (self.ground.faces.clone(), 6 * self.ground.border_nodes()))
     }
 
     fn settings(&self, time: f64, particles: &DeviceParticles) -> Settings {

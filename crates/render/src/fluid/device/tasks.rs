@@ -1,6 +1,7 @@
 //! Memory for the particles of a model on the device, and the passes over them.
 
 use super::super::droplet::Instance;
+use super::ground::Ground;
 use super::kernels::Kernels;
 use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Task, storage, wgpu};
 
@@ -8,6 +9,8 @@ use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, Sort
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
 const ON_GROUND: u64 = 4;
 const SETTLING: u64 = 5;
+/// Threads in a group of those over the nodes of borders.
+const BORDER_THREADS: u32 = 64;
 /// Numbers in the slots, those of the draw after them included.
 const TOLD: usize = 22;
 
@@ -33,6 +36,8 @@ pub(super) struct Tasks {
     calm: Task,
     discs: Task,
     foam: [Task; 2],
+    levels: Task,
+    faces: Task,
     /// Which of the memories is read next.
     turn: usize,
 }
@@ -43,18 +48,19 @@ pub(super) fn entries(room: usize) -> usize {
 }
 
 impl Tasks {
-    /// For particles in so many cells, over ground of these heights, with the numbers of `water_device.wgsl`.
+    /// For particles in so many cells, over this ground, with the numbers of `water_device.wgsl`.
     pub fn new(
         gpu: &Gpu,
         kernels: &Kernels,
         particles: &DeviceParticles,
         cells: usize,
-        heights: &wgpu::Buffer,
+        ground: &Ground,
         water: &wgpu::Buffer,
     ) -> Result<Self, GpuError> {
         let room = particles.room;
+        let Ground { heights, levels, faces, .. } = ground;
         let seen = &particles.buffer;
-        let sizes = &storage::<u32>(gpu, "sizes of water", 3)?;
+        let sizes = &storage::<u32>(gpu, "sizes of water", 4)?;
         let groups = storage::<u32>(gpu, "groups of water", TOLD)?;
         let keys = &storage::<u32>(gpu, "keys of water", room)?;
         let columns = || storage::<[f32; 4]>(gpu, "columns of water", room);
@@ -79,7 +85,9 @@ impl Tasks {
             ],
             settled: on(gpu, &kernels.settled, &[sizes, &groups]),
             calm: on(gpu, &kernels.calm, &[water, start, sites, motions, settled, calm]),
-            discs: on(gpu, &kernels.discs, &[water, start, settled, calm, matter, &instances, fresh]),
+            discs: on(gpu, &kernels.discs, &[water, start, settled, calm, matter, &instances, fresh, sizes]),
+            levels: on(gpu, &kernels.levels, &[water, start, &instances, heights, sizes, levels]),
+            faces: on(gpu, &kernels.faces, &[water, heights, levels, faces]),
             foam: [foam(&memory[0], &memory[1]), foam(&memory[1], &memory[0])],
             instances,
             groups,
@@ -90,7 +98,7 @@ impl Tasks {
     }
 
     /// Makes the particles as they are drawn.
-    pub fn run(&mut self, gpu: &Gpu) {
+    pub fn run(&mut self, gpu: &Gpu, ground: &Ground) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("water") });
         encoder.clear_buffer(&self.memory[1 - self.turn], 0, None);
         let mut pass = Pass::begin(&mut encoder, None);
@@ -107,6 +115,9 @@ impl Tasks {
         self.calm.run_as_told(&mut pass, groups, SLOTS.particles);
         self.discs.run_as_told(&mut pass, groups, SLOTS.particles);
         self.foam[self.turn].run_as_told(&mut pass, groups, ON_GROUND);
+        for task in [&self.levels, &self.faces] {
+            task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_THREADS));
+        }
         drop(pass);
         gpu.queue.submit([encoder.finish()]);
         self.turn = 1 - self.turn;

@@ -1,6 +1,7 @@
 //! The device's discs against the CPU's.
 
 use super::super::droplet::{Batch, Instance};
+use super::super::sides::{Vertex, faces};
 use super::super::{FluidPainter, FluidStyle, Water};
 use super::DeviceWater;
 use crate::{Camera, Drawable, HeightField, Light, Renderer, Stage, Target};
@@ -117,6 +118,28 @@ fn the_device_makes_the_discs_that_the_cpu_makes() {
         let foam = host.iter().filter(|instance| instance.matter[1] > 0.2).count();
         assert!(foam > 20, "{foam} at {time} s");
         compare(&drawn(&gpu, &device), &host);
+    }
+}
+
+#[test]
+fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
+    let Some(gpu) = require_gpu("sides of water on the device") else { return };
+    let (field, set) = (ground(), water(0.0));
+    let mut device = DeviceWater::new(&gpu, &stage(), &field, 1.0).unwrap();
+    let particles = room(&gpu);
+    send(&gpu, &set, &particles);
+    device.update(&gpu, 0.0, &particles).unwrap();
+    let (buffer, count) = device.faces().unwrap();
+    let found: Vec<Vertex> = read(&gpu, &buffer, count as usize).unwrap();
+    let found: Vec<&[Vertex]> = found.chunks(6).filter(|face| face[0].place != face[1].place).collect();
+    let droplets = Water::default().droplets(0.0, &set, |place| field.slope_at(place));
+    let wanted = faces(&stage(), &field, &droplets);
+    // Ten of 130 lie in the corner without data.
+    assert!(found.len() > 110 && wanted.len() == 6 * found.len(), "{} {}", found.len(), wanted.len());
+    for (one, other) in found.concat().iter().zip(&wanted) {
+        assert_eq!(one.outwards, other.outwards);
+        let apart = one.place.iter().zip(&other.place).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
+        assert!(apart < NEAR, "{one:?} {other:?}");
     }
 }
 

@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<uniform> water: Water;
 @group(0) @binding(1) var<storage, read> seen: DeviceParticles;
-// Particles, cells, and whether a height has changed.
+// Particles, cells, whether a height has changed, and the bits of the farthest reach at a border, m.
 @group(0) @binding(2) var<storage, read_write> sizes: array<u32>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group, a
 // thread for each particle on the ground, the same while heights change. Then what is drawn: corners, particles, firsts.
@@ -16,6 +16,7 @@ fn main() {
     sizes[0] = particles;
     sizes[1] = cells;
     sizes[2] = 0u;
+    sizes[3] = 0u;
     let threads = (particles + 255u) / 256u;
     let counts = array(threads, (cells + 255u) / 256u, (cells + 1023u) / 1024u, 1u, threads, threads);
     for (var slot = 0u; slot < 6u; slot++) {

@@ -29,6 +29,15 @@ struct Water {
 // Surface and place of a column of water: place, height, distance to its neighbours, m. Beside it its motion: velocity east and north,
 // m/s, and slope of the ground.
 
+// A particle as it is drawn: `Instance` of droplet.rs.
+struct Instance {
+    place: vec3f,
+    radius: f32,
+    normal: vec3f,
+    flatness: f32,
+    matter: vec4f,
+}
+
 // How far a particle looks, and its water is spread, in distances between particles.
 const REACH = 2.0;
 // Steeper than this no water stands.

@@ -1,18 +1,13 @@
 // Discs that lie in the water's surface, and the foam that comes on them now; balls of what is in the air. Twin of `disc` and `in_air`
 // in `water.rs`.
 #import water_planes
+#import water_borders
 
 @group(0) @binding(4) var<storage, read> matter: array<vec4u>;
-// A particle as it is drawn: `Instance` of droplet.rs.
-struct Instance {
-    place: vec3f,
-    radius: f32,
-    normal: vec3f,
-    flatness: f32,
-    matter: vec4f,
-}
 @group(0) @binding(5) var<storage, read_write> instances: array<Instance>;
 @group(0) @binding(6) var<storage, read_write> foam: array<f32>;
+// See `water_begin`.
+@group(0) @binding(7) var<storage, read_write> sizes: array<atomic<u32>>;
 
 const PI = 3.14159265;
 // Radius of the discs, in distances between particles, and their thickness over their width.
@@ -46,6 +41,13 @@ fn in_air(i: u32) -> Instance {
     return Instance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
 }
 
+// Whether a place is no farther than that from a border of the ground, m.
+fn is_at_border(place: vec2f, reach: f32) -> bool {
+    let low = abs(place - water.ground_corner);
+    let high = abs(place - node_place(water, water.ground_nodes - 1u));
+    return min(min(low.x, low.y), min(high.x, high.y)) < OVER_REACH * reach;
+}
+
 fn disc(i: u32) -> Instance {
     let own = sites[i];
     let fit = fit_at(i);
@@ -54,6 +56,9 @@ fn disc(i: u32) -> Instance {
     let normal = normalize(vec3f(-slope, 1.0));
     let radius = DISC * own.w;
     let reach = REACH * own.w;
+    if is_at_border(own.xy, reach) {
+        atomicMax(&sizes[3], bitcast<u32>(reach));
+    }
     let middle = vec3f(own.xy, fit.here.x) - FLATNESS * radius * normal;
     // How fast the water of a disc runs together.
     let closing = -(fit.east.y + fit.north.z) * reach;

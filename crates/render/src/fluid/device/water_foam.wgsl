@@ -11,14 +11,10 @@
 // Bits of what will be before: of numbers that are not negative, the greater has the greater bits. Where particles share a place in the
 // memory, the most foam stays, whichever comes first.
 @group(0) @binding(6) var<storage, read_write> after: array<atomic<u32>>;
-// Particles as they are drawn, of twelve numbers: `Instance` of droplet.rs.
-@group(0) @binding(7) var<storage, read_write> instances: array<f32>;
+@group(0) @binding(7) var<storage, read_write> instances: array<Instance>;
 
 // Less foam is forgotten.
 const LEAST = 0.01;
-// Where foam stands in an instance.
-const NUMBERS = 12u;
-const FOAM = 9u;
 
 fn foam_around(i: u32) -> f32 {
     let own = sites[i];
@@ -48,7 +44,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let slot = matter[i].y & water.memory;
     let now = max(foam_around(i), water.left * before[slot]);
-    instances[NUMBERS * i + FOAM] = now;
+    instances[i].matter.y = now;
     if now > LEAST {
         atomicMax(&after[slot], bitcast<u32>(now));
     }

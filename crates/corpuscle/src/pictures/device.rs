@@ -1,0 +1,117 @@
+//! Pictures of a model that steps on the device that draws: its particles stay there.
+
+use super::{Moment, Pictures, Subject};
+use crate::{Error, Simulation};
+use corpuscle_gpu::{DeviceParticles, Gpu, Image};
+use corpuscle_model::{Frame, Model};
+
+impl Simulation {
+    /// The graphics card that takes the steps of a flood, where one does.
+    pub(super) fn card(&self) -> Option<Gpu> {
+        card_of(self.model())
+    }
+}
+
+impl Pictures {
+    /// The picture of a model as it is now. Where it steps on the device that draws, its particles are drawn from where they lie.
+    ///
+    /// # Errors
+    /// [`Error::Model`] where that device has too little memory, [`Error::Render`] where it was lost.
+    pub fn draw_model(&mut self, model: &dyn Model) -> Result<Image, Error> {
+        let particles = self.on_device(model)?;
+        let frame = match particles {
+            Some(_) => Frame { time: model.time(), sets: Vec::new() },
+            None => model.frame(),
+        };
+        let (paths, container) = (model.paths(), model.container());
+        self.draw(&Moment { frame: &frame, on_device: particles.as_ref(), paths: &paths, container })
+    }
+
+    /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
+    fn on_device(&self, model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+        let is_here = card_of(model).is_some_and(|card| card.device == self.gpu().device);
+        match &self.subject {
+            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model),
+            _ => Ok(None),
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn card_of(model: &dyn Model) -> Option<Gpu> {
+    flood(model).and_then(corpuscle_flood::Flood::card)
+}
+
+#[cfg(feature = "gpu")]
+fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+    Ok(flood(model).map(corpuscle_flood::Flood::on_device).transpose()?.flatten())
+}
+
+#[cfg(feature = "gpu")]
+fn flood(model: &dyn Model) -> Option<&corpuscle_flood::Flood> {
+    (model as &dyn std::any::Any).downcast_ref()
+}
+
+#[cfg(not(feature = "gpu"))]
+fn card_of(_: &dyn Model) -> Option<Gpu> {
+    None
+}
+
+#[cfg(not(feature = "gpu"))]
+fn particles_of(_: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+    Ok(None)
+}
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::*;
+    use crate::pictures::{GroundLook, PictureSettings};
+    use corpuscle_gpu::require_gpu;
+    use corpuscle_scene::{Scene, builtin};
+    use std::path::Path;
+    use std::sync::atomic::AtomicBool;
+
+    /// Mean difference of two pictures, of 255.
+    const SAME: f64 = 0.01;
+
+    fn difference(one: &Image, other: &Image) -> f64 {
+        let sum: u64 = one.rgba.iter().zip(&other.rgba).map(|(one, other)| u64::from(one.abs_diff(*other))).sum();
+        sum as f64 / one.rgba.len() as f64
+    }
+
+    fn by_frame(pictures: &mut Pictures, model: &dyn Model) -> Image {
+        let frame = model.frame();
+        pictures.draw(&Moment { frame: &frame, on_device: None, paths: &[], container: None }).unwrap()
+    }
+
+    #[test]
+    fn a_flood_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
+        let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
+        let coarse = [("flood.spacing_m".to_owned(), "2".to_owned())];
+        let scene = Scene::parse(builtin("flood/dam-break").unwrap().text, "dam", &coarse).unwrap();
+        let mut simulation = Simulation::open(scene, Path::new("")).unwrap();
+        simulation.use_this_gpu(gpu.clone()).unwrap();
+        simulation.model_mut().advance_to(4.0, &AtomicBool::new(false)).unwrap();
+        let settings = |ground| PictureSettings {
+            size: [480, 270],
+            samples: 1,
+            heights: 2.0,
+            ground,
+            ..PictureSettings::default()
+        };
+        let mut pictures = Pictures::open(&simulation, settings(GroundLook::Natural)).unwrap();
+        assert!(pictures.gpu().device == gpu.device && pictures.on_device(simulation.model()).unwrap().is_some());
+        let image = pictures.draw_model(simulation.model()).unwrap();
+        let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundLook::Natural)).unwrap();
+        let apart = difference(&image, &by_frame(&mut others, simulation.model()));
+        println!("{apart} of 255");
+        assert!(apart < SAME, "{apart}");
+        let nothing = Frame { time: 4.0, sets: Vec::new() };
+        let dry = others.draw(&Moment { frame: &nothing, on_device: None, paths: &[], container: None }).unwrap();
+        assert!(difference(&image, &dry) > 100.0 * SAME, "{}", difference(&image, &dry));
+        // What the ground shows of the water is the host's to draw.
+        let mut of_depth = Pictures::open(&simulation, settings(GroundLook::Depth)).unwrap();
+        assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
+        assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);
+    }
+}

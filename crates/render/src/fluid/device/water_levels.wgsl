@@ -1,0 +1,49 @@
+// The water's level at the nodes of the ground's borders. Twin of `levels` in `sides.rs`. Places and lengths here are those of the stage.
+#import water_borders
+
+@group(0) @binding(0) var<uniform> water: Water;
+@group(0) @binding(1) var<storage, read> start: array<u32>;
+@group(0) @binding(2) var<storage, read> instances: array<Instance>;
+@group(0) @binding(3) var<storage, read> heights: array<f32>;
+// See `water_begin`.
+@group(0) @binding(4) var<storage, read> sizes: array<u32>;
+@group(0) @binding(5) var<storage, read_write> levels: array<f32>;
+
+// How well particles must cover a node for water to be there.
+const COVERED = 0.3;
+
+// Height of the upper side of a disc this much beside its middle, as if it went on flat. Twin of `Droplet::level`.
+fn level_of(disc: Instance, away: vec2f) -> f32 {
+    let top = disc.flatness * disc.radius * disc.normal;
+    return disc.place.z + top.z - dot(disc.normal.xy, away - top.xy) / max(disc.normal.z, 1e-3);
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= border_nodes(water) {
+        return;
+    }
+    let node = border_node(water, id.x).xy;
+    let metres = node_place(water, node);
+    let place = water.unit * metres;
+    let reach = OVER_REACH * bitcast<f32>(sizes[3]);
+    let low = cell_at(water, metres - reach);
+    let high = cell_at(water, metres + reach);
+    var sum = 0.0;
+    var weights = 0.0;
+    for (var row = low.y; row <= high.y; row++) {
+        let end = start[row * water.columns + high.x + 1u];
+        for (var k = start[row * water.columns + low.x]; k < end; k++) {
+            let disc = instances[k];
+            let away = place - disc.place.xy;
+            let spread = disc.matter.z;
+            let left = max(1.0 - dot(away, away) / (spread * spread), 0.0);
+            let share = left * left * left;
+            weights += share;
+            sum += share * level_of(disc, away);
+        }
+    }
+    let ground = heights[node.y * water.ground_nodes.x + node.x];
+    let is_wet = weights > COVERED && ground < NO_HEIGHT;
+    levels[id.x] = select(NO_HEIGHT, max(sum / weights, water.unit * ground), is_wet);
+}
