@@ -48,7 +48,7 @@ pub struct View {
 }
 
 impl View {
-    /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`].
+    /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`], `shadow` the sun's depth map.
     pub fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
@@ -56,6 +56,7 @@ impl View {
         camera: &Camera,
         light: &Light,
         size: [u32; 2],
+        shadow: wgpu::TextureView,
     ) -> Self {
         let sun_from_world = sun_from_world(light);
         let seen = uniform(stage, camera, light, size, sun_from_world);
@@ -67,8 +68,6 @@ impl View {
             frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
             ..seen
         };
-        let pixels = if light.throws_shadows() { SHADOW_PIXELS } else { 1 };
-        let shadow = depth_map(gpu, pixels);
         let nothing = depth_map(gpu, 1);
         let [group, sun_group] =
             [(&seen, &shadow), (&from_sun, &nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
@@ -145,7 +144,8 @@ fn sun_from_world(light: &Light) -> Mat4 {
         * view::look_at_mat4(towards * 4.0, Vec3::ZERO, up)
 }
 
-fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
+/// A depth map of so many pixels each way.
+pub(crate) fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("sun's depth map"),
         size: wgpu::Extent3d { width: pixels, height: pixels, depth_or_array_layers: 1 },
