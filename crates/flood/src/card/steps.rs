@@ -57,6 +57,26 @@ impl Tasks {
         if let Some(carry) = &self.carry {
             carry.run_as_told(pass, groups, SLOTS.particles);
         }
+        match &self.moves {
+            Some(moves) => moves.run_as_told(pass, groups, SLOTS.particles),
+            None => self.move_and_exchange(pass),
+        }
+        self.sort(pass);
+        self.density.run_as_told(pass, groups, SLOTS.particles);
+        if let Some(gradients) = &self.gradients {
+            gradients.run_as_told(pass, groups, SLOTS.particles);
+        }
+        if let (Some(push), Some(on_obstacles)) = (&self.push, &self.on_obstacles) {
+            push.run_as_told(pass, groups, SLOTS.particles);
+            on_obstacles.run(pass, self.obstacles);
+        }
+        self.forces.run_as_told(pass, groups, SLOTS.particles);
+        self.finish.run(pass, 1);
+    }
+
+    /// Moves the particles, and what comes in and goes out while they do.
+    fn move_and_exchange(&self, pass: &mut Pass<'_>) {
+        let groups = &self.groups;
         self.drift.run_as_told(pass, groups, SLOTS.particles);
         if let Some([plan, make_room, refine]) = &self.refine {
             plan.run_as_told(pass, groups, REFINED);
@@ -80,16 +100,5 @@ impl Tasks {
             drops.run(pass, 1);
         }
         self.leave.run_as_told(pass, groups, SLOTS.particles);
-        self.sort(pass);
-        self.density.run_as_told(pass, groups, SLOTS.particles);
-        if let Some(gradients) = &self.gradients {
-            gradients.run_as_told(pass, groups, SLOTS.particles);
-        }
-        if let (Some(push), Some(on_obstacles)) = (&self.push, &self.on_obstacles) {
-            push.run_as_told(pass, groups, SLOTS.particles);
-            on_obstacles.run(pass, self.obstacles);
-        }
-        self.forces.run_as_told(pass, groups, SLOTS.particles);
-        self.finish.run(pass, 1);
     }
 }

@@ -26,6 +26,9 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_air", include_str!("flood_air.wgsl")),
     ("flood_sums", include_str!("flood_sums.wgsl")),
     ("flood_paper", include_str!("flood_paper.wgsl")),
+    ("flood_moves", include_str!("flood_moves.wgsl")),
+    ("flood_drifting", include_str!("flood_drifting.wgsl")),
+    ("flood_leaving", include_str!("flood_leaving.wgsl")),
     SUMS_BEFORE,
     ("flood_refinement", include_str!("flood_refinement.wgsl")),
 ];
@@ -56,6 +59,8 @@ pub(super) struct Tasks {
     /// What falls, and what of it has landed.
     pub land: Option<[Task; 2]>,
     pub leave: Task,
+    /// Drift and leave at once, where nothing comes between them.
+    pub moves: Option<Task>,
     pub reorder: Task,
     pub reach_own: Task,
     pub reach_rows: Task,
@@ -122,6 +127,7 @@ impl Tasks {
         }
         let has_walls = walls.count > 0;
         let comes_in = !works.sources.is_empty() || works.holds_level;
+        let comes_between = comes_in || refines || works.has_structures || air.is_some() || weather.is_some();
         Ok(Self {
             carry: works.holds_level.then(|| {
                 shader!(
@@ -189,7 +195,27 @@ impl Tasks {
                     shader!("flood_landed", [status, air.buffer, groups]),
                 ]
             }),
-            leave: shader!("flood_leave", [parameters, status, particles, sort.counts, sort.places, keys, partials]),
+            leave: shader!(
+                "flood_leave",
+                [parameters, status, particles, (), (), partials, (), sort.counts, sort.places, keys]
+            ),
+            moves: (!comes_between).then(|| {
+                shader!(
+                    "flood_move",
+                    [
+                        parameters,
+                        status,
+                        particles,
+                        walls.outlines,
+                        walls.knocks,
+                        partials,
+                        *rough,
+                        sort.counts,
+                        sort.places,
+                        keys
+                    ]
+                )
+            }),
             reorder: shader!("flood_reorder", [parameters, status, sort.start, sort.order, particles, sorted, sites]),
             reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
             reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),

@@ -1,0 +1,39 @@
+// Particles move, are kept within the edges and count themselves, all at once: `flood_drift` and `flood_leave` where nothing comes between.
+#import flood_drifting
+#import flood_leaving
+
+var<workgroup> drifts: array<f32, 256>;
+var<workgroup> sums: array<vec4f, 256>;
+
+@compute @workgroup_size(256)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    drifts[thread] = 0.0;
+    sums[thread] = vec4f(0.0);
+    let i = id.x;
+    if i < status.particles {
+        var particle = unpacked(particles[i]);
+        drifts[thread] = moved(&particle);
+        sums[thread] = kept(&particle);
+        particles[i] = packed(particle);
+        count(i, particle);
+    }
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half /= 2u) {
+        if thread < half {
+            drifts[thread] += drifts[thread + half];
+            sums[thread] += sums[thread + half];
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        partials[group.x].booked_in_drift = drifts[0];
+        partials[group.x].outflow = sums[0].x;
+        partials[group.x].inflow = sums[0].y;
+        partials[group.x].gained_at_edges = sums[0].z;
+        partials[group.x].lost_at_edges = sums[0].w;
+    }
+}
