@@ -3,6 +3,7 @@
 use crate::pipeline::Recipe;
 use crate::standing::Stood;
 use crate::tone::Tone;
+use crate::view::DepthMaps;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
 use std::sync::PoisonError;
@@ -13,6 +14,7 @@ pub struct Renderer {
     gpu: Gpu,
     view_layout: wgpu::BindGroupLayout,
     backdrop: wgpu::RenderPipeline,
+    maps: DepthMaps,
     tone: Tone,
 }
 
@@ -28,7 +30,7 @@ impl Renderer {
             topology: wgpu::PrimitiveTopology::TriangleList,
         }
         .opaque(gpu);
-        Self { gpu: gpu.clone(), tone: Tone::new(gpu), view_layout, backdrop }
+        Self { gpu: gpu.clone(), tone: Tone::new(gpu), maps: DepthMaps::new(gpu), view_layout, backdrop }
     }
 
     /// The device.
@@ -88,7 +90,7 @@ impl Renderer {
         things: &mut [&mut dyn Drawable],
     ) {
         let gpu = &self.gpu;
-        let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size());
+        let view = View::new(gpu, &self.view_layout, &self.maps, stage, camera, light, target.drawn_size());
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
         if light.throws_shadows() {
             draw_shadows(encoder, &view, things);

@@ -5,6 +5,7 @@ use corpuscle_gpu::Gpu;
 use corpuscle_gpu::wgpu;
 use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3, Vec4};
+use std::sync::OnceLock;
 
 /// Pixels of the sun's depth map, each way.
 pub(crate) const SHADOW_PIXELS: u32 = 4096;
@@ -47,11 +48,34 @@ pub struct View {
     uniform: Uniform,
 }
 
+/// The sun's depth maps, kept from picture to picture: each is done with before the next is begun.
+#[derive(Debug)]
+pub(crate) struct DepthMaps {
+    /// Made when the first picture with shadows is drawn.
+    shadow: OnceLock<wgpu::TextureView>,
+    /// Where there are no shadows.
+    nothing: wgpu::TextureView,
+}
+
+impl DepthMaps {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        Self { shadow: OnceLock::new(), nothing: depth_map(gpu, 1) }
+    }
+
+    fn of(&self, gpu: &Gpu, light: &Light) -> &wgpu::TextureView {
+        match light.throws_shadows() {
+            true => self.shadow.get_or_init(|| depth_map(gpu, SHADOW_PIXELS)),
+            false => &self.nothing,
+        }
+    }
+}
+
 impl View {
     /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`].
-    pub fn new(
+    pub(crate) fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
+        maps: &DepthMaps,
         stage: &Stage,
         camera: &Camera,
         light: &Light,
@@ -67,12 +91,10 @@ impl View {
             frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
             ..seen
         };
-        let pixels = if light.throws_shadows() { SHADOW_PIXELS } else { 1 };
-        let shadow = depth_map(gpu, pixels);
-        let nothing = depth_map(gpu, 1);
+        let shadow = maps.of(gpu, light);
         let [group, sun_group] =
-            [(&seen, &shadow), (&from_sun, &nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
-        Self { group, sun_group, shadow, uniform: seen }
+            [(&seen, shadow), (&from_sun, &maps.nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
+        Self { group, sun_group, shadow: shadow.clone(), uniform: seen }
     }
 
     /// All that shaders know of camera, light and size.
