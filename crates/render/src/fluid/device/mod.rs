@@ -23,7 +23,7 @@ mod twin;
 use super::droplet::Batch;
 use super::water::{LIFE, REACH};
 use crate::{HeightField, RenderError, Stage};
-use corpuscle_gpu::{DeviceParticles, Gpu, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, THREADS, uniform, wgpu};
 use glam::{DVec2, DVec3};
 use ground::Ground;
 use kernels::Kernels;
@@ -92,7 +92,10 @@ impl DeviceWater {
         let settings = self.settings(time, particles);
         if self.drawn.as_ref().is_none_or(|(drawn, _)| drawn.buffer != particles.buffer) {
             let cells = most_cells(particles) + 2;
-            let tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground, &self.settings)?;
+            let mut tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground, &self.settings)?;
+            if let Some((_, before)) = &self.drawn {
+                tasks.remember(gpu, before);
+            }
             self.drawn = Some((particles.clone(), tasks));
         }
         self.time = Some(time);
@@ -140,7 +143,9 @@ impl DeviceWater {
 }
 
 fn most_cells(particles: &DeviceParticles) -> usize {
-    (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS)
+    // With two more, a thread each.
+    let most = MOST_GROUPS as usize * THREADS as usize - 2;
+    (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS).min(most)
 }
 
 /// Columns and rows of cells over twice `half` m, and their size, m: as wide as a particle looks, or wider where there would be too many.
