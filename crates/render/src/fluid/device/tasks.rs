@@ -3,7 +3,9 @@
 use super::super::droplet::Instance;
 use super::ground::Ground;
 use super::kernels::Kernels;
-use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Task, storage, wgpu};
+use corpuscle_gpu::{
+    CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Stopwatch, Task, storage, wgpu,
+};
 
 /// Slots of the numbers of groups: see `water_begin.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
@@ -109,10 +111,10 @@ impl Tasks {
     }
 
     /// Makes the particles as they are drawn.
-    pub fn run(&mut self, gpu: &Gpu, ground: &Ground) {
+    pub fn run(&mut self, gpu: &Gpu, ground: &Ground, mut stopwatch: Option<&mut Stopwatch>) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("water") });
         encoder.clear_buffer(&self.memory[1 - self.turn], 0, None);
-        let mut pass = Pass::begin(&mut encoder, None);
+        let mut pass = Pass::begin(&mut encoder, stopwatch.as_deref_mut());
         let groups = &self.groups;
         self.begin.run(&mut pass, 1);
         self.count.run_as_told(&mut pass, groups, SLOTS.particles);
@@ -130,6 +132,7 @@ impl Tasks {
             task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_THREADS));
         }
         drop(pass);
+        stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         gpu.queue.submit([encoder.finish()]);
         self.turn = 1 - self.turn;
     }
