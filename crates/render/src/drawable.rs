@@ -29,12 +29,13 @@ pub trait Drawable {
     fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
     /// For what stands still, a number that no other thing has, and that is another one when the thing is drawn otherwise although
-    /// camera, light and size are the same. In plain light, without shadows, its picture is kept while these rest. None for what moves.
+    /// camera, light and size are the same. Its picture is kept while these rest, in light that throws shadows only where nothing opaque
+    /// moves. None for what moves.
     fn standing(&self) -> Option<u64> {
         None
     }
 
-    /// True for things that let light through.
+    /// True for things that let light through. They throw no shadows and draw nothing opaque.
     fn lets_light_through(&self) -> bool {
         false
     }

@@ -1,9 +1,8 @@
 //! Draws pictures, pass by pass.
 
 use crate::pipeline::Recipe;
-use crate::standing::Stood;
+use crate::standing::{Standing, Stood};
 use crate::tone::Tone;
-use crate::view::DepthMaps;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
 use std::sync::PoisonError;
@@ -14,7 +13,6 @@ pub struct Renderer {
     gpu: Gpu,
     view_layout: wgpu::BindGroupLayout,
     backdrop: wgpu::RenderPipeline,
-    maps: DepthMaps,
     tone: Tone,
 }
 
@@ -30,7 +28,7 @@ impl Renderer {
             topology: wgpu::PrimitiveTopology::TriangleList,
         }
         .opaque(gpu);
-        Self { gpu: gpu.clone(), tone: Tone::new(gpu), maps: DepthMaps::new(gpu), view_layout, backdrop }
+        Self { gpu: gpu.clone(), tone: Tone::new(gpu), view_layout, backdrop }
     }
 
     /// The device.
@@ -90,9 +88,12 @@ impl Renderer {
         things: &mut [&mut dyn Drawable],
     ) {
         let gpu = &self.gpu;
-        let view = View::new(gpu, &self.view_layout, &self.maps, stage, camera, light, target.drawn_size());
+        let mut standing = target.standing.lock().unwrap_or_else(PoisonError::into_inner);
+        let shadows = standing.shadows(gpu, light);
+        let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size(), shadows);
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
-        if light.throws_shadows() {
+        let stood = standing.look(view.bytes(), light, things);
+        if light.throws_shadows() && stood != Stood::Kept {
             draw_shadows(encoder, &view, things);
         }
         if light.is_lit() {
@@ -101,7 +102,7 @@ impl Renderer {
                 thing.draw_before(&mut Before { gpu, encoder, view, size });
             }
         }
-        self.draw_opaque(encoder, target, &view, light, things);
+        self.draw_opaque(encoder, target, &view, light, things, (&mut standing, stood));
         for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {
             draw_through(gpu, encoder, target, &view, *thing);
         }
@@ -122,12 +123,9 @@ impl Renderer {
         view: &View,
         light: &Light,
         things: &[&mut dyn Drawable],
+        (standing, stood): (&mut Standing, Stood),
     ) {
-        if light.throws_shadows() {
-            return self.draw_some(encoder, target, view, light, things, Which::All);
-        }
-        let mut standing = target.standing.lock().unwrap_or_else(PoisonError::into_inner);
-        match standing.look(view.bytes(), things) {
+        match stood {
             Stood::Changed => return self.draw_some(encoder, target, view, light, things, Which::All),
             Stood::Rests => {
                 self.draw_some(encoder, target, view, light, things, Which::Standing);
@@ -164,7 +162,7 @@ impl Renderer {
             ..wgpu::RenderPassDescriptor::default()
         });
         pass.set_bind_group(0, &view.group, &[]);
-        if light.throws_shadows() {
+        if cleared && light.throws_shadows() {
             pass.set_pipeline(&self.backdrop);
             pass.draw(0..3, 0..1);
         }

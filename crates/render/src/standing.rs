@@ -1,7 +1,10 @@
-//! What stands still in plain light is drawn once, and kept from picture to picture while the camera rests.
+//! What stands still is drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that throws
+//! shadows where all that is opaque stands still.
 
 use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
-use crate::{Drawable, Target};
+use crate::view::SHADOW_PIXELS;
+use crate::view::depth_map;
+use crate::{Drawable, Light, Target};
 use corpuscle_gpu::{Gpu, wgpu};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -19,6 +22,8 @@ pub(crate) struct Standing {
     textures: Option<[wgpu::Texture; 2]>,
     /// True where the textures hold it.
     drawn: bool,
+    /// The sun's depth map, and whether light throws shadows that it is for.
+    shadows: Option<(wgpu::TextureView, bool)>,
 }
 
 /// What is to be done with what stands.
@@ -33,11 +38,24 @@ pub(crate) enum Stood {
 }
 
 impl Standing {
+    /// The sun's depth map for such a light; what it holds stays from picture to picture.
+    pub fn shadows(&mut self, gpu: &Gpu, light: &Light) -> wgpu::TextureView {
+        let throws = light.throws_shadows();
+        if let Some((map, _)) = self.shadows.as_ref().filter(|(_, threw)| *threw == throws) {
+            return map.clone();
+        }
+        let map = depth_map(gpu, if throws { SHADOW_PIXELS } else { 1 });
+        self.shadows = Some((map.clone(), throws));
+        self.by = None;
+        map
+    }
+
     /// What is to be done in a picture by a camera and light.
-    pub fn look(&mut self, view: &[u8], things: &[&mut dyn Drawable]) -> Stood {
+    pub fn look(&mut self, view: &[u8], light: &Light, things: &[&mut dyn Drawable]) -> Stood {
         let states: Vec<u64> = things.iter().filter_map(|thing| thing.standing()).collect();
-        if states.is_empty() {
-            *self = Self { textures: self.textures.take(), ..Self::default() };
+        let moves = |thing: &&mut dyn Drawable| thing.standing().is_none() && !thing.lets_light_through();
+        if states.is_empty() || (light.throws_shadows() && things.iter().any(moves)) {
+            self.by = None;
             return Stood::Changed;
         }
         let same = self.by.as_ref().is_some_and(|(last, of)| last == view && *of == states);

@@ -5,7 +5,6 @@ use corpuscle_gpu::Gpu;
 use corpuscle_gpu::wgpu;
 use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3, Vec4};
-use std::sync::OnceLock;
 
 /// Pixels of the sun's depth map, each way.
 pub(crate) const SHADOW_PIXELS: u32 = 4096;
@@ -48,38 +47,16 @@ pub struct View {
     uniform: Uniform,
 }
 
-/// The sun's depth maps, kept from picture to picture: each is done with before the next is begun.
-#[derive(Debug)]
-pub(crate) struct DepthMaps {
-    /// Made when the first picture with shadows is drawn.
-    shadow: OnceLock<wgpu::TextureView>,
-    /// Where there are no shadows.
-    nothing: wgpu::TextureView,
-}
-
-impl DepthMaps {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self { shadow: OnceLock::new(), nothing: depth_map(gpu, 1) }
-    }
-
-    fn of(&self, gpu: &Gpu, light: &Light) -> &wgpu::TextureView {
-        match light.throws_shadows() {
-            true => self.shadow.get_or_init(|| depth_map(gpu, SHADOW_PIXELS)),
-            false => &self.nothing,
-        }
-    }
-}
-
 impl View {
-    /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`].
-    pub(crate) fn new(
+    /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`], `shadow` the sun's depth map.
+    pub fn new(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
-        maps: &DepthMaps,
         stage: &Stage,
         camera: &Camera,
         light: &Light,
         size: [u32; 2],
+        shadow: wgpu::TextureView,
     ) -> Self {
         let sun_from_world = sun_from_world(light);
         let seen = uniform(stage, camera, light, size, sun_from_world);
@@ -91,10 +68,10 @@ impl View {
             frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
             ..seen
         };
-        let shadow = maps.of(gpu, light);
+        let nothing = depth_map(gpu, 1);
         let [group, sun_group] =
-            [(&seen, shadow), (&from_sun, &maps.nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
-        Self { group, sun_group, shadow: shadow.clone(), uniform: seen }
+            [(&seen, &shadow), (&from_sun, &nothing)].map(|(uniform, shadow)| group(gpu, layout, uniform, shadow));
+        Self { group, sun_group, shadow, uniform: seen }
     }
 
     /// All that shaders know of camera, light and size.
@@ -167,7 +144,8 @@ fn sun_from_world(light: &Light) -> Mat4 {
         * view::look_at_mat4(towards * 4.0, Vec3::ZERO, up)
 }
 
-fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
+/// A depth map of so many pixels each way.
+pub(crate) fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("sun's depth map"),
         size: wgpu::Extent3d { width: pixels, height: pixels, depth_or_array_layers: 1 },

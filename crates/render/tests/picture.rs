@@ -5,9 +5,9 @@
 use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
-    Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, HeightField,
-    Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Shading, Solid, SolidStyle, Stage, Target, Terrain,
-    TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
+    Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, FluidPainter,
+    FluidStyle, HeightField, Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
+    Stage, Target, Terrain, TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -251,6 +251,41 @@ fn what_stands_is_kept_until_something_changes() {
         let pictures = [1.0, 3.0, 5.0, 7.0].map(|at| {
             let kept = draw(&table, &mut ground, turn, at);
             assert!(kept == draw(&fresh(), &mut ground, turn, at), "turned by {turn}, {value}, ball at {at}");
+            kept
+        });
+        assert!(pictures[2] != pictures[3]);
+    }
+}
+
+#[test]
+fn what_stands_and_its_shadows_are_kept_while_only_water_moves() {
+    let Some(table) = Table::open("what stands in the sun") else { return };
+    let gpu = table.renderer.gpu();
+    let stage = Stage::new([0.0, 0.0, -1.0], [10.0, 8.0, 2.0]);
+    let field = HeightField::sampled([0.0; 2], [10.0, 8.0], [90, 70], |x, y| 0.5 * (0.9 * x).sin() * (1.1 * y).cos());
+    let grey = Image { width: 1, height: 1, rgba: vec![90, 90, 90, 255] };
+    let mut ground = Terrain::new(&table.renderer, &stage, field, &grey, -1.0).unwrap();
+    let mut floor = Floor::new(&table.renderer, -1.0);
+    let fluids = FluidPainter::new(&table.renderer);
+    let painter = BallPainter::new(&table.renderer);
+    let mut draw = |table: &Table, sun: f64, height: f64, at: f64, with_ball: bool| {
+        let camera = Camera::orbit(&stage, [-1.2, 0.4], 0.6, ASPECT, 0.0);
+        let mut water = fluids.fluid(gpu, &stage, FluidStyle::water(0.5));
+        water.fill(gpu, [Droplet::ball([at, 4.0, 0.6], 0.5)]);
+        let mut ball = painter.balls(gpu, &stage, &BallStyle::new(viridis()), [([at, 2.0, 1.0], 0.5, 0.8)]);
+        floor.lay_at(height);
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut ground, &mut floor, &mut water];
+        if with_ball {
+            things.push(&mut ball);
+        }
+        let light = Light::day().from_azimuth(sun);
+        table.draw(&stage, &camera, &light, &mut things, &Overlay::default())
+    };
+    let fresh = || Table { renderer: Renderer::new(gpu), target: Target::new(gpu, SIZE, 2).unwrap() };
+    for (sun, height, with_ball) in [(-1.0, -1.0, false), (-1.0, -1.0, true), (-1.0, -1.3, false), (0.5, -1.3, false)] {
+        let pictures = [1.0, 3.0, 5.0, 7.0].map(|at| {
+            let kept = draw(&table, sun, height, at, with_ball);
+            assert!(kept == draw(&fresh(), sun, height, at, with_ball), "{sun}, {height}, ball {with_ball}, at {at}");
             kept
         });
         assert!(pictures[2] != pictures[3]);

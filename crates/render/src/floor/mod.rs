@@ -2,7 +2,7 @@
 
 use crate::buffer::{UNIFORM, filled};
 use crate::pipeline::Recipe;
-use crate::{Camera, Drawable, Renderer, Stage, shaders};
+use crate::{Camera, Drawable, Renderer, Stage, shaders, standing};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// Part of the light that the darkest shadow takes.
@@ -15,6 +15,8 @@ pub struct Floor {
     group: wgpu::BindGroup,
     place: wgpu::Buffer,
     height: f64,
+    /// Another one at each height.
+    state: u64,
 }
 
 impl Floor {
@@ -45,12 +47,14 @@ impl Floor {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: place.as_entire_binding() }],
         });
-        Self { pipeline: recipe.opaque(gpu), group, place, height }
+        Self { pipeline: recipe.opaque(gpu), group, place, height, state: standing::state() }
     }
 
     /// Moves it to another height, m.
     pub fn lay_at(&mut self, height: f64) {
-        self.height = height;
+        if height != self.height {
+            (self.height, self.state) = (height, standing::state());
+        }
     }
 }
 
@@ -59,6 +63,10 @@ impl Drawable for Floor {
         let [x, y, _] = stage.centre().into();
         let height = stage.place([x, y, self.height]).z;
         gpu.queue.write_buffer(&self.place, 0, &height.to_le_bytes());
+    }
+
+    fn standing(&self) -> Option<u64> {
+        Some(self.state)
     }
 
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {

@@ -5,7 +5,7 @@ mod mesh;
 use crate::buffer::{UNIFORM, instances, uniform};
 use crate::colour::linear;
 use crate::pipeline::Recipe;
-use crate::{Drawable, Renderer, Stage, Through, shaders};
+use crate::{Drawable, Renderer, Stage, Through, shaders, standing};
 use corpuscle_gpu::{Gpu, wgpu};
 use corpuscle_model::SolidShape;
 
@@ -36,6 +36,7 @@ pub struct Solid {
     buffer: wgpu::Buffer,
     count: u32,
     behind: Behind,
+    state: u64,
 }
 
 /// What is behind a thing that lets light through, as a group.
@@ -139,6 +140,7 @@ impl Solid {
             buffer: instances(gpu, "solid", &vertices),
             count: vertices.len() as u32,
             behind,
+            state: standing::state(),
         }
     }
 
@@ -151,6 +153,10 @@ impl Solid {
 }
 
 impl Drawable for Solid {
+    fn standing(&self) -> Option<u64> {
+        self.cast.is_some().then_some(self.state)
+    }
+
     fn cast(&self, pass: &mut wgpu::RenderPass<'_>) {
         if let Some(pipeline) = &self.cast {
             self.paint(pass, pipeline);
