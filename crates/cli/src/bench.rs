@@ -24,7 +24,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
             continue;
         }
         let drawn = match &with.gpu {
-            Some(gpu) if options.draw => drawn::drawn(bench.name, gpu, options.quick)?,
+            Some(gpu) if options.draw => drawn::drawn(bench.name, gpu, options)?,
             _ => None,
         };
         for rate in (bench.run)(&with).into_iter().chain(drawn) {

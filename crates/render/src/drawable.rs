@@ -22,6 +22,11 @@ pub trait Drawable {
     /// perspective).
     fn cast(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
+    /// False for things that throw none: where they move, others' shadows rest.
+    fn throws_shadow(&self) -> bool {
+        true
+    }
+
     /// Draws what the thing needs to be drawn into textures of its own.
     fn draw_before(&mut self, _frame: &mut Before<'_>) {}
 
@@ -29,8 +34,8 @@ pub trait Drawable {
     fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
     /// For what stands still, a number that no other thing has, and that is another one when the thing is drawn otherwise although
-    /// camera, light and size are the same. Its picture is kept while these rest, in light that throws shadows only where nothing opaque
-    /// moves. None for what moves.
+    /// camera, light and size are the same. Its picture is kept while these rest, in light that throws shadows only where nothing
+    /// moves that throws one. None for what moves.
     fn standing(&self) -> Option<u64> {
         None
     }

@@ -1,5 +1,5 @@
 //! What stands still is drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that throws
-//! shadows where all that is opaque stands still.
+//! shadows where all that throws one stands still.
 
 use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
 use crate::view::SHADOW_PIXELS;
@@ -53,7 +53,9 @@ impl Standing {
     /// What is to be done in a picture by a camera and light.
     pub fn look(&mut self, view: &[u8], light: &Light, things: &[&mut dyn Drawable]) -> Stood {
         let states: Vec<u64> = things.iter().filter_map(|thing| thing.standing()).collect();
-        let moves = |thing: &&mut dyn Drawable| thing.standing().is_none() && !thing.lets_light_through();
+        let moves = |thing: &&mut dyn Drawable| {
+            thing.standing().is_none() && thing.throws_shadow() && !thing.lets_light_through()
+        };
         if states.is_empty() || (light.throws_shadows() && things.iter().any(moves)) {
             self.by = None;
             return Stood::Changed;
@@ -97,5 +99,36 @@ impl Standing {
 fn copy(encoder: &mut wgpu::CommandEncoder, from: [&wgpu::Texture; 2], to: [&wgpu::Texture; 2]) {
     for (from, to) in from.into_iter().zip(to) {
         encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A thing that stands, or moves and throws a shadow, or none.
+    struct Thing(Option<u64>, bool);
+
+    impl Drawable for Thing {
+        fn standing(&self) -> Option<u64> {
+            self.0
+        }
+
+        fn throws_shadow(&self) -> bool {
+            self.1
+        }
+    }
+
+    #[test]
+    fn what_moves_without_a_shadow_leaves_the_rest_in_peace() {
+        let look = |throws: bool, light: &Light| {
+            let (mut standing, mut ground, mut moving) =
+                (Standing::default(), Thing(Some(state()), true), Thing(None, throws));
+            [(); 3].map(|()| standing.look(&[1], light, &[&mut ground, &mut moving]))
+        };
+        let kept = [Stood::Changed, Stood::Rests, Stood::Kept];
+        assert_eq!(look(false, &Light::day()), kept);
+        assert_eq!(look(true, &Light::day()), [Stood::Changed; 3]);
+        assert_eq!(look(true, &Light::day().without_shadows()), kept);
     }
 }

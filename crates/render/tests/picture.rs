@@ -264,8 +264,9 @@ fn what_stands_and_its_shadows_are_kept_while_only_water_moves() {
     let stage = Stage::new([0.0, 0.0, -1.0], [10.0, 8.0, 2.0]);
     let field = HeightField::sampled([0.0; 2], [10.0, 8.0], [90, 70], |x, y| 0.5 * (0.9 * x).sin() * (1.1 * y).cos());
     let grey = Image { width: 1, height: 1, rgba: vec![90, 90, 90, 255] };
-    let mut ground = Terrain::new(&table.renderer, &stage, field, &grey, -1.0).unwrap();
+    let mut ground = Terrain::new(&table.renderer, &stage, field.clone(), &grey, -1.0).unwrap();
     let mut floor = Floor::new(&table.renderer, -1.0);
+    let mut sides = WaterSides::new(&table.renderer, &stage);
     let fluids = FluidPainter::new(&table.renderer);
     let painter = BallPainter::new(&table.renderer);
     let mut draw = |table: &Table, sun: f64, height: f64, at: f64, with_ball: bool| {
@@ -274,7 +275,9 @@ fn what_stands_and_its_shadows_are_kept_while_only_water_moves() {
         water.fill(gpu, [Droplet::ball([at, 4.0, 0.6], 0.5)]);
         let mut ball = painter.balls(gpu, &stage, &BallStyle::new(viridis()), [([at, 2.0, 1.0], 0.5, 0.8)]);
         floor.lay_at(height);
-        let mut things: Vec<&mut dyn Drawable> = vec![&mut ground, &mut floor, &mut water];
+        let at_border = Droplet { volume: 1.0, reach: 2.0, ..Droplet::ball([at, 0.5, 0.6], 0.5) };
+        sides.fill(gpu, &field, &[at_border]);
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut ground, &mut floor, &mut sides, &mut water];
         if with_ball {
             things.push(&mut ball);
         }

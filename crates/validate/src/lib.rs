@@ -13,4 +13,5 @@ mod gas;
 
 pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
 pub use case::{Case, Options, Row, cases};
+pub use corpuscle_flood::Flood;
 pub use flood::bench::bench_water;

@@ -1,9 +1,10 @@
 //! Pictures a second of a flood that is stepped and drawn on one card: a picture a step, and nothing comes back in between.
 
-use corpuscle::gpu::{Gpu, wgpu};
+use crate::args::BenchOptions;
+use corpuscle::gpu::{Gpu, Taken, wgpu};
 use corpuscle::model::Frame;
 use corpuscle::pictures::{Hand, Look, Moment, PictureSettings, Pictures};
-use corpuscle_validate::{Rate, bench_water};
+use corpuscle_validate::{Flood, PassTime, Rate, bench_water};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -11,6 +12,9 @@ use std::time::Instant;
 /// Seconds of wall-clock time measured, and the same for a quick look.
 const MEASURED: f64 = 10.0;
 const QUICK: f64 = 2.0;
+
+/// Pictures whose passes are timed, where they are.
+const TIMED: u32 = 16;
 
 /// Pictures before the clock starts.
 const WARMING: u32 = 3;
@@ -22,38 +26,78 @@ const AHEAD: usize = 3;
 const LONG: f64 = 1e5;
 
 /// Draws the water of a bench; none where it is no bench of a flood.
-pub(super) fn drawn(name: &str, gpu: &Gpu, is_quick: bool) -> anyhow::Result<Option<Rate>> {
+pub(super) fn drawn(name: &str, gpu: &Gpu, options: &BenchOptions) -> anyhow::Result<Option<Rate>> {
+    draw_for(name, gpu, if options.quick { QUICK } else { MEASURED }, if options.passes { TIMED } else { 0 })
+}
+
+/// The same for so many seconds; then so many pictures whose passes are timed.
+fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32) -> anyhow::Result<Option<Rate>> {
     let Some((mut flood, ground)) = bench_water(name)? else { return Ok(None) };
     flood.use_card(gpu.clone())?;
     let settings = PictureSettings { samples: 1, ..PictureSettings::default() };
-    let mut pictures = Pictures::of_flood(gpu, flood.settings(), &ground, settings)?;
-    let stop = AtomicBool::new(false);
-    let mut pace = Pace::new(gpu, if is_quick { QUICK } else { MEASURED });
-    let mut failed = Ok(());
-    flood.advance_shown(LONG, &stop, &mut |time, particles| {
-        let frame = Frame { time, sets: Vec::new() };
-        let moment = Moment { frame: &frame, on_device: Some(particles), paths: &[], container: None };
-        let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
-        failed = shown.map_err(anyhow::Error::from).and_then(|_| pace.step());
-        stop.store(failed.is_err() || pace.is_over(), Ordering::Relaxed);
-    })?;
-    failed?;
+    let mut drawn = Drawn { pictures: Pictures::of_flood(gpu, flood.settings(), &ground, settings)?, flood };
+    let mut pace = Pace::new(gpu, seconds);
+    drawn.go_on(|| pace.step())?;
+    let Drawn { flood, .. } = &drawn;
     let particles = flood.particles().len();
-    Ok(Some(Rate {
+    let rate = Rate {
         name: name.into(),
         particles,
         dimensions: 2,
         packing: None,
         threads: 0,
         device: Some(gpu.name.clone()),
-        rate: pace.rate()?,
+        rate: pace.rate,
         rate_unit: "pictures_per_s".into(),
         bytes_per_particle: flood.bytes_on_card().unwrap_or(0) as f64 / particles as f64,
         passes: Vec::new(),
-    }))
+    };
+    Ok(Some(if timed > 0 { Rate { passes: drawn.passes(timed)?, ..rate } } else { rate }))
 }
 
-/// Keeps the host from running away from the device, and counts.
+/// A flood and its pictures.
+struct Drawn {
+    flood: Flood,
+    pictures: Pictures,
+}
+
+impl Drawn {
+    /// Draws every step until `is_over` says so after a picture.
+    fn go_on(&mut self, mut is_over: impl FnMut() -> anyhow::Result<bool>) -> anyhow::Result<()> {
+        let stop = AtomicBool::new(false);
+        let mut ended = Ok(());
+        let pictures = &mut self.pictures;
+        self.flood.advance_shown(LONG, &stop, &mut |time, particles| {
+            let frame = Frame { time, sets: Vec::new() };
+            let moment = Moment { frame: &frame, on_device: Some(particles), paths: &[], container: None };
+            let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
+            let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
+            stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);
+            ended = over.map(|_| ());
+        })?;
+        ended
+    }
+
+    /// What the passes that draw the water take in a picture, those that take longest first, by so many pictures.
+    fn passes(&mut self, pictures: u32) -> anyhow::Result<Vec<PassTime>> {
+        self.pictures.measure();
+        let mut left = pictures;
+        self.go_on(|| {
+            left -= 1;
+            Ok(left == 0)
+        })?;
+        let a_picture = |(name, taken): (&'static str, Taken)| PassTime {
+            name,
+            times_a_step: f64::from(taken.times) / f64::from(pictures),
+            seconds_a_step: taken.total.as_secs_f64() / f64::from(pictures),
+        };
+        let mut passes: Vec<_> = self.pictures.taken().into_iter().map(a_picture).collect();
+        passes.sort_by(|a, b| b.seconds_a_step.total_cmp(&a.seconds_a_step));
+        Ok(passes)
+    }
+}
+
+/// Keeps the host from running away from the device, and counts until the time is over.
 struct Pace<'a> {
     gpu: &'a Gpu,
     seconds: f64,
@@ -61,23 +105,31 @@ struct Pace<'a> {
     pictures: u32,
     /// When those before the clock starts were done.
     began: Instant,
+    /// Pictures a second, once all are done.
+    rate: f64,
 }
 
 impl<'a> Pace<'a> {
     fn new(gpu: &'a Gpu, seconds: f64) -> Self {
-        Self { gpu, seconds, ordered: VecDeque::new(), pictures: 0, began: Instant::now() }
+        Self { gpu, seconds, ordered: VecDeque::new(), pictures: 0, began: Instant::now(), rate: 0.0 }
     }
 
-    /// A picture more was ordered.
-    fn step(&mut self) -> anyhow::Result<()> {
+    /// A picture more was ordered; true for the last.
+    fn step(&mut self) -> anyhow::Result<bool> {
         self.ordered.push_back(self.gpu.queue.submit([]));
         self.pictures += 1;
-        let ahead = if self.pictures == WARMING { 0 } else { AHEAD };
-        self.wait(ahead)?;
-        if self.pictures == WARMING {
+        if self.pictures <= WARMING {
+            self.wait(0)?;
             self.began = Instant::now();
+            return Ok(false);
         }
-        Ok(())
+        self.wait(AHEAD)?;
+        if self.began.elapsed().as_secs_f64() < self.seconds {
+            return Ok(false);
+        }
+        self.wait(0)?;
+        self.rate = f64::from(self.pictures - WARMING) / self.began.elapsed().as_secs_f64();
+        Ok(true)
     }
 
     /// Waits until no more than `ahead` pictures are still to be done.
@@ -88,14 +140,21 @@ impl<'a> Pace<'a> {
         }
         Ok(self.gpu.check()?)
     }
+}
 
-    fn is_over(&self) -> bool {
-        self.pictures > WARMING && self.began.elapsed().as_secs_f64() >= self.seconds
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle::gpu::require_gpu;
 
-    /// Pictures a second, once all are done.
-    fn rate(mut self) -> anyhow::Result<f64> {
-        self.wait(0)?;
-        Ok(f64::from(self.pictures - WARMING) / self.began.elapsed().as_secs_f64())
+    #[test]
+    fn a_flood_is_drawn_and_nothing_else_is() {
+        let Some(gpu) = require_gpu("a flood stepped and drawn") else { return };
+        let rate = draw_for("flood/paper-60k", &gpu, 0.0, 1).unwrap().unwrap();
+        let once = |name: &str| rate.passes.iter().any(|pass| pass.name == name && pass.times_a_step == 1.0);
+        assert!(once("composing") && (gpu.device.features().is_empty() || once("water_discs")), "{rate:?}");
+        assert!(rate.rate > 0.0 && rate.particles > 50_000 && rate.device == Some(gpu.name.clone()), "{rate:?}");
+        assert_eq!(rate.rate_unit, "pictures_per_s");
+        assert!(draw_for("gas/equilibrium", &gpu, 0.0, 0).unwrap().is_none());
     }
 }

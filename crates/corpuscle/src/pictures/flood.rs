@@ -1,6 +1,7 @@
 //! Pictures of a flood: water on the block of ground.
 
 use super::look::{self, DepthClasses};
+use super::times::Times;
 use super::{GroundLook, Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::split;
@@ -45,9 +46,11 @@ pub(super) struct FloodPicture {
     field: HeightField,
     water: Water,
     /// Of particles that lie on the device, once there were any.
-    device_water: Option<DeviceWater>,
+    pub(super) device_water: Option<DeviceWater>,
+    /// Where passes are timed, what they have taken.
+    pub(super) times: Option<Times>,
     sides: WaterSides,
-    fluid: Option<Fluid>,
+    pub(super) fluid: Option<Fluid>,
     /// How many times clearer or more turbid the water is than clear deep water.
     turbid: f64,
     /// Where depth is drawn as a map has it, its classes.
@@ -95,6 +98,7 @@ impl FloodPicture {
             field,
             water: Water::default(),
             device_water: None,
+            times: None,
             sides: WaterSides::new(&studio.renderer, &stage),
             fluid: None,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
@@ -136,7 +140,9 @@ impl FloodPicture {
         if let Some(fluid) = self.fluid.as_mut().filter(|_| is_wet) {
             things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
         }
-        studio.take(&self.stage, &camera, &light, &mut things, overlay)
+        let shown = studio.take(&self.stage, &camera, &light, &mut things, overlay)?;
+        self.note_times();
+        Ok(shown)
     }
 
     /// Takes the water of a moment, of these sets where it does not lie on the device; false where there is none.

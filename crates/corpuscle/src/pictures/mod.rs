@@ -7,6 +7,7 @@ mod gas;
 mod hand;
 mod look;
 mod show;
+mod times;
 mod viewpoint;
 
 use crate::{Error, Simulation};

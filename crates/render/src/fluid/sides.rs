@@ -94,6 +94,10 @@ fn face(stage: &Stage, field: &HeightField, ends: [(usize, f64); 2], [x, y]: [f3
 }
 
 impl Drawable for WaterSides {
+    fn throws_shadow(&self) -> bool {
+        false
+    }
+
     fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Some((buffer, count)) = &self.buffer else { return };
         pass.set_pipeline(&self.pipeline);

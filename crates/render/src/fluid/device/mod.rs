@@ -23,7 +23,7 @@ mod twin;
 use super::droplet::Batch;
 use super::water::{LIFE, REACH};
 use crate::{HeightField, RenderError, Stage};
-use corpuscle_gpu::{DeviceParticles, Gpu, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, Stopwatch, THREADS, Taken, uniform, wgpu};
 use glam::{DVec2, DVec3};
 use ground::Ground;
 use kernels::Kernels;
@@ -51,6 +51,8 @@ pub struct DeviceWater {
     drawn: Option<(DeviceParticles, Tasks)>,
     /// Of the last picture, s.
     time: Option<f64>,
+    /// Where kernels are timed.
+    stopwatch: Option<Stopwatch>,
 }
 
 /// `Water` of water_device.wgsl.
@@ -81,7 +83,16 @@ impl DeviceWater {
     pub fn new(gpu: &Gpu, stage: &Stage, field: &HeightField, raise: f64) -> Result<Self, RenderError> {
         let ground = Ground::new(gpu, stage, field)?;
         let settings = uniform(gpu, "water", &Settings::default());
-        Ok(Self { kernels: Kernels::new(gpu), stage: *stage, raise, ground, settings, drawn: None, time: None })
+        Ok(Self {
+            kernels: Kernels::new(gpu),
+            stage: *stage,
+            raise,
+            ground,
+            settings,
+            drawn: None,
+            time: None,
+            stopwatch: None,
+        })
     }
 
     /// Takes these particles at a time, s, not before that of the last call. What is made of them follows on the device.
@@ -93,14 +104,27 @@ impl DeviceWater {
         if self.drawn.as_ref().is_none_or(|(drawn, _)| drawn.buffer != particles.buffer) {
             let cells = most_cells(particles) + 2;
             let tasks = Tasks::new(gpu, &self.kernels, particles, cells, &self.ground, &self.settings)?;
+            if let Some((_, before)) = &self.drawn {
+                tasks.remember(gpu, before);
+            }
             self.drawn = Some((particles.clone(), tasks));
         }
         self.time = Some(time);
         gpu.queue.write_buffer(&self.settings, 0, bytemuck::bytes_of(&settings));
         if let Some((_, tasks)) = &mut self.drawn {
-            tasks.run(gpu, &self.ground);
+            tasks.run(gpu, &self.ground, self.stopwatch.as_mut());
         }
-        Ok(())
+        Ok(self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(gpu))?)
+    }
+
+    /// Times each kernel from the next update on, which then waits for the device.
+    pub fn measure(&mut self, gpu: &Gpu) {
+        self.stopwatch = Stopwatch::new(gpu);
+    }
+
+    /// What each has taken since, by its name; nothing where the device has no clock.
+    pub fn taken(&self) -> impl Iterator<Item = (&'static str, Taken)> {
+        self.stopwatch.iter().flat_map(Stopwatch::taken)
     }
 
     /// The particles as they are drawn; nothing before the first update.
@@ -140,7 +164,9 @@ impl DeviceWater {
 }
 
 fn most_cells(particles: &DeviceParticles) -> usize {
-    (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS)
+    // With two more, a thread each.
+    let most = MOST_GROUPS as usize * THREADS as usize - 2;
+    (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS).min(most)
 }
 
 /// Columns and rows of cells over twice `half` m, and their size, m: as wide as a particle looks, or wider where there would be too many.

@@ -3,7 +3,9 @@
 use super::super::droplet::Instance;
 use super::ground::Ground;
 use super::kernels::Kernels;
-use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Task, storage, wgpu};
+use corpuscle_gpu::{
+    CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Stopwatch, Task, storage, wgpu,
+};
 
 /// Slots of the numbers of groups: see `water_begin.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
@@ -97,11 +99,22 @@ impl Tasks {
         })
     }
 
+    /// Takes over the foam of others, with as much memory or less.
+    pub fn remember(&self, gpu: &Gpu, before: &Self) {
+        let (from, to) = (&before.memory[before.turn], &self.memory[self.turn]);
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("foam") });
+        // One bit more of an id was no part of where its foam was before: it is in both halves.
+        for part in 0..to.size() / from.size() {
+            encoder.copy_buffer_to_buffer(from, 0, to, part * from.size(), from.size());
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+
     /// Makes the particles as they are drawn.
-    pub fn run(&mut self, gpu: &Gpu, ground: &Ground) {
+    pub fn run(&mut self, gpu: &Gpu, ground: &Ground, mut stopwatch: Option<&mut Stopwatch>) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("water") });
         encoder.clear_buffer(&self.memory[1 - self.turn], 0, None);
-        let mut pass = Pass::begin(&mut encoder, None);
+        let mut pass = Pass::begin(&mut encoder, stopwatch.as_deref_mut());
         let groups = &self.groups;
         self.begin.run(&mut pass, 1);
         self.count.run_as_told(&mut pass, groups, SLOTS.particles);
@@ -119,6 +132,7 @@ impl Tasks {
             task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_THREADS));
         }
         drop(pass);
+        stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         gpu.queue.submit([encoder.finish()]);
         self.turn = 1 - self.turn;
     }

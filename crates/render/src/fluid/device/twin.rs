@@ -51,9 +51,9 @@ fn stage() -> Stage {
     Stage::new(CORNER, [x + 80.0, y + 50.0, z + 20.0])
 }
 
-/// Room for them on the device.
-fn room(gpu: &Gpu) -> DeviceParticles {
-    DeviceParticles::new(gpu, 5000, [CORNER[0] + 40.0, CORNER[1] + 25.0, CORNER[2]], 1.0).unwrap()
+/// Room for them and `more` on the device.
+fn room(gpu: &Gpu, more: usize) -> DeviceParticles {
+    DeviceParticles::new(gpu, 4100 + more, [CORNER[0] + 40.0, CORNER[1] + 25.0, CORNER[2]], 1.0).unwrap()
 }
 
 /// Brings particles there, in another order and with some that are none.
@@ -108,10 +108,9 @@ fn the_device_makes_the_discs_that_the_cpu_makes() {
     let Some(gpu) = require_gpu("discs on the device") else { return };
     let field = ground();
     let (mut device, mut host) = (DeviceWater::new(&gpu, &stage(), &field, 1.0).unwrap(), Water::default());
-    let particles = room(&gpu);
-    // The foam of where water has met is left when it parts.
-    for (time, meeting) in [(10.0, 3.5), (10.5, -3.5), (11.5, 0.0)] {
-        let set = water(meeting);
+    // The foam of where water has met is left when it parts, and when room is made for more particles.
+    for (time, meeting, more) in [(10.0, 3.5, 0), (10.5, -3.5, 100), (11.5, 0.0, 20_000)] {
+        let (set, particles) = (water(meeting), room(&gpu, more));
         send(&gpu, &set, &particles);
         device.update(&gpu, time, &particles).unwrap();
         let host = by_cpu(&mut host, time, &set, &field);
@@ -126,7 +125,7 @@ fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
     let Some(gpu) = require_gpu("sides of water on the device") else { return };
     let (field, set) = (ground(), water(0.0));
     let mut device = DeviceWater::new(&gpu, &stage(), &field, 1.0).unwrap();
-    let particles = room(&gpu);
+    let particles = room(&gpu, 0);
     send(&gpu, &set, &particles);
     device.update(&gpu, 0.0, &particles).unwrap();
     let (buffer, count) = device.faces().unwrap();
@@ -159,7 +158,7 @@ fn a_picture_is_the_same_from_the_device() {
     let Some(gpu) = require_gpu("a picture from the device") else { return };
     let (field, set) = (ground(), water(3.5));
     let mut device = DeviceWater::new(&gpu, &stage(), &field, 1.0).unwrap();
-    let particles = room(&gpu);
+    let particles = room(&gpu, 0);
     send(&gpu, &set, &particles);
     device.update(&gpu, 0.0, &particles).unwrap();
     let one = picture(&gpu, |fluid| fluid.draw_from(&device));

@@ -1,0 +1,64 @@
+//! What the passes of pictures take.
+
+use super::flood::FloodPicture;
+use super::{Pictures, Subject};
+use corpuscle_gpu::{Gpu, Taken};
+use corpuscle_render::FluidPass;
+use std::collections::BTreeMap;
+
+/// What the passes that draw water have taken.
+pub(super) type Times = BTreeMap<&'static str, Taken>;
+
+impl Pictures {
+    /// Times the passes that draw the water of a flood, from the next picture on: each of them then waits for the one before it.
+    pub fn measure(&mut self) {
+        let gpu = self.studio.renderer.gpu().clone();
+        if let Subject::Flood(flood) = &mut self.subject {
+            flood.measure(&gpu);
+        }
+    }
+
+    /// What they have taken since, by name: kernels that make discs by the device's own clock, where it has one; passes over pixels from
+    /// the start of their encoding to their end on the device.
+    pub fn taken(&self) -> Vec<(&'static str, Taken)> {
+        match &self.subject {
+            Subject::Flood(flood) => flood.taken(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl FloodPicture {
+    fn measure(&mut self, gpu: &Gpu) {
+        self.times = Some(Times::new());
+        self.fluid.iter_mut().for_each(corpuscle_render::Fluid::measure);
+        self.device_water.iter_mut().for_each(|water| water.measure(gpu));
+    }
+
+    /// Adds those of the picture that was drawn.
+    pub(super) fn note_times(&mut self) {
+        let (Some(times), Some(fluid)) = (&mut self.times, &self.fluid) else { return };
+        for (pass, took) in fluid.times() {
+            let taken = times.entry(name(*pass)).or_default();
+            taken.times += 1;
+            taken.total += *took;
+        }
+    }
+
+    fn taken(&self) -> Vec<(&'static str, Taken)> {
+        let discs = self.device_water.iter().flat_map(corpuscle_render::DeviceWater::taken);
+        let pixels = self.times.iter().flatten().map(|(name, taken)| (*name, *taken));
+        discs.chain(pixels).collect()
+    }
+}
+
+fn name(pass: FluidPass) -> &'static str {
+    match pass {
+        FluidPass::Depth => "water's depth",
+        FluidPass::Thickness => "water's thickness",
+        FluidPass::Smoothing => "smoothing",
+        FluidPass::Normals => "normals",
+        FluidPass::Shading => "shading",
+        FluidPass::Composing => "composing",
+    }
+}
