@@ -12,10 +12,11 @@ use crate::settings::{Condensation, Humidity};
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
 
-/// Sizes of cells over the smoothing length, the best first: small ones leave out more of what is not near.
-const CELLS_OVER_REACH: [f64; 2] = [0.5, 1.0];
+/// With so many parcels cells are half as large as the reach: that leaves out more of what is not near. Fewer are no work for a card, and
+/// with cells of the whole reach a lattice of them stays one: what its parcels sum up cancels in pairs.
+const MANY: usize = 50_000;
 
-/// With more cells than these the next size is taken.
+/// More cells are not sorted into.
 const MOST_CELLS: f64 = 16e6;
 
 fn narrow(vector: [f64; 3]) -> [f32; 3] {
@@ -43,7 +44,7 @@ impl Parameters {
     pub fn of(dew: &Dew, origin: Origin, room: usize) -> Self {
         let full = room.saturating_sub(dew.most_in_a_step()) as u32;
         let mut new = Self { flags: flags(dew), full, ..Self::default() };
-        new.tell_room(dew, origin);
+        new.tell_room(dew, origin, room >= MANY);
         new.tell_air(dew);
         new.tell_kernels(dew);
         new.tell_inlets(dew);
@@ -51,7 +52,7 @@ impl Parameters {
         new
     }
 
-    fn tell_room(&mut self, dew: &Dew, origin: Origin) {
+    fn tell_room(&mut self, dew: &Dew, origin: Origin, are_many: bool) {
         let (room, h) = (&dew.room, dew.scale.h());
         let beyond = |axis: usize, side: usize| h * if room.faces[axis][side].is_passed() { CELLS_BEYOND } else { 1.0 };
         let corner = [0, 1, 2].map(|axis| room.low[axis] - beyond(axis, 0));
@@ -62,8 +63,8 @@ impl Parameters {
             *rule = self::rule(face);
         }
         let cells = |size_of_cell: f64| size.map(|length| (length / size_of_cell).ceil());
-        let fits = |size_of_cell: &f64| cells(*size_of_cell).iter().product::<f64>() < MOST_CELLS;
-        let cell = CELLS_OVER_REACH.map(|part| part * h).into_iter().find(fits).unwrap_or(h);
+        let fits = cells(0.5 * h).iter().product::<f64>() < MOST_CELLS;
+        let cell = if are_many && fits { 0.5 * h } else { h };
         (self.corner, self.per_cell) = (origin.relative(corner), (1.0 / cell) as f32);
         self.cells = cells(cell).map(|count| count as u32);
         let apart = room.apart(dew.scale.spacing);
