@@ -160,6 +160,43 @@ struct Particle {
     unused: f32,
 }
 
+// A parcel as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
+struct Packed {
+    place_and_density: vec4f,
+    velocity_and_fog: vec4f,
+    acceleration_and_deposit: vec4f,
+    spreading_and_id: vec4u,
+    temperature_and_vapour: vec4f,
+    role_evenness_idle: vec4u,
+}
+
+fn unpacked(packed: Packed) -> Particle {
+    let a = packed.place_and_density;
+    let b = packed.velocity_and_fog;
+    let c = packed.acceleration_and_deposit;
+    let d = packed.spreading_and_id;
+    let e = packed.temperature_and_vapour;
+    let f = packed.role_evenness_idle;
+    let spreading = bitcast<vec3f>(d.xyz);
+    let idle = bitcast<vec2f>(f.yz);
+    return Particle(
+        a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, spreading, d.w, Account(e.x, e.y), Account(e.z, e.w), f.x, idle.x, idle.y, 0.0
+    );
+}
+
+fn packed(particle: Particle) -> Packed {
+    let temperature = particle.temperature;
+    let vapour = particle.vapour;
+    return Packed(
+        vec4f(particle.place, particle.density),
+        vec4f(particle.velocity, particle.fog),
+        vec4f(particle.acceleration, particle.deposit),
+        vec4u(bitcast<vec3u>(particle.spreading), particle.id),
+        vec4f(temperature.sum, temperature.lacking, vapour.sum, vapour.lacking),
+        vec4u(particle.role, bitcast<u32>(particle.evenness), bitcast<u32>(particle.idle), 0u),
+    );
+}
+
 // What neighbours read of a parcel; its pressure over the square of the density, Pa m6/kg2.
 struct Column {
     place: vec3f,
@@ -171,6 +208,20 @@ struct Column {
     // What of the vapour diffuses: its part of the mass, or relative humidity.
     humidity: f32,
     unused: f32,
+}
+
+// The same as it lies in memory: who looks for neighbours needs the first part of those out of reach.
+struct PackedColumn {
+    place_and_pressure: vec4f,
+    velocity_and_evenness: vec4f,
+    temperature_vapour_humidity: vec4f,
+}
+
+fn unpacked_column(packed: PackedColumn) -> Column {
+    let a = packed.place_and_pressure;
+    let b = packed.velocity_and_evenness;
+    let c = packed.temperature_vapour_humidity;
+    return Column(a.xyz, a.w, b.xyz, b.w, c.x, c.y, c.z, 0.0);
 }
 
 // What a group of threads sums up over its parcels: numbers, and temperature, vapour and fog, of those that came and went; what

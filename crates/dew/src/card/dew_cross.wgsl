@@ -5,7 +5,7 @@
 #import dew_utility
 
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
 @group(0) @binding(4) var<storage, read_write> places: array<vec2u>;
 @group(0) @binding(5) var<storage, read_write> keys: array<u32>;
@@ -145,7 +145,7 @@ fn main(
     went[thread] = vec4f(0.0);
     let i = id.x;
     if i < status.particles {
-        var particle = particles[i];
+        var particle = unpacked(particles[i]);
         var cell = status.cells - 1u;
         if !cross_over(&particle, thread) {
             tell_columns(particle);
@@ -154,7 +154,7 @@ fn main(
                 cell = cell_at(particle.place);
             }
         }
-        particles[i] = particle;
+        particles[i] = packed(particle);
         places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[i] = particle.id;
     }

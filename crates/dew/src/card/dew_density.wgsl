@@ -6,9 +6,9 @@
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> spots: array<vec4f>;
-@group(0) @binding(4) var<storage, read> ordered: array<Particle>;
-@group(0) @binding(5) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(6) var<storage, read_write> columns: array<Column>;
+@group(0) @binding(4) var<storage, read> ordered: array<Packed>;
+@group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
+@group(0) @binding(6) var<storage, read_write> columns: array<PackedColumn>;
 @group(0) @binding(7) var<storage, read> site_start: array<u32>;
 @group(0) @binding(8) var<storage, read> sites: array<Site>;
 
@@ -18,16 +18,15 @@ fn of_air(i: u32, place: vec3f) -> vec2f {
     let mirrors = mirrors_round(place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, place);
-        if !mirror.is_there {
-            continue;
-        }
         let truth = behind(mirror, place);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
             for (var y = low.y; y <= high.y; y++) {
+                let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
-                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
+                let end = start[row + across.y + 1u];
+                for (var j = start[row + across.x]; j < end; j++) {
                     let away = (shown(mirror, spots[j].xyz) - place) * parameters.per_h;
                     let q_squared = dot(away, away);
                     if q_squared >= 1.0 || (j == i && k == 0u) {
@@ -48,8 +47,10 @@ fn of_solids(place: vec3f) -> vec2f {
     let high = cell_index(place + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
+            let across = columns_round(place, y, z);
             let row = row_of(y, z);
-            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
+            let end = site_start[row + across.y + 1u];
+            for (var k = site_start[row + across.x]; k < end; k++) {
                 let away = (sites[k].place - place) * parameters.per_h;
                 let q_squared = dot(away, away);
                 if q_squared >= 1.0 {
@@ -116,7 +117,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if i >= status.particles {
         return;
     }
-    var particle = ordered[i];
+    var particle = unpacked(ordered[i]);
     let sums = of_air(i, particle.place) + of_solids(particle.place);
     particle.density = density_of(particle, parameters.of_filling * sums.x);
     // A particle with few neighbours diffuses no faster than one with half of them.
@@ -133,6 +134,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if is_set(RELATIVE) {
         humidity = relative_humidity(vapour);
     }
-    columns[i] = Column(particle.place, pressure, velocity, particle.evenness, temperature, vapour, humidity, 0.0);
-    particles[i] = particle;
+    columns[i] = PackedColumn(
+        vec4f(particle.place, pressure),
+        vec4f(velocity, particle.evenness),
+        vec4f(temperature, vapour, humidity, 0.0),
+    );
+    particles[i] = packed(particle);
 }

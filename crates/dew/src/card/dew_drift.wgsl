@@ -3,7 +3,7 @@
 #import dew_card
 
 @group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
 // Sum of the accelerations before each face, m/s2, and number.
 @group(0) @binding(3) var<storage, read_write> before: array<array<vec2f, 6>>;
 
@@ -57,7 +57,7 @@ fn main(
     let is_there = i < status.particles;
     var particle: Particle;
     if is_there {
-        particle = particles[i];
+        particle = unpacked(particles[i]);
         let step = status.step;
         if particle.role == INSIDE {
             particle.velocity += 0.5 * step * particle.acceleration;
@@ -66,7 +66,7 @@ fn main(
         let spread = clamp(step * step * particle.spreading, vec3f(-parameters.farthest), vec3f(parameters.farthest));
         particle.place += step * particle.velocity + spread;
         keep(&particle);
-        particles[i] = particle;
+        particles[i] = packed(particle);
     }
     for (var number = 0u; number < 6u; number++) {
         if face(number) != OUTLET {

@@ -6,8 +6,8 @@
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> columns: array<Column>;
-@group(0) @binding(4) var<storage, read_write> particles: array<Particle>;
+@group(0) @binding(3) var<storage, read> columns: array<PackedColumn>;
+@group(0) @binding(4) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(9) var<uniform> fans: array<Fan, 1024>;
@@ -37,23 +37,22 @@ fn of_air(i: u32, own: Column) -> Rates {
     let mirrors = mirrors_round(own.place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, own.place);
-        if !mirror.is_there {
-            continue;
-        }
         let truth = behind(mirror, own.place);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
             for (var y = low.y; y <= high.y; y++) {
+                let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
-                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
-                    let near = columns[j];
-                    let away = own.place - shown(mirror, near.place);
+                let end = start[row + across.y + 1u];
+                for (var j = start[row + across.x]; j < end; j++) {
+                    let away = own.place - shown(mirror, columns[j].place_and_pressure.xyz);
                     let r = length(away);
                     let q = r * parameters.per_h;
                     if q >= 1.0 || q < NOTHING || (j == i && k == 0u) {
                         continue;
                     }
+                    let near = unpacked_column(columns[j]);
                     let velocity = mirror.sign * near.velocity;
                     let slope = (1.0 - q) * (1.0 - q) / r;
                     let approach = max(-dot(own.velocity - velocity, away) / r, 0.0);
@@ -127,8 +126,10 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
     let high = cell_index(own.place + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
+            let across = columns_round(own.place, y, z);
             let row = row_of(y, z);
-            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
+            let end = site_start[row + across.y + 1u];
+            for (var k = site_start[row + across.x]; k < end; k++) {
                 let site = sites[k];
                 let away = own.place - site.place;
                 let r = max(length(away), 1e-9 * parameters.spacing);
@@ -237,14 +238,14 @@ fn main(
     sums[thread] = vec3f(0.0);
     limits[thread] = vec2f(FAR, 0.0);
     if i < status.particles {
-        let own = columns[i];
-        var particle = particles[i];
+        let own = unpacked_column(columns[i]);
+        var particle = unpacked(particles[i]);
         var rates = of_air(i, own);
         if is_set(RELATIVE) {
             rates.moistening *= fraction_by_humidity(own.vapour);
         }
         let part = kicked(&particle, own, rates);
-        particles[i] = particle;
+        particles[i] = packed(particle);
         sums[thread] = vec3f(part.diffused, part.fogged);
         limits[thread] = vec2f(part.longest, part.fastest);
     }

@@ -5,8 +5,8 @@
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> order: array<u32>;
-@group(0) @binding(4) var<storage, read> particles: array<Particle>;
-@group(0) @binding(5) var<storage, read_write> ordered: array<Particle>;
+@group(0) @binding(4) var<storage, read> particles: array<Packed>;
+@group(0) @binding(5) var<storage, read_write> ordered: array<Packed>;
 @group(0) @binding(6) var<storage, read_write> spots: array<vec4f>;
 @group(0) @binding(7) var<storage, read> columns: array<OutsideColumn>;
 
@@ -15,7 +15,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     let staying = start[status.cells - 1u];
     if i < staying {
-        var particle = particles[order[i]];
+        var particle = unpacked(particles[order[i]]);
         if (particle.role & ROLE_MASK) == OUTSIDE {
             let number = particle.role >> FACE_BITS;
             particle.velocity = vec3f(0.0);
@@ -23,7 +23,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             particle.acceleration = vec3f(0.0);
             particle.spreading = vec3f(0.0);
         }
-        ordered[i] = particle;
+        ordered[i] = packed(particle);
         spots[i] = vec4f(particle.place, 0.0);
     }
     if i == 0u {

@@ -29,8 +29,10 @@ fn weights_near(place: vec3f) -> vec2f {
     let high = cell_index(place + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
+            let across = columns_round(place, y, z);
             let row = row_of(y, z);
-            for (var k = site_start[row + low.x]; k < site_start[row + high.x + 1u]; k++) {
+            let end = site_start[row + across.y + 1u];
+            for (var k = site_start[row + across.x]; k < end; k++) {
                 if (sites[k].flags & BOUNDARY) != 0u {
                     let away = (place - sites[k].place) * parameters.per_h;
                     let weight = sites[k].volume * poly6(dot(away, away));

@@ -5,7 +5,7 @@
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> columns: array<Column>;
+@group(0) @binding(3) var<storage, read> columns: array<PackedColumn>;
 @group(0) @binding(4) var<storage, read> own: array<Site>;
 @group(0) @binding(5) var<storage, read> solids: array<Solid>;
 @group(0) @binding(6) var<storage, read_write> surfaces: array<Surface>;
@@ -19,21 +19,20 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
     let mirrors = mirrors_round(site.place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, site.place);
-        if !mirror.is_there {
-            continue;
-        }
         let truth = behind(mirror, site.place);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
             for (var y = low.y; y <= high.y; y++) {
+                let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
-                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
-                    let air = columns[j];
-                    let q = distance(shown(mirror, air.place), site.place) * parameters.per_h;
+                let end = start[row + across.y + 1u];
+                for (var j = start[row + across.x]; j < end; j++) {
+                    let q = distance(shown(mirror, columns[j].place_and_pressure.xyz), site.place) * parameters.per_h;
                     if q >= 1.0 {
                         continue;
                     }
+                    let air = unpacked_column(columns[j]);
                     let flux = flux(site, surface, air.temperature, air.vapour, air.evenness, q);
                     let heat = flux.to_solid * flux.difference;
                     sums += vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid);

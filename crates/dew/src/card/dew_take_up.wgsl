@@ -6,7 +6,7 @@
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
 @group(0) @binding(3) var<storage, read> spots: array<vec4f>;
-@group(0) @binding(4) var<storage, read> particles: array<Particle>;
+@group(0) @binding(4) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read> own: array<Site>;
 @group(0) @binding(6) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(7) var<storage, read_write> solids: array<Solid>;
@@ -18,17 +18,16 @@ fn deposited(site: Site) -> f32 {
     let mirrors = mirrors_round(site.place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, site.place);
-        if !mirror.is_there {
-            continue;
-        }
         let truth = behind(mirror, site.place);
         let low = cell_index(truth - parameters.h);
         let high = cell_index(truth + parameters.h);
         for (var z = low.z; z <= high.z; z++) {
             for (var y = low.y; y <= high.y; y++) {
+                let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
-                for (var j = start[row + low.x]; j < start[row + high.x + 1u]; j++) {
-                    let deposit = particles[j].deposit;
+                let end = start[row + across.y + 1u];
+                for (var j = start[row + across.x]; j < end; j++) {
+                    let deposit = particles[j].acceleration_and_deposit.w;
                     if deposit > 0.0 {
                         let away = (shown(mirror, spots[j].xyz) - site.place) * parameters.per_h;
                         water += deposit * site.volume * poly6(dot(away, away));

@@ -12,6 +12,12 @@ use crate::settings::{Condensation, Humidity};
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
 
+/// Sizes of cells over the smoothing length, the best first: small ones leave out more of what is not near.
+const CELLS_OVER_REACH: [f64; 2] = [0.5, 1.0];
+
+/// With more cells than these the next size is taken.
+const MOST_CELLS: f64 = 16e6;
+
 fn narrow(vector: [f64; 3]) -> [f32; 3] {
     vector.map(|along| along as f32)
 }
@@ -55,8 +61,11 @@ impl Parameters {
         for (rule, face) in self.faces.iter_mut().zip(room.faces.as_flattened()) {
             *rule = self::rule(face);
         }
-        (self.corner, self.per_cell) = (origin.relative(corner), (1.0 / h) as f32);
-        self.cells = size.map(|length| (length / h).ceil() as u32);
+        let cells = |size_of_cell: f64| size.map(|length| (length / size_of_cell).ceil());
+        let fits = |size_of_cell: &f64| cells(*size_of_cell).iter().product::<f64>() < MOST_CELLS;
+        let cell = CELLS_OVER_REACH.map(|part| part * h).into_iter().find(fits).unwrap_or(h);
+        (self.corner, self.per_cell) = (origin.relative(corner), (1.0 / cell) as f32);
+        self.cells = cells(cell).map(|count| count as u32);
         let apart = room.apart(dew.scale.spacing);
         self.apart = narrow(apart);
         self.deepest = narrow(apart.map(|apart| crate::faces::deepest_outside(h, apart)));

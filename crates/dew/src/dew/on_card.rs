@@ -142,9 +142,11 @@ impl Dew {
                 self.shown = self.shown.max(self.state.time);
                 return Ok(None);
             }
-            let count = self.steps_to_drops();
+            let left = time - self.state.time;
+            let planned = (left / self.state.time_step).ceil().clamp(1.0, TOGETHER as f64) as u64;
+            let count = self.steps_to_drops().min(planned);
             let Some(card) = &mut self.card else { break };
-            let progress = card.advance(time - self.state.time, count as usize)?;
+            let progress = card.advance(left, count as usize)?;
             self.book_progress(&progress);
             self.tend_drops_beside_card()?;
             if progress.broken {
