@@ -29,7 +29,7 @@ use ground::Ground;
 use kernels::Kernels;
 use tasks::{Tasks, entries};
 
-/// Cells a particle, and at least, at most.
+/// Cells a particle at most, where they are more than so many.
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 

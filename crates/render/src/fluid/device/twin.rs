@@ -16,6 +16,11 @@ const LIKE: f32 = 2e-3;
 /// Mean difference of two pictures, of 255.
 const SAME: f64 = 0.02;
 
+/// Height of the ground above the corner, m: it slopes, and is in the north steeper than discs lie.
+fn floor(x: f64, y: f64) -> f64 {
+    0.05 * x + 1.3 * (y - 38.0).max(0.0)
+}
+
 /// Water that runs together over sloping ground, 4000 particles 1 m apart, uneven, on a pile steeper than water can stand, with spray.
 fn water(meeting: f64) -> ParticleSet {
     let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
@@ -27,7 +32,7 @@ fn water(meeting: f64) -> ParticleSet {
         let pile = if (30.0..33.0).contains(&at[0]) && (20.0..23.0).contains(&at[1]) { 9.0 } else { 0.0 };
         let high = if in_air { 3.0 } else { 1.0 + 0.2 * (0.4 * at[0]).sin() * (0.3 * at[1]).cos() + pile };
         set.id.push(index);
-        set.position.push([CORNER[0] + at[0], CORNER[1] + at[1], CORNER[2] + 0.05 * at[0] + high]);
+        set.position.push([CORNER[0] + at[0], CORNER[1] + at[1], CORNER[2] + floor(at[0], at[1]) + high]);
         set.velocity.push([if at[0] < 50.0 { meeting } else { -meeting }, 0.3, 0.0]);
         set.radius.push(0.5 + 0.2 * uneven(13));
         set.mass.push(1000.0 * (1.0 + 0.3 * uneven(71)));
@@ -41,7 +46,7 @@ fn ground() -> HeightField {
     let to = [CORNER[0] + 80.0, CORNER[1] + 50.0];
     // Without data in a corner.
     let height = |x: f64, y: f64| {
-        if x > to[0] - 10.0 && y > to[1] - 10.0 { f64::NAN } else { CORNER[2] + 0.05 * (x - CORNER[0]) }
+        if x > to[0] - 10.0 && y > to[1] - 10.0 { f64::NAN } else { CORNER[2] + floor(x - CORNER[0], y - CORNER[1]) }
     };
     HeightField::sampled([CORNER[0], CORNER[1]], to, [41, 26], height)
 }
