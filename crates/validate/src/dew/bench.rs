@@ -87,6 +87,6 @@ mod tests {
         assert!(rate.device == name && rate.threads == 0 && rate.particles > 1000, "{rate:?}");
         assert!(rate.rate > 0.0 && rate.bytes_per_particle > 100.0, "{rate:?}");
         let forces = rate.passes.iter().find(|pass| pass.name == "dew_forces").expect("passes are timed");
-        assert!(forces.times_a_step == 1.0 && forces.seconds_a_step > 0.0, "{forces:?}");
+        assert!((1.0..1.2).contains(&forces.times_a_step) && forces.seconds_a_step > 0.0, "{forces:?}");
     }
 }
