@@ -1,11 +1,13 @@
 //! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
 
+use crate::darkroom::{Darkroom, Finish, Sitting};
 use crate::overlay::Over;
 use crate::physics::Snapshot;
 use crate::screen::OnScreen;
+use crate::sight::{Sight, moment};
 use crate::{Screen, style};
 use corpuscle::gpu::{GpuKind, Image};
-use corpuscle::pictures::{Hand, Look, Moment, Pictures, Shown};
+use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
 use corpuscle_render::Lens;
 use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
@@ -16,8 +18,6 @@ use std::time::{Duration, Instant};
 const TURN: f64 = 0.008;
 /// How far it may be zoomed.
 const ZOOM: [f64; 2] = [0.3, 200.0];
-/// Size of a still, pixels.
-const STILL_SIZE: [u32; 2] = [1920, 1080];
 /// After so long without change what stands still is drawn with all there is.
 const STILL: Duration = Duration::from_millis(350);
 
@@ -37,12 +37,17 @@ pub enum Quality {
 pub struct Picture {
     screen: Screen,
     pictures: Pictures,
+    scenery: Arc<Scenery>,
     on_screen: Option<OnScreen>,
     shown: Option<Shown>,
     /// What was drawn last.
     drawn: Option<Drawn>,
+    /// What the darkroom was asked for since something last changed, by its number.
+    wished: Option<(u64, Drawn)>,
     /// How the camera was moved.
     pub hand: Hand,
+    /// When the partition was lifted, s.
+    lifted: Option<f64>,
     /// How much work it may be.
     pub quality: Quality,
     /// When something last changed.
@@ -65,14 +70,17 @@ struct Drawn {
 
 impl Picture {
     /// The picture of a scene that was opened.
-    pub fn new(screen: Screen, pictures: Pictures) -> Self {
+    pub fn new(screen: Screen, pictures: Pictures, scenery: Scenery) -> Self {
         Self {
             screen,
             pictures,
+            scenery: Arc::new(scenery),
             on_screen: None,
             shown: None,
             drawn: None,
+            wished: None,
             hand: Hand::default(),
+            lifted: None,
             quality: Quality::Auto,
             changed: Instant::now(),
             fault: None,
@@ -94,7 +102,8 @@ impl Picture {
     pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
         let (paper, linear) = style::paper(visuals);
         let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, ..last };
+        let (look, samples) = self.work(false);
+        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, samples, ..last };
         self.draw_as(snapshot, drawn, linear);
     }
 
@@ -109,8 +118,9 @@ impl Picture {
         }
     }
 
-    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it.
-    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool) -> Response {
+    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it. What takes long is
+    /// asked of the darkroom.
+    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool, darkroom: &Darkroom) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, ui.is_enabled(), "Picture of the scene"));
         self.follow_hand(ui, rect, &response);
@@ -118,26 +128,67 @@ impl Picture {
         let size = [rect.width(), rect.height()].map(|length| ((length * scale).round() as u32).clamp(16, 8192));
         let (paper, linear) = style::paper(ui.visuals());
         let still = self.note_change(ui, snapshot, moves, size, paper);
-        let (look, samples) = self.work(still);
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper };
-        self.draw_as(snapshot, drawn, linear);
+        let [quick, best] = [false, true].map(|still| {
+            let (look, samples) = self.work(still);
+            Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper }
+        });
+        if !still {
+            self.wished = None;
+        }
+        if !still || self.drawn.as_ref() != Some(&best) {
+            let asks = still && quick != best;
+            self.draw_as(snapshot, quick, linear);
+            if asks {
+                self.wish(snapshot, best, linear, darkroom);
+            }
+        }
         self.paint(ui, rect);
         response
     }
 
-    /// A still of a snapshot as it is seen now, with its title and axes, in the size of films.
-    pub fn still(&mut self, snapshot: &Snapshot) -> Result<Image, corpuscle::Error> {
-        // What is shown is drawn anew after it, in the window's size.
-        self.drawn = None;
-        self.pictures.resize(STILL_SIZE, 2)?;
-        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
-        self.pictures.still(&moment, &self.hand)
+    /// Asks the darkroom for a picture, unless it was asked for it already.
+    fn wish(&mut self, snapshot: &Arc<Snapshot>, drawn: Drawn, paper: [f32; 3], darkroom: &Darkroom) {
+        if self.wished.as_ref().is_none_or(|(_, wished)| *wished != drawn) {
+            let finish = Finish { look: drawn.look, size: drawn.size, samples: drawn.samples, paper };
+            self.wished = Some((darkroom.rest(self.sitting(snapshot), finish), drawn));
+        }
+    }
+
+    /// Takes a picture of the darkroom, by its number. One that is out of date is dropped: something changed since it was asked for.
+    pub fn take(&mut self, number: u64, print: Result<(Shown, Image), String>) {
+        let Some((_, drawn)) = self.wished.clone().filter(|(wished, _)| *wished == number) else { return };
+        let laid = print.and_then(|(shown, image)| {
+            let inlay = self.screen.inlays.image(&self.screen.gpu, &image).map_err(|error| error.to_string())?;
+            Ok((shown, OnScreen(inlay)))
+        });
+        match laid {
+            Ok((shown, on_screen)) => {
+                (self.shown, self.on_screen, self.drawn) = (Some(shown), Some(on_screen), Some(drawn));
+            }
+            Err(error) => self.fault = Some(error),
+        }
+    }
+
+    /// How it is seen.
+    pub fn sight(&self) -> Sight {
+        Sight { hand: self.hand, lifted: self.lifted }
+    }
+
+    /// A snapshot as it is seen now.
+    pub fn sitting(&self, snapshot: &Arc<Snapshot>) -> Sitting {
+        Sitting { scenery: self.scenery.clone(), snapshot: snapshot.clone(), sight: self.sight() }
+    }
+
+    /// True where what was drawn last has all there is to its look.
+    pub fn is_complete(&self) -> bool {
+        self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1)
     }
 
     /// The partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
-        self.pictures.lift_partition(time);
-        self.drawn = None;
+        self.lifted = Some(time);
+        self.sight().lift(&mut self.pictures);
+        (self.drawn, self.wished) = (None, None);
     }
 
     /// True where nothing has changed for a while; asks to be called again where that is yet to come.
@@ -168,8 +219,7 @@ impl Picture {
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let moment = Moment { frame: &snapshot.frame, paths: &snapshot.paths, container: snapshot.container };
-        let shown = self.pictures.show(&moment, &self.hand, drawn.look, paper)?;
+        let shown = self.pictures.show(&moment(snapshot), &self.hand, drawn.look, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         self.shown = Some(shown);
         Ok(())

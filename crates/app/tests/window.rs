@@ -229,7 +229,9 @@ fn a_film_is_recorded_and_stills_and_scenes_are_saved() {
     assert!(bytes.len() > 10_000 && &bytes[4..8] == b"ftyp", "{} bytes", bytes.len());
     stage.click("Save a still");
     stage.key(egui::Key::P);
-    assert!(folder.path().join("gas-maxwell.png").exists() && stage.has("Record a film"));
+    let still = folder.path().join("gas-maxwell.png");
+    stage.until(SOON, "there is a still", |_| still.exists());
+    assert!(stage.has("Record a film"));
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }
 

@@ -10,8 +10,9 @@ mod source;
 
 pub use source::{Source, Start};
 
+use crate::darkroom::{Darkroom, Print, SlowDevice};
 use crate::gallery::Gallery;
-use crate::physics::{Command, Event, Opened, Physics, Snapshot, default_pace};
+use crate::physics::{Command, Event, Opened, Physics, Snapshot, Wake, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::touch::Hands;
@@ -28,6 +29,8 @@ use std::time::{Duration, Instant};
 pub struct Window {
     screen: Screen,
     physics: Physics,
+    /// Draws what takes long.
+    darkroom: Darkroom,
     gallery: Gallery,
     /// Which of scenes, parameters and plots are shown.
     panels: Panels,
@@ -88,14 +91,18 @@ impl Window {
     /// A window that begins so.
     ///
     /// # Errors
-    /// Where the system gives no thread for the physics.
+    /// Where the system gives no thread for the physics or for pictures that take long.
     pub fn new(context: &Context, screen: Screen, start: Start) -> std::io::Result<Self> {
         style::set_up(context);
         let wake = context.clone();
-        let physics = Physics::start(&screen.gpu, Arc::new(move || wake.request_repaint()))?;
+        let wake: Wake = Arc::new(move || wake.request_repaint());
+        let slow = SlowDevice::beside(&screen.gpu);
+        let physics = Physics::start(&screen.gpu, slow.clone(), wake.clone())?;
+        let darkroom = Darkroom::start(slow, wake)?;
         let mut window = Self {
             screen,
             physics,
+            darkroom,
             gallery: Gallery::new(),
             panels: Panels { scenes: true, parameters: true, plots: true },
             help: false,
@@ -156,6 +163,11 @@ impl Window {
         snapshot.measures.gauges.get(at).copied()
     }
 
+    /// True where the picture has all there is to its look: without a graphics card what moves is drawn simply.
+    pub fn is_complete(&self) -> bool {
+        self.open.as_ref().is_some_and(|open| open.picture.is_complete())
+    }
+
     /// True until a scene that was asked for is open or refused.
     pub fn is_waiting(&self) -> bool {
         self.awaited.is_some()
@@ -193,6 +205,13 @@ impl Window {
                 }
             }
         }
+        for print in self.darkroom.prints() {
+            match (print, &mut self.open) {
+                (Print::Still(still), _) => self.wrote(still),
+                (Print::Rest(number, print), Some(open)) => open.picture.take(number, print),
+                (Print::Rest(..), None) => {}
+            }
+        }
         let newest = self.physics.newest();
         if let (Some(open), Some(newest)) = (&mut self.open, newest)
             && newest.number == open.number
@@ -214,7 +233,7 @@ impl Window {
     fn take(&mut self, opened: Opened) {
         let Some(awaited) = self.awaited.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, terrain, end, .. } = opened;
+        let Opened { number, scene, pictures, scenery, terrain, end, .. } = opened;
         let recorded = matches!(awaited, Awaited::Run(_));
         let source = match awaited {
             Awaited::Scene(source) => source,
@@ -231,7 +250,7 @@ impl Window {
             },
         };
         let before = self.open.take();
-        let mut picture = Picture::new(self.screen.clone(), pictures);
+        let mut picture = Picture::new(self.screen.clone(), pictures, scenery);
         let mut times = 1.0;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
             // Who changes a scene wants to see it from where it was seen.

@@ -5,6 +5,7 @@ mod flood;
 mod gas;
 mod hand;
 mod look;
+mod scenery;
 mod show;
 mod viewpoint;
 
@@ -21,6 +22,7 @@ use flood::FloodPicture;
 use gas::GasPicture;
 pub use hand::Hand;
 pub use look::GroundLook;
+pub use scenery::Scenery;
 pub use show::{Look, Shown};
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
@@ -105,11 +107,19 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than it can hold.
     pub fn open_on(gpu: &Gpu, simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
+        Self::open_scenery(gpu, &Scenery::of(simulation), settings)
+    }
+
+    /// The same where the scene is computed elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the pictures are larger than the device can hold.
+    pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
         let renderer = Renderer::new(gpu);
         let target = Target::new(gpu, settings.size, settings.samples)?;
-        let scene = simulation.scene();
+        let Scenery { scene, terrain, surfaces } = scenery;
         let viewpoints = settings.viewpoints.into_iter();
-        let stations = match simulation.terrain() {
+        let stations = match terrain {
             Some(ground) => viewpoints.map(|at| Station::on_ground(at, ground, settings.heights)).collect(),
             None => viewpoints.map(Station::plain).collect(),
         };
@@ -120,11 +130,9 @@ impl Pictures {
         let studio = Studio { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid };
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
-            ModelScene::Dew(dew) => {
-                Subject::Dew(Box::new(DewPicture::new(&studio, dew, &simulation.model().surfaces())))
-            }
+            ModelScene::Dew(dew) => Subject::Dew(Box::new(DewPicture::new(&studio, dew, surfaces))),
             ModelScene::Flood(scene) => {
-                let terrain = simulation.terrain().expect("a flood that was opened has its ground");
+                let terrain = terrain.as_ref().expect("a flood that was opened has its ground");
                 Subject::Flood(Box::new(FloodPicture::new(
                     &studio,
                     &scene.flood,
