@@ -1,12 +1,14 @@
 //! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
 
-use crate::darkroom::{Darkroom, Finish, Sitting};
+mod rest;
+
+use crate::darkroom::Darkroom;
 use crate::overlay::Over;
 use crate::physics::Snapshot;
 use crate::screen::OnScreen;
-use crate::sight::{Sight, moment};
+use crate::sight::moment;
 use crate::{Screen, style};
-use corpuscle::gpu::{GpuKind, Image};
+use corpuscle::gpu::GpuKind;
 use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
 use corpuscle_render::Lens;
 use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
@@ -144,39 +146,6 @@ impl Picture {
         }
         self.paint(ui, rect);
         response
-    }
-
-    /// Asks the darkroom for a picture, unless it was asked for it already.
-    fn wish(&mut self, snapshot: &Arc<Snapshot>, drawn: Drawn, paper: [f32; 3], darkroom: &Darkroom) {
-        if self.wished.as_ref().is_none_or(|(_, wished)| *wished != drawn) {
-            let finish = Finish { look: drawn.look, size: drawn.size, samples: drawn.samples, paper };
-            self.wished = Some((darkroom.rest(self.sitting(snapshot), finish), drawn));
-        }
-    }
-
-    /// Takes a picture of the darkroom, by its number. One that is out of date is dropped: something changed since it was asked for.
-    pub fn take(&mut self, number: u64, print: Result<(Shown, Image), String>) {
-        let Some((_, drawn)) = self.wished.clone().filter(|(wished, _)| *wished == number) else { return };
-        let laid = print.and_then(|(shown, image)| {
-            let inlay = self.screen.inlays.image(&self.screen.gpu, &image).map_err(|error| error.to_string())?;
-            Ok((shown, OnScreen(inlay)))
-        });
-        match laid {
-            Ok((shown, on_screen)) => {
-                (self.shown, self.on_screen, self.drawn) = (Some(shown), Some(on_screen), Some(drawn));
-            }
-            Err(error) => self.fault = Some(error),
-        }
-    }
-
-    /// How it is seen.
-    pub fn sight(&self) -> Sight {
-        Sight { hand: self.hand, lifted: self.lifted }
-    }
-
-    /// A snapshot as it is seen now.
-    pub fn sitting(&self, snapshot: &Arc<Snapshot>) -> Sitting {
-        Sitting { scenery: self.scenery.clone(), snapshot: snapshot.clone(), sight: self.sight() }
     }
 
     /// True where what was drawn last has all there is to its look.

@@ -1,5 +1,7 @@
 //! Without a graphics card the window goes on while pictures are drawn that take long.
 
+// Another test uses the rest of it.
+#[allow(dead_code)]
 mod stage;
 
 use corpuscle::gpu::GpuKind;
@@ -7,8 +9,6 @@ use stage::{Stage, stage};
 use std::time::{Duration, Instant};
 
 const SOON: Duration = Duration::from_secs(90);
-/// The longest that a picture of the window may take while others are drawn, on a machine that does other things besides.
-const LONGEST: Duration = Duration::from_millis(500);
 
 /// The valley in a window that stands at its start; none where a card draws, which is quick.
 fn valley(test: &str) -> Option<Stage> {
@@ -17,13 +17,14 @@ fn valley(test: &str) -> Option<Stage> {
         return None;
     }
     stage.window_mut().wait_at_start();
-    stage.choose("A flood through a valley");
+    stage.choose("A flood wave in a meandering valley");
     stage.until(SOON, "it is open", |window| !window.is_waiting() && window.snapshot().is_some());
     Some(stage)
 }
 
-/// Shows and draws the window until something holds of it; how often, and the longest time between two pictures.
-fn longest(stage: &mut Stage, what: &str, holds: impl Fn(&Stage) -> bool) -> (u32, Duration) {
+/// Shows and draws the window until something holds of it, which must not keep it from going on: there are many pictures till then,
+/// none of which takes a large part of that time.
+fn goes_on_until(stage: &mut Stage, what: &str, holds: impl Fn(&Stage) -> bool) {
     let (start, mut pictures, mut longest) = (Instant::now(), 0, Duration::ZERO);
     while !holds(stage) {
         assert!(start.elapsed() < SOON, "not so after {SOON:?}: {what}; {:?}", stage.window().fault());
@@ -31,16 +32,16 @@ fn longest(stage: &mut Stage, what: &str, holds: impl Fn(&Stage) -> bool) -> (u3
         stage.picture(what);
         (pictures, longest) = (pictures + 1, longest.max(before.elapsed()));
     }
-    eprintln!("{what}: {pictures} pictures in {:?}, longest {longest:?}", start.elapsed());
-    (pictures, longest)
+    let whole = start.elapsed();
+    eprintln!("{what}: {pictures} pictures in {whole:?}, the longest {longest:?}");
+    assert!(pictures > 5 && longest < whole / 3, "{what}: {pictures} pictures in {whole:?}, the longest {longest:?}");
 }
 
 #[test]
 fn what_rests_gets_its_full_look_while_the_window_goes_on() {
     let Some(mut stage) = valley("the full look of a flood") else { return };
     assert!(!stage.window().is_complete());
-    let (pictures, time) = longest(&mut stage, "full look", |stage| stage.window().is_complete());
-    assert!(pictures > 5 && time < LONGEST, "{pictures} pictures, the longest {time:?}");
+    goes_on_until(&mut stage, "full look", |stage| stage.window().is_complete());
     let full = stage.picture("valley-full");
     // What changes is drawn simply at once.
     stage.key(egui::Key::T);
@@ -75,8 +76,7 @@ fn a_still_is_saved_while_it_plays_on() {
     let from = stage.time();
     stage.click("Save a still");
     let file = folder.path().join("flood-valley.png");
-    let (pictures, time) = longest(&mut stage, "still", |_| file.exists());
-    assert!(pictures > 5 && time < LONGEST, "{pictures} pictures, the longest {time:?}");
+    goes_on_until(&mut stage, "still", |_| file.exists());
     assert!(stage.time() > from && stage.window().fault().is_none());
     let size = std::fs::metadata(&file).unwrap().len();
     assert!(size > 100_000, "{size} bytes");

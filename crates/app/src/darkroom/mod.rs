@@ -44,7 +44,7 @@ pub enum Print {
     /// A still was saved, or could not be.
     Still(Result<PathBuf, String>),
     /// What rests, by its number.
-    Rest(u64, Result<(Shown, Image), String>),
+    Rest(u64, Result<Box<(Shown, Image)>, String>),
 }
 
 /// What waits to be drawn.

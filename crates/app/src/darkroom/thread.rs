@@ -85,11 +85,11 @@ impl Thread<'_> {
         files::picture(folder, name, &image)
     }
 
-    fn rest(&mut self, sitting: &Sitting, finish: &Finish) -> Result<(Shown, Image), Error> {
+    fn rest(&mut self, sitting: &Sitting, finish: &Finish) -> Result<Box<(Shown, Image)>, Error> {
         let pictures = self.pictures(sitting, finish.size, finish.samples)?;
         sitting.sight.lift(pictures);
         let shown = pictures.show(&moment(&sitting.snapshot), &sitting.sight.hand, finish.look, finish.paper)?;
-        Ok((shown, pictures.read()?))
+        Ok(Box::new((shown, pictures.read()?)))
     }
 
     /// What draws a scene, in this size.

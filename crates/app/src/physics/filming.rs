@@ -49,3 +49,34 @@ impl Filming {
         Ok(self.path)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle::gpu::require_gpu;
+    use corpuscle::pictures::Hand;
+    use corpuscle::scene::{Scene, builtin};
+
+    #[test]
+    fn each_picture_is_seen_as_the_window_is_seen_then() {
+        let Some(gpu) = require_gpu("a film that follows the view") else { return };
+        let name = "gas/free-expansion";
+        let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+        let subject = Subject::live(scene, Path::new("")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("film");
+        let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();
+        let near = Sight { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
+        let lifted = Sight { lifted: Some(0.0), ..near };
+        for sight in [Sight::default(), near, near, lifted] {
+            filming.next = 0.0;
+            filming.look(&subject, &sight).unwrap();
+        }
+        let film = filming.finish().unwrap();
+        let mut files: Vec<_> = std::fs::read_dir(film).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        let pictures: Vec<_> = files.iter().map(|file| std::fs::read(file).unwrap()).collect();
+        assert_eq!(pictures.len(), 4);
+        assert!(pictures[0] != pictures[1] && pictures[1] == pictures[2] && pictures[2] != pictures[3]);
+    }
+}

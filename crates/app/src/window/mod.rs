@@ -2,6 +2,7 @@
 
 mod dropping;
 mod keys;
+mod listening;
 mod open;
 mod panels;
 mod saving;
@@ -10,9 +11,9 @@ mod source;
 
 pub use source::{Source, Start};
 
-use crate::darkroom::{Darkroom, Print, SlowDevice};
+use crate::darkroom::{Darkroom, SlowDevice};
 use crate::gallery::Gallery;
-use crate::physics::{Command, Event, Opened, Physics, Snapshot, Wake, default_pace};
+use crate::physics::{Command, Opened, Physics, Snapshot, Wake, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::touch::Hands;
@@ -183,50 +184,6 @@ impl Window {
         if let Some(open) = &mut self.open {
             open.playing = playing;
             self.physics.ask(if playing { Command::Play } else { Command::Pause });
-        }
-    }
-
-    /// Takes what the physics told.
-    fn listen(&mut self) {
-        self.look_for_dropped();
-        for event in self.physics.events() {
-            match event {
-                Event::Opened(opened) => self.take(*opened),
-                Event::Refused(what) => {
-                    self.awaited = None;
-                    self.fault = Some(what);
-                }
-                Event::NotChanged(what) => self.fault = Some(what),
-                Event::Filmed(film) => self.filmed(film),
-                Event::Ended => self.stopped(),
-                Event::Fault(what) => {
-                    self.fault = Some(what);
-                    self.stopped();
-                }
-            }
-        }
-        for print in self.darkroom.prints() {
-            match (print, &mut self.open) {
-                (Print::Still(still), _) => self.wrote(still),
-                (Print::Rest(number, print), Some(open)) => open.picture.take(number, print),
-                (Print::Rest(..), None) => {}
-            }
-        }
-        let newest = self.physics.newest();
-        if let (Some(open), Some(newest)) = (&mut self.open, newest)
-            && newest.number == open.number
-        {
-            open.plots.take(&newest);
-            if let Some(picked) = &mut open.picked {
-                picked.follow(&newest.frame);
-            }
-            open.snapshot = Some(newest);
-        }
-    }
-
-    fn stopped(&mut self) {
-        if let Some(open) = &mut self.open {
-            open.playing = false;
         }
     }
 
