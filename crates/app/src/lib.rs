@@ -1,9 +1,10 @@
 //! The window: a scene that is looked at and touched while it runs.
 //!
 //! The physics goes on in a thread of its own ([`physics`]) and publishes what it shows; the window draws the newest picture on its own
-//! device and never waits. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
+//! device and never waits: what takes long is drawn elsewhere. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
 //! it off screen.
 
+mod darkroom;
 mod dropped;
 mod files;
 mod gallery;
@@ -18,6 +19,7 @@ mod pick;
 mod picture;
 mod plots;
 mod screen;
+mod sight;
 mod spot;
 mod style;
 mod touch;
@@ -28,5 +30,6 @@ mod window;
 pub use meshes::Meshes;
 pub use meter::Measurement;
 pub use screen::Screen;
+pub use sight::Sight;
 pub use view::{ViewError, view};
 pub use window::{Source, Start, Window};

@@ -1,11 +1,15 @@
 //! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
 
+mod rest;
+
+use crate::darkroom::Darkroom;
 use crate::overlay::Over;
 use crate::physics::Snapshot;
 use crate::screen::OnScreen;
+use crate::sight::moment;
 use crate::{Screen, style};
-use corpuscle::gpu::{GpuKind, Image};
-use corpuscle::pictures::{Hand, Look, Moment, Pictures, Shown};
+use corpuscle::gpu::GpuKind;
+use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
 use corpuscle_render::Lens;
 use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
@@ -16,8 +20,6 @@ use std::time::{Duration, Instant};
 const TURN: f64 = 0.008;
 /// How far it may be zoomed.
 const ZOOM: [f64; 2] = [0.3, 200.0];
-/// Size of a still, pixels.
-const STILL_SIZE: [u32; 2] = [1920, 1080];
 /// After so long without change what stands still is drawn with all there is.
 const STILL: Duration = Duration::from_millis(350);
 
@@ -37,12 +39,17 @@ pub enum Quality {
 pub struct Picture {
     screen: Screen,
     pictures: Pictures,
+    scenery: Arc<Scenery>,
     on_screen: Option<OnScreen>,
     shown: Option<Shown>,
     /// What was drawn last.
     drawn: Option<Drawn>,
+    /// What the darkroom was asked for since something last changed, by its number.
+    wished: Option<(u64, Drawn)>,
     /// How the camera was moved.
     pub hand: Hand,
+    /// When the partition was lifted, s.
+    lifted: Option<f64>,
     /// How much work it may be.
     pub quality: Quality,
     /// When something last changed.
@@ -65,14 +72,17 @@ struct Drawn {
 
 impl Picture {
     /// The picture of a scene that was opened.
-    pub fn new(screen: Screen, pictures: Pictures) -> Self {
+    pub fn new(screen: Screen, pictures: Pictures, scenery: Scenery) -> Self {
         Self {
             screen,
             pictures,
+            scenery: Arc::new(scenery),
             on_screen: None,
             shown: None,
             drawn: None,
+            wished: None,
             hand: Hand::default(),
+            lifted: None,
             quality: Quality::Auto,
             changed: Instant::now(),
             fault: None,
@@ -94,7 +104,8 @@ impl Picture {
     pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
         let (paper, linear) = style::paper(visuals);
         let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, ..last };
+        let (look, samples) = self.work(false);
+        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, samples, ..last };
         self.draw_as(snapshot, drawn, linear);
     }
 
@@ -109,8 +120,9 @@ impl Picture {
         }
     }
 
-    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it.
-    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool) -> Response {
+    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it. What takes long is
+    /// asked of the darkroom.
+    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool, darkroom: &Darkroom) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, ui.is_enabled(), "Picture of the scene"));
         self.follow_hand(ui, rect, &response);
@@ -118,27 +130,34 @@ impl Picture {
         let size = [rect.width(), rect.height()].map(|length| ((length * scale).round() as u32).clamp(16, 8192));
         let (paper, linear) = style::paper(ui.visuals());
         let still = self.note_change(ui, snapshot, moves, size, paper);
-        let (look, samples) = self.work(still);
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper };
-        self.draw_as(snapshot, drawn, linear);
+        let [quick, best] = [false, true].map(|still| {
+            let (look, samples) = self.work(still);
+            Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper }
+        });
+        if !still {
+            self.wished = None;
+        }
+        if !still || self.drawn.as_ref() != Some(&best) {
+            let asks = still && quick != best;
+            self.draw_as(snapshot, quick, linear);
+            if asks {
+                self.wish(snapshot, best, linear, darkroom);
+            }
+        }
         self.paint(ui, rect);
         response
     }
 
-    /// A still of a snapshot as it is seen now, with its title and axes, in the size of films.
-    pub fn still(&mut self, snapshot: &Snapshot) -> Result<Image, corpuscle::Error> {
-        // What is shown is drawn anew after it, in the window's size.
-        self.drawn = None;
-        self.pictures.resize(STILL_SIZE, 2)?;
-        let moment =
-            Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container };
-        self.pictures.still(&moment, &self.hand)
+    /// True where what was drawn last has all there is to its look.
+    pub fn is_complete(&self) -> bool {
+        self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1)
     }
 
     /// The partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
-        self.pictures.lift_partition(time);
-        self.drawn = None;
+        self.lifted = Some(time);
+        self.sight().lift(&mut self.pictures);
+        (self.drawn, self.wished) = (None, None);
     }
 
     /// True where nothing has changed for a while; asks to be called again where that is yet to come.
@@ -169,9 +188,7 @@ impl Picture {
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let moment =
-            Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container };
-        let shown = self.pictures.show(&moment, &self.hand, drawn.look, paper)?;
+        let shown = self.pictures.show(&moment(snapshot), &self.hand, drawn.look, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         self.shown = Some(shown);
         Ok(())

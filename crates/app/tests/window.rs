@@ -229,7 +229,9 @@ fn a_film_is_recorded_and_stills_and_scenes_are_saved() {
     assert!(bytes.len() > 10_000 && &bytes[4..8] == b"ftyp", "{} bytes", bytes.len());
     stage.click("Save a still");
     stage.key(egui::Key::P);
-    assert!(folder.path().join("gas-maxwell.png").exists() && stage.has("Record a film"));
+    let still = folder.path().join("gas-maxwell.png");
+    stage.until(SOON, "there is a still", |_| still.exists());
+    assert!(stage.has("Record a film"));
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }
 
@@ -282,15 +284,12 @@ fn a_scene_is_saved_as_it_was_changed() {
     let folder = tempfile::tempdir().unwrap();
     stage.window_mut().save_into(folder.path().to_owned());
     stage.type_into("Number, ", "300");
+    stage.click("Lift the partition");
     stage.choose("Save the scene as changed");
     let file = folder.path().join("gas-free-expansion-changed.toml");
-    let text = std::fs::read_to_string(&file).unwrap_or_else(|error| {
-        panic!(
-            "{error}: {:?} {:?}",
-            stage.window().fault(),
-            std::fs::read_dir(folder.path()).unwrap().collect::<Vec<_>>()
-        )
-    });
+    let text = std::fs::read_to_string(&file).unwrap();
     let scene = corpuscle::scene::Scene::parse(&text, "changed", &[]).unwrap();
-    assert_eq!(scene.gas().unwrap().species[0].count, Some(300));
+    let gas = scene.gas().unwrap();
+    assert_eq!(gas.species[0].count, Some(300));
+    assert_eq!(gas.partition.as_ref().unwrap().lifted_at_s, Some(0.0));
 }

@@ -1,10 +1,11 @@
 //! A film of what goes on, drawn in its thread: the physics waits for the pictures, the window does not.
 
 use super::subject::Subject;
+use crate::sight::Sight;
 use corpuscle::Error;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Gpu;
-use corpuscle::pictures::{Hand, Moment, PictureSettings, Pictures};
+use corpuscle::pictures::{Moment, PictureSettings, Pictures};
 use std::path::{Path, PathBuf};
 
 /// Size of its pictures, pixels, and how many there are in a second.
@@ -15,7 +16,6 @@ const RATE: f64 = 25.0;
 pub(super) struct Filming {
     pictures: Pictures,
     film: Film,
-    hand: Hand,
     path: PathBuf,
     /// Simulated time between two pictures, and of the next, s.
     every: f64,
@@ -23,22 +23,22 @@ pub(super) struct Filming {
 }
 
 impl Filming {
-    /// Begins a film from now on, seen as it is seen in the window; `pace` simulated seconds go by in a second of it.
-    pub fn begin(gpu: &Gpu, subject: &Subject, path: &Path, hand: Hand, pace: f64) -> Result<Self, Error> {
+    /// Begins a film from now on; `pace` simulated seconds go by in a second of it.
+    pub fn begin(gpu: &Gpu, subject: &Subject, path: &Path, pace: f64) -> Result<Self, Error> {
         let settings = PictureSettings { size: SIZE, ..PictureSettings::default() };
         let pictures = Pictures::open_on(gpu, subject.simulation(), settings)?;
         let film = Film::create(path, Format::of(path), SIZE, RATE)?;
-        Ok(Self { pictures, film, hand, path: path.to_owned(), every: pace / RATE, next: subject.time() })
+        Ok(Self { pictures, film, path: path.to_owned(), every: pace / RATE, next: subject.time() })
     }
 
-    /// Adds a picture, if one is due.
-    pub fn look(&mut self, subject: &Subject) -> Result<(), Error> {
+    /// Adds a picture, seen as it is seen in the window now, if one is due.
+    pub fn look(&mut self, subject: &Subject, sight: &Sight) -> Result<(), Error> {
         if subject.time() < self.next {
             return Ok(());
         }
         let (frame, paths, container) = subject.look();
-        let image =
-            self.pictures.still(&Moment { frame: &frame, on_device: None, paths: &paths, container }, &self.hand)?;
+        let moment = Moment { frame: &frame, on_device: None, paths: &paths, container };
+        let image = sight.still(&mut self.pictures, &moment)?;
         self.film.add(&image.rgba)?;
         self.next = subject.time() + self.every;
         Ok(())
@@ -48,5 +48,36 @@ impl Filming {
     pub fn finish(self) -> Result<PathBuf, Error> {
         self.film.finish()?;
         Ok(self.path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle::gpu::require_gpu;
+    use corpuscle::pictures::Hand;
+    use corpuscle::scene::{Scene, builtin};
+
+    #[test]
+    fn each_picture_is_seen_as_the_window_is_seen_then() {
+        let Some(gpu) = require_gpu("a film that follows the view") else { return };
+        let name = "gas/free-expansion";
+        let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+        let subject = Subject::live(scene, Path::new("")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("film");
+        let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();
+        let near = Sight { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
+        let lifted = Sight { lifted: Some(0.0), ..near };
+        for sight in [Sight::default(), near, near, lifted] {
+            filming.next = 0.0;
+            filming.look(&subject, &sight).unwrap();
+        }
+        let film = filming.finish().unwrap();
+        let mut files: Vec<_> = std::fs::read_dir(film).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        let pictures: Vec<_> = files.iter().map(|file| std::fs::read(file).unwrap()).collect();
+        assert_eq!(pictures.len(), 4);
+        assert!(pictures[0] != pictures[1] && pictures[1] == pictures[2] && pictures[2] != pictures[3]);
     }
 }

@@ -8,9 +8,11 @@ mod thread;
 
 pub use snapshot::{Measures, Snapshot};
 
+use crate::darkroom::SlowDevice;
+use crate::sight::Sight;
 use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
-use corpuscle::pictures::{Hand, Pictures};
+use corpuscle::pictures::{Pictures, Scenery};
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
 use std::path::PathBuf;
@@ -56,8 +58,8 @@ pub enum Command {
     Pace(f64),
     /// Tell of the water at a place from now on, in model coordinates; none: no longer.
     Probe(Option<[f64; 2]>),
-    /// Film what goes on from now on into a file, seen so.
-    Film(PathBuf, Hand),
+    /// Film what goes on from now on into a file, as it is seen ([`Physics::see`]).
+    Film(PathBuf),
     /// End the film.
     EndFilm,
     /// Change something while it runs.
@@ -91,6 +93,8 @@ pub struct Opened {
     pub scene: Scene,
     /// Draws it.
     pub pictures: Pictures,
+    /// Draws it elsewhere.
+    pub scenery: Scenery,
     /// Names of its gauges, as in files.
     pub gauges: Vec<String>,
     /// What a user should know.
@@ -106,6 +110,8 @@ pub struct Opened {
 /// What is shared between the thread and whoever shows it.
 struct Shared {
     newest: Mutex<Option<Arc<Snapshot>>>,
+    /// How it is seen, for films.
+    sight: Mutex<Sight>,
     /// Breaks off what is being computed, so that a command is taken.
     stop: AtomicBool,
     wake: Wake,
@@ -120,16 +126,17 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// Starts the thread; pictures are made for a device.
+    /// Starts the thread; pictures are made for a device, films drawn on one that may take long.
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub fn start(gpu: &Gpu, wake: Wake) -> std::io::Result<Self> {
+    pub(crate) fn start(gpu: &Gpu, slow: SlowDevice, wake: Wake) -> std::io::Result<Self> {
         let (commands, taken) = channel();
         let (tell, events) = channel();
-        let shared = Arc::new(Shared { newest: Mutex::new(None), stop: AtomicBool::new(false), wake });
+        let shared =
+            Arc::new(Shared { newest: Mutex::default(), sight: Mutex::default(), stop: AtomicBool::new(false), wake });
         let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &tell, &own, &gpu);
+        let run = move || thread::run(&taken, &tell, &own, (&gpu, &slow));
         let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
     }
@@ -142,6 +149,11 @@ impl Physics {
             // A thread that is gone has told why.
             let _ = commands.send(command);
         }
+    }
+
+    /// It is seen so from now on. Never waits.
+    pub fn see(&self, sight: Sight) {
+        *self.shared.sight.lock().unwrap_or_else(PoisonError::into_inner) = sight;
     }
 
     /// What it told since, the oldest first.

@@ -4,10 +4,13 @@ use super::filming::Filming;
 use super::pace::Pace;
 use super::subject::Subject;
 use super::{Command, Event, Measures, Opened, Shared, Snapshot, default_pace};
+use crate::darkroom::SlowDevice;
 use corpuscle::Error;
 use corpuscle::gpu::Gpu;
-use corpuscle::pictures::{PictureSettings, Pictures};
+use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
+use corpuscle_render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, PoisonError};
@@ -21,9 +24,14 @@ const MEASURE_SHARE: u32 = 10;
 /// Size that pictures are opened with; whoever shows them makes them larger.
 const SMALL: [u32; 2] = [16, 16];
 
-/// Takes commands and goes on until there is nobody to give commands.
-pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &Arc<Shared>, gpu: &Gpu) {
-    let mut thread = Thread { tell, shared, gpu, number: 0, running: None };
+/// Takes commands and goes on until there is nobody to give commands. Pictures are made for the first device, films drawn on the other.
+pub(super) fn run(
+    commands: &Receiver<Command>,
+    tell: &Sender<Event>,
+    shared: &Arc<Shared>,
+    (gpu, slow): (&Gpu, &SlowDevice),
+) {
+    let mut thread = Thread { tell, shared, gpu, slow, number: 0, running: None };
     loop {
         let next = match thread.time_left() {
             None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -57,6 +65,7 @@ struct Thread<'a> {
     tell: &'a Sender<Event>,
     shared: &'a Arc<Shared>,
     gpu: &'a Gpu,
+    slow: &'a SlowDevice,
     /// Scenes opened so far.
     number: u64,
     running: Option<Running>,
@@ -115,16 +124,7 @@ impl Thread<'_> {
             }
             Command::Pause => running.wait(),
             Command::Probe(place) => running.probe = place,
-            Command::Film(path, hand) => {
-                let begun = Filming::begin(self.gpu, &running.subject, &path, hand, running.pace.asked);
-                match begun {
-                    Ok(filming) => {
-                        running.filming = Some(filming);
-                        self.look_for_film();
-                    }
-                    Err(error) => self.tell(Event::Filmed(Err(error.to_string()))),
-                }
-            }
+            Command::Film(path) => self.film(&path),
             Command::EndFilm => self.end_film(),
             Command::Pace(pace) => running.pace.asked = pace,
             Command::Step(by) => self.step(by),
@@ -153,7 +153,8 @@ impl Thread<'_> {
     fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
         let simulation = subject.simulation();
         let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
-        let pictures = Pictures::open_on(self.gpu, simulation, settings)?;
+        let scenery = Scenery::of(simulation);
+        let pictures = Pictures::open_scenery(self.gpu, &scenery, settings)?;
         let scene = simulation.scene().clone();
         let now = Instant::now();
         let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
@@ -173,7 +174,19 @@ impl Thread<'_> {
             filming: None,
             subject,
         });
-        Ok(Opened { number: self.number, scene, pictures, gauges, warnings, history, terrain, end })
+        Ok(Opened { number: self.number, scene, pictures, scenery, gauges, warnings, history, terrain, end })
+    }
+
+    fn film(&mut self, path: &Path) {
+        let Some(running) = &mut self.running else { return };
+        let gpu = self.slow.gpu().map_err(|error| Error::from(RenderError::from(error)));
+        match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.asked)) {
+            Ok(filming) => {
+                running.filming = Some(filming);
+                self.look_for_film();
+            }
+            Err(error) => self.tell(Event::Filmed(Err(error.to_string()))),
+        }
     }
 
     fn step(&mut self, by: f64) {
@@ -218,7 +231,8 @@ impl Thread<'_> {
     fn look_for_film(&mut self) {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
-        if let Err(error) = filming.look(&running.subject) {
+        let sight = *self.shared.sight.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Err(error) = filming.look(&running.subject, &sight) {
             running.filming = None;
             self.tell(Event::Filmed(Err(error.to_string())));
         }

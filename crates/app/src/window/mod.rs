@@ -2,6 +2,7 @@
 
 mod dropping;
 mod keys;
+mod listening;
 mod open;
 mod panels;
 mod saving;
@@ -10,8 +11,9 @@ mod source;
 
 pub use source::{Source, Start};
 
+use crate::darkroom::{Darkroom, SlowDevice};
 use crate::gallery::Gallery;
-use crate::physics::{Command, Event, Opened, Physics, Snapshot, default_pace};
+use crate::physics::{Command, Opened, Physics, Snapshot, Wake, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::touch::Hands;
@@ -28,6 +30,8 @@ use std::time::{Duration, Instant};
 pub struct Window {
     screen: Screen,
     physics: Physics,
+    /// Draws what takes long.
+    darkroom: Darkroom,
     gallery: Gallery,
     /// Which of scenes, parameters and plots are shown.
     panels: Panels,
@@ -88,14 +92,18 @@ impl Window {
     /// A window that begins so.
     ///
     /// # Errors
-    /// Where the system gives no thread for the physics.
+    /// Where the system gives no thread for the physics or for pictures that take long.
     pub fn new(context: &Context, screen: Screen, start: Start) -> std::io::Result<Self> {
         style::set_up(context);
         let wake = context.clone();
-        let physics = Physics::start(&screen.gpu, Arc::new(move || wake.request_repaint()))?;
+        let wake: Wake = Arc::new(move || wake.request_repaint());
+        let slow = SlowDevice::beside(&screen.gpu);
+        let physics = Physics::start(&screen.gpu, slow.clone(), wake.clone())?;
+        let darkroom = Darkroom::start(slow, wake)?;
         let mut window = Self {
             screen,
             physics,
+            darkroom,
             gallery: Gallery::new(),
             panels: Panels { scenes: true, parameters: true, plots: true },
             help: false,
@@ -156,6 +164,11 @@ impl Window {
         snapshot.measures.gauges.get(at).copied()
     }
 
+    /// True where the picture has all there is to its look: without a graphics card what moves is drawn simply.
+    pub fn is_complete(&self) -> bool {
+        self.open.as_ref().is_some_and(|open| open.picture.is_complete())
+    }
+
     /// True until a scene that was asked for is open or refused.
     pub fn is_waiting(&self) -> bool {
         self.awaited.is_some()
@@ -174,47 +187,10 @@ impl Window {
         }
     }
 
-    /// Takes what the physics told.
-    fn listen(&mut self) {
-        self.look_for_dropped();
-        for event in self.physics.events() {
-            match event {
-                Event::Opened(opened) => self.take(*opened),
-                Event::Refused(what) => {
-                    self.awaited = None;
-                    self.fault = Some(what);
-                }
-                Event::NotChanged(what) => self.fault = Some(what),
-                Event::Filmed(film) => self.filmed(film),
-                Event::Ended => self.stopped(),
-                Event::Fault(what) => {
-                    self.fault = Some(what);
-                    self.stopped();
-                }
-            }
-        }
-        let newest = self.physics.newest();
-        if let (Some(open), Some(newest)) = (&mut self.open, newest)
-            && newest.number == open.number
-        {
-            open.plots.take(&newest);
-            if let Some(picked) = &mut open.picked {
-                picked.follow(&newest.frame);
-            }
-            open.snapshot = Some(newest);
-        }
-    }
-
-    fn stopped(&mut self) {
-        if let Some(open) = &mut self.open {
-            open.playing = false;
-        }
-    }
-
     fn take(&mut self, opened: Opened) {
         let Some(awaited) = self.awaited.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, terrain, end, .. } = opened;
+        let Opened { number, scene, pictures, scenery, terrain, end, .. } = opened;
         let recorded = matches!(awaited, Awaited::Run(_));
         let source = match awaited {
             Awaited::Scene(source) => source,
@@ -231,7 +207,7 @@ impl Window {
             },
         };
         let before = self.open.take();
-        let mut picture = Picture::new(self.screen.clone(), pictures);
+        let mut picture = Picture::new(self.screen.clone(), pictures, scenery);
         let mut times = 1.0;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
             // Who changes a scene wants to see it from where it was seen.

@@ -56,7 +56,8 @@ impl Window {
         if let Some(open) = &mut self.open
             && let Some(snapshot) = open.snapshot.clone()
         {
-            let response = open.picture.ui(ui, &snapshot, open.playing);
+            let response = open.picture.ui(ui, &snapshot, open.playing, &self.darkroom);
+            self.physics.see(open.picture.sight());
             let before = open.spot.map(|spot| spot.at_model());
             open.pick(ui, &response, &snapshot);
             let spot = open.spot.map(|spot| spot.at_model());

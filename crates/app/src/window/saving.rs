@@ -17,7 +17,12 @@ impl Window {
 
     pub(super) fn save_scene(&mut self) {
         let Some(open) = &self.open else { return };
-        let changes = open.parameters.changes().to_vec();
+        let mut changes = open.parameters.changes().to_vec();
+        let planned = open.scene.gas().and_then(|gas| gas.partition.as_ref()?.lifted_at_s);
+        if let Some(time) = open.picture.sight().lifted {
+            let time = planned.map_or(time, |planned| planned.min(time));
+            changes.push(("gas.partition.lifted_at_s".into(), format!("{time:?}")));
+        }
         let changed = Source { changes, ..open.source.clone() }.scene();
         let text = changed.map_err(|error| error.to_string()).and_then(|mut scene| {
             scene.resolve_paths(&open.source.folder);
@@ -35,7 +40,8 @@ impl Window {
         open.filming = !open.filming;
         self.physics.ask(if open.filming {
             let path = files::free(&self.folder, &open.source.name, "mp4");
-            Command::Film(path, open.picture.hand)
+            self.physics.see(open.picture.sight());
+            Command::Film(path)
         } else {
             Command::EndFilm
         });
@@ -50,10 +56,9 @@ impl Window {
     }
 
     pub(super) fn save_still(&mut self) {
-        let Some(open) = &mut self.open else { return };
+        let Some(open) = &self.open else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
-        let still = open.picture.still(&snapshot);
-        let done = still.and_then(|image| files::picture(&self.folder, &open.source.name, &image));
-        self.wrote(done.map_err(|error| error.to_string()));
+        self.darkroom.still(open.picture.sitting(&snapshot), self.folder.clone(), open.source.name.clone());
+        self.notice = Some(("The still is being drawn".into(), Instant::now()));
     }
 }

@@ -191,7 +191,9 @@ impl Stage {
     /// Where it changed on purpose: run with `CORPUSCLE_NEW_REFERENCE=1`, look at it, and keep it.
     pub fn same_as_reference(&mut self, name: &str) {
         // What stands still is drawn with all there is.
-        self.run(Duration::from_millis(1200));
+        self.run(Duration::from_millis(400));
+        self.until(Duration::from_secs(60), "all there is", Window::is_complete);
+        self.run(Duration::from_millis(100));
         let rect = self.harness.get_by_label("Picture of the scene").rect();
         let whole = self.picture(name);
         let found = reference::half(&whole, [rect.left(), rect.top(), SIZE[0], rect.bottom()].map(|at| at as u32));

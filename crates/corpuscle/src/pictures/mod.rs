@@ -6,6 +6,7 @@ mod flood;
 mod gas;
 mod hand;
 mod look;
+mod scenery;
 mod show;
 mod times;
 mod viewpoint;
@@ -24,6 +25,7 @@ use flood::FloodPicture;
 use gas::GasPicture;
 pub use hand::Hand;
 pub use look::GroundLook;
+pub use scenery::Scenery;
 pub use show::{Look, Shown};
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
@@ -111,15 +113,21 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than it can hold.
     pub fn open_on(gpu: &Gpu, simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        let scene = simulation.scene();
-        let studio = Studio::new(gpu, &settings, simulation.terrain().map(|ground| &**ground))?;
+        Self::open_scenery(gpu, &Scenery::of(simulation), settings)
+    }
+
+    /// The same where the scene is computed elsewhere.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the pictures are larger than the device can hold.
+    pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
+        let Scenery { scene, terrain, surfaces } = scenery;
+        let studio = Studio::new(gpu, &settings, terrain.as_deref())?;
         let subject = match &scene.model {
             ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
-            ModelScene::Dew(dew) => {
-                Subject::Dew(Box::new(DewPicture::new(&studio, dew, &simulation.model().surfaces())))
-            }
+            ModelScene::Dew(dew) => Subject::Dew(Box::new(DewPicture::new(&studio, dew, surfaces))),
             ModelScene::Flood(scene) => {
-                let terrain = simulation.terrain().expect("a flood that was opened has its ground");
+                let terrain = terrain.as_ref().expect("a flood that was opened has its ground");
                 Subject::Flood(Box::new(FloodPicture::new(
                     &studio,
                     &scene.flood,

@@ -55,7 +55,15 @@ impl Pictures {
         let studio = &mut self.studio;
         (studio.overlaid, studio.look, studio.hand, studio.paper) = (true, Look::Full, *hand, [1.0; 3]);
         self.subject.draw(studio, &self.title, moment)?;
-        Ok(studio.renderer.read(&studio.target)?)
+        self.read()
+    }
+
+    /// What was shown last, finished ([`Shown::finished`]), in main memory. Waits for the device.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the device was lost.
+    pub fn read(&self) -> Result<Image, Error> {
+        Ok(self.studio.renderer.read(&self.studio.target)?)
     }
 
     /// Makes pictures of another size, pixels, with so many samples each way in a pixel; false where they have it already.

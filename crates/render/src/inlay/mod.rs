@@ -4,7 +4,7 @@
 //! times as long. A picture that was drawn quickly comes from its linear light without a finished picture in between.
 
 use crate::{Target, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Image, texture_2d, wgpu};
 
 /// Lays pictures into passes that draw into one format; holds what all pictures share.
 #[derive(Debug)]
@@ -57,6 +57,20 @@ impl InlayPainter {
     /// colours as they are; edges stay hard.
     pub fn light(&self, gpu: &Gpu, target: &Target, pressed: bool) -> Inlay {
         self.inlay(gpu, if pressed { &self.pressed } else { &self.light }, &target.colour)
+    }
+
+    /// A picture in main memory, such as one that another device drew.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`].
+    pub fn image(&self, gpu: &Gpu, image: &Image) -> Result<Inlay, GpuError> {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let size = [image.width, image.height];
+        let texture = texture_2d(gpu, "picture", size, wgpu::TextureFormat::Rgba8Unorm, usage)?;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * image.width), rows_per_image: None };
+        gpu.queue.write_texture(texture.as_image_copy(), &image.rgba, layout, texture.size());
+        Ok(self.inlay(gpu, &self.finished, &texture))
     }
 
     fn inlay(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline, texture: &wgpu::Texture) -> Inlay {

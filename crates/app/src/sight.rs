@@ -1,0 +1,35 @@
+//! How a scene is seen.
+
+use crate::physics::Snapshot;
+use corpuscle::Error;
+use corpuscle::gpu::Image;
+use corpuscle::pictures::{Hand, Moment, Pictures};
+
+/// How a scene is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sight {
+    /// How the camera was moved.
+    pub hand: Hand,
+    /// When the partition of a gas was lifted by hand, s.
+    pub lifted: Option<f64>,
+}
+
+impl Sight {
+    /// A still of a moment seen so, with its title and axes.
+    pub(crate) fn still(&self, pictures: &mut Pictures, moment: &Moment<'_>) -> Result<Image, Error> {
+        self.lift(pictures);
+        pictures.still(moment, &self.hand)
+    }
+
+    /// Pictures from now on are without the partition, where it was lifted.
+    pub(crate) fn lift(&self, pictures: &mut Pictures) {
+        if let Some(time) = self.lifted {
+            pictures.lift_partition(time);
+        }
+    }
+}
+
+/// What pictures show of a snapshot.
+pub(crate) fn moment(snapshot: &Snapshot) -> Moment<'_> {
+    Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container }
+}

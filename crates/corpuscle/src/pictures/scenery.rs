@@ -1,0 +1,26 @@
+//! What pictures need of a scene.
+
+use crate::Simulation;
+use corpuscle_model::Surface;
+use corpuscle_scene::Scene;
+use corpuscle_terrain::Terrain;
+use std::sync::Arc;
+
+/// What pictures need of a scene that was opened. With it they can be opened in another thread than the one that computes.
+#[derive(Debug, Clone)]
+pub struct Scenery {
+    pub(super) scene: Scene,
+    pub(super) terrain: Option<Arc<Terrain>>,
+    pub(super) surfaces: Vec<Surface>,
+}
+
+impl Scenery {
+    /// That of a scene as it stands.
+    pub fn of(simulation: &Simulation) -> Self {
+        Self {
+            scene: simulation.scene().clone(),
+            terrain: simulation.terrain().cloned(),
+            surfaces: simulation.model().surfaces(),
+        }
+    }
+}
