@@ -9,6 +9,7 @@ use crate::whole::{write_bytes, write_whole};
 use crate::{Clock, RecordError, Summary, write_extent};
 use corpuscle_model::{Chart, Frame, GaugeColumn, Map, Surface};
 use corpuscle_terrain::Terrain;
+use corpuscle_whole::clear_unfinished;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -264,6 +265,9 @@ impl RunFolder {
 
     /// Takes away what was written after the checkpoint.
     fn cut_back(&self) -> Result<(), RecordError> {
+        for folder in FOLDERS.map(|name| self.path.join(name)) {
+            clear_unfinished(&folder).map_err(RecordError::write(&folder))?;
+        }
         let frames = self.path.join("frames");
         remove_numbered(&frames, "frame_", self.frame_times.len())?;
         if frames.exists() {
@@ -281,6 +285,9 @@ impl RunFolder {
         }
     }
 }
+
+/// Where a run writes files.
+const FOLDERS: [&str; 6] = ["", "frames", "maps", "charts", "pictures", "checkpoint"];
 
 fn checkpoint_path(folder: &Path) -> PathBuf {
     folder.join("checkpoint").join("state")

@@ -76,6 +76,8 @@ fn an_interrupted_run_that_is_resumed_ends_with_the_same_bytes() {
         let mut gauges = fs::read(broken.join("gauges.csv")).unwrap();
         gauges.truncate(gauges.len() - 7);
         fs::write(broken.join("gauges.csv"), gauges).unwrap();
+        // And leaves a file half written.
+        fs::write(broken.join("maps/.writing-1"), b"half").unwrap();
 
         let (mut run, clock, state) = RunFolder::resume(&broken).unwrap();
         assert_eq!((clock.time_s, state.as_slice()), (1500.0, b"state at 1500 s".as_slice()));

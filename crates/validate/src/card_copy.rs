@@ -1,7 +1,7 @@
 //! How fast a graphics card copies its own memory: what the passes of a step are measured against.
 
 use crate::{Bench, BenchOptions, Rate};
-use corpuscle_gpu::{Gpu, GpuError, read, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Kernel, Pass, THREADS, Task, read, storage, wgpu};
 use std::time::Instant;
 
 pub(crate) const BENCHES: &[Bench] = &[Bench {
@@ -17,20 +17,44 @@ const BYTES: u64 = 1 << 30;
 /// Copies that are ordered at once.
 const COPIES: u32 = 16;
 
+/// Bytes that a thread takes at a time, and how often: as `card_copy.wgsl` has it.
+const BYTES_AT_ONCE: u64 = 16;
+const TIMES_A_THREAD: u64 = 16;
+
+/// A buffer that is copied to another of the same size.
+struct Copying {
+    task: Task,
+    groups: u32,
+}
+
+impl Copying {
+    fn of(gpu: &Gpu, from: &wgpu::Buffer, to: &wgpu::Buffer) -> Self {
+        let kernel = Kernel::new(gpu, "card_copy", include_str!("card_copy.wgsl"), &[]);
+        let groups = to.size().div_ceil(BYTES_AT_ONCE * TIMES_A_THREAD * u64::from(THREADS)) as u32;
+        Self { task: kernel.on(gpu, &[from.as_entire_binding(), to.as_entire_binding()]), groups }
+    }
+
+    /// Orders so many copies.
+    fn order(&self, gpu: &Gpu, times: u32) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("copies") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        (0..times).for_each(|_| self.task.run(&mut pass, self.groups));
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
 fn rate(gpu: &Gpu, options: &BenchOptions) -> Option<Rate> {
     measure(gpu, if options.quick { 0.2 } else { 1.0 }).inspect_err(|error| eprintln!("left out: {error}")).ok()
 }
 
 fn measure(gpu: &Gpu, seconds: f64) -> Result<Rate, GpuError> {
-    let words = BYTES.min(gpu.most_bytes()) / 4;
-    let [from, to] = ["copied", "copy"].map(|name| storage::<u32>(gpu, name, words as usize));
+    let count = BYTES.min(gpu.most_bytes()) / BYTES_AT_ONCE;
+    let [from, to] = ["source", "copy"].map(|name| storage::<[u32; 4]>(gpu, name, count as usize));
     let (from, to) = (from?, to?);
+    let copying = Copying::of(gpu, &from, &to);
     let copy = || {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("copies") });
-        for _ in 0..COPIES {
-            encoder.copy_buffer_to_buffer(&from, 0, &to, 0, from.size());
-        }
-        gpu.queue.submit([encoder.finish()]);
+        copying.order(gpu, COPIES);
         // Waits for what is done.
         read::<u32>(gpu, &to, 1)
     };
@@ -52,4 +76,23 @@ fn measure(gpu: &Gpu, seconds: f64) -> Result<Rate, GpuError> {
         bytes_per_particle: 0.0,
         passes: Vec::new(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::require_gpu;
+
+    #[test]
+    fn all_is_copied() {
+        let Some(gpu) = require_gpu("a copy on the card") else { return };
+        // Not a multiple of what a group takes.
+        let count = 10_007;
+        let [from, to] = ["source", "copy"].map(|name| storage::<[u32; 4]>(&gpu, name, count).unwrap());
+        let numbers: Vec<[u32; 4]> = (0..count as u32).map(|k| [k, k + 1, 3 * k, !k]).collect();
+        let bytes: Vec<u8> = numbers.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
+        gpu.queue.write_buffer(&from, 0, &bytes);
+        Copying::of(&gpu, &from, &to).order(&gpu, 1);
+        assert!(read::<[u32; 4]>(&gpu, &to, count).unwrap() == numbers);
+    }
 }

@@ -61,11 +61,24 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut WholeFile) -> io::Result
     file.finish()
 }
 
+/// How the names of temporary files begin.
+const IN_THE_MAKING: &str = ".writing-";
+
+/// Removes what a program that was killed left in the making in a folder, where nobody else writes. A folder that is not there is clean.
+///
+/// # Errors
+/// What the system says where something cannot be removed.
+pub fn clear_unfinished(folder: &Path) -> io::Result<()> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
+    let unfinished = |entry: &std::fs::DirEntry| entry.file_name().to_string_lossy().starts_with(IN_THE_MAKING);
+    entries.flatten().filter(unfinished).try_for_each(|entry| std::fs::remove_file(entry.path()))
+}
+
 /// A temporary file in the folder of `path`, with the permissions that a plain new file would get.
 fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".writing-");
+    builder.prefix(IN_THE_MAKING);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
@@ -97,6 +110,21 @@ mod tests {
         file.write_all(b"half").unwrap();
         drop(file);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_cleared() {
+        let folder = tempfile::tempdir().unwrap();
+        write_whole(&folder.path().join("a.txt"), |file| file.write_all(b"whole")).unwrap();
+        let mut file = WholeFile::create(&folder.path().join("b.txt")).unwrap();
+        file.write_all(b"half").unwrap();
+        // As a kill leaves it: never dropped.
+        std::mem::forget(file);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        clear_unfinished(folder.path()).unwrap();
+        let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["a.txt"]);
+        clear_unfinished(&folder.path().join("none")).unwrap();
     }
 
     #[cfg(unix)]

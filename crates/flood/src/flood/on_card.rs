@@ -24,6 +24,10 @@ impl Flood {
     /// # Errors
     /// [`ModelError::Setup`] where the card has too little memory.
     pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        // Particles that were only just set up may not yet say how long a step may be: the first is then 0 s long, and is taken here.
+        if self.state.steps == 0 && self.state.time_step == 0.0 {
+            self.step()?;
+        }
         self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }
 
