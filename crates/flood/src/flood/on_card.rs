@@ -349,4 +349,15 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
         });
         assert!(all == some && all == none);
     }
+
+    #[test]
+    fn a_first_step_of_no_length_is_taken_before_the_card_goes_on() {
+        let Some(gpu) = require_gpu("a first step of 0 s") else { return };
+        let mut pool = opened(POOL);
+        pool.state.time_step = 0.0;
+        pool.use_card(gpu).unwrap();
+        assert!(pool.state.steps == 1 && pool.state.time == 0.0 && pool.state.time_step > 0.0);
+        pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
+        assert!(pool.state.steps > 1 && pool.ledger().balances[0].relative_error().abs() < 1e-6);
+    }
 }
