@@ -26,21 +26,41 @@ fn side(number: u32) -> vec4f {
     );
 }
 
-// The way from the nearest wall of an outline that a place is inside, from its first side to its last; nothing where it is not inside.
-fn way_in(place: vec2f, first: u32, end: u32) -> vec3f {
-    var inside = false;
-    var way = vec2f(0.0);
+// Where a place is to an outline: the way to it from the nearest wall, that wall, and whether it is inside.
+struct Within {
+    way: vec2f,
+    wall: vec4f,
+    is_inside: bool,
+}
+
+// Of an outline from its first side to its last.
+fn within(place: vec2f, first: u32, end: u32) -> Within {
+    var found = Within(vec2f(0.0), vec4f(0.0), false);
     var nearest = 3e38;
     for (var number = first; number < end; number++) {
-        let walls = side(number);
-        let from_wall = way_from(place, walls);
-        if dot(from_wall, from_wall) < nearest {
-            nearest = dot(from_wall, from_wall);
-            way = from_wall;
+        let wall = side(number);
+        let way = way_from(place, wall);
+        if dot(way, way) < nearest {
+            nearest = dot(way, way);
+            found.way = way;
+            found.wall = wall;
         }
-        inside = inside != crosses(place, walls);
+        found.is_inside = found.is_inside != crosses(place, wall);
     }
-    return vec3f(way, select(0.0, 1.0, inside));
+    return found;
+}
+
+// The way out of an outline that a place is inside, to a little before its wall.
+fn way_out(place: vec2f, found: Within, first: u32, end: u32) -> vec2f {
+    let off = BEFORE_WALL * parameters.spacing;
+    let deep = length(found.way);
+    if deep > off {
+        return -(1.0 + off / deep) * found.way;
+    }
+    // So near the wall rounding may have turned the way round: across the wall, to the side that is not inside.
+    let along = normalize(found.wall.zw - found.wall.xy);
+    let across = (off + deep) * vec2f(along.y, -along.x);
+    return select(across, -across, within(place + across, first, end).is_inside);
 }
 
 // Puts a particle that has come into an obstacle back to the wall; what of its velocity led in is taken off. Gives that. Twin of
@@ -54,13 +74,13 @@ fn kept_out(place: ptr<function, vec2f>, velocity: ptr<function, vec2f>, volume:
     let cell = u32(at.y) * grid.columns + u32(at.x);
     for (var k = outlines[cell]; k < outlines[cell + 1u]; k += 3u) {
         let obstacle = outlines[k];
-        let way = way_in(*place, outlines[k + 1u], outlines[k + 2u]);
-        let deep = length(way.xy);
-        if way.z == 0.0 {
+        let found = within(*place, outlines[k + 1u], outlines[k + 2u]);
+        if !found.is_inside {
             continue;
         }
-        let normal = select(-way.xy / deep, vec2f(0.0), deep == 0.0);
-        *place += (BEFORE_WALL * parameters.spacing + deep) * normal;
+        let way = way_out(*place, found, outlines[k + 1u], outlines[k + 2u]);
+        *place += way;
+        let normal = normalize(way);
         let inward = max(-dot(*velocity, normal), 0.0);
         *velocity += inward * normal;
         let taken = -volume * inward * normal;
