@@ -124,7 +124,7 @@ fn assert_as_on_the_processor(name: &str, [mut host, mut card]: [Dew; 2]) {
         assert!((0..7).all(|k| apart[k] < most[k]), "{name} after {} steps: {apart:?}", host.steps());
         assert!((card.time_step() / host.time_step() - 1.0).abs() < 1e-5);
         let solids = differences_of_solids(&host, &card);
-        let most = [if steps == 1 { 2e-7 } else { 1e-6 }, 5e-5];
+        let most = [if steps == 1 { 1e-7 } else { 1e-6 }, 5e-5];
         assert!((0..2).all(|k| solids[k] < most[k]), "{name} after {} steps: {solids:?}", host.steps());
     }
 }
