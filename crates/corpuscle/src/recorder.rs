@@ -65,8 +65,8 @@ impl Recorder {
 }
 
 impl Sink for Recorder {
-    fn gauges(&mut self, model: &dyn Model) -> Result<(), Error> {
-        Ok(self.folder.append_gauges(model.time(), &model.gauge_row())?)
+    fn gauges(&mut self, time: f64, row: &[f64]) -> Result<(), Error> {
+        Ok(self.folder.append_gauges(time, row)?)
     }
 
     fn frame(&mut self, model: &dyn Model) -> Result<(), Error> {

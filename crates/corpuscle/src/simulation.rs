@@ -3,14 +3,14 @@
 use crate::schedule::Schedule;
 use crate::{ByHand, Error, Progress, Sink};
 use corpuscle_flood::{Flood, Sample};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{Companion, Model, ModelError, Passed};
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A run pauses at least this often, to report progress and to keep its state.
 const PAUSES: f64 = 1000.0;
@@ -131,52 +131,47 @@ impl Simulation {
         start: Instant,
     ) -> Result<Status, Error> {
         let run = &self.scene.run;
-        let (until, checkpoint_period) = (run.until_s, run.checkpoint_every_wall_s);
-        let gauges = Schedule::new(run.gauge_period_s(), until);
+        let (until, keep_every) = (run.until_s, Duration::from_secs_f64(run.checkpoint_every_wall_s));
+        let [gauges, pauses] = [run.gauge_period_s(), until / PAUSES].map(|period| Schedule::new(period, until));
         let frames = Schedule::new(run.frame_period_s(), until);
-        let pauses = Schedule::new(until / PAUSES, until);
         let pictures: Vec<_> =
             sinks.iter().map(|sink| sink.picture_period().map(|period| Schedule::new(period, until))).collect();
         let counted = if self.scene.gas().is_some() { "collisions" } else { "particle-steps" };
         let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
         if !self.resumed {
             for sink in &mut *sinks {
-                sink.gauges(&*self.model)?;
+                sink.gauges(self.model.time(), &self.model.gauge_row())?;
                 sink.frame(&*self.model)?;
                 sink.picture(&*self.model)?;
             }
-        }
-        let mut kept = start;
-        if !self.resumed {
             // From here on the run can be resumed, whatever ends it.
             self.keep(sinks, start)?;
         }
+        let mut keep_at = start + keep_every;
         loop {
             let now = self.model.time();
-            let [gauge, frame, pause] = [gauges, frames, pauses].map(|schedule| schedule.after(now));
+            let frame = frames.after(now);
             let picture: Vec<_> = pictures.iter().map(|schedule| schedule.and_then(|due| due.after(now))).collect();
-            let due = [gauge, frame, pause].into_iter().chain(picture.iter().copied()).flatten();
+            let due = picture.iter().copied().chain([frame]).flatten();
             let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
-            self.model.advance_to(next, stop)?;
-            let stopped = self.model.time() < next;
+            let mut along = Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keep_at, failed: None };
+            self.model.advance_with(next, stop, &mut along)?;
+            along.failed.map_or(Ok(()), Err)?;
+            let has_arrived = self.model.time() >= next;
             for (sink, picture) in sinks.iter_mut().zip(picture) {
-                if !stopped && picture == Some(next) {
+                if has_arrived && picture == Some(next) {
                     sink.picture(&*self.model)?;
                 }
-                if !stopped && gauge == Some(next) {
-                    sink.gauges(&*self.model)?;
-                }
-                if !stopped && frame == Some(next) {
+                if has_arrived && frame == Some(next) {
                     sink.frame(&*self.model)?;
                 }
             }
-            on_progress(&meter.progress(&*self.model, until));
-            let stopped = stopped || next < until && stop.load(Ordering::Relaxed);
-            if stopped || kept.elapsed().as_secs_f64() >= checkpoint_period {
+            let stopped = self.model.time() < until && stop.load(Ordering::Relaxed);
+            if stopped || Instant::now() >= keep_at {
                 self.keep(sinks, start)?;
-                kept = Instant::now();
+                keep_at = Instant::now() + keep_every;
             }
             if stopped {
                 return Ok(Status::Stopped);
@@ -227,16 +222,52 @@ struct Meter {
 }
 
 impl Meter {
-    fn progress(&self, model: &dyn Model, until: f64) -> Progress {
+    fn progress(&self, passed: Passed, until: f64) -> Progress {
+        let Passed { time, particles, particle_steps } = passed;
         let wall = self.start.elapsed().as_secs_f64();
-        let done = model.time() - self.time;
+        let done = time - self.time;
         Progress {
-            time: model.time(),
+            time,
             until,
-            particles: model.particles(),
-            particle_steps_per_s: (model.particle_steps() - self.particle_steps) as f64 / wall,
+            particles,
+            particle_steps_per_s: (particle_steps - self.particle_steps) as f64 / wall,
             counted: self.counted,
-            left_s: (done > 0.0).then(|| wall * (until - model.time()) / done),
+            left_s: (done > 0.0).then(|| wall * (until - time) / done),
         }
+    }
+}
+
+/// Goes along with the model from one frame or picture to the next.
+struct Along<'a, 'sink> {
+    sinks: &'a mut [&'sink mut dyn Sink],
+    gauges: Schedule,
+    pauses: Schedule,
+    until: f64,
+    meter: &'a Meter,
+    on_progress: &'a mut dyn FnMut(&Progress),
+    /// When the state is to be kept next.
+    keep_at: Instant,
+    /// What a sink failed with.
+    failed: Option<Error>,
+}
+
+impl Companion for Along<'_, '_> {
+    fn gauges_after(&self, time: f64) -> Option<f64> {
+        self.gauges.after(time)
+    }
+
+    fn pause_after(&self, time: f64) -> Option<f64> {
+        self.pauses.after(time)
+    }
+
+    fn gauges(&mut self, time: f64, row: &[f64]) {
+        if self.failed.is_none() {
+            self.failed = self.sinks.iter_mut().try_for_each(|sink| sink.gauges(time, row)).err();
+        }
+    }
+
+    fn passed(&mut self, passed: Passed) -> bool {
+        (self.on_progress)(&self.meter.progress(passed, self.until));
+        self.failed.is_none() && Instant::now() < self.keep_at
     }
 }

@@ -4,14 +4,14 @@ use crate::Error;
 use corpuscle_model::Model;
 use corpuscle_record::{Clock, Summary};
 
-/// Takes what a run shows: a folder, a window, a test. Each call looks at the model at the time it shows now and takes
+/// Takes what a run shows: a folder, a window, a test. Each call but that for gauges looks at the model at the time it shows now and takes
 /// from it what it needs; an error ends the run.
 pub trait Sink {
-    /// A row of gauges is due.
+    /// A row of gauges is due: what [`Model::gauge_columns`] name, at a time, s.
     ///
     /// # Errors
     /// Where it cannot be taken.
-    fn gauges(&mut self, _model: &dyn Model) -> Result<(), Error> {
+    fn gauges(&mut self, _time: f64, _row: &[f64]) -> Result<(), Error> {
         Ok(())
     }
 

@@ -132,8 +132,8 @@ struct Notes {
 }
 
 impl Sink for Notes {
-    fn gauges(&mut self, model: &dyn Model) -> Result<(), Error> {
-        self.gauges.push(model.time());
+    fn gauges(&mut self, time: f64, _row: &[f64]) -> Result<(), Error> {
+        self.gauges.push(time);
         Ok(())
     }
     fn frame(&mut self, model: &dyn Model) -> Result<(), Error> {

@@ -6,6 +6,19 @@ use crate::drops::Drops;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
 use std::f64::consts::SQRT_2;
 
+/// What gauges tell of the air as a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Totals {
+    /// Parcels inside.
+    pub count: f64,
+    /// Sums over them: temperatures, K, vapour and fog, parts of the mass.
+    pub temperature: f64,
+    pub vapour: f64,
+    pub fog: f64,
+    /// The largest speed, m/s.
+    pub fastest: f64,
+}
+
 impl Dew {
     pub(crate) fn measured_columns(&self) -> Vec<GaugeColumn> {
         let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };
@@ -57,21 +70,31 @@ impl Dew {
         columns
     }
 
-    pub(crate) fn measured(&self) -> Vec<f64> {
-        let mass = self.particle_mass();
-        let count = self.inside().count() as f64;
+    /// The air as it stands here.
+    pub(crate) fn totals(&self) -> Totals {
         let sum = |of: fn(&Particle) -> f64| self.inside().map(of).sum::<f64>();
-        let speed = self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt();
+        Totals {
+            count: self.inside().count() as f64,
+            temperature: sum(|particle| particle.temperature),
+            vapour: sum(|particle| particle.vapour),
+            fog: sum(|particle| particle.fog),
+            fastest: self.inside().map(Particle::speed_squared).fold(0.0, f64::max).sqrt(),
+        }
+    }
+
+    /// What goes in the columns, of air of which this is told.
+    pub(crate) fn measured(&self, air: &Totals) -> Vec<f64> {
+        let mass = self.particle_mass();
         let particles = self.solids().particles.iter().zip(&self.state.water_on);
         let wet = || particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
         let drops = self.wetting.as_ref().map(|wetting| wetting.drops());
         let mut row = vec![
-            mass * sum(|particle| particle.vapour),
-            mass * sum(|particle| particle.fog),
+            mass * air.vapour,
+            mass * air.fog,
             self.water_on_all(),
-            count,
-            sum(|particle| particle.temperature) / count,
-            speed,
+            air.count,
+            air.temperature / air.count,
+            air.fastest,
             drops.map_or_else(wet, Drops::covered_area),
             self.state.held_heat.iter().map(ExactSum::value).sum(),
         ];

@@ -7,6 +7,8 @@ use crate::wetting::{Wetting, WettingState};
 use corpuscle_model::{
     Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
+#[cfg(feature = "gpu")]
+use corpuscle_model::{Companion, advance_with};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -114,6 +116,15 @@ impl Model for Dew {
         Ok(())
     }
 
+    #[cfg(feature = "gpu")]
+    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+        if self.card.is_some() {
+            self.advance_measured(time, stop, companion)
+        } else {
+            advance_with(self, time, stop, companion)
+        }
+    }
+
     fn frame(&self) -> Frame {
         let air = self.shows.air.then(|| self.air_set());
         let solid = self.shows.solids.then(|| self.solid_set());
@@ -126,7 +137,7 @@ impl Model for Dew {
     }
 
     fn gauge_row(&self) -> Vec<f64> {
-        self.measured()
+        self.measured(&self.totals())
     }
 
     fn charts(&self) -> Vec<Chart> {

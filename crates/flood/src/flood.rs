@@ -2,6 +2,9 @@
 
 mod by_hand;
 mod exchange;
+mod measured;
+#[cfg(feature = "gpu")]
+mod measured_on_card;
 mod model;
 #[cfg(feature = "gpu")]
 mod on_card;

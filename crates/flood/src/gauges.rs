@@ -1,7 +1,27 @@
 //! Points and lines at which the water is measured.
 
-use crate::sampling::Sampler;
+use crate::sampling::Sample;
 use corpuscle_model::GaugeColumn;
+use corpuscle_terrain::Terrain;
+
+/// What gauges show at a time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Reading {
+    /// The water at each place that gauges look at.
+    pub samples: Vec<Sample>,
+    /// Discharges of outflows and links, m3/s.
+    pub flows: Vec<f64>,
+    /// Force on each obstacle and its sum over time, over the density of water: m4/s2 and m4/s.
+    pub on_obstacles: Vec<[f64; 2]>,
+    pub impulses: Vec<[f64; 2]>,
+    /// Water in the model, m3, what came in and went out in all, of that what rained and soaked in, and what stands on the ground as a film.
+    pub stored: f64,
+    pub inflow: f64,
+    pub outflow: f64,
+    pub rained: f64,
+    pub infiltrated: f64,
+    pub film: f64,
+}
 
 /// A point where depth, level and velocity are measured.
 #[derive(Debug, Clone)]
@@ -25,12 +45,11 @@ impl PointGauge {
             .map(|(quantity, unit)| GaugeColumn { gauge: self.name.clone(), quantity, unit })
     }
 
-    /// Depth, level (the ground's where it is dry) and velocity.
-    pub fn row(&self, water: &Sampler) -> [f64; 4] {
+    /// Depth, level (the ground's where it is dry) and velocity, of the water there.
+    pub fn row(&self, terrain: &Terrain, water: Sample) -> [f64; 4] {
         let [x, y] = self.at;
-        let sample = water.at(x, y);
-        let [u, v] = sample.velocity;
-        [sample.depth, water.terrain.height(x, y) + sample.depth, u, v]
+        let [u, v] = water.velocity;
+        [water.depth, terrain.height(x, y) + water.depth, u, v]
     }
 }
 
@@ -54,13 +73,17 @@ impl LineGauge {
         GaugeColumn { gauge: self.name.clone(), quantity: "discharge", unit: "m3_per_s" }
     }
 
-    /// Discharge, m3/s.
-    pub fn discharge(&self, water: &Sampler) -> f64 {
-        let through = |(at, right): &([f64; 2], [f64; 2])| {
-            let sample = water.at(at[0], at[1]);
+    /// The places that it looks at.
+    pub fn places(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.pieces.iter().map(|(at, _)| *at)
+    }
+
+    /// Discharge, m3/s, of the water at these places.
+    pub fn discharge(&self, water: &[Sample]) -> f64 {
+        let through = |(sample, (_, right)): (&Sample, &([f64; 2], [f64; 2]))| {
             sample.depth * (sample.velocity[0] * right[0] + sample.velocity[1] * right[1])
         };
-        self.pieces.iter().map(through).sum()
+        water.iter().zip(&self.pieces).map(through).sum()
     }
 }
 

@@ -37,17 +37,38 @@ pub fn uniform<T: NoUninit>(gpu: &Gpu, label: &'static str, value: &T) -> wgpu::
 /// # Errors
 /// [`GpuError::Lost`].
 pub fn read<T: Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, length: usize) -> Result<Vec<T>, GpuError> {
-    if length == 0 {
-        return Ok(Vec::new());
+    let [elements] = read_together(gpu, [(buffer, length * size_of::<T>())], bytemuck::pod_collect_to_vec)?;
+    Ok(elements)
+}
+
+/// Reads the first bytes of several buffers back, as many as told of each, and waits for the device but once.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub fn read_together<T, const COUNT: usize>(
+    gpu: &Gpu,
+    parts: [(&wgpu::Buffer, usize); COUNT],
+    taken_as: fn(&[u8]) -> T,
+) -> Result<[T; COUNT], GpuError> {
+    let lengths = parts.map(|(_, bytes)| bytes.next_multiple_of(4) as u64);
+    let all: u64 = lengths.iter().sum();
+    if all == 0 {
+        return Ok(std::array::from_fn(|_| taken_as(&[])));
     }
-    let bytes = (length * size_of::<T>()) as u64;
-    let copy =
-        self::buffer(gpu, "read back", bytes.next_multiple_of(4), BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+    let copy = self::buffer(gpu, "read back", all, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
-    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, bytes.next_multiple_of(4));
+    let mut starts = [0; COUNT];
+    let mut start = 0;
+    for ((begin, (buffer, _)), length) in starts.iter_mut().zip(parts).zip(lengths) {
+        *begin = start as usize;
+        if length > 0 {
+            encoder.copy_buffer_to_buffer(buffer, 0, &copy, start, length);
+        }
+        start += length;
+    }
     gpu.queue.submit([encoder.finish()]);
     let mapped = map(gpu, &copy)?;
-    Ok(bytemuck::pod_collect_to_vec(&mapped[..bytes as usize]))
+    Ok(std::array::from_fn(|part| taken_as(&mapped[starts[part]..starts[part] + parts[part].1])))
 }
 
 /// What a buffer of usage `MAP_READ` holds. Waits for the device.

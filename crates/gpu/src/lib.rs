@@ -16,7 +16,7 @@ mod shader;
 mod sort;
 mod texture;
 
-pub use buffer::{read, storage, uniform};
+pub use buffer::{read, read_together, storage, uniform};
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;

@@ -3,6 +3,7 @@
 //! A model knows no screen, file or window. Whoever runs it asks for a time and reads what it shows.
 
 mod chart;
+mod companion;
 mod container;
 mod frame;
 mod gauge;
@@ -12,6 +13,7 @@ mod path;
 mod surface;
 
 pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
+pub use companion::{Companion, Passed, advance_with};
 pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
@@ -79,6 +81,15 @@ pub trait Model: Any + Send {
     /// # Errors
     /// [`ModelError::Breakdown`] where the computation cannot go on; the state before it stays readable.
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError>;
+
+    /// Advances as [`Model::advance_to`] does, and has `companion` take the rows of gauges that fall due on the way, the one at `time` among
+    /// them. Returns early too when the companion calls the model back.
+    ///
+    /// # Errors
+    /// Those of [`Model::advance_to`].
+    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+        advance_with(self, time, stop, companion)
+    }
 
     /// The particles at the time shown.
     fn frame(&self) -> Frame;

@@ -239,6 +239,17 @@ impl Account4 {
     }
 }
 
+/// What a group sums up for gauges: see `dew_measure.wgsl`.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardMeasured {
+    pub temperature: f32,
+    pub vapour: f32,
+    pub fog: f32,
+    pub fastest: f32,
+    pub count: u32,
+}
+
 /// It is looked for air of low utility once in so many steps.
 pub(super) const TURN: u32 = crate::utility::STEPS as u32;
 

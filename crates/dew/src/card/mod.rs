@@ -8,6 +8,7 @@
 
 mod field;
 mod layout;
+mod measure;
 mod numbers;
 mod origin;
 mod solids;
@@ -207,17 +208,23 @@ impl Card {
             return Ok(());
         }
         let air: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, self.status.particles as usize)?;
+        self.fetch_solids(state)?;
+        state.air.clear();
+        state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
+        self.ahead = false;
+        Ok(())
+    }
+
+    /// Brings back what changes of the solids.
+    fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
         let solids: Vec<CardSolid> = read(&self.gpu, &self.tasks.solids, self.water_told.len())?;
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
         self.fetch_water(&mut state.water_on)?;
-        state.air.clear();
-        state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
         let temperature = |solid: &CardSolid| layout::value(solid.temperature) + self.origin.temperature;
         state.temperatures.clear();
         state.temperatures.extend(solids.iter().map(temperature));
         state.heat_flow.clear();
         state.heat_flow.extend(bodies.iter().map(|body| f64::from(body.flow)));
-        self.ahead = false;
         Ok(())
     }
 

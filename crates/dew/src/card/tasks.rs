@@ -1,8 +1,8 @@
 //! The passes of a step, each with what it works on.
 
 use super::layout::{
-    Before, BeforeColumn, CardBody, CardFan, CardParticle, CardRow, CardSolid, CardWater, Column, MOST_FANS,
-    OutsideColumn, Parameters, Partial, Status, Surface,
+    Before, BeforeColumn, CardBody, CardFan, CardMeasured, CardParticle, CardRow, CardSolid, CardWater, Column,
+    MOST_FANS, OutsideColumn, Parameters, Partial, Status, Surface,
 };
 use super::solids::{CardSolids, filled};
 use corpuscle_gpu::{
@@ -25,6 +25,9 @@ const LIBRARY: &[(&str, &str)] = &[
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
 const SOLIDS: u64 = 4;
 const BODIES: u64 = 5;
+
+/// Groups that share the parcels when they are summed up for gauges: see `dew_measure.wgsl`.
+pub(super) const MEASURING_GROUPS: u32 = 64;
 
 /// Everything on the device.
 #[derive(Debug)]
@@ -52,6 +55,9 @@ pub(super) struct Tasks {
     forces: Task,
     take_up: Option<[Task; 2]>,
     finish: Task,
+    /// What gauges tell of the air.
+    pub measure: Task,
+    pub measured: wgpu::Buffer,
 }
 
 impl Tasks {
@@ -88,6 +94,7 @@ impl Tasks {
         let waters = storage::<CardWater>(gpu, "water on solids", solids.count)?;
         let surfaces = storage::<Surface>(gpu, "surfaces", solids.count)?;
         let bodies = filled::<CardBody>(gpu, "solids", &solids.bodies)?;
+        let measured = storage::<CardMeasured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
         let of_air = [&particles, &ordered, &keys, &spots, &columns, &partials, &before, &sort.places, &sort.order];
         let of_cells = [&sort.counts, &sort.start, site_start];
@@ -136,6 +143,8 @@ impl Tasks {
                 ]
             }),
             finish: shader!("dew_finish", [all, status, partials, groups, bodies, *own]),
+            measure: shader!("dew_measure", [None, status, particles, measured]),
+            measured,
             status,
             particles,
             solids: states,

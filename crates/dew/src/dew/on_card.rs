@@ -1,5 +1,7 @@
 //! Humid air whose steps the graphics card takes.
 
+mod measured;
+
 use super::{Dew, State};
 use crate::card::{Card, Crossed, MOST_FANS, Progress};
 use crate::faces::deepest_outside;
@@ -115,8 +117,16 @@ impl Dew {
             self.shown = time;
             return Ok(());
         }
+        self.advance_and_fetch(|dew| dew.go_on_card(time, stop))
+    }
+
+    /// Brings the state back after steps that may break down. Where the card fails, it is that of before.
+    fn advance_and_fetch(
+        &mut self,
+        advance: impl FnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
+    ) -> Result<(), ModelError> {
         let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
-        let broken = self.go_on_card(time, stop).and_then(|broken| self.fetch_from_card().map(|()| broken));
+        let broken = advance(self).and_then(|broken| self.fetch_from_card().map(|()| broken));
         match broken {
             Ok(None) => Ok(()),
             Ok(Some(broken)) => Err(broken),
@@ -127,7 +137,6 @@ impl Dew {
         }
     }
 
-    /// What is here changes only when all of it has come back.
     fn go_back_to(&mut self, (shown, state, drops): (f64, State, Option<WettingState>)) {
         (self.shown, self.state) = (shown, state);
         if let (Some(wetting), Some(drops)) = (&mut self.wetting, drops) {

@@ -3,6 +3,7 @@
 use super::layout::{self, CardBirth, Grid, Status};
 use super::tasks::Tasks;
 use super::{Card, Shown};
+use crate::gauges::Reading;
 use crate::rain::Ground;
 use corpuscle_gpu::{DeviceParticles, GpuError, Pass, read, wgpu};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,6 +28,19 @@ pub(crate) struct Birth {
     pub time: f64,
     pub source: usize,
     pub velocity: [f64; 2],
+}
+
+/// The time that steps are to go through, from the time `now`, s; all others count from there, s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Span<'a> {
+    pub now: f64,
+    pub until: f64,
+    /// The first step that ends then or after is the last.
+    pub look: f64,
+    /// The particles that come from sources, the earliest first.
+    pub births: &'a [Birth],
+    /// When rows of gauges are due: [`MOST_ROWS`](super::MOST_ROWS) at most.
+    pub due: &'a [f64],
 }
 
 /// Who looks at the particles after each step, on the device.
@@ -114,17 +128,15 @@ impl Card {
             && particles + self.status.falling as usize + halves + births(horizon) > self.room
     }
 
-    /// Takes some steps from the time `now` s, up to `until` s from there or to the first after `look` s, while `births` come, the earliest
-    /// first. It rains on `ground`. Nothing comes back between two steps, whoever watches.
+    /// Takes some steps, through all of a span at most. It rains on `ground`. Nothing comes back between two steps, whoever watches. Gives what
+    /// was done, and of the rows of gauges that are due those that were passed.
     pub fn advance(
         &mut self,
-        now: f64,
-        until: f64,
-        look: f64,
-        births: &[Birth],
+        span: Span<'_>,
         ground: Option<&Ground>,
         watch: &mut Option<Watch<'_>>,
-    ) -> Result<Progress, GpuError> {
+    ) -> Result<(Progress, Vec<Reading>), GpuError> {
+        let Span { now, until, look, births, due } = span;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             let [sum, lacking] = self.status.clock;
@@ -169,13 +181,15 @@ impl Card {
             momentum_gained: [0.0; 2],
             ..self.status
         };
+        self.tell_due(due);
         let began = Instant::now();
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
         match watch {
             None => self.order(|tasks, pass| tasks.steps(pass, count)),
             Some(watch) => self.order_watched(count, now, watch)?,
         }
-        self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
+        let (status, readings) = self.learn(due.len())?;
+        self.status = status;
         let took = began.elapsed().as_secs_f64();
         self.busy += took;
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
@@ -185,7 +199,7 @@ impl Card {
         }
         self.steps += u64::from(self.status.steps);
         self.ahead |= self.status.steps > 0;
-        Ok(self.progress())
+        Ok((self.progress(), readings))
     }
 
     /// Has the device do something.

@@ -8,6 +8,9 @@ use corpuscle_gpu::{Gpu, GpuError, read, storage, wgpu};
 /// Bytes before the drops.
 const HEADER: usize = 8;
 
+/// Bytes where there can be none: a binding has room for one drop.
+pub(super) const NO_AIR: usize = HEADER + size_of::<CardDrop>();
+
 /// Water in the air on the device.
 #[derive(Debug)]
 pub(super) struct Air {

@@ -180,7 +180,7 @@ struct Status {
     steps_before: u32,
     // Particles in the air.
     falling: u32,
-    spare: u32,
+    unused: u32,
     // Levels of sides held at one, above the level that heights are counted from, m: at the beginning of the step and at its end.
     stages: vec4f,
     next_stages: vec4f,
@@ -188,9 +188,15 @@ struct Status {
     rained: Account,
     infiltrated: Account,
     wetted: f32,
-    unused: f32,
+    unused_too: f32,
     // Time since the cells were last laid out, s: that of all tables, as how often the host speaks must not matter.
     clock: Account,
+    // Rows of gauges: how many times the host has told of, how many of them were taken before this step, how many are due in it, and how
+    // many places each looks at.
+    rows_told: u32,
+    rows_taken: u32,
+    rows_due: u32,
+    gauge_places: u32,
 }
 
 const GOING = 0u;

@@ -1,16 +1,20 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for.
 #import flood_card
 #import flood_accounts
+#import flood_rows
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> partials: array<Partial>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group; and where
 // it rains or soaks in, a thread for each particle, a thread for each cell of the ground, one group; a thread for each particle in the air;
-// and where particles are split and merged, a thread for each particle.
+// where particles are split and merged, a thread for each particle; and where a row of gauges is due, a thread for each particle, cell of
+// the ground and drop, a group for each row, a thread for each place and row.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
 // Zones, structures and tables: see `works.rs`.
 @group(0) @binding(4) var<storage, read> works: array<u32>;
+// Times since the host last spoke at which rows of gauges are due, s.
+@group(0) @binding(5) var<storage, read> due: array<f32>;
 
 const FAR = 3.0e38;
 
@@ -20,7 +24,10 @@ const RAINS = 8u;
 // Particles are split and merged once in so many steps, as in `flood/step.rs`.
 const REFINED = 8u;
 
-const SLOTS = 9u;
+const SLOTS = 12u;
+
+// The first of those for gauges.
+const GAUGES = 9u;
 
 // Where `works` says where the levels of the sides are.
 const LEVELS = 12u;
@@ -128,10 +135,37 @@ fn decide() {
         select(0u, (parameters.in_air + 255u) / 256u, status.falling > 0u),
         select(0u, (status.particles + 255u) / 256u, is_refining),
     );
-    for (var slot = 0u; slot < SLOTS; slot++) {
-        groups[3u * slot] = select(0u, counts[slot], is_going);
-        groups[3u * slot + 1u] = 1u;
-        groups[3u * slot + 2u] = 1u;
+    for (var slot = 0u; slot < GAUGES; slot++) {
+        order(slot, select(0u, counts[slot], is_going), 1u);
+    }
+    take_gauges();
+}
+
+fn order(slot: u32, along: u32, rows: u32) {
+    groups[3u * slot] = along;
+    groups[3u * slot + 1u] = rows;
+    groups[3u * slot + 2u] = 1u;
+}
+
+// Finds which rows of gauges show the water as it stands now, and has them taken: those due before the next step would end.
+fn take_gauges() {
+    status.rows_taken += status.rows_due;
+    var rows = 0u;
+    if status.halted != BROKEN {
+        for (var k = status.rows_taken; k < status.rows_told && due[k] < status.elapsed.sum + status.step; k++) {
+            rows += 1u;
+        }
+    }
+    status.rows_due = rows;
+    order(GAUGES, select(0u, groups_of_water(parameters, status.particles), rows > 0u), 1u);
+    order(GAUGES + 1u, select(0u, 1u, rows > 0u), rows);
+    order(GAUGES + 2u, select(0u, (status.gauge_places + 63u) / 64u, rows > 0u), rows);
+}
+
+// Nothing is due any more.
+fn rest() {
+    for (var slot = GAUGES; slot < SLOTS; slot++) {
+        order(slot, 0u, 0u);
     }
 }
 
@@ -159,6 +193,8 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         }
         if status.halted == GOING || status.halted == SPOKEN {
             decide();
+        } else {
+            rest();
         }
     }
 }

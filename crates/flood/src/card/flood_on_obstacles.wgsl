@@ -1,17 +1,7 @@
 // Sums the force on each obstacle, one group of threads for each, and over time. Twin of `push_obstacles` in `flood/step.rs`.
 #import flood_neighbours
 #import flood_accounts
-
-struct OnObstacle {
-    // Corners of the rectangle in which particles may touch it, m.
-    low: vec2f,
-    high: vec2f,
-    // Force now, over the density of water, m4/s2; its sum over time, m4/s, with what that lacks.
-    force: vec2f,
-    impulse_east: Account,
-    impulse_north: Account,
-    unused: vec2f,
-}
+#import flood_done
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;

@@ -67,15 +67,53 @@ fn covered_by_obstacles(place: vec2f, cells: vec4u) -> f32 {
     return min(part, MOST_COVERED);
 }
 
-// Depth, m, and velocity, m/s, at a place; nothing where it is dry. A Shepard mean over the particles, of the surface's height where the
-// surface is the smoother field, and of the depth where that is.
+fn weight_at(particle: Particle, way: vec2f) -> f32 {
+    return particle.volume / particle.depth * spline(length(way), 1.0 / (parameters.smoothing * particle.h));
+}
+
+// How far particles near a place reach; 0 where none is.
+fn reach_at(place: vec2f) -> f32 {
+    let is_empty = start[parameters.grid.columns * parameters.grid.rows] == 0u;
+    return select(reaches[cell_at(parameters.grid, place)], 0.0, is_empty);
+}
+
+// Where the water that is at a place `since` s after the step was at its end.
+fn origin(place: vec2f, since: f32) -> vec2f {
+    if since == 0.0 {
+        return place;
+    }
+    var total = 0.0;
+    var sum = vec2f(0.0);
+    let cells = cells_round(parameters.grid, place, reach_at(place));
+    for (var row = cells.y; row <= cells.w; row++) {
+        let line = row * parameters.grid.columns;
+        for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
+            let weight = spline(distance(place, particles[j].place), 1.0 / particles[j].h);
+            total += weight;
+            sum += weight * particles[j].velocity;
+        }
+    }
+    return place - since / max(total, 1e-30) * sum;
+}
+
+// Depth, m, and velocity, m/s, at a place; nothing where it is dry.
 fn water_at(place: vec2f) -> vec3f {
-    let reach = reaches[cell_at(parameters.grid, place)];
-    if reach <= 0.0 || start[parameters.grid.columns * parameters.grid.rows] == 0u {
+    return water_later(place, 0.0);
+}
+
+// The same `since` s after the step. A Shepard mean over the particles, of the surface's height where the surface is the smoother field, and of
+// the depth where that is.
+fn water_later(place: vec2f, since: f32) -> vec3f {
+    if reach_at(place) <= 0.0 {
+        return vec3f(0.0);
+    }
+    let before = origin(place, since);
+    let reach = reach_at(before);
+    if reach <= 0.0 {
         return vec3f(0.0);
     }
     let look = 1.1 * reach;
-    let cells = cells_round(parameters.grid, place, look);
+    let cells = cells_round(parameters.grid, before, look);
     var total = 0.0;
     // Surface, depth and velocity.
     var sums = vec4f(0.0);
@@ -83,8 +121,9 @@ fn water_at(place: vec2f) -> vec3f {
         let line = row * parameters.grid.columns;
         for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
             let particle = particles[j];
+            // The surface keeps its place, as over a slope, while its water moves on.
             let way = place - particle.place;
-            let weight = particle.volume / particle.depth * spline(length(way), 1.0 / (parameters.smoothing * particle.h));
+            let weight = weight_at(particle, way - since * particle.velocity);
             total += weight;
             let surface = particle.ground + particle.depth + dot(particle.surface_slope, way);
             sums += weight * vec4f(surface, particle.depth, particle.velocity);
@@ -92,7 +131,8 @@ fn water_at(place: vec2f) -> vec3f {
     }
     var covered = total;
     if total > 0.0 && total < COVERED {
-        covered += covered_by_images(place, look) + covered_by_obstacles(place, cells);
+        let here = 1.1 * reach_at(place);
+        covered += covered_by_images(place, here) + covered_by_obstacles(place, cells_round(parameters.grid, place, here));
     }
     if covered < COVERED {
         return vec3f(0.0);
@@ -106,7 +146,7 @@ fn water_at(place: vec2f) -> vec3f {
         for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
             let particle = particles[j];
             let way = place - particle.place;
-            let weight = particle.volume / particle.depth * spline(length(way), 1.0 / (parameters.smoothing * particle.h));
+            let weight = weight_at(particle, way - since * particle.velocity);
             if weight > 0.0 {
                 let surface = particle.ground + particle.depth + dot(particle.surface_slope, way);
                 surface_spread += weight * (surface - sums.x) * (surface - sums.x);

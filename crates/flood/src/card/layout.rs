@@ -123,14 +123,20 @@ pub(super) struct Status {
     pub next_id: u32,
     pub steps_before: u32,
     pub falling: u32,
-    pub spare: u32,
+    pub unused: u32,
     pub stages: [f32; 4],
     pub next_stages: [f32; 4],
     pub rained: [f32; 2],
     pub infiltrated: [f32; 2],
     pub wetted: f32,
-    pub unused: f32,
+    pub unused_too: f32,
     pub clock: [f32; 2],
+    /// Rows of gauges: how many times the host has told of, how many of them were taken before this step, how many are due in it, and
+    /// how many places each looks at.
+    pub rows_told: u32,
+    pub rows_taken: u32,
+    pub rows_due: u32,
+    pub gauge_places: u32,
 }
 
 /// Values of [`Status::halted`]: broken down; and the host has said until when to go on.

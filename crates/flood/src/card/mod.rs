@@ -4,6 +4,7 @@
 
 mod advance;
 mod air;
+mod gauges;
 mod ground;
 mod layout;
 mod rates;
@@ -17,7 +18,8 @@ mod walls;
 mod weather;
 mod works;
 
-pub(crate) use advance::{Birth, Progress, Watch};
+pub(crate) use advance::{Birth, Progress, Span, Watch};
+pub(crate) use gauges::MOST_ROWS;
 pub(crate) use seen::Shown;
 pub(crate) use setting::Setting;
 pub(crate) use state::Water;
@@ -180,6 +182,11 @@ impl Card {
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
         self.tasks.bytes
+    }
+
+    /// Particles that there are, those in the air among them.
+    pub fn particles(&self) -> usize {
+        (self.status.particles + self.status.falling) as usize
     }
 
     /// Particles that there is room for.

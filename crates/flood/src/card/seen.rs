@@ -1,14 +1,11 @@
 //! Particles as they are seen, for whoever draws them on the same device.
 
 use super::Card;
-use super::layout::CardDrop;
+use super::air::NO_AIR;
 use super::tasks::LIBRARY;
 use corpuscle_gpu::{
     DEVICE_PARTICLES, DeviceParticles, Gpu, GpuError, Kernel, Pass, THREADS, Task, storage, uniform, wgpu,
 };
-
-/// Bytes of water in the air where there can be none: a binding has room for one drop.
-const NO_AIR: usize = 8 + size_of::<CardDrop>();
 
 /// How particles are seen.
 #[derive(Debug, Clone, Copy)]

@@ -110,15 +110,21 @@ impl Card {
         weather.fetch(&self.gpu, wetness)
     }
 
+    /// The sum over time of the force on an obstacle along an axis, of which the card has counted `sum` and `knocks` since the water was handed
+    /// over, m4/s.
+    pub(super) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
+        let knock = layout::KNOCK * f64::from(self.parameters.new_volume);
+        self.done_before.impulses[number][axis] + sum + knock * f64::from(knocks)
+    }
+
     /// What was done to obstacles.
     pub fn on_obstacles(&self) -> Result<DoneToObstacles, GpuError> {
         let count = self.walls.count;
         let pushed: Vec<OnObstacle> = read(&self.gpu, &self.walls.on_obstacles, count)?;
         let knocks: Vec<i32> = read(&self.gpu, &self.walls.knocks, 2 * count + 1)?;
-        let knock = layout::KNOCK * f64::from(self.parameters.new_volume);
         let impulse = |number: usize, axis: usize| {
             let [sum, lacking] = pushed[number].impulse[axis].map(f64::from);
-            self.done_before.impulses[number][axis] + sum - lacking + knock * f64::from(knocks[2 * number + axis])
+            self.impulse(number, axis, sum - lacking, knocks[2 * number + axis])
         };
         let impulses = (0..count).map(|number| [0, 1].map(|axis| impulse(number, axis))).collect();
         let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();

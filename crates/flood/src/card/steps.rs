@@ -19,9 +19,17 @@ const REFINED: u64 = 8;
 impl Tasks {
     /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
     pub fn steps(&self, pass: &mut Pass<'_>, count: u32) {
-        self.finish.run(pass, 1);
+        self.end_step(pass);
         for _ in 0..count {
             self.step(pass);
+        }
+    }
+
+    /// Decides whether to go on, and reads the gauges where a row is due.
+    fn end_step(&self, pass: &mut Pass<'_>) {
+        self.finish.run(pass, 1);
+        if let Some(gauges) = &self.gauges {
+            gauges.take(pass, &self.groups);
         }
     }
 
@@ -71,7 +79,7 @@ impl Tasks {
             on_obstacles.run(pass, self.obstacles);
         }
         self.forces.run_as_told(pass, groups, SLOTS.particles);
-        self.finish.run(pass, 1);
+        self.end_step(pass);
     }
 
     /// Moves the particles, and what comes in and goes out while they do.

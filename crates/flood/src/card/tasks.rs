@@ -1,6 +1,7 @@
 //! The passes of a step, each with what it works on.
 
 use super::air::Air;
+use super::gauges::{Gauges, MOST_ROWS};
 use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Plan, Slopes, Status};
 use super::resource::Resource;
 use super::walls::Walls;
@@ -31,6 +32,8 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_leaving", include_str!("flood_leaving.wgsl")),
     SUMS_BEFORE,
     ("flood_refinement", include_str!("flood_refinement.wgsl")),
+    ("flood_done", include_str!("flood_done.wgsl")),
+    ("flood_rows", include_str!("flood_rows.wgsl")),
 ];
 
 /// Everything on the device.
@@ -45,6 +48,9 @@ pub(super) struct Tasks {
     pub sorted: wgpu::Buffer,
     pub groups: wgpu::Buffer,
     pub sort: CellSort,
+    /// Times at which rows of gauges are due, and reaches with lists of neighbours.
+    pub due: wgpu::Buffer,
+    pub near: wgpu::Buffer,
     /// Water beyond sides held at levels, and structures, where there are any.
     pub carry: Option<Task>,
     pub regulate: Option<Task>,
@@ -74,6 +80,8 @@ pub(super) struct Tasks {
     pub obstacles: u32,
     pub forces: Task,
     pub finish: Task,
+    /// Where gauges are asked for.
+    pub gauges: Option<Gauges>,
 }
 
 impl Tasks {
@@ -94,7 +102,8 @@ impl Tasks {
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
-        let groups = storage::<[u32; 3]>(gpu, "groups", 9)?;
+        let groups = storage::<[u32; 3]>(gpu, "groups", 12)?;
+        let due = storage::<f32>(gpu, "times of gauges", MOST_ROWS)?;
         let particles = storage::<CardParticle>(gpu, "particles", count)?;
         let sorted = storage::<CardParticle>(gpu, "particles in order", count)?;
         let keys = storage::<u32>(gpu, "numbers of particles", count)?;
@@ -265,7 +274,8 @@ impl Tasks {
                     ]
                 )
             },
-            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer]),
+            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer, due]),
+            gauges: None,
             parameters,
             status,
             particles,
@@ -274,6 +284,8 @@ impl Tasks {
             sorted,
             groups,
             sort,
+            due,
+            near,
         })
     }
 }

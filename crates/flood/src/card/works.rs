@@ -79,6 +79,11 @@ impl Works {
         Ok(Self { buffer, sources, rain, has_structures, holds_level, windows, flows })
     }
 
+    /// Outflows and links.
+    pub fn flow_count(&self) -> usize {
+        self.flows
+    }
+
     /// Says what outflows and links owe.
     pub fn begin(&self, gpu: &Gpu, flows: &Flows) {
         let rows: Vec<[f32; FLOW]> = (flows.outflows.iter().chain(&flows.links))

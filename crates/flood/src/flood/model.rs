@@ -1,23 +1,14 @@
 //! What a flood shows of itself.
 
 use super::by_hand::Hand;
+#[cfg(feature = "gpu")]
+use super::measured_on_card::Onlookers;
 use super::{DENSITY, Flood, State};
-use crate::gauges::{LineGauge, PointGauge};
 use crate::particle::Particle;
-use crate::rain::Wetness;
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+#[cfg(feature = "gpu")]
+use corpuscle_model::{Companion, advance_with};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Columns of an obstacle: the force on it, and its sum over time.
-fn obstacle_columns(name: &str) -> [GaugeColumn; 4] {
-    let column = |quantity, unit| GaugeColumn { gauge: name.into(), quantity, unit };
-    [
-        column("force_east", "N"),
-        column("force_north", "N"),
-        column("impulse_east", "N_s"),
-        column("impulse_north", "N_s"),
-    ]
-}
 
 impl Model for Flood {
     fn name(&self) -> &'static str {
@@ -48,7 +39,7 @@ impl Model for Flood {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.card.is_some() {
-            return self.advance_on_card(time, stop, &mut None);
+            return self.advance_on_card(time, stop, &mut Onlookers::default());
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -59,6 +50,15 @@ impl Model for Flood {
         }
         self.shown = time;
         Ok(())
+    }
+
+    #[cfg(feature = "gpu")]
+    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+        if self.card.is_some() {
+            self.advance_measured(time, stop, companion)
+        } else {
+            advance_with(self, time, stop, companion)
+        }
     }
 
     fn frame(&self) -> Frame {
@@ -102,32 +102,11 @@ impl Model for Flood {
     }
 
     fn gauge_columns(&self) -> Vec<GaugeColumn> {
-        let total = |quantity| GaugeColumn { gauge: "water".into(), quantity, unit: "m3" };
-        let points = self.points.iter().flat_map(PointGauge::columns);
-        let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
-        let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
-        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
-        points
-            .chain(lines)
-            .chain(["stored", "total_inflow", "total_outflow"].map(total))
-            .chain(weather)
-            .chain(self.placed_columns())
-            .collect()
+        self.measured_columns()
     }
 
     fn gauge_row(&self) -> Vec<f64> {
-        let water = self.sampler(self.since());
-        let points = self.points.iter().flat_map(|point| point.row(&water));
-        let lines = self.lines.iter().map(|line| line.discharge(&water)).chain(self.state.flows.row());
-        let of_obstacles = self.state.on_obstacles.iter().zip(&self.state.impulses);
-        let lines =
-            lines.chain(of_obstacles.flat_map(|(force, sum)| [*force, *sum]).flatten().map(|push| DENSITY * push));
-        let account = self.water();
-        let totals = [self.stored(), account.inflow.value(), account.outflow.value()];
-        let Wetness { rained, infiltrated, .. } = &self.state.wetness;
-        let film = self.state.wetness.on_the_ground();
-        let weather = self.ground.iter().flat_map(|_| [rained.value(), infiltrated.value(), film]);
-        points.chain(lines).chain(totals).chain(weather).chain(self.placed_row()).collect()
+        self.row(&self.reading())
     }
 
     fn maps(&self) -> Vec<Map> {

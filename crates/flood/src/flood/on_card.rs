@@ -1,10 +1,11 @@
 //! A flood whose steps the graphics card takes.
 
+use super::measured_on_card::Onlookers;
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, Progress, Setting, Watch, Water};
+use crate::card::{Birth, Card, MOST_BIRTHS, MOST_ROWS, Progress, Setting, Span, Water};
 use crate::inflow::Source;
 use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
-use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_model::{ExactSum, ModelError, Passed};
 use corpuscle_scene::Scheme as SchemeName;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -151,17 +152,22 @@ impl Flood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        watch: &mut Option<Watch<'_>>,
+        onlookers: &mut Onlookers<'_>,
     ) -> Result<(), ModelError> {
+        onlookers.told = self.shown;
         while self.state.time + self.state.time_step <= time {
-            if stop.load(Ordering::Relaxed) {
-                self.shown = self.shown.max(self.state.time);
+            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+                // Who has seen a row of gauges is not to see it again.
+                self.shown = onlookers.told.max(self.state.time);
                 return Ok(());
             }
             let look = self.state.next_look as f64 * self.map_period;
-            let steps = self.state.steps;
+            let before = (self.state.steps, onlookers.told);
             self.make_room().map_err(|error| failed(&error))?;
-            let done = self.advance_to_look(time, look, stop, watch).map_err(|error| failed(&error))?;
+            if onlookers.companion.is_some() {
+                self.measure_on_card()?;
+            }
+            let done = self.advance_to_look(time, look, stop, onlookers).map_err(|error| failed(&error))?;
             if done.broken {
                 return self.check(done.step);
             }
@@ -169,7 +175,7 @@ impl Flood {
                 self.look();
             }
             // To the card, which rounds more coarsely, a step that ends at that time may end after it.
-            if self.state.steps == steps {
+            if (self.state.steps, onlookers.told) == before {
                 break;
             }
         }
@@ -183,7 +189,7 @@ impl Flood {
         time: f64,
         look: f64,
         stop: &AtomicBool,
-        watch: &mut Option<Watch<'_>>,
+        onlookers: &mut Onlookers<'_>,
     ) -> Result<Progress, GpuError> {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
@@ -191,18 +197,29 @@ impl Flood {
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
+            let due = onlookers.due(time);
+            let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
+            let from_now: Vec<f64> = due.iter().map(|due| due - now).collect();
             let Some(card) = &mut self.card else { break };
-            let progress = card.advance(now, time - now, look - now, &births, self.ground.as_ref(), watch)?;
+            let span = Span { now, until: until - now, look: look - now, births: &births, due: &from_now };
+            let (progress, readings) = card.advance(span, self.ground.as_ref(), &mut onlookers.watch)?;
+            let particles = card.particles();
+            for (due, reading) in due.iter().zip(&readings) {
+                onlookers.tell(*due, &self.row_of_card(reading, &done));
+            }
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
             births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
             done = done.and(progress);
+            let particle_steps = self.state.particle_steps + done.particle_steps;
+            onlookers.pass(Passed { time: began + done.elapsed, particles, particle_steps });
             let lacks_room = |card: &Card| card.lacks_room(|horizon| self.most_births(&owed, now, horizon));
-            if progress.steps == 0
+            if progress.steps == 0 && readings.is_empty()
                 || done.broken
                 || self.card.as_ref().is_some_and(lacks_room)
                 || stop.load(Ordering::Relaxed)
+                || onlookers.call_back
             {
                 break;
             }
@@ -328,7 +345,8 @@ water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
         card.restore(&host.save()).unwrap();
         card.open_card_with(gpu, count + 3).unwrap();
         let on_card = card.card.as_mut().unwrap();
-        assert_eq!(on_card.advance(0.0, 10.0, 1e-6, &[], None, &mut None).unwrap().steps, 1);
+        let span = Span { now: 0.0, until: 10.0, look: 1e-6, births: &[], due: &[] };
+        assert_eq!(on_card.advance(span, None, &mut None).unwrap().0.steps, 1);
         on_card.fetch(&mut card.state.particles, &card.surroundings.terrain).unwrap();
         host.step().unwrap();
         assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());

@@ -1,6 +1,7 @@
 //! A flood drawn where it lies: its particles as buffers of the card that takes the steps.
 
 use super::Flood;
+use super::measured_on_card::Onlookers;
 use super::on_card::failed;
 use crate::card::{Card, Shown, Watch};
 use corpuscle_gpu::{DeviceParticles, Gpu};
@@ -46,7 +47,8 @@ impl Flood {
             latest = latest.max(time);
             show(latest, particles);
         };
-        self.advance_on_card(time, stop, &mut Some(Watch { shown, show: &mut show, stop }))
+        let watch = Some(Watch { shown, show: &mut show, stop });
+        self.advance_on_card(time, stop, &mut Onlookers { watch, ..Onlookers::default() })
     }
 
     fn particles_shown(&self, since: f64) -> Shown {

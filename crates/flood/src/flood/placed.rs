@@ -4,7 +4,7 @@ use super::Flood;
 use crate::gauges::PointGauge;
 use crate::limits::span;
 use crate::setup::setup;
-use corpuscle_model::{GaugeColumn, ModelError};
+use corpuscle_model::ModelError;
 
 impl Flood {
     /// Places a gauge at a point in model coordinates: depth, level and velocity are measured there from now on, in columns after all
@@ -27,18 +27,8 @@ impl Flood {
         Ok(())
     }
 
-    fn placed(&self) -> impl Iterator<Item = PointGauge> {
+    /// The gauges that were placed.
+    pub(super) fn placed(&self) -> impl Iterator<Item = PointGauge> {
         self.state.hand.gauges.iter().map(|(name, at)| PointGauge { name: name.clone(), at: *at })
-    }
-
-    /// Columns of the gauges that were placed.
-    pub(super) fn placed_columns(&self) -> Vec<GaugeColumn> {
-        self.placed().flat_map(|point| point.columns().collect::<Vec<_>>()).collect()
-    }
-
-    /// What they measure.
-    pub(super) fn placed_row(&self) -> Vec<f64> {
-        let water = self.sampler(self.since());
-        self.placed().flat_map(|point| point.row(&water)).collect()
     }
 }

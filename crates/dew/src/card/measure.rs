@@ -1,0 +1,35 @@
+//! What gauges tell, without the air coming back.
+
+use super::layout::CardMeasured;
+use super::tasks::MEASURING_GROUPS;
+use super::{Card, Origin};
+use crate::dew::State;
+use crate::measures::Totals;
+use corpuscle_gpu::{GpuError, Pass, read, wgpu};
+
+impl Card {
+    /// What gauges tell of the air as a whole. What they tell of solids comes into `state`.
+    pub fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("gauges") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        self.tasks.measure.run(&mut pass, MEASURING_GROUPS);
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        let groups: Vec<CardMeasured> = read(&self.gpu, &self.tasks.measured, MEASURING_GROUPS as usize)?;
+        self.fetch_solids(state)?;
+        Ok(totals(&groups, self.origin))
+    }
+}
+
+fn totals(groups: &[CardMeasured], ambient: Origin) -> Totals {
+    let count = groups.iter().map(|group| f64::from(group.count)).sum();
+    let sum = |of: fn(&CardMeasured) -> f32| groups.iter().map(|group| f64::from(of(group))).sum::<f64>();
+    Totals {
+        count,
+        temperature: count * ambient.temperature + sum(|group| group.temperature),
+        vapour: count * ambient.vapour + sum(|group| group.vapour),
+        fog: sum(|group| group.fog),
+        fastest: f64::from(groups.iter().map(|group| group.fastest).fold(0.0, f32::max)).sqrt(),
+    }
+}

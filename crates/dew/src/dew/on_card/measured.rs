@@ -1,0 +1,45 @@
+//! Gauges of humid air whose steps the graphics card takes: the air stays there, and only what they tell comes back.
+
+use super::{Dew, GpuError};
+use corpuscle_model::{Companion, Model, ModelError, Passed};
+use std::sync::atomic::AtomicBool;
+
+impl Dew {
+    /// [`Model::advance_with`] on the card. Where gauges tell how near the air comes to walls, all of it comes back for them.
+    pub(crate) fn advance_measured(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+    ) -> Result<(), ModelError> {
+        self.advance_and_fetch(|dew| {
+            while dew.shown < time {
+                let now = dew.shown;
+                let gauges = companion.gauges_after(now);
+                let next = [gauges, companion.pause_after(now)].into_iter().flatten().fold(time, f64::min);
+                let broken = dew.go_on_card(next, stop)?;
+                if broken.is_some() || dew.shown < next {
+                    return Ok(broken);
+                }
+                if gauges == Some(next) {
+                    companion.gauges(next, &dew.row_of_card()?);
+                }
+                let particles = dew.card.as_ref().map_or(0, |card| card.filling()[0]) + dew.solids().particles.len();
+                if !companion.passed(Passed { time: next, particles, particle_steps: dew.state.particle_steps }) {
+                    break;
+                }
+            }
+            Ok(None)
+        })
+    }
+
+    fn row_of_card(&mut self) -> Result<Vec<f64>, GpuError> {
+        if self.layers.iter().any(Option::is_some) {
+            self.fetch_from_card()?;
+            return Ok(self.gauge_row());
+        }
+        let Some(card) = &self.card else { return Ok(self.gauge_row()) };
+        let totals = card.measure(&mut self.state)?;
+        Ok(self.measured(&totals))
+    }
+}

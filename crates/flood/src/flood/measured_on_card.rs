@@ -1,0 +1,89 @@
+//! Gauges of a flood whose steps the graphics card takes: it reads them itself, and goes on.
+
+use super::Flood;
+use super::on_card::failed;
+use crate::card::{MOST_ROWS, Progress, Watch};
+use crate::gauges::Reading;
+use crate::sampling::Sample;
+use corpuscle_model::{Companion, ModelError, Passed};
+use std::sync::atomic::AtomicBool;
+
+/// Who goes along while the card takes steps.
+#[derive(Default)]
+pub(super) struct Onlookers<'a> {
+    pub watch: Option<Watch<'a>>,
+    pub companion: Option<&'a mut dyn Companion>,
+    /// The time of the last row of gauges that was taken, or from which they are to be, s.
+    pub told: f64,
+    /// Whether the companion wants the water back.
+    pub call_back: bool,
+}
+
+impl Onlookers<'_> {
+    /// The next rows of gauges up to a time, s.
+    pub fn due(&self, until: f64) -> Vec<f64> {
+        let Some(companion) = &self.companion else { return Vec::new() };
+        let times = std::iter::successors(companion.gauges_after(self.told), |time| companion.gauges_after(*time));
+        times.take_while(|time| *time <= until).take(MOST_ROWS).collect()
+    }
+
+    pub fn tell(&mut self, time: f64, row: &[f64]) {
+        self.told = time;
+        if let Some(companion) = &mut self.companion {
+            companion.gauges(time, row);
+        }
+    }
+
+    pub fn pass(&mut self, passed: Passed) {
+        self.call_back = self.companion.as_mut().is_some_and(|companion| !companion.passed(passed));
+    }
+}
+
+impl Flood {
+    /// [`Model::advance_with`](corpuscle_model::Model::advance_with) on the card. For a row of gauges nothing but the row comes back.
+    pub(super) fn advance_measured(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+    ) -> Result<(), ModelError> {
+        let mut onlookers = Onlookers { companion: Some(companion), ..Onlookers::default() };
+        self.advance_on_card(time, stop, &mut onlookers)?;
+        if self.shown < time {
+            return Ok(());
+        }
+        // The next step ends later: these show the water as it stands here.
+        while let Some(&due) = onlookers.due(time).first() {
+            self.shown = due;
+            onlookers.tell(due, &self.row(&self.reading()));
+        }
+        self.shown = time;
+        onlookers.pass(Passed {
+            time,
+            particles: self.state.particles.len(),
+            particle_steps: self.state.particle_steps,
+        });
+        Ok(())
+    }
+
+    /// Has the card look where gauges do.
+    pub(super) fn measure_on_card(&mut self) -> Result<(), ModelError> {
+        let places = self.gauge_places();
+        self.card.as_mut().map_or(Ok(()), |card| card.measure(&places)).map_err(|error| failed(&error))
+    }
+
+    /// What goes in the columns of what the card has read, after `done` since the state that is here.
+    pub(super) fn row_of_card(&self, read: &Reading, done: &Progress) -> Vec<f64> {
+        let held = |[x, y]: [f64; 2]| self.surroundings.obstacles.hold([x, y]);
+        let samples = self.gauge_places().into_iter().zip(&read.samples);
+        let (water, wetness) = (self.water(), &self.state.wetness);
+        self.row(&Reading {
+            samples: samples.map(|(place, sample)| if held(place) { Sample::default() } else { *sample }).collect(),
+            inflow: water.inflow.value() + done.inflow + done.rained + read.inflow,
+            outflow: water.outflow.value() + done.outflow + done.infiltrated + read.outflow,
+            rained: wetness.rained.value() + done.rained + read.rained,
+            infiltrated: wetness.infiltrated.value() + done.infiltrated + read.infiltrated,
+            ..read.clone()
+        })
+    }
+}

@@ -1,0 +1,64 @@
+//! Who goes along while a model advances.
+
+use crate::{Model, ModelError};
+use std::sync::atomic::AtomicBool;
+
+/// How far a model has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passed {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Particles now.
+    pub particles: usize,
+    /// Particles moved so far, summed over the steps (gas: collisions).
+    pub particle_steps: u64,
+}
+
+/// Goes along while a model advances: takes the rows of gauges that fall due on the way, is told how far the model has come, and may call it
+/// back. A model that computes elsewhere (on a graphics card) need not bring its whole state back for that.
+pub trait Companion {
+    /// The first time after `time`, s, at which the gauges are to be read; none where there is none.
+    fn gauges_after(&self, time: f64) -> Option<f64>;
+
+    /// The first time after `time`, s, by which a model should say how far it is; none where it need not. A model that says so
+    /// often anyway may pass over it.
+    fn pause_after(&self, _time: f64) -> Option<f64> {
+        None
+    }
+
+    /// Takes the row of gauges ([`Model::gauge_row`](crate::Model::gauge_row)) of a time, s.
+    fn gauges(&mut self, time: f64, row: &[f64]);
+
+    /// Is told how far the model has come. False calls it back: it returns as soon as its state is sound.
+    fn passed(&mut self, passed: Passed) -> bool;
+}
+
+/// [`Model::advance_with`] of a model that can be looked at wherever it stands: it is advanced from one time that is due to the next.
+///
+/// # Errors
+/// Those of [`Model::advance_to`].
+pub fn advance_with<M: Model + ?Sized>(
+    model: &mut M,
+    time: f64,
+    stop: &AtomicBool,
+    companion: &mut dyn Companion,
+) -> Result<(), ModelError> {
+    while model.time() < time {
+        let now = model.time();
+        let gauges = companion.gauges_after(now);
+        let due = [gauges, companion.pause_after(now)];
+        let next = due.into_iter().flatten().fold(time, f64::min);
+        model.advance_to(next, stop)?;
+        if model.time() < next {
+            break;
+        }
+        if gauges == Some(next) {
+            companion.gauges(next, &model.gauge_row());
+        }
+        let (particles, particle_steps) = (model.particles(), model.particle_steps());
+        if !companion.passed(Passed { time: next, particles, particle_steps }) {
+            break;
+        }
+    }
+    Ok(())
+}
