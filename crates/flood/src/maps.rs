@@ -17,14 +17,19 @@ pub(crate) struct Maps {
     last: f64,
 }
 
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-struct Record {
-    max_depth: f32,
-    max_speed: f32,
+/// What the water did at a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// m.
+    pub max_depth: f32,
+    /// m/s.
+    pub max_speed: f32,
     /// Largest depth x (speed + 0.5), m2/s.
-    hazard: f32,
-    arrival: f32,
-    duration: f32,
+    pub hazard: f32,
+    /// When it was first seen wet, s; not-a-number before.
+    pub arrival: f32,
+    /// For how long it has been seen wet since, s.
+    pub duration: f32,
 }
 
 const DRY: Record = Record { max_depth: 0.0, max_speed: 0.0, hazard: 0.0, arrival: f32::NAN, duration: 0.0 };
@@ -38,6 +43,34 @@ impl Maps {
     /// Whether these are maps of the same ground.
     pub fn fit(&self, other: &Self) -> bool {
         self.columns == other.columns && self.cells.len() == other.cells.len()
+    }
+
+    /// What goes on the card and comes back from there.
+    #[cfg(feature = "gpu")]
+    pub fn record(&self, cell: usize) -> &Record {
+        &self.cells[cell]
+    }
+
+    #[cfg(feature = "gpu")]
+    pub fn record_mut(&mut self, cell: usize) -> &mut Record {
+        &mut self.cells[cell]
+    }
+
+    /// Depth above which a cell is wet, m.
+    #[cfg(feature = "gpu")]
+    pub fn wet_depth(&self) -> f64 {
+        self.wet_depth
+    }
+
+    /// Time of the last look, s.
+    #[cfg(feature = "gpu")]
+    pub fn last(&self) -> f64 {
+        self.last
+    }
+
+    #[cfg(feature = "gpu")]
+    pub fn set_last(&mut self, time: f64) {
+        self.last = time;
     }
 
     /// Looks at the water at `time` s. Wet time is counted since the last look.

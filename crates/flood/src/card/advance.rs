@@ -2,7 +2,7 @@
 
 use super::layout::{self, CardBirth, Grid, Status};
 use super::tasks::Tasks;
-use super::{Card, Shown};
+use super::{Card, Progress, Shown, Span};
 use crate::gauges::Reading;
 use crate::rain::Ground;
 use corpuscle_gpu::{DeviceParticles, GpuError, Pass, read, wgpu};
@@ -21,28 +21,6 @@ const LAID_OUT: u64 = 64;
 /// A batch of steps takes about so long at most, s: then the host looks whether it is to stop.
 const BATCH: f64 = 0.2;
 
-/// A particle that is to come from a source.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Birth {
-    /// Time from now, s.
-    pub time: f64,
-    pub source: usize,
-    pub velocity: [f64; 2],
-}
-
-/// The time that steps are to go through, from the time `now`, s; all others count from there, s.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Span<'a> {
-    pub now: f64,
-    pub until: f64,
-    /// The first step that ends then or after is the last.
-    pub look: f64,
-    /// The particles that come from sources, the earliest first.
-    pub births: &'a [Birth],
-    /// When rows of gauges are due: [`MOST_ROWS`](super::MOST_ROWS) at most.
-    pub due: &'a [f64],
-}
-
 /// Who looks at the particles after each step, on the device.
 pub(crate) struct Watch<'a> {
     pub shown: Shown,
@@ -50,70 +28,6 @@ pub(crate) struct Watch<'a> {
     pub show: &'a mut dyn FnMut(f64, &DeviceParticles),
     /// Whether this was the last.
     pub stop: &'a AtomicBool,
-}
-
-/// What a batch of steps did.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Progress {
-    pub steps: u64,
-    pub particle_steps: u64,
-    pub elapsed: f64,
-    /// The next step, s.
-    pub step: f64,
-    /// Volumes, m3, and momentum over density, m4/s.
-    pub outflow: f64,
-    pub inflow: f64,
-    pub momentum_lost: f64,
-    pub momentum_gained: f64,
-    pub rained: f64,
-    pub infiltrated: f64,
-    pub from_outside: [f64; 2],
-    pub mean_h: f64,
-    /// How many of the births have been, and the identity of the next new particle.
-    pub born: usize,
-    pub next_id: u64,
-    /// Whether the next step is too short to go on.
-    pub broken: bool,
-}
-
-impl Progress {
-    /// Nothing yet; `step` is the next one.
-    pub fn none(step: f64) -> Self {
-        Self {
-            steps: 0,
-            particle_steps: 0,
-            elapsed: 0.0,
-            step,
-            outflow: 0.0,
-            inflow: 0.0,
-            momentum_lost: 0.0,
-            momentum_gained: 0.0,
-            rained: 0.0,
-            infiltrated: 0.0,
-            from_outside: [0.0; 2],
-            mean_h: 0.0,
-            born: 0,
-            next_id: 0,
-            broken: false,
-        }
-    }
-
-    /// With what was done after it.
-    pub fn and(self, later: Self) -> Self {
-        Self {
-            steps: self.steps + later.steps,
-            particle_steps: self.particle_steps + later.particle_steps,
-            elapsed: self.elapsed + later.elapsed,
-            outflow: self.outflow + later.outflow,
-            inflow: self.inflow + later.inflow,
-            momentum_lost: self.momentum_lost + later.momentum_lost,
-            momentum_gained: self.momentum_gained + later.momentum_gained,
-            rained: self.rained + later.rained,
-            infiltrated: self.infiltrated + later.infiltrated,
-            born: self.born + later.born,
-            ..later
-        }
-    }
 }
 
 impl Card {
@@ -136,7 +50,7 @@ impl Card {
         ground: Option<&Ground>,
         watch: &mut Option<Watch<'_>>,
     ) -> Result<(Progress, Vec<Reading>), GpuError> {
-        let Span { now, until, look, births, due } = span;
+        let Span { now, until, look, looks, looked, births, due } = span;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             let [sum, lacking] = self.status.clock;
@@ -182,6 +96,7 @@ impl Card {
             ..self.status
         };
         self.tell_due(due);
+        self.tell_looks(now, looks, looked);
         let began = Instant::now();
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
         match watch {
@@ -200,6 +115,11 @@ impl Card {
         self.steps += u64::from(self.status.steps);
         self.ahead |= self.status.steps > 0;
         Ok((self.progress(), readings))
+    }
+
+    /// No batch of steps takes more time than this, s.
+    pub fn longest_batch(&self) -> f64 {
+        LAID_OUT as f64 * f64::from(self.parameters.longest_step)
     }
 
     /// Has the device do something.
@@ -250,6 +170,8 @@ impl Card {
             mean_h: f64::from(mean_h),
             born: self.status.born as usize,
             next_id: u64::from(self.status.next_id),
+            looks: self.status.looks_taken as usize,
+            looked: f64::from(self.status.looked),
             broken: halted == layout::BROKEN,
         }
     }

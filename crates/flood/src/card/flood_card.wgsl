@@ -197,6 +197,17 @@ struct Status {
     rows_taken: u32,
     rows_due: u32,
     gauge_places: u32,
+    // Looks at the maps: how many times the host has told of, and how many of them have passed; when it was last looked, since the host
+    // spoke, and for how long it had not been before that, s.
+    looks_told: u32,
+    looks_taken: u32,
+    looked: f32,
+    since_look: f32,
+    // Their cells, the depth above which one is wet, m, and when the host spoke, s.
+    map_cells: u32,
+    wet_depth: f32,
+    began: f32,
+    unused_three: f32,
 }
 
 const GOING = 0u;

@@ -8,13 +8,15 @@
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group; and where
 // it rains or soaks in, a thread for each particle, a thread for each cell of the ground, one group; a thread for each particle in the air;
 // where particles are split and merged, a thread for each particle; and where a row of gauges is due, a thread for each particle, cell of
-// the ground and drop, a group for each row, a thread for each place and row.
+// the ground and drop, a group for each row, a thread for each place and row; where it is time to look at the maps, a thread for each cell.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
 // Zones, structures and tables: see `works.rs`.
 @group(0) @binding(4) var<storage, read> works: array<u32>;
 // Times since the host last spoke at which rows of gauges are due, s.
 @group(0) @binding(5) var<storage, read> due: array<f32>;
+// The same at which it is to be looked at the maps, by the first step that ends then or after.
+@group(0) @binding(6) var<storage, read> looks: array<f32>;
 
 const FAR = 3.0e38;
 
@@ -24,10 +26,9 @@ const RAINS = 8u;
 // Particles are split and merged once in so many steps, as in `flood/step.rs`.
 const REFINED = 8u;
 
-const SLOTS = 12u;
-
-// The first of those for gauges.
+// The first of those for gauges, and that for maps.
 const GAUGES = 9u;
+const MAPS = 12u;
 
 // Where `works` says where the levels of the sides are.
 const LEVELS = 12u;
@@ -162,9 +163,24 @@ fn take_gauges() {
     order(GAUGES + 2u, select(0u, (status.gauge_places + 63u) / 64u, rows > 0u), rows);
 }
 
+// Has it looked at the maps where the step has passed a time to.
+fn take_looks() {
+    var taken = status.looks_taken;
+    while taken < status.looks_told && looks[taken] <= status.elapsed.sum {
+        taken += 1u;
+    }
+    let is_time = taken > status.looks_taken;
+    if is_time {
+        status.looks_taken = taken;
+        status.since_look = status.elapsed.sum - status.looked;
+        status.looked = status.elapsed.sum;
+    }
+    order(MAPS, select(0u, (status.map_cells + 255u) / 256u, is_time), 1u);
+}
+
 // Nothing is due any more.
 fn rest() {
-    for (var slot = GAUGES; slot < SLOTS; slot++) {
+    for (var slot = GAUGES; slot < MAPS; slot++) {
         order(slot, 0u, 0u);
     }
 }
@@ -188,8 +204,10 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         workgroupBarrier();
     }
     if thread == 0u {
+        order(MAPS, 0u, 1u);
         if status.halted == GOING {
             book(sums[0]);
+            take_looks();
         }
         if status.halted == GOING || status.halted == SPOKEN {
             decide();

@@ -137,6 +137,17 @@ pub(super) struct Status {
     pub rows_taken: u32,
     pub rows_due: u32,
     pub gauge_places: u32,
+    /// Looks at the maps: how many times the host has told of, and how many of them have passed; when it was last looked, since the host spoke, and
+    /// for how long it had not been before that, s.
+    pub looks_told: u32,
+    pub looks_taken: u32,
+    pub looked: f32,
+    pub since_look: f32,
+    /// Their cells, the depth above which one is wet, m, and when the host spoke, s.
+    pub map_cells: u32,
+    pub wet_depth: f32,
+    pub began: f32,
+    pub unused_three: f32,
 }
 
 /// Values of [`Status::halted`]: broken down; and the host has said until when to go on.
@@ -206,6 +217,19 @@ pub(super) struct OnObstacle {
     pub force: [f32; 2],
     pub impulse: [[f32; 2]; 2],
     pub unused: [f32; 2],
+}
+
+/// A cell of the maps: see `flood_maps.wgsl`.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct CardCell {
+    pub place: [f32; 2],
+    pub max_depth: f32,
+    pub max_speed: f32,
+    pub hazard: f32,
+    pub arrival: f32,
+    pub duration: f32,
+    pub unused: f32,
 }
 
 /// A cell of the ground that rain falls on.

@@ -7,10 +7,12 @@ mod air;
 mod gauges;
 mod ground;
 mod layout;
+mod maps;
 mod rates;
 mod resource;
 mod seen;
 mod setting;
+mod span;
 mod state;
 mod steps;
 mod tasks;
@@ -18,10 +20,12 @@ mod walls;
 mod weather;
 mod works;
 
-pub(crate) use advance::{Birth, Progress, Span, Watch};
+pub(crate) use advance::Watch;
 pub(crate) use gauges::MOST_ROWS;
+pub(crate) use maps::MOST_LOOKS;
 pub(crate) use seen::Shown;
 pub(crate) use setting::Setting;
+pub(crate) use span::{Birth, Progress, Span};
 pub(crate) use state::Water;
 
 use crate::rain::Intensity;
@@ -197,6 +201,12 @@ impl Card {
     /// Particles in the air that there is room for.
     pub fn room_in_air(&self) -> usize {
         self.air.as_ref().map_or(0, |air| air.room)
+    }
+
+    /// Leaves the maps to the host.
+    #[cfg(test)]
+    pub fn forget_maps(&mut self) {
+        self.tasks.maps = None;
     }
 
     /// Takes lists of neighbours of another length, as far as there is room.

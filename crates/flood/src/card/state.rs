@@ -3,6 +3,7 @@
 use super::layout::{self, CardParticle, OnObstacle, Status};
 use super::{Card, ground};
 use crate::falling::Falling;
+use crate::maps::Maps;
 use crate::particle::Particle;
 use crate::rain::Wetness;
 use crate::structures::Flows;
@@ -27,6 +28,7 @@ pub(crate) struct Water<'a> {
     pub next_id: u64,
     pub flows: &'a Flows,
     pub wetness: &'a Wetness,
+    pub maps: &'a Maps,
     pub falling: &'a [Falling],
 }
 
@@ -47,6 +49,7 @@ impl Card {
         let Water { particles, step, from_outside, on_obstacles, impulses, put_back, .. } = *water;
         self.walls.begin(&self.gpu, on_obstacles);
         self.works.begin(&self.gpu, water.flows);
+        self.begin_maps(water.maps);
         if let Some(weather) = &self.weather {
             weather.begin(&self.gpu, water.wetness);
         }

@@ -25,9 +25,12 @@ impl Tasks {
         }
     }
 
-    /// Decides whether to go on, and reads the gauges where a row is due.
+    /// Decides whether to go on, reads the gauges where a row is due, and looks at the maps where it is time to.
     fn end_step(&self, pass: &mut Pass<'_>) {
         self.finish.run(pass, 1);
+        if let Some(maps) = &self.maps {
+            maps.look(pass, &self.groups);
+        }
         if let Some(gauges) = &self.gauges {
             gauges.take(pass, &self.groups);
         }

@@ -3,6 +3,7 @@
 use super::air::Air;
 use super::gauges::{Gauges, MOST_ROWS};
 use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Plan, Slopes, Status};
+use super::maps::{CardMaps, MOST_LOOKS};
 use super::resource::Resource;
 use super::walls::Walls;
 use super::weather::Weather;
@@ -48,8 +49,9 @@ pub(super) struct Tasks {
     pub sorted: wgpu::Buffer,
     pub groups: wgpu::Buffer,
     pub sort: CellSort,
-    /// Times at which rows of gauges are due, and reaches with lists of neighbours.
+    /// Times at which rows of gauges are due, and those to look at the maps; and reaches with lists of neighbours.
     pub due: wgpu::Buffer,
+    pub looks: wgpu::Buffer,
     pub near: wgpu::Buffer,
     /// Water beyond sides held at levels, and structures, where there are any.
     pub carry: Option<Task>,
@@ -82,6 +84,8 @@ pub(super) struct Tasks {
     pub finish: Task,
     /// Where gauges are asked for.
     pub gauges: Option<Gauges>,
+    /// Where it keeps the maps.
+    pub maps: Option<CardMaps>,
 }
 
 impl Tasks {
@@ -102,7 +106,8 @@ impl Tasks {
     ) -> Result<Self, GpuError> {
         let parameters = uniform(gpu, "parameters of the flood", &Parameters::default());
         let status = storage::<Status>(gpu, "status", 1)?;
-        let groups = storage::<[u32; 3]>(gpu, "groups", 12)?;
+        let groups = storage::<[u32; 3]>(gpu, "groups", 13)?;
+        let looks = storage::<f32>(gpu, "times of looks", MOST_LOOKS)?;
         let due = storage::<f32>(gpu, "times of gauges", MOST_ROWS)?;
         let particles = storage::<CardParticle>(gpu, "particles", count)?;
         let sorted = storage::<CardParticle>(gpu, "particles in order", count)?;
@@ -274,8 +279,9 @@ impl Tasks {
                     ]
                 )
             },
-            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer, due]),
+            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer, due, looks]),
             gauges: None,
+            maps: None,
             parameters,
             status,
             particles,
@@ -285,6 +291,7 @@ impl Tasks {
             groups,
             sort,
             due,
+            looks,
             near,
         })
     }

@@ -2,7 +2,7 @@
 
 use super::measured_on_card::Onlookers;
 use super::{DENSITY, Flood, State, open};
-use crate::card::{Birth, Card, MOST_BIRTHS, MOST_ROWS, Progress, Setting, Span, Water};
+use crate::card::{Birth, Card, MOST_BIRTHS, MOST_LOOKS, MOST_ROWS, Progress, Setting, Span, Water};
 use crate::inflow::Source;
 use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{ExactSum, ModelError, Passed};
@@ -88,7 +88,10 @@ impl Flood {
             h: self.h,
             spacing: self.spacing,
         };
-        let card = Card::new(gpu, room, &setting)?;
+        let mut card = Card::new(gpu, room, &setting)?;
+        if !self.looks_for_overtopping() {
+            card.keep_maps(&self.surroundings.terrain, &self.surroundings.obstacles, &self.state.maps)?;
+        }
         self.card = Some(card);
         self.send_to_card()
     }
@@ -108,6 +111,7 @@ impl Flood {
             next_id: self.state.next_id,
             flows,
             wetness: &self.state.wetness,
+            maps: &self.state.maps,
             falling: &self.state.falling,
         };
         match &mut self.card {
@@ -161,7 +165,8 @@ impl Flood {
                 self.shown = onlookers.told.max(self.state.time);
                 return Ok(());
             }
-            let look = self.state.next_look as f64 * self.map_period;
+            let keeps_maps = self.card.as_ref().is_some_and(Card::keeps_maps);
+            let look = if keeps_maps { f64::INFINITY } else { self.state.next_look as f64 * self.map_period };
             let before = (self.state.steps, onlookers.told);
             self.make_room().map_err(|error| failed(&error))?;
             if onlookers.companion.is_some() {
@@ -194,14 +199,25 @@ impl Flood {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
         let mut owed = self.state.owed.clone();
+        let mut looked = self.state.maps.last();
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
-            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step));
+            let longest = self.card.as_ref().map_or(0.0, Card::longest_batch);
+            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
+            let looks = self.looks(now, done.looks);
             let due = onlookers.due(time);
             let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
             let from_now: Vec<f64> = due.iter().map(|due| due - now).collect();
             let Some(card) = &mut self.card else { break };
-            let span = Span { now, until: until - now, look: look - now, births: &births, due: &from_now };
+            let span = Span {
+                now,
+                until: until - now,
+                look: looks.last().copied().unwrap_or(look - now),
+                looks: &looks,
+                looked: looked - now,
+                births: &births,
+                due: &from_now,
+            };
             let (progress, readings) = card.advance(span, self.ground.as_ref(), &mut onlookers.watch)?;
             let particles = card.particles();
             for (due, reading) in due.iter().zip(&readings) {
@@ -211,6 +227,9 @@ impl Flood {
                 owed.add(source.discharge.integral(now, now + progress.elapsed));
             }
             births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
+            if progress.looks > 0 {
+                looked = now + progress.looked;
+            }
             done = done.and(progress);
             let particle_steps = self.state.particle_steps + done.particle_steps;
             onlookers.pass(Passed { time: began + done.elapsed, particles, particle_steps });
@@ -230,6 +249,9 @@ impl Flood {
             card.flows(&mut state.flows)?;
             card.falling(&mut state.falling)?;
             card.wetness(&mut state.wetness)?;
+            card.maps(&mut state.maps)?;
+            state.maps.set_last(looked);
+            state.next_look += done.looks as u64;
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.owed, self.state.next_id) = (owed, done.next_id);
@@ -237,6 +259,14 @@ impl Flood {
             self.arrange();
         }
         Ok(done)
+    }
+
+    /// The next times at which the card is to look at the maps, s from `now`, when so many have passed; none where the host does.
+    fn looks(&self, now: f64, passed: usize) -> Vec<f64> {
+        let numbers = self.state.next_look + passed as u64..;
+        let keeps_maps = self.card.as_ref().is_some_and(Card::keeps_maps);
+        let count = if keeps_maps { MOST_LOOKS } else { 0 };
+        numbers.take(count).map(|number| number as f64 * self.map_period - now).collect()
     }
 
     /// The particles that the sources bring from `now` to `until`, the earliest first.
@@ -272,110 +302,4 @@ impl Flood {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use corpuscle_gpu::require_gpu;
-    use corpuscle_model::Model;
-    use corpuscle_scene::Scene;
-    use corpuscle_terrain::Terrain;
-    use std::path::Path;
-    use std::sync::Arc;
-
-    /// Water that runs down as a sheet, so that all of it is split, and more than once.
-    const SHEET: &str = r#"
-run.until_s = 60
-terrain.plane = { extent = { length_m = 80, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
-[flood]
-spacing_m = 1
-spacing_depth_m = 0.5
-refinement = {}
-edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
-water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 20], [0, 20]] }]
-"#;
-
-    /// Water between a wall, an open side and periodic ones, so that lists have neighbours in mirrors too.
-    const POOL: &str = r#"
-run.until_s = 60
-terrain.plane = { extent = { length_m = 24, width_m = 12, cell_m = 1 }, slope_east = -0.02 }
-[flood]
-spacing_m = 0.5
-spacing_depth_m = 0.5
-edges = { west = "wall", east = "open", south = "periodic", north = "periodic" }
-water = [{ depth_m = 0.5, polygon = [[0, 0], [16, 0], [16, 12], [0, 12]] }]
-"#;
-
-    fn opened(scene: &str) -> Flood {
-        let mut scene = Scene::parse(scene, "scene", &[]).unwrap();
-        scene.resolve_defaults();
-        let scene = scene.flood().unwrap();
-        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-        Flood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
-    }
-
-    #[test]
-    fn more_room_is_taken_where_halves_might_find_none() {
-        let Some(gpu) = require_gpu("room on the card") else { return };
-        let mut sheets = [(); 2].map(|()| opened(SHEET));
-        let count = sheets[0].state.particles.len();
-        let scarce = count + count / 2; // Enough until the next look at it.
-        sheets[0].open_card_with(gpu.clone(), scarce).unwrap();
-        sheets[1].use_card(gpu.clone()).unwrap();
-        for sheet in &mut sheets {
-            sheet.advance_to(24.0, &AtomicBool::new(false)).unwrap();
-        }
-        let [with_more, plain] = &sheets;
-        let (now, room) = (with_more.state.particles.len(), with_more.card.as_ref().unwrap().room());
-        assert!(now > scarce && room > scarce, "{count} became {now}, room for {scarce} for {room}");
-        // Laid out anew in cells of another size, so summed up in another order.
-        let in_plenty = plain.state.particles.len();
-        assert!(now.abs_diff(in_plenty) < in_plenty / 20, "{now} and {in_plenty}");
-        assert!((with_more.stored() / plain.stored() - 1.0).abs() < 1e-6);
-    }
-
-    /// Without any room water stays whole, and none is lost.
-    #[test]
-    fn what_finds_no_room_stays_whole() {
-        let Some(gpu) = require_gpu("no room on the card") else { return };
-        let (mut host, mut card) = (opened(SHEET), opened(SHEET));
-        host.advance_to(8.0, &AtomicBool::new(false)).unwrap();
-        while !host.state.steps.is_multiple_of(8) {
-            host.step().unwrap();
-        }
-        let (count, volume) = (host.state.particles.len(), host.stored());
-        card.restore(&host.save()).unwrap();
-        card.open_card_with(gpu, count + 3).unwrap();
-        let on_card = card.card.as_mut().unwrap();
-        let span = Span { now: 0.0, until: 10.0, look: 1e-6, births: &[], due: &[] };
-        assert_eq!(on_card.advance(span, None, &mut None).unwrap().0.steps, 1);
-        on_card.fetch(&mut card.state.particles, &card.surroundings.terrain).unwrap();
-        host.step().unwrap();
-        assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());
-        assert!(card.state.particles.len() <= count + 3, "{} became {}", count, card.state.particles.len());
-        assert!((card.stored() / volume - 1.0).abs() < 1e-6);
-    }
-
-    #[test]
-    fn neighbours_for_which_lists_have_no_room_are_looked_for_again() {
-        let Some(gpu) = require_gpu("lists of neighbours") else { return };
-        let [all, some, none] = [u32::MAX, 12, 0].map(|most| {
-            let mut pool = opened(POOL);
-            pool.use_card(gpu.clone()).unwrap();
-            pool.card.as_mut().unwrap().list(most);
-            pool.advance_to(1.0, &AtomicBool::new(false)).unwrap();
-            // What the clock shows depends, in its last digits, on how many steps were ordered at once.
-            pool.state.particles
-        });
-        assert!(all == some && all == none);
-    }
-
-    #[test]
-    fn a_first_step_of_no_length_is_taken_before_the_card_goes_on() {
-        let Some(gpu) = require_gpu("a first step of 0 s") else { return };
-        let mut pool = opened(POOL);
-        pool.state.time_step = 0.0;
-        pool.use_card(gpu).unwrap();
-        assert!(pool.state.steps == 1 && pool.state.time == 0.0 && pool.state.time_step > 0.0);
-        pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
-        assert!(pool.state.steps > 1 && pool.ledger().balances[0].relative_error().abs() < 1e-6);
-    }
-}
+mod tests;

@@ -197,11 +197,16 @@ impl Flood {
             smoothing,
         };
         maps.look(&water, *time);
-        if self.settings.obstacle.iter().any(|obstacle| obstacle.height_m.is_some()) {
+        if self.looks_for_overtopping() {
             let State { particles, overtopped, time, .. } = &mut self.state;
             let note = |number: usize| overtopped[number] = overtopped[number].or(Some(*time));
             self.surroundings.obstacles.each_overtopped(particles, note);
         }
+    }
+
+    /// Whether obstacles have a height over which water would flow.
+    pub(super) fn looks_for_overtopping(&self) -> bool {
+        self.settings.obstacle.iter().any(|obstacle| obstacle.height_m.is_some())
     }
 
     /// A time step below this means that the computation has broken down, s.
