@@ -17,7 +17,8 @@ pub struct Passed {
 /// Goes along while a model advances: takes the rows of gauges that fall due on the way, is told how far the model has come, and may call it
 /// back. A model that computes elsewhere (on a graphics card) need not bring its whole state back for that.
 pub trait Companion {
-    /// The first time after `time`, s, at which the gauges are to be read; none where there is none.
+    /// The first time after `time`, s, at which the gauges are to be read; none where there is none. It is asked for times to come as well, before
+    /// the rows until then are taken.
     fn gauges_after(&self, time: f64) -> Option<f64>;
 
     /// The first time after `time`, s, by which a model should say how far it is; none where it need not. A model that says so

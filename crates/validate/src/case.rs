@@ -37,6 +37,8 @@ pub struct Case {
     pub about: &'static str,
     /// True where it takes more than about ten seconds.
     pub slow: bool,
+    /// By how much particles are farther apart at its reduced size; 1 where it has none, as it takes little.
+    pub reduced: f64,
     /// Runs it.
     pub run: fn(&Options) -> Vec<Row>,
 }
@@ -44,7 +46,8 @@ pub struct Case {
 impl Case {
     /// Runs it, its floods and its dew on the card where `options` names one.
     pub fn rows(&self, options: &Options) -> Vec<Row> {
-        crate::device::on_card(options.gpu.clone(), || (self.run)(options))
+        let factor = if options.reduced { self.reduced } else { 1.0 };
+        crate::device::coarser(factor, || crate::device::on_card(options.gpu.clone(), || (self.run)(options)))
     }
 }
 
@@ -57,6 +60,9 @@ pub struct Options {
     pub require_data: bool,
     /// The card that takes the steps of floods and of dew, where one does.
     pub gpu: Option<corpuscle_gpu::Gpu>,
+    /// Whether floods and dew have their reduced size, at which measures are those of two programs to be compared: bounds are meant for the full size,
+    /// and so are the distances in the names of measures.
+    pub reduced: bool,
     /// What cases have drawn, for a report.
     charts: RefCell<Vec<Chart>>,
 }
@@ -64,7 +70,7 @@ pub struct Options {
 impl Options {
     /// Cases with the folder of reference data, whose absence is a failure or not.
     pub fn new(data: Option<PathBuf>, require_data: bool) -> Self {
-        Self { data, require_data, gpu: None, charts: RefCell::default() }
+        Self { data, require_data, gpu: None, reduced: false, charts: RefCell::default() }
     }
 
     /// Takes what cases have drawn since this was last asked.

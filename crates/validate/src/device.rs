@@ -3,9 +3,12 @@
 use crate::Row;
 use corpuscle_gpu::Gpu;
 use corpuscle_model::ModelError;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 thread_local! {
+    /// By how much the particles of the case that this thread runs are farther apart than they should be.
+    static COARSER: Cell<f64> = const { Cell::new(1.0) };
+
     /// The card that takes the steps of the case that this thread runs, if one does.
     static CARD: RefCell<Option<Gpu>> = const { RefCell::new(None) };
 }
@@ -16,6 +19,24 @@ pub(crate) fn on_card<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
     let result = case();
     CARD.replace(before);
     result
+}
+
+/// Sets particles `factor` times as far apart in all models that `case` sets up.
+pub(crate) fn coarser<T>(factor: f64, case: impl FnOnce() -> T) -> T {
+    let before = COARSER.replace(factor);
+    let result = case();
+    COARSER.set(before);
+    result
+}
+
+/// Whether cases have their reduced size.
+pub(crate) fn is_reduced() -> bool {
+    COARSER.get() > 1.0
+}
+
+/// A distance of particles at the size of the case.
+pub(crate) fn sized(spacing: f64) -> f64 {
+    COARSER.get() * spacing
 }
 
 /// The card that takes the steps, if one does.

@@ -1,55 +1,100 @@
-//! Cases whose floods and dew the graphics card computes.
+//! Cases whose floods and dew the graphics card computes, at their reduced size.
 
-use corpuscle_gpu::require_gpu;
+use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_validate::{Options, Row, cases};
+
+/// Cases of floods, and how far what the card finds may be from what the processor does, over the larger of that and its bound: a twentieth where
+/// water follows an exact solution, more where it is a thin film or whirls, so that one particle here or there decides.
+///
+/// Three are not among them, which go through built-in scenes of scheme paper: minutes on software in place of a card, and farther apart their particles
+/// are no longer the paper's. The tests of built-in scenes compare these.
+const FLOODS: [(&str, f64); 18] = [
+    ("flood/lake-at-rest", 0.05),
+    ("flood/stoker", 0.05),
+    ("flood/ritter", 0.05),
+    ("flood/thacker-radial", 0.05),
+    ("flood/thacker-planar", 0.05),
+    ("flood/bump", 0.05),
+    ("flood/macdonald", 0.05),
+    ("flood/malpasset", 0.2),
+    ("flood/swashes", 0.05),
+    ("flood/rain-plane", 0.5),
+    ("flood/infiltration", 0.05),
+    ("flood/ledger", 0.5),
+    ("flood/refinement", 0.5),
+    ("flood/structures", 0.05),
+    ("flood/tide", 0.3),
+    ("flood/isolated-building", 0.1),
+    ("flood/triangular-obstacle", 0.1),
+    ("flood/ea-test5", 0.5),
+];
+
+/// Below this a bound is of what rounding leaves, of which the card leaves more and has bounds of its own.
+const ROUNDING: f64 = 1e-5;
+
+fn options() -> Options {
+    let data = std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into);
+    let mut options = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
+    options.reduced = true;
+    options
+}
 
 fn rows(name: &str, options: &Options) -> Vec<Row> {
     cases().iter().find(|case| case.name == name).unwrap().rows(options)
 }
 
-/// Some two minutes on software in place of a card.
-#[test]
-#[ignore = "long on software in place of a card"]
-fn structures_keep_their_bounds_on_the_card() {
-    let Some(gpu) = require_gpu("cases on the card") else { return };
-    let mut options = Options::new(None, false);
-    options.gpu = Some(gpu);
-    let rows = rows("flood/structures", &options);
-    assert!(rows.len() == 2 && rows.iter().all(|row| row.pass == Some(true)), "{rows:?}");
+fn on_card(gpu: Gpu) -> Options {
+    Options { gpu: Some(gpu), ..options() }
 }
 
-/// Bores, rarefactions and dry fronts in single precision, against the exact solutions and with the bounds of the processor.
-#[test]
-fn dam_breaks_keep_their_bounds_on_the_card() {
-    let Some(gpu) = require_gpu("cases on the card") else { return };
-    let mut options = Options::new(None, false);
-    options.gpu = Some(gpu);
-    for case in ["flood/stoker", "flood/ritter"] {
-        let rows = rows(case, &options);
-        assert!(rows.len() == 3 && rows.iter().all(|row| row.pass == Some(true)), "{rows:?}");
+/// Whether the card's row says what the processor's does.
+fn agree(host: &Row, card: &Row, share: f64) -> bool {
+    let (Some(found), Some(on_card)) = (host.value, card.value) else {
+        return host.pass == card.pass && host.reason == card.reason;
+    };
+    // A row that is only shown beside another has no bound.
+    let Some(kept) = host.pass else { return true };
+    // So coarse, this lake is not stable: stirred by 1e-7 m/s it is as far off on the processor (0.9 % of its depth, 2 % by 1e-5 m/s).
+    if host.measure == "lake_emerged_bump_error" {
+        return on_card < 0.03;
     }
-}
-
-fn assert_kept(cases: &[(&str, usize)]) {
-    let Some(gpu) = require_gpu("cases of dew on the card") else { return };
-    let mut options = Options::new(None, false);
-    options.gpu = Some(gpu);
-    for (name, measures) in cases {
-        let rows = rows(name, &options);
-        assert!(rows.len() == *measures && rows.iter().all(|row| row.pass == Some(true)), "{rows:?}");
+    if host.relation == ">=" || card.bound < ROUNDING {
+        return card.pass == Some(true) || !kept;
     }
+    (found - on_card).abs() <= share * host.bound.max(found)
 }
 
+#[test]
+fn floods_of_cases_are_on_the_card_what_they_are_on_the_processor() {
+    let Some(gpu) = require_gpu("cases on the card") else { return };
+    let (host, card) = (options(), on_card(gpu));
+    for (name, share) in FLOODS {
+        let both = [rows(name, &host), rows(name, &card)];
+        assert!(!both[0].is_empty() && both[0].len() == both[1].len(), "{both:?}");
+        for (host, card) in both[0].iter().zip(&both[1]) {
+            assert!(host.measure == card.measure && agree(host, card, share), "{host:?}\n{card:?}");
+        }
+    }
+    let floods = cases().iter().filter(|case| case.name.starts_with("flood/")).map(|case| case.name);
+    let others = floods.filter(|name| FLOODS.iter().all(|(known, _)| known != name));
+    assert!(others.eq(["flood/rough-terrain", "flood/cuboid", "flood/cylinder"]));
+}
+
+/// At full size, which is small.
 #[test]
 fn dew_keeps_its_bounds_on_the_card() {
-    assert_kept(&[("dew/fick", 3), ("dew/film", 2), ("dew/ledger", 7), ("dew/pane", 4)]);
+    let Some(gpu) = require_gpu("cases of dew on the card") else { return };
+    let options = on_card(gpu);
+    for (name, measures) in [("dew/fick", 3), ("dew/film", 2), ("dew/ledger", 7), ("dew/pane", 4)] {
+        let rows = rows(name, &options);
+        assert!(rows.len() == measures && rows.iter().all(|row| row.pass == Some(true)), "{rows:?}");
+    }
 }
 
 #[test]
 fn what_of_dew_takes_no_steps_of_air_is_skipped_and_named() {
     let Some(gpu) = require_gpu("cases of dew on the card") else { return };
-    let mut options = Options::new(None, false);
-    options.gpu = Some(gpu);
+    let options = on_card(gpu);
     for (name, what) in [("dew/dew-point", "formula"), ("dew/slide", "drops")] {
         let [row] = &rows(name, &options)[..] else { panic!("{name}") };
         assert!(row.pass.is_none() && row.reason.as_deref().is_some_and(|reason| reason.contains(what)), "{row:?}");

@@ -191,6 +191,13 @@ impl Card {
             (low, high) = ([low[0].min(west), low[1].min(south)], [high[0].max(east), high[1].max(north)]);
             smallest = if any { smallest } else { cell_over_h * f64::from(self.parameters.new_h) };
         }
+        // Water that is nowhere needs no cells.
+        let within = |value: f64, axis: usize| {
+            let [from, to] = [0, 1].map(|side| f64::from(self.parameters.bounds[2 * axis + side]));
+            let beyond = to - from;
+            value.max(from - beyond).min(to + beyond)
+        };
+        [low, high] = [low, high].map(|corner| [within(corner[0], 0), within(corner[1], 1)]);
         let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
         let most = (self.most_cells - 1) as f64;
         let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);

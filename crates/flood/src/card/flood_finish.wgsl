@@ -110,7 +110,9 @@ fn book(all: Partial) {
 }
 
 fn decide() {
-    if !(status.step > parameters.shortest_step) {
+    // Scheme paper has steps of one length, whatever comes of its particles.
+    let force = abs(status.from_outside.x) + abs(status.from_outside.y);
+    if !(status.step > parameters.shortest_step) || !(force < FAR) {
         status.halted = BROKEN;
     } else if status.elapsed.sum + status.step > status.until || status.elapsed.sum >= status.look {
         status.halted = ARRIVED;

@@ -216,15 +216,22 @@ impl Flood {
 
     pub(super) fn check(&self, step: f64) -> Result<(), ModelError> {
         let next = self.state.time_step;
-        if next.is_finite() && next > self.shortest_step() {
+        // Scheme paper has steps of one length, whatever comes of its particles.
+        let is_number = self.state.external.iter().all(|force| force.is_finite());
+        if is_number && next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
+        let what = if is_number {
+            format!("the time step fell from {step:.3e} s to {next:.3e} s")
+        } else {
+            "a force on the water is no longer a number".into()
+        };
         Err(ModelError::Breakdown {
             time: self.state.time,
             step: self.state.steps,
             what: format!(
-                "the time step fell from {step:.3e} s to {next:.3e} s. Try a smaller flood.balanced.cfl (scheme balanced) \
-                 or flood.paper.time_step_s (scheme paper), or look in the last frame for the place where the water is fast"
+                "{what}. Try a smaller flood.balanced.cfl (scheme balanced) or flood.paper.time_step_s (scheme paper), or look in the \
+                 last frame for the place where the water is fast"
             ),
         })
     }

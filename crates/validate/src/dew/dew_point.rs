@@ -11,6 +11,7 @@ pub(super) const DEW_POINT: Case = Case {
     about: "The dew point of air at seven temperatures and humidities: Magnus' formula with Bolton's constants to its printed digits, \
             and PsychroLib 2.5.0 beside it.",
     slow: false,
+    reduced: 1.0,
     run: dew_point,
 };
 

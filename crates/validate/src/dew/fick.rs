@@ -13,6 +13,7 @@ pub(super) const FICK: Case = Case {
     about: "Moist air beside dry air, 1 s later: twice the humidity over that at the start is erfc(x / (2 sqrt(D t))) in the \
             dry air, D = 2.5e-5 m2/s: 0.47950 at 5 mm and 0.15730 at 10 mm (Crank 1975, equation 2.14).",
     slow: false,
+    reduced: 1.0,
     run: fick,
 };
 

@@ -13,6 +13,7 @@ pub(super) const FILM: Case = Case {
     about: "Air between a wet plate at 25 °C and a cold one at 10 °C, without fog: water condenses at the exact steady rate \
             J = rho D (Y_warm - Y_cold) / L, rho D constant and without Stefan's flow, and water is conserved.",
     slow: false,
+    reduced: 1.0,
     run: film,
 };
 

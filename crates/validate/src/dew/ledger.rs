@@ -12,6 +12,7 @@ pub(super) const LEDGER: Case = Case {
     about: "Humid air flows over a pane that is cold and then warmed: inflow, condensation, merging and dripping, evaporation, air of low \
             utility taken out. Water and energy balance, and each of these happened.",
     slow: false,
+    reduced: 1.0,
     run: ledger,
 };
 

@@ -10,6 +10,7 @@ pub(super) const CASE: Case = Case {
     about: "Humid air flows over a cold pane and away, with the air far downstream taken out and without: covered area and water on the \
             pane agree within 2 %, and fewer particles are moved.",
     slow: false,
+    reduced: 1.0,
     run: low_utility,
 };
 

@@ -14,6 +14,7 @@ pub(super) const PANE: Case = Case {
             twice the time in which diffusion brings its water, 2 rho (Y - Y_sat) sqrt(D t / pi) a square metre (Crank 1975, equation 2.14, \
             a half space whose surface is at Y_sat).",
     slow: false,
+    reduced: 1.0,
     run: pane,
 };
 

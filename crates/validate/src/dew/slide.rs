@@ -14,6 +14,7 @@ pub(super) const SLIDE: Case = Case {
     about: "Drops on an upright pane with a prescribed condensation: a growing drop slides when its weight passes the bound of \
             friction, merging keeps mass and momentum, and the spread of sizes stands beside that of Le Fevre & Rose.",
     slow: true,
+    reduced: 1.0,
     run: slide,
 };
 

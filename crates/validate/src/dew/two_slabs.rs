@@ -15,6 +15,7 @@ pub(super) const TWO_SLABS: Case = Case {
             the error function (Carslaw & Jaeger 1959, section 2.14). Steady flux through 25 particles of a solid and 25 of \
             air, their conductivities as 10, 38 and 15000 to 1, against two resistances in a row; the arithmetic mean beside.",
     slow: true,
+    reduced: 1.0,
     run: two_slabs,
 };
 

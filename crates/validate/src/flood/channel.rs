@@ -14,6 +14,7 @@ pub(super) const BUMP: Case = Case {
             along the channel, started from the exact steady state and watched for 20 s: does it stay, and at what \
             discharge?",
     slow: true,
+    reduced: 2.0,
     run: bump,
 };
 
@@ -22,6 +23,7 @@ pub(super) const MACDONALD: Case = Case {
     about: "Steady flow with Manning friction in an undulating channel (MacDonald et al. 1997; SWASHES: one period of \
             1000 m, q 2 m2/s, n 0.03), found by the water itself from rest within 1500 s.",
     slow: true,
+    reduced: 2.0,
     run: macdonald,
 };
 

@@ -13,6 +13,7 @@ pub(super) const STOKER: Case = Case {
     about: "Dam break onto a wet bed (Stoker 1957): 1000 m, 10 m against 1 m, 20 s; particles of equal volume. Bound: \
             first-order finite volumes at the same spacing (LISFLOOD-FP 8.1 FV1: 3.2e-3 at 1 m, 1.0e-2 at 4 m).",
     slow: true,
+    reduced: 2.0,
     run: stoker,
 };
 
@@ -21,6 +22,7 @@ pub(super) const RITTER: Case = Case {
     about: "Dam break onto a dry bed (Ritter 1892): 1000 m, 10 m of water, 20 s; particles of equal volume. Bound: \
             first-order finite volumes at the same spacing (LISFLOOD-FP 8.1 FV1: 4.4e-3 at 1 m, 1.2e-2 at 4 m).",
     slow: true,
+    reduced: 2.0,
     run: ritter,
 };
 

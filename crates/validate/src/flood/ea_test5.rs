@@ -19,6 +19,7 @@ pub(super) const EA_TEST5: Case = Case {
             2013): 3000 m3/s at most over a line of 260 m, n 0.04, the first 5 h; highest depth and arrival (0.05 m) at \
             seven gauges against LISFLOOD-FP 8.1 FV1 on cells of 50 m.",
     slow: true,
+    reduced: 5.0,
     run: ea_test5,
 };
 

@@ -17,6 +17,7 @@ pub(super) const ISOLATED_BUILDING: Case = Case {
             of 35.8 m x 3.6 m, 0.4 m of water behind the gate, 0.02 m before it, n 0.01; depths at six gauges over 30 s, \
             velocities at five.",
     slow: true,
+    reduced: 4.0,
     run: isolated_building,
 };
 

@@ -14,6 +14,7 @@ pub(super) const LAKE_AT_REST: Case = Case {
     about: "A lake over a 5 m Gaussian bump, and round a dry island, for 60 s: exact answer 0. Peers: symmetric \
             pressure form 4.3e-3 m/s, linearly corrected surface-difference form 1.4e-9 m/s (measured by the authors).",
     slow: false,
+    reduced: 3.0,
     run: lake_at_rest,
 };
 

@@ -1,6 +1,7 @@
 //! The dam of Malpasset, 2 December 1959.
 
 use super::device::{ready, water_rounding};
+use super::measured::Watched;
 use super::{SEED, rows, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Flood, InitialWater};
@@ -10,7 +11,6 @@ use corpuscle_terrain::{RasterField, Terrain};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 pub(super) const MALPASSET: Case = Case {
     name: "flood/malpasset",
@@ -18,6 +18,7 @@ pub(super) const MALPASSET: Case = Case {
             4000 s: highest levels of the police survey, arrival (0.05 m) at the scale model's gauges. Bounds: what \
             LISFLOOD-FP 8.1 FV1 gets on the same ground with 20 m cells.",
     slow: true,
+    reduced: 6.0,
     run: malpasset,
 };
 
@@ -90,11 +91,8 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
 fn watch(flood: &mut Flood, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
     let mut highest = vec![f64::NEG_INFINITY; gauges];
     let mut arrival = vec![TIME; gauges];
-    let looks = (TIME / LOOK) as usize;
-    for look in 0..=looks {
-        let time = look as f64 * LOOK;
-        flood.advance_to(time, &AtomicBool::new(false))?;
-        for (gauge, row) in flood.gauge_row().chunks_exact(4).take(gauges).enumerate() {
+    for (time, row) in Watched::run(flood, TIME, LOOK)?.rows() {
+        for (gauge, row) in row.chunks_exact(4).take(gauges).enumerate() {
             highest[gauge] = highest[gauge].max(row[1]);
             if row[0] >= 0.05 {
                 arrival[gauge] = arrival[gauge].min(time);

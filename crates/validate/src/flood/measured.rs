@@ -1,7 +1,7 @@
 //! Reading what was measured, and watching gauges to compare with it.
 
 use corpuscle_flood::Flood;
-use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, Model, ModelError};
+use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, Companion, Model, ModelError, Passed};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -12,15 +12,35 @@ pub(super) struct Watched {
     rows: Vec<Vec<f64>>,
 }
 
+impl Companion for Watched {
+    fn gauges_after(&self, time: f64) -> Option<f64> {
+        // The nearest multiple may be the time itself.
+        let nearest = (time / self.look).round();
+        let next = if nearest * self.look > time { nearest } else { nearest + 1.0 };
+        Some(next * self.look)
+    }
+
+    fn gauges(&mut self, _: f64, row: &[f64]) {
+        self.rows.push(row.to_vec());
+    }
+
+    fn passed(&mut self, _: Passed) -> bool {
+        true
+    }
+}
+
 impl Watched {
-    /// Runs a flood to `until` s and looks at its gauges every `look` s.
+    /// Runs a flood from its start to `until` s and looks at its gauges every `look` s.
     pub fn run(flood: &mut Flood, until: f64, look: f64) -> Result<Self, ModelError> {
-        let mut rows = Vec::new();
-        for number in 0..=(until / look).round() as usize {
-            flood.advance_to(number as f64 * look, &AtomicBool::new(false))?;
-            rows.push(flood.gauge_row());
-        }
-        Ok(Self { look, rows })
+        let mut watched = Self { look, rows: vec![flood.gauge_row()] };
+        let last = (until / look).round() * look;
+        flood.advance_with(last, &AtomicBool::new(false), &mut watched)?;
+        Ok(watched)
+    }
+
+    /// What the looks saw, from the start on, and when, s.
+    pub fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        self.rows.iter().enumerate().map(|(number, row)| (number as f64 * self.look, &row[..]))
     }
 
     /// What a column read at `time` s, linearly between the looks before and after.

@@ -19,7 +19,7 @@ mod triangular_obstacle;
 mod weather;
 
 use crate::Case;
-use crate::device::rows;
+use crate::device::{rows, sized};
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
@@ -59,10 +59,10 @@ pub(crate) const CASES: &[Case] = &[
 /// Seed of where particles stand at the start.
 const SEED: u64 = 1;
 
-/// Water without friction with the given particle distance in the given depth; its maps look two hundred times.
+/// Water without friction with the given particle distance, at full size, in the given depth; its maps look two hundred times.
 fn settings(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Settings {
     Settings {
-        spacing_m,
+        spacing_m: sized(spacing_m),
         spacing_depth_m: Some(depth),
         gravity_m_per_s2: GRAVITY,
         manning: Manning::Number(0.0),

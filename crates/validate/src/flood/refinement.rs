@@ -15,6 +15,7 @@ pub(super) const REFINEMENT: Case = Case {
             is less than 1.4 m deep, depth, velocity and the water in strips of 8 m; on the plane, depth at 2800 places. Gains are errors \
             without over errors with.",
     slow: true,
+    reduced: 2.0,
     run: |_| rows(REFINEMENT.name, refinement()),
 };
 

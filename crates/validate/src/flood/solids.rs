@@ -15,6 +15,7 @@ pub(super) const CUBOID: Case = Case {
     name: "flood/cuboid",
     about: "The built-in scene flood/cuboid in both schemes: no particle inside the cuboid at any step.",
     slow: true,
+    reduced: 1.0,
     run: cuboid,
 };
 
@@ -24,6 +25,7 @@ pub(super) const CYLINDER: Case = Case {
             deep, in a channel 12 m wide past a cylinder of 3 m: the force on its wall against the momentum that a control section \
             before it takes in and one behind it gives out.",
     slow: true,
+    reduced: 1.0,
     run: cylinder,
 };
 

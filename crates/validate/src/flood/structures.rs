@@ -15,6 +15,7 @@ pub(super) const STRUCTURES: Case = Case {
     about: "What a weir (Poleni, Villemonte 1947) leads from one pool to another in 120 s, and what an outflow takes by its rating in \
             200 s, against their equations solved by small steps.",
     slow: false,
+    reduced: 2.0,
     run: |_| rows(STRUCTURES.name, structures()),
 };
 
@@ -23,6 +24,7 @@ pub(super) const TIDE: Case = Case {
     about: "A basin 60 m long, open to a tide of 0.3 m about a depth of 1.5 m with a period of 400 s, long beside the 31 s that a wave \
             takes there and back: the level in it is that of the tide. Two periods.",
     slow: false,
+    reduced: 2.0,
     run: |_| rows(TIDE.name, tide()),
 };
 

@@ -13,6 +13,7 @@ pub(super) const RADIAL: Case = Case {
     about: "A radially symmetric wave in a paraboloid after one period (Thacker 1981; parameters of SWASHES 1.05: h0 \
             0.1 m, a 1 m, r0 0.8 m), spacing 0.02 m in the middle.",
     slow: true,
+    reduced: 2.0,
     run: radial,
 };
 
@@ -21,6 +22,7 @@ pub(super) const PLANAR: Case = Case {
     about: "A plane surface going round in a paraboloid after one period (Thacker 1981; parameters of SWASHES 1.05: \
             h0 0.1 m, a 1 m, eta 0.5 m), spacing 0.02 m in the middle.",
     slow: true,
+    reduced: 3.0,
     run: planar,
 };
 

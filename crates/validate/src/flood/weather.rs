@@ -17,6 +17,7 @@ pub(super) const RAIN_ON_A_PLANE: Case = Case {
     about: "50 mm/h on a dry plane 100 m long (fall 0.02, n 0.1) for 2400 s, twice as long as it takes to be steady: outflow by \
             then and depth along the plane against the kinematic wave (Henderson & Wooding 1964).",
     slow: false,
+    reduced: 2.0,
     run: |_| rows(RAIN_ON_A_PLANE.name, rain_on_a_plane()),
 };
 
@@ -25,6 +26,7 @@ pub(super) const INFILTRATION: Case = Case {
     about: "What a pond 0.3 m deep loses in half an hour to ground after Horton 1940 (his integral) and after Green & Ampt 1911 \
             (their equation, solved by bisection).",
     slow: false,
+    reduced: 2.0,
     run: |_| rows(INFILTRATION.name, infiltration()),
 };
 
@@ -33,6 +35,7 @@ pub(super) const LEDGER: Case = Case {
     about: "A slope with rain, infiltration, an inflow, a weir, an outflow by rating, a tide at its foot and an open side, particles \
             split and merged, all at once for 300 s: what is there must be what was there and came, less what went.",
     slow: false,
+    reduced: 3.0,
     run: |_| rows(LEDGER.name, ledger()),
 };
 

@@ -10,6 +10,7 @@ pub(super) const ADIABATIC: Case = Case {
     about: "A slow piston compresses a gas: d ln T = (2/d) Z d ln packing, dilute (T V^(2/d) stays) and at packing 0.3; its work is the \
             energy gained. A moving wall sends a ball back at exactly 2 vw - v.",
     slow: true,
+    reduced: 1.0,
     run: adiabatic,
 };
 

@@ -10,6 +10,7 @@ pub(super) const BROWNIAN: Case = Case {
     about: "A ball of twenty times the mass and twice the radius among 200 light ones: its mean kinetic energy is theirs \
             (equipartition), and its mean-square displacement becomes a straight line (Einstein 1905).",
     slow: true,
+    reduced: 1.0,
     run: brownian,
 };
 

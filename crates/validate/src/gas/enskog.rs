@@ -11,6 +11,7 @@ pub(super) const ENSKOG: Case = Case {
     about: "Collisions of a ball in a unit of time after Enskog, at packings 0.1 and 0.3, disks and balls; self-diffusion of balls \
             over Enskog's against molecular dynamics (Erpenbeck & Wood 1991). Disks diffuse the faster the longer one waits.",
     slow: true,
+    reduced: 1.0,
     run: enskog,
 };
 

@@ -10,6 +10,7 @@ pub(super) const EQUATION_OF_STATE: Case = Case {
     about: "P V / N T of hard disks at packings 0.3, 0.5 and 0.65 (Kolafa & Rottner 2006) and of hard balls at 0.1, 0.3 and \
             0.49 (Kolafa), from the virial of the collisions; and between walls, where the walls must say the same.",
     slow: true,
+    reduced: 1.0,
     run: equation_of_state,
 };
 

@@ -10,6 +10,7 @@ pub(super) const FIGURE_11: Case = Case {
     about: "Figure 11 of Deng, Hu, Li & Zhang (2012): four balls A, B, C, D and a wall E, C at rest. The list of nearest events is \
             theirs after each event, and the event-driven method has the same states to the bit.",
     slow: false,
+    reduced: 1.0,
     run: figure_11,
 };
 

@@ -10,6 +10,7 @@ pub(super) const FRAME_INDEPENDENCE: Case = Case {
     about: "The state at the end is the same to the bit with frames every 0.001, every 0.1 and none: gravity, a thermal and a swinging \
             wall, a piston, a partition that is lifted, two species, collisions with loss.",
     slow: false,
+    reduced: 1.0,
     run: frame_independence,
 };
 

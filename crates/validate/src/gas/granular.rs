@@ -10,6 +10,7 @@ pub(super) const GRANULAR: Case = Case {
     about: "Balls that lose a fiftieth of their approach speed in every collision cool after Haff (J. Fluid Mech. 134, 1983, 401): \
             T = T0 / (1 + t / tau)^2, tau from Enskog's collision rate (van Noije & Ernst, Granular Matter 1, 1998, 57). Boxes too small for whirls to grow; down to T0 / 100.",
     slow: false,
+    reduced: 1.0,
     run: granular,
 };
 

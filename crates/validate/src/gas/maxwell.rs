@@ -10,6 +10,7 @@ pub(super) const MAXWELL: Case = Case {
     about: "Balls of equal speed have Maxwell's speeds after 20 collisions each (chi-square test); over 10^8 collisions energy \
             stays and nothing overlaps; with velocities turned round after 3 collisions each, every ball returns.",
     slow: true,
+    reduced: 1.0,
     run: maxwell,
 };
 

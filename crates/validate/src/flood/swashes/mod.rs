@@ -7,6 +7,7 @@ mod channels;
 mod profile;
 
 use super::rows;
+use crate::device::is_reduced;
 use crate::{Case, Options, Row};
 use corpuscle_model::ModelError;
 use std::path::Path;
@@ -17,6 +18,7 @@ pub(super) const SWASHES: Case = Case {
             h_exact at two spacings, the second twice the first, and the order between them. Steady flows begin as they are and must \
             stay while water passes through; at both ends the channel runs on evenly.",
     slow: true,
+    reduced: 2.0,
     run: swashes,
 };
 
@@ -72,8 +74,12 @@ fn swashes(options: &Options) -> Vec<Row> {
 impl Solution {
     fn measure(&self, folder: &Path) -> Result<Vec<Row>, ModelError> {
         let path = folder.join(self.file).with_extension("txt");
-        let [fine, coarse] = [(self.error)(&path, self.spacing)?, (self.error)(&path, 2.0 * self.spacing)?];
         let measure = |what: &str| format!("{}_{what}", self.file);
+        let coarse = (self.error)(&path, 2.0 * self.spacing)?;
+        if is_reduced() {
+            return Ok(vec![Row::at_most(SWASHES.name, &measure("error"), coarse, "", self.bound)]);
+        }
+        let fine = (self.error)(&path, self.spacing)?;
         let error = Row::at_most(SWASHES.name, &measure("error"), fine, "", self.bound);
         let twice = Row::beside(SWASHES.name, &measure("error_at_twice"), coarse, "", fine, "for the order");
         let order = super::order(fine, coarse, 2.0);
