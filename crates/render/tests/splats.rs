@@ -11,7 +11,7 @@ const SIZE: [u32; 2] = [321, 200];
 /// Raster units have corners on a grid of 1/256 pixel and add up numbers of 11 bits: channels may be off by so much, of 255 ...
 const OFF: u8 = 2;
 /// ... but in this share of all pixels, which lie on rims of discs.
-const RIMS: f64 = 0.004;
+const RIMS: f64 = 0.0005;
 
 fn stage() -> Stage {
     Stage::new([-1.0, -1.0, -0.3], [1.0, 1.0, 0.5])
@@ -50,8 +50,11 @@ fn picture(gpu: &Gpu, splats: bool, camera: &Camera, stage: &Stage, fill: impl F
     fill(&mut fluid);
     let target = Target::new(gpu, SIZE, 1).unwrap();
     let things: &mut [&mut dyn Drawable] = &mut [&mut fluid];
+    gpu.check().unwrap();
     renderer.draw(&target, stage, camera, &Light::day(), things, None);
-    renderer.read(&target).unwrap()
+    let image = renderer.read(&target).unwrap();
+    gpu.check().unwrap();
+    image
 }
 
 /// Share of pixels of which a channel is off by more than `OFF`.
@@ -70,14 +73,14 @@ fn compare(gpu: &Gpu, what: &str, camera: &Camera, droplets: &[Droplet]) {
     let apart = apart(&splats, &sprites);
     println!("{what}: {:.3} % of pixels off, {:.1} % are water", 100.0 * apart, 100.0 * water);
     assert!(apart < RIMS, "{what}: {apart}");
-    assert!(water > 0.02, "{what}: nothing is seen");
+    assert!(water > 0.01, "{what}: nothing is seen");
 }
 
 #[test]
 fn splats_look_as_sprites_do() {
     let Some(gpu) = require_gpu("splats") else { return };
     // Far away discs are smaller than pixels; near they are larger than one thread draws, some off screen and some behind the eye.
-    for (what, distance) in [("middling", 1.0), ("far", 6.0), ("near", 0.3), ("within", 0.05)] {
+    for (what, distance) in [("middling", 1.0), ("far", 4.0), ("near", 0.3), ("within", 0.05)] {
         compare(&gpu, what, &from(distance), &pond());
     }
     compare(&gpu, "from above", &Camera::plan(&stage(), 1.6, [0.0; 4]), &pond());

@@ -68,15 +68,17 @@ pub(super) struct Instance {
 /// Particles on the device that are drawn in one go.
 #[derive(Debug, Clone)]
 pub(super) enum Batch {
-    /// So many, which the last number of `told` is too.
+    /// So many, which is in `told` too, at [`COUNT`].
     Counted { instances: wgpu::Buffer, told: wgpu::Buffer, count: u32 },
     /// As many as four numbers on the device tell: corners, particles, the firsts of both, from byte `at` of `told` on. From byte `splats`
-    /// on it has the groups of threads that splat them; its last number is how many they are.
+    /// on it has the groups of threads that splat them, and at [`COUNT`] how many they are.
     Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64, splats: u64 },
 }
 
 /// Threads in a group of those that splat particles: `GROUP` of splat.wgsl.
 const SPLAT_THREADS: u32 = 128;
+/// Which of the numbers that splats are told is that of particles: `COUNT` of splat.wgsl.
+const COUNT: usize = 25;
 
 impl Batch {
     /// These.
@@ -84,10 +86,12 @@ impl Batch {
         let count = all.len() as u32;
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
         let instances = filled(gpu, "droplets", bytemuck::cast_slice(all), usage);
-        Self::Counted { instances, told: storage(gpu, "how many droplets", &[0, 0, 0, count]), count }
+        let mut told = [0; COUNT + 1];
+        told[COUNT] = count;
+        Self::Counted { instances, told: storage(gpu, "how many droplets", &told), count }
     }
 
-    /// The particles, and the numbers whose last is how many.
+    /// The particles, and the numbers that tell at [`COUNT`] how many.
     pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         match self {
             Self::Counted { instances, told, .. } | Self::Told { instances, told, .. } => [instances, told],

@@ -3,7 +3,7 @@
 #import splat
 
 @group(1) @binding(1) var<storage, read> droplets: array<Droplet>;
-// Its last number is how many there are.
+// How many there are, at COUNT.
 @group(1) @binding(2) var<storage, read> told: array<u32>;
 // The bits of the distance at each pixel, the other way round, so that the nearest is the greatest and 0 is nothing: positive numbers
 // are in the order of their bits.
@@ -28,7 +28,7 @@ fn splat(droplet: Droplet, quad: Quad, pixel: vec2i, size: vec2f) {
 @compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) thread: u32) {
     let size = view.frame.xy;
-    if id.x < told[arrayLength(&told) - 1u] {
+    if id.x < told[COUNT] {
         let droplet = droplets[id.x];
         let quad = surface_quad(droplet);
         let box = box_of(quad, size);
