@@ -22,6 +22,10 @@ pub(super) const DEPTH: BindingType = BindingType::Texture {
     view_dimension: wgpu::TextureViewDimension::D2,
     multisampled: false,
 };
+/// Numbers that a shader reads.
+pub(super) const READ: BindingType = numbers(true);
+/// Numbers that a shader changes.
+pub(super) const CHANGED: BindingType = numbers(false);
 /// A sampler that mixes.
 pub(super) const SAMPLER: BindingType = BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
 pub(super) use buffer::{TEXTURE as PLAIN, UNIFORM};
@@ -33,6 +37,11 @@ pub(super) const fn written(format: wgpu::TextureFormat) -> BindingType {
         format,
         view_dimension: wgpu::TextureViewDimension::D2,
     }
+}
+
+const fn numbers(read_only: bool) -> BindingType {
+    let ty = wgpu::BufferBindingType::Storage { read_only };
+    BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None }
 }
 
 /// The layout of a group, bindings 0, 1, ...

@@ -1,7 +1,8 @@
 //! A particle of a fluid, as it is drawn.
 
 use crate::Stage;
-use corpuscle_gpu::wgpu;
+use crate::buffer::{filled, storage};
+use corpuscle_gpu::{Gpu, wgpu};
 use glam::{DVec2, DVec3};
 
 /// A particle of a fluid, as it is drawn: a ball, or flattened along a direction.
@@ -67,21 +68,52 @@ pub(super) struct Instance {
 /// Particles on the device that are drawn in one go.
 #[derive(Debug, Clone)]
 pub(super) enum Batch {
-    /// So many.
-    Counted(wgpu::Buffer, u32),
-    /// As many as four numbers on the device tell: corners, particles, the firsts of both, from byte `at` of `told` on.
-    Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64 },
+    /// So many, which is in `told` too, at [`COUNT`].
+    Counted { instances: wgpu::Buffer, told: wgpu::Buffer, count: u32 },
+    /// As many as four numbers on the device tell: corners, particles, the firsts of both, from byte `at` of `told` on. From byte `splats`
+    /// on it has the groups of threads that splat them, and at [`COUNT`] how many they are.
+    Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64, splats: u64 },
 }
 
+/// Threads in a group of those that splat particles: `GROUP` of splat.wgsl.
+const SPLAT_THREADS: u32 = 128;
+/// Which of the numbers that splats are told is that of particles: `COUNT` of splat.wgsl.
+const COUNT: usize = 25;
+
 impl Batch {
+    /// These.
+    pub fn counted(gpu: &Gpu, all: &[Instance]) -> Self {
+        let count = all.len() as u32;
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
+        let instances = filled(gpu, "droplets", bytemuck::cast_slice(all), usage);
+        let mut told = [0; COUNT + 1];
+        told[COUNT] = count;
+        Self::Counted { instances, told: storage(gpu, "how many droplets", &told), count }
+    }
+
+    /// The particles, and the numbers that tell at [`COUNT`] how many.
+    pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
+        match self {
+            Self::Counted { instances, told, .. } | Self::Told { instances, told, .. } => [instances, told],
+        }
+    }
+
+    /// Runs a kernel with a thread for each.
+    pub fn splat(&self, pass: &mut wgpu::ComputePass<'_>) {
+        match self {
+            Self::Counted { count, .. } => pass.dispatch_workgroups(count.div_ceil(SPLAT_THREADS), 1, 1),
+            Self::Told { told, splats, .. } => pass.dispatch_workgroups_indirect(told, *splats),
+        }
+    }
+
     /// Draws a quad for each.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>) {
         match self {
-            Self::Counted(instances, count) => {
+            Self::Counted { instances, count, .. } => {
                 pass.set_vertex_buffer(0, instances.slice(..));
                 pass.draw(0..4, 0..*count);
             }
-            Self::Told { instances, told, at } => {
+            Self::Told { instances, told, at, .. } => {
                 pass.set_vertex_buffer(0, instances.slice(..));
                 pass.draw_indirect(told, *at);
             }

@@ -22,8 +22,19 @@ struct Sprite {
     @location(5) @interpolate(flat) matter: vec4f,
 }
 
-// Corner `index` of the quad round a particle of this radius.
-fn sprite(droplet: Droplet, index: u32, radius: f32, flatness: f32) -> Sprite {
+// The quad round a particle, in the plane across the line of sight to its middle.
+struct Quad {
+    middle: vec3f,
+    // From its middle to the middles of two sides.
+    across: vec3f,
+    up: vec3f,
+    // Radius and flatness of what is drawn on it.
+    radius: f32,
+    flatness: f32,
+}
+
+// The quad round a particle of this radius.
+fn quad_round(droplet: Droplet, radius: f32, flatness: f32) -> Quad {
     // No smaller than a pixel, or it would fall between them.
     let least = 0.75 * pixel_at(droplet.place);
     let wide = max(radius, least);
@@ -38,17 +49,32 @@ fn sprite(droplet: Droplet, index: u32, radius: f32, flatness: f32) -> Sprite {
     let distance = max(length(droplet.place - view.eye.xyz), 1e-6);
     let sine = min(wide / distance, 0.95);
     let wider = select(1.0, inverseSqrt(1.0 - sine * sine), view.eye.w > 0.5);
-    let corner = wider * (vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0);
-    let offset = corner.x * wide * along + corner.y * high * cross(sight, along);
+    return Quad(
+        droplet.place,
+        wider * wide * along,
+        wider * high * cross(sight, along),
+        wide,
+        max(flatness, least / wide * 0.1),
+    );
+}
+
+// A place on the quad, `offset` from its middle.
+fn sprite_at(droplet: Droplet, quad: Quad, offset: vec3f) -> Sprite {
     var out: Sprite;
-    out.clip = view.clip_from_world * vec4f(droplet.place + offset, 1.0);
+    out.clip = view.clip_from_world * vec4f(quad.middle + offset, 1.0);
     out.offset = offset;
-    out.middle = droplet.place;
-    out.radius = wide;
+    out.middle = quad.middle;
+    out.radius = quad.radius;
     out.normal = droplet.normal;
-    out.flatness = max(flatness, least / wide * 0.1);
+    out.flatness = quad.flatness;
     out.matter = droplet.matter;
     return out;
+}
+
+// Corner `index` of a quad, from its middle.
+fn corner_of(quad: Quad, index: u32) -> vec3f {
+    let corner = vec2f(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
+    return corner.x * quad.across + corner.y * quad.up;
 }
 
 // Where the line of sight through a place on the quad enters and leaves the particle, as lengths from that place; the first

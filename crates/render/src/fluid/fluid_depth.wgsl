@@ -1,6 +1,5 @@
 // The nearest surface of all particles: its distance along the line of sight of the picture's middle.
-#import droplet
-#import fluid
+#import droplet_depth
 
 struct Nearest {
     @location(0) distance: f32,
@@ -9,19 +8,15 @@ struct Nearest {
 
 @vertex
 fn vertex(droplet: Droplet, @builtin(vertex_index) index: u32) -> Sprite {
-    return sprite(droplet, index, droplet.radius, droplet.flatness);
+    let quad = surface_quad(droplet);
+    return sprite_at(droplet, quad, corner_of(quad, index));
 }
 
 @fragment
 fn fragment(in: Sprite) -> Nearest {
-    let direction = ray_through(in.middle + in.offset).direction;
-    let hit = crossing(in, direction);
-    if hit.x > hit.y {
+    let surface = surface_at(in);
+    if !surface.met {
         discard;
     }
-    let place = in.middle + in.offset + hit.x * direction;
-    if any(place.xy < fluid.within.xy) || any(place.xy > fluid.within.zw) {
-        discard;
-    }
-    return Nearest(dot(place - view.eye.xyz, view.forward.xyz), depth_at(place));
+    return Nearest(distance_of(surface.place), depth_at(surface.place));
 }

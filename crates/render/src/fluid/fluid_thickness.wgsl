@@ -1,55 +1,13 @@
 // How much water is in a line of sight, in metres, and foam, added up over all particles; last, how well they cover it.
-#import droplet
-
-// The length of a line of sight in water is bounded where it grazes the surface.
-const LEAST_COSINE: f32 = 0.08;
-// Flecks of foam that a particle carries.
-const FLECKS: i32 = 5;
+#import droplet_matter
 
 @vertex
 fn vertex(droplet: Droplet, @builtin(vertex_index) index: u32) -> Sprite {
-    if droplet.matter.x > 0.0 {
-        return sprite(droplet, index, droplet.matter.z, 0.0);
-    }
-    return sprite(droplet, index, droplet.radius, droplet.flatness);
+    let quad = matter_quad(droplet);
+    return sprite_at(droplet, quad, corner_of(quad, index));
 }
 
 @fragment
 fn fragment(in: Sprite) -> @location(0) vec4f {
-    let direction = ray_through(in.middle + in.offset).direction;
-    if in.matter.x <= 0.0 {
-        let hit = crossing(in, direction);
-        let chord = max(hit.y - hit.x, 0.0);
-        return vec4f(view.frame.z * chord, in.matter.y * chord, chord, select(0.0, 1.0, chord > 0.0));
-    }
-    // Where the line of sight meets the surface; the share of the column is the kernel's (poly6, Mueller et al. 2003).
-    let cosine = dot(in.normal, direction);
-    let slant = select(-1.0, 1.0, cosine > 0.0) * max(abs(cosine), LEAST_COSINE);
-    let place = in.offset - dot(in.normal, in.offset) / slant * direction;
-    let out = dot(place, place) / (in.radius * in.radius);
-    let left = max(1.0 - out, 0.0);
-    let share = left * left * left;
-    var foam = 0.0;
-    if in.matter.y > 0.0 {
-        foam = in.matter.y * share * flecks(in, place);
-    }
-    return vec4f(in.matter.x * share / abs(slant), foam, share, share);
-}
-
-// A pattern of specks that goes with the particle, 1 on average.
-fn flecks(in: Sprite, place: vec3f) -> f32 {
-    var sum = 0.0;
-    for (var fleck = 0; fleck < FLECKS; fleck++) {
-        let random = hash(in.matter.w + f32(fleck) * 0.731);
-        let angle = 6.2831853 * random.x;
-        let at = 0.75 * in.radius * sqrt(random.y) * vec2f(cos(angle), sin(angle));
-        let away = (place.xy - at) / (0.22 * in.radius);
-        sum += exp(-dot(away, away));
-    }
-    return 0.25 + 1.6 * sum;
-}
-
-// Two numbers from 0 to 1 that look random.
-fn hash(seed: f32) -> vec2f {
-    return fract(sin(vec2f(seed * 127.1, seed * 311.7) + vec2f(1.7, 4.3)) * 43758.547);
+    return matter_at(in);
 }

@@ -1,7 +1,7 @@
 //! The pictures between the passes.
 
 use crate::{DEPTH_FORMAT, RenderError};
-use corpuscle_gpu::{Gpu, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, storage, texture_2d, wgpu};
 use wgpu::{TextureFormat, TextureUsages as Usage};
 
 /// Distance along the line of sight of the picture's middle; 0 where there is no fluid.
@@ -23,6 +23,35 @@ pub(super) struct Layers {
     pub thickness: wgpu::Texture,
     pub normals: wgpu::Texture,
     pub shaded: wgpu::Texture,
+    /// Once they are needed.
+    pub splats: Option<Splats>,
+}
+
+/// What compute shaders draw particles into, for one size of target.
+#[derive(Debug)]
+pub(super) struct Splats {
+    /// A number a pixel: see splat_depth.wgsl.
+    pub nearest: wgpu::Buffer,
+    /// So many numbers a pixel of the thickness: see splat_sums.wgsl.
+    pub sums: wgpu::Buffer,
+}
+
+/// `SUMS` of splat_sums.wgsl.
+const SUMS: usize = 5;
+
+impl Splats {
+    pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
+        let pixels = |[width, height]: [u32; 2]| width as usize * height as usize;
+        Ok(Self {
+            nearest: storage::<u32>(gpu, "splats", pixels(size))?,
+            sums: storage::<[u32; SUMS]>(gpu, "sums of splats", pixels(half(size)))?,
+        })
+    }
+}
+
+/// Thickness has no edges: half as many pixels each way are enough.
+fn half(size: [u32; 2]) -> [u32; 2] {
+    size.map(|length| length.div_ceil(2))
 }
 
 impl Layers {
@@ -30,16 +59,15 @@ impl Layers {
         let texture = |label, format, usage| texture_2d(gpu, label, size, format, usage | Usage::TEXTURE_BINDING);
         let distances =
             || texture("distances", DISTANCE, Usage::RENDER_ATTACHMENT | Usage::STORAGE_BINDING | Usage::COPY_SRC);
-        // Thickness has no edges: half as many pixels each way are enough.
-        let half = size.map(|length| length.div_ceil(2));
-        let drawn = Usage::RENDER_ATTACHMENT | Usage::TEXTURE_BINDING;
+        let drawn = Usage::RENDER_ATTACHMENT | Usage::STORAGE_BINDING | Usage::TEXTURE_BINDING;
         Ok(Self {
             size,
             distances: [distances()?, distances()?],
             nearest: texture("nearest", DEPTH_FORMAT, Usage::RENDER_ATTACHMENT)?,
-            thickness: texture_2d(gpu, "thickness", half, THICKNESS, drawn)?,
+            thickness: texture_2d(gpu, "thickness", half(size), THICKNESS, drawn)?,
             normals: texture("normals", NORMAL, Usage::STORAGE_BINDING | Usage::COPY_SRC)?,
             shaded: texture("shaded", SHADED, Usage::STORAGE_BINDING)?,
+            splats: None,
         })
     }
 }

@@ -1,6 +1,6 @@
 //! What all fluids share: pipelines, layouts.
 
-use super::bindings::{DEPTH, MIXED, PLAIN, SAMPLER, UNIFORM, WHOLE, layout, written};
+use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOLE, layout, written};
 use super::droplet::Instance;
 use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
 use super::{Fluid, FluidStyle};
@@ -14,6 +14,10 @@ use wgpu::ShaderStages;
 pub struct FluidPainter {
     pub(super) depth: wgpu::RenderPipeline,
     pub(super) thickness: wgpu::RenderPipeline,
+    pub(super) splat_depth: Filter,
+    pub(super) splat_nearest: Filter,
+    pub(super) splat_thickness: Filter,
+    pub(super) splat_added: Filter,
     pub(super) bilateral: Filter,
     pub(super) narrow_range: Filter,
     pub(super) square: Filter,
@@ -39,6 +43,11 @@ impl FluidPainter {
         let (gpu, view) = (renderer.gpu(), renderer.view_layout());
         let settings = layout(gpu, "fluid", ShaderStages::FRAGMENT, &[UNIFORM]);
         let [depth, thickness] = sprites(gpu, view, &settings);
+        let splat_depth = shaders::module(gpu, "splat_depth", include_str!("splat_depth.wgsl"));
+        let splat_nearest = shaders::module(gpu, "splat_nearest", include_str!("splat_nearest.wgsl"));
+        let splat_thickness = shaders::module(gpu, "splat_thickness", include_str!("splat_thickness.wgsl"));
+        let splat_added = shaders::module(gpu, "splat_added", include_str!("splat_added.wgsl"));
+        let splatted = [UNIFORM, READ, READ, CHANGED];
         let bilateral = shaders::module(gpu, "bilateral", include_str!("bilateral.wgsl"));
         let narrow = shaders::module(gpu, "narrow_range", include_str!("narrow_range.wgsl"));
         let normals = shaders::module(gpu, "fluid_normals", include_str!("fluid_normals.wgsl"));
@@ -49,6 +58,10 @@ impl FluidPainter {
         Self {
             depth,
             thickness,
+            splat_depth: Filter::new(gpu, view, &splat_depth, "main", &splatted),
+            splat_nearest: Filter::new(gpu, view, &splat_nearest, "main", &[READ, written(DISTANCE)]),
+            splat_thickness: Filter::new(gpu, view, &splat_thickness, "main", &splatted),
+            splat_added: Filter::new(gpu, view, &splat_added, "main", &[READ, written(THICKNESS)]),
             bilateral: Filter::new(gpu, view, &bilateral, "along", &smoothing),
             narrow_range: Filter::new(gpu, view, &narrow, "along", &smoothing),
             square: Filter::new(gpu, view, &narrow, "square", &smoothing),

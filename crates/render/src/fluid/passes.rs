@@ -48,6 +48,11 @@ impl Fluid {
     }
 
     fn draw_depth(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let painter = &self.painter;
+        if let Some(splats) = self.splats(layers) {
+            self.splat_into(&splats.nearest, &painter.splat_depth, frame);
+            return finish(&painter.splat_nearest, &splats.nearest, &layers.distances[0], frame);
+        }
         let depth = whole(&layers.nearest);
         let far = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
         let depth = wgpu::RenderPassDepthStencilAttachment { view: &depth, depth_ops: Some(far), stencil_ops: None };
@@ -55,7 +60,33 @@ impl Fluid {
     }
 
     fn draw_thickness(&self, layers: &Layers, frame: &mut Through<'_>) {
+        let painter = &self.painter;
+        if let Some(splats) = self.splats(layers) {
+            self.splat_into(&splats.sums, &painter.splat_thickness, frame);
+            return finish(&painter.splat_added, &splats.sums, &layers.thickness, frame);
+        }
         self.draw_sprites(frame, &layers.thickness, None, &self.painter.thickness);
+    }
+
+    /// Draws particles by a compute shader into numbers that are cleared before.
+    fn splat_into(&self, numbers: &wgpu::Buffer, splat: &Filter, frame: &mut Through<'_>) {
+        frame.encoder.clear_buffer(numbers, 0, None);
+        let groups: Vec<_> = self
+            .droplets
+            .iter()
+            .map(|batch| {
+                let [instances, told] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
+                let bound = [self.settings.as_entire_binding(), instances, told, numbers.as_entire_binding()];
+                group(frame.gpu, "splats", &splat.layout, &bound)
+            })
+            .collect();
+        let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&splat.pipeline);
+        pass.set_bind_group(0, frame.view, &[]);
+        for (batch, group) in self.droplets.iter().zip(&groups) {
+            pass.set_bind_group(1, group, &[]);
+            batch.splat(&mut pass);
+        }
     }
 
     fn draw_sprites(
@@ -154,6 +185,13 @@ impl Fluid {
         pass.set_bind_group(1, &group, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// Makes a texture of what was splatted.
+fn finish(filter: &Filter, numbers: &wgpu::Buffer, texture: &wgpu::Texture, frame: &mut Through<'_>) {
+    let view = whole(texture);
+    let bound = [numbers.as_entire_binding(), TextureView(&view)];
+    run(filter, &bound, [texture.width(), texture.height()], frame);
 }
 
 /// Runs a filter over all pixels.

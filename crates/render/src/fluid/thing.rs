@@ -1,11 +1,11 @@
 //! A fluid in a picture.
 
 use super::droplet::{Batch, Instance};
-use super::layers::Layers;
+use super::layers::{Layers, Splats};
 use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
-use crate::buffer::{instances, uniform};
+use crate::buffer::uniform;
 use crate::{Drawable, RenderError, Stage, Through};
-use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
+use corpuscle_gpu::{Gpu, GpuKind, read_rgba8, wgpu};
 use std::time::{Duration, Instant};
 
 /// Particles in one buffer at most: within the floor's 256 MiB.
@@ -23,6 +23,8 @@ pub struct Fluid {
     pub(super) along_columns: wgpu::Buffer,
     pub(super) droplets: Vec<Batch>,
     layers: Option<Layers>,
+    /// Whether compute shaders draw the particles.
+    splats: bool,
     /// Where passes are timed, what each took.
     times: Option<Vec<(FluidPass, Duration)>>,
     /// A pass that a test leaves out.
@@ -41,6 +43,7 @@ impl Fluid {
             along_columns: uniform(gpu, "along columns", &[0, 1, 0, 0]),
             droplets: Vec::new(),
             layers: None,
+            splats: gpu.kind == GpuKind::Card,
             times: None,
             #[cfg(test)]
             skipped: None,
@@ -50,13 +53,18 @@ impl Fluid {
     /// Takes these particles instead of those before. What has no finite place is left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
         let all: Vec<Instance> = droplets.into_iter().filter_map(|droplet| droplet.instance(&self.stage)).collect();
-        self.droplets =
-            all.chunks(MOST).map(|part| Batch::Counted(instances(gpu, "droplets", part), part.len() as u32)).collect();
+        self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
     }
 
     /// Takes water that lies on the device instead of the particles before, as it is when the picture is drawn.
     pub fn draw_from(&mut self, water: &DeviceWater) {
         self.droplets = water.droplets().into_iter().collect();
+    }
+
+    /// Has compute shaders draw the particles, or raster units. Without this, compute shaders do on a card, whose raster units are few
+    /// for so many small things, and raster units where software stands in for one.
+    pub fn splat(&mut self, splats: bool) {
+        self.splats = splats;
     }
 
     /// Times each pass of the pictures to come, which makes them wait for one another.
@@ -68,6 +76,11 @@ impl Fluid {
     /// [`Fluid::measure`].
     pub fn times(&self) -> &[(FluidPass, Duration)] {
         self.times.as_deref().unwrap_or_default()
+    }
+
+    /// Where compute shaders draw the particles, if they do.
+    pub(super) fn splats<'a>(&self, layers: &'a Layers) -> Option<&'a Splats> {
+        layers.splats.as_ref().filter(|_| self.splats)
     }
 
     /// The smoothed surface of the last picture, row by row from the top: distance along the line of sight of the picture's
@@ -109,8 +122,13 @@ impl Drawable for Fluid {
 
     fn draw_through(&mut self, frame: &mut Through<'_>) {
         let fits = self.layers.take().filter(|layers| layers.size == frame.size);
-        let layers = fits
+        let mut layers = fits
             .unwrap_or_else(|| Layers::new(frame.gpu, frame.size).expect("no larger than the target, which is there"));
+        if self.splats && layers.splats.is_none() {
+            // Raster units need no such memory.
+            layers.splats = Splats::new(frame.gpu, frame.size).ok();
+            self.splats = layers.splats.is_some();
+        }
         let timed = self.times.is_some();
         let mut times = Vec::new();
         if timed {

@@ -35,6 +35,8 @@ const FEWEST_CELLS: usize = 65_536;
 
 /// Where the draw is told, bytes from the start of the slots: see `water_begin.wgsl`.
 const DRAW: u64 = 72;
+/// The same of splats.
+const SPLATS: u64 = 88;
 
 /// Makes discs of the particles of shallow water on the device, and balls of those in the air. Remembers the foam on them from picture
 /// to picture.
@@ -130,7 +132,7 @@ impl DeviceWater {
     /// The particles as they are drawn; nothing before the first update.
     pub(super) fn droplets(&self) -> Option<Batch> {
         let (_, tasks) = self.drawn.as_ref()?;
-        Some(Batch::Told { instances: tasks.instances.clone(), told: tasks.groups.clone(), at: DRAW })
+        Some(Batch::Told { instances: tasks.instances.clone(), told: tasks.groups.clone(), at: DRAW, splats: SPLATS })
     }
 
     /// The faces of water at the borders, corner by corner, and how many corners; nothing before the first update.

@@ -13,8 +13,8 @@ const ON_GROUND: u64 = 4;
 const SETTLING: u64 = 5;
 /// Threads in a group of those over the nodes of borders.
 const BORDER_THREADS: u32 = 64;
-/// Numbers in the slots, those of the draw after them included.
-const TOLD: usize = 22;
+/// Numbers in the slots, those of the draw and of splats after them included.
+const TOLD: usize = 26;
 
 /// Pairs of looks whether some water stands too steep, where some does. After a pair heights are where they were before.
 const SETTLINGS: usize = 6;

@@ -79,7 +79,7 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
 
 /// What is drawn, by ids.
 fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<Instance> {
-    let Some(Batch::Told { instances, told, at }) = water.droplets() else { panic!("nothing is drawn") };
+    let Some(Batch::Told { instances, told, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
     let told: Vec<u32> = read(gpu, &told, at as usize / 4 + 4).unwrap();
     let [corners, count, ..] = told[at as usize / 4..] else { panic!("no draw is told") };
     assert_eq!(corners, 4);

@@ -6,7 +6,7 @@
 // Particles, cells, whether a height has changed, and the bits of the farthest reach at a border, m.
 @group(0) @binding(2) var<storage, read_write> sizes: array<u32>;
 // Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group, a
-// thread for each particle on the ground, the same while heights change. Then what is drawn: corners, particles, firsts.
+// thread for each particle on the ground, the same while heights change. Then what is drawn: corners, particles, firsts. Then for splats.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 
 @compute @workgroup_size(1)

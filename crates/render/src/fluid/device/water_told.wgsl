@@ -15,4 +15,9 @@ fn main() {
     groups[19] = start[of_ground(water) + 1u];
     groups[20] = 0u;
     groups[21] = 0u;
+    // For splats: groups of 128 threads, and how many are drawn.
+    groups[22] = (groups[19] + 127u) / 128u;
+    groups[23] = 1u;
+    groups[24] = 1u;
+    groups[25] = groups[19];
 }

@@ -1,0 +1,6 @@
+// How splats add up water and foam: in whole numbers, so fine that a millionth of a metre counts, and up to 4096 m.
+const PER_UNIT = 1048576.0;
+// The greatest number below 2^32 in single precision.
+const MOST_ADDED = 4294967040.0;
+// Numbers a pixel.
+const SUMS = 5u;
