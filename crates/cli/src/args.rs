@@ -357,6 +357,9 @@ pub struct BenchOptions {
     /// Floods on the graphics card: pictures a second as well, 1920 x 1080, one a step
     #[arg(long)]
     pub draw: bool,
+    /// With --draw: compute shaders draw the water's particles, not raster units
+    #[arg(long, requires = "draw")]
+    pub splats: bool,
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,

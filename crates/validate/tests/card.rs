@@ -44,7 +44,9 @@ fn rows(name: &str, options: &Options) -> Vec<Row> {
 }
 
 fn on_card(gpu: Gpu) -> Options {
-    Options { gpu: Some(gpu), ..options() }
+    let mut options = options();
+    options.gpu = Some(gpu);
+    options
 }
 
 /// Whether the card's row says what the processor's does.

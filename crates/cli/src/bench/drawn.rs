@@ -27,15 +27,19 @@ const LONG: f64 = 1e5;
 
 /// Draws the water of a bench; none where it is no bench of a flood.
 pub(super) fn drawn(name: &str, gpu: &Gpu, options: &BenchOptions) -> anyhow::Result<Option<Rate>> {
-    draw_for(name, gpu, if options.quick { QUICK } else { MEASURED }, if options.passes { TIMED } else { 0 })
+    let (seconds, timed) = (if options.quick { QUICK } else { MEASURED }, if options.passes { TIMED } else { 0 });
+    draw_for(name, gpu, seconds, timed, options.splats)
 }
 
 /// The same for so many seconds; then so many pictures whose passes are timed.
-fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32) -> anyhow::Result<Option<Rate>> {
+fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> anyhow::Result<Option<Rate>> {
     let Some((mut flood, ground)) = bench_water(name)? else { return Ok(None) };
     flood.use_card(gpu.clone())?;
     let settings = PictureSettings { samples: 1, ..PictureSettings::default() };
     let mut drawn = Drawn { pictures: Pictures::of_flood(gpu, flood.settings(), &ground, settings)?, flood };
+    if splats {
+        drawn.pictures.splat();
+    }
     let mut pace = Pace::new(gpu, seconds);
     drawn.go_on(|| pace.step())?;
     let Drawn { flood, .. } = &drawn;
@@ -150,11 +154,11 @@ mod tests {
     #[test]
     fn a_flood_is_drawn_and_nothing_else_is() {
         let Some(gpu) = require_gpu("a flood stepped and drawn") else { return };
-        let rate = draw_for("flood/paper-60k", &gpu, 0.0, 1).unwrap().unwrap();
+        let rate = draw_for("flood/paper-60k", &gpu, 0.0, 1, true).unwrap().unwrap();
         let once = |name: &str| rate.passes.iter().any(|pass| pass.name == name && pass.times_a_step == 1.0);
         assert!(once("composing") && (gpu.device.features().is_empty() || once("water_discs")), "{rate:?}");
         assert!(rate.rate > 0.0 && rate.particles > 50_000 && rate.device == Some(gpu.name.clone()), "{rate:?}");
         assert_eq!(rate.rate_unit, "pictures_per_s");
-        assert!(draw_for("gas/equilibrium", &gpu, 0.0, 0).unwrap().is_none());
+        assert!(draw_for("gas/equilibrium", &gpu, 0.0, 0, false).unwrap().is_none());
     }
 }

@@ -51,6 +51,8 @@ pub(super) struct FloodPicture {
     pub(super) times: Option<Times>,
     sides: WaterSides,
     pub(super) fluid: Option<Fluid>,
+    /// Whether compute shaders draw its particles.
+    pub(super) splats: bool,
     /// How many times clearer or more turbid the water is than clear deep water.
     turbid: f64,
     /// Where depth is drawn as a map has it, its classes.
@@ -101,6 +103,7 @@ impl FloodPicture {
             times: None,
             sides: WaterSides::new(&studio.renderer, &stage),
             fluid: None,
+            splats: false,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
             depth: (look == GroundLook::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
             blues: ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() },
@@ -155,6 +158,7 @@ impl FloodPicture {
         let style = || FluidStyle { within, ..FluidStyle::water(radius).turbid(self.turbid) };
         // Its style is that of the first particles there are, so that it does not change in a film.
         let fluid = self.fluid.get_or_insert_with(|| studio.fluids.fluid(gpu, stage, style()));
+        fluid.splat(self.splats);
         if let Some(particles) = moment.on_device {
             let water = match &mut self.device_water {
                 Some(water) => water,

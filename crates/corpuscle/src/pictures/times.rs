@@ -18,6 +18,13 @@ impl Pictures {
         }
     }
 
+    /// From now on compute shaders draw the particles of a flood's water in the place of raster units.
+    pub fn splat(&mut self) {
+        if let Subject::Flood(flood) = &mut self.subject {
+            flood.splats = true;
+        }
+    }
+
     /// What they have taken since, by name: kernels that make discs by the device's own clock, where it has one; passes over pixels from
     /// the start of their encoding to their end on the device.
     pub fn taken(&self) -> Vec<(&'static str, Taken)> {

@@ -5,7 +5,7 @@ use super::layers::{Layers, Splats};
 use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::buffer::uniform;
 use crate::{Drawable, RenderError, Stage, Through};
-use corpuscle_gpu::{Gpu, GpuKind, read_rgba8, wgpu};
+use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
 use std::time::{Duration, Instant};
 
 /// Particles in one buffer at most: within the floor's 256 MiB.
@@ -43,7 +43,7 @@ impl Fluid {
             along_columns: uniform(gpu, "along columns", &[0, 1, 0, 0]),
             droplets: Vec::new(),
             layers: None,
-            splats: gpu.kind == GpuKind::Card,
+            splats: false,
             times: None,
             #[cfg(test)]
             skipped: None,
@@ -61,8 +61,7 @@ impl Fluid {
         self.droplets = water.droplets().into_iter().collect();
     }
 
-    /// Has compute shaders draw the particles, or raster units. Without this, compute shaders do on a card, whose raster units are few
-    /// for so many small things, and raster units where software stands in for one.
+    /// Has compute shaders draw the particles, or raster units, which do without this: no card has been measured with the former.
     pub fn splat(&mut self, splats: bool) {
         self.splats = splats;
     }
