@@ -357,7 +357,7 @@ pub struct BenchOptions {
     /// Floods on the graphics card: pictures a second as well, 1920 x 1080, one a step
     #[arg(long)]
     pub draw: bool,
-    /// With --draw: compute shaders draw the water's particles, not raster units
+    /// Draw the water by compute shaders, not raster units, with --draw
     #[arg(long, requires = "draw")]
     pub splats: bool,
     /// Where to compute

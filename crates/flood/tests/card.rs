@@ -3,7 +3,7 @@
 use corpuscle_flood::{ByHand, Flood, Particle};
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Balance, Model, ModelError};
-use corpuscle_scene::{FloodScene, Scene};
+use corpuscle_scene::{FloodScene, Scene, builtin};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -494,4 +494,22 @@ fn what_a_hand_changes_is_changed_on_the_card() {
     let [host, card] = [&host, &card].map(|flood| flood.ledger().balances[0].inflow);
     // Six seconds of it on 2400 m2, but for what falls in the eight steps that are booked together.
     assert!((host / 8.0 - 1.0).abs() < 0.1 && (card / host - 1.0).abs() < 0.05, "{host} {card}");
+}
+
+/// Particles of scheme paper three times as far apart as the scene has them, and nine times as heavy: their forces come to be no numbers.
+#[test]
+fn water_whose_forces_are_no_numbers_breaks_down_with_an_error() {
+    let Some(gpu) = require_gpu("a breakdown on the card") else { return };
+    let coarse = [("flood.spacing_m".to_owned(), "3".to_owned())];
+    let mut scene = Scene::parse(builtin("flood/cuboid").unwrap().text, "flood/cuboid", &coarse).unwrap();
+    scene.resolve_defaults();
+    let scene = scene.flood().unwrap();
+    let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
+    let mut both = [(); 2].map(|()| Flood::new(&scene.flood, 1, Path::new("."), Arc::clone(&terrain)).unwrap());
+    both[1].use_card(gpu).unwrap();
+    // Which of its numbers is none first depends on the device.
+    for flood in &mut both {
+        let error = flood.advance_to(20.0, &AtomicBool::new(false)).unwrap_err();
+        assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
+    }
 }

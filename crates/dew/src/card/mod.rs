@@ -15,6 +15,8 @@ mod solids;
 mod tasks;
 
 pub(crate) use layout::MOST_FANS;
+#[cfg(test)]
+pub(crate) use numbers::MANY;
 
 use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
@@ -145,6 +147,12 @@ impl Card {
     /// Parcels that there are, and that there is room for.
     pub fn filling(&self) -> [usize; 2] {
         [self.status.particles as usize, self.room]
+    }
+
+    /// Cells that there are.
+    #[cfg(test)]
+    pub fn cells(&self) -> u32 {
+        self.status.cells
     }
 
     /// Hands the state over.

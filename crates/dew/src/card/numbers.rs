@@ -14,7 +14,7 @@ const CELLS_BEYOND: f64 = BEYOND + 1.0;
 
 /// With so many parcels cells are half as large as the reach: that leaves out more of what is not near. Fewer are no work for a card, and
 /// with cells of the whole reach a lattice of them stays one: what its parcels sum up cancels in pairs.
-const MANY: usize = 50_000;
+pub(crate) const MANY: usize = 50_000;
 
 /// More cells are not sorted into.
 const MOST_CELLS: f64 = 16e6;

@@ -199,6 +199,10 @@ impl Card {
         };
         [low, high] = [low, high].map(|corner| [within(corner[0], 0), within(corner[1], 1)]);
         let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
+        // Water that has broken down may tell nothing of its reach.
+        if !(smallest.is_finite() && smallest > 0.0) {
+            smallest = self.bounds.size()[0];
+        }
         let most = (self.most_cells - 1) as f64;
         let columns_and_rows = |cell: f64| [width, height].map(|length| (length / cell).floor() + 1.0);
         let mut cell = smallest;

@@ -109,10 +109,20 @@ fn book(all: Partial) {
     status.high = all.high;
 }
 
+// By their bits: compilers take a comparison that does not hold for its opposite.
+fn is_numbers(values: vec2f) -> vec2<bool> {
+    return (bitcast<vec2u>(values) & vec2u(0x7f800000u)) != vec2u(0x7f800000u);
+}
+
+fn is_number(value: f32) -> bool {
+    return is_numbers(vec2f(value)).x;
+}
+
 fn decide() {
     // Scheme paper has steps of one length, whatever comes of its particles.
-    let force = abs(status.from_outside.x) + abs(status.from_outside.y);
-    if !(status.step > parameters.shortest_step) || !(force < FAR) {
+    let is_sound = is_number(status.step) && is_number(status.mean_h) && all(is_numbers(status.from_outside));
+    let has_reach = status.particles == 0u || status.mean_h > 0.0;
+    if !is_sound || !has_reach || status.step <= parameters.shortest_step {
         status.halted = BROKEN;
     } else if status.elapsed.sum + status.step > status.until || status.elapsed.sum >= status.look {
         status.halted = ARRIVED;

@@ -174,7 +174,7 @@ impl Flood {
             }
             let done = self.advance_to_look(time, look, stop, onlookers).map_err(|error| failed(&error))?;
             if done.broken {
-                return self.check(done.step);
+                return Err(self.breakdown(done.step));
             }
             if self.state.time >= look {
                 self.look();

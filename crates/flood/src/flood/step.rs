@@ -214,25 +214,34 @@ impl Flood {
         1e-9 * self.spacing
     }
 
-    pub(super) fn check(&self, step: f64) -> Result<(), ModelError> {
+    fn check(&self, step: f64) -> Result<(), ModelError> {
         let next = self.state.time_step;
-        // Scheme paper has steps of one length, whatever comes of its particles.
-        let is_number = self.state.external.iter().all(|force| force.is_finite());
-        if is_number && next.is_finite() && next > self.shortest_step() {
+        if self.has_forces() && next.is_finite() && next > self.shortest_step() {
             return Ok(());
         }
-        let what = if is_number {
+        Err(self.breakdown(step))
+    }
+
+    /// Scheme paper has steps of one length, whatever comes of its particles.
+    fn has_forces(&self) -> bool {
+        self.state.external.iter().all(|force| force.is_finite())
+    }
+
+    /// What ends a run that cannot go on after a step of so many seconds.
+    pub(super) fn breakdown(&self, step: f64) -> ModelError {
+        let next = self.state.time_step;
+        let what = if self.has_forces() {
             format!("the time step fell from {step:.3e} s to {next:.3e} s")
         } else {
             "a force on the water is no longer a number".into()
         };
-        Err(ModelError::Breakdown {
+        ModelError::Breakdown {
             time: self.state.time,
             step: self.state.steps,
             what: format!(
                 "{what}. Try a smaller flood.balanced.cfl (scheme balanced) or flood.paper.time_step_s (scheme paper), or look in the \
                  last frame for the place where the water is fast"
             ),
-        })
+        }
     }
 }
