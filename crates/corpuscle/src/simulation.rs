@@ -10,7 +10,7 @@ use corpuscle_terrain::Terrain;
 use std::any::Any;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A run pauses at least this often, to report progress and to keep its state.
 const PAUSES: f64 = 1000.0;
@@ -131,7 +131,7 @@ impl Simulation {
         start: Instant,
     ) -> Result<Status, Error> {
         let run = &self.scene.run;
-        let (until, keep_every) = (run.until_s, Duration::from_secs_f64(run.checkpoint_every_wall_s));
+        let (until, keep_every) = (run.until_s, run.checkpoint_every_wall_s);
         let [gauges, pauses] = [run.gauge_period_s(), until / PAUSES].map(|period| Schedule::new(period, until));
         let frames = Schedule::new(run.frame_period_s(), until);
         let pictures: Vec<_> =
@@ -147,7 +147,7 @@ impl Simulation {
             // From here on the run can be resumed, whatever ends it.
             self.keep(sinks, start)?;
         }
-        let mut keep_at = start + keep_every;
+        let mut kept = start;
         loop {
             let now = self.model.time();
             let frame = frames.after(now);
@@ -156,7 +156,8 @@ impl Simulation {
             let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
-            let mut along = Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keep_at, failed: None };
+            let keeping = Keeping { kept, every: keep_every };
+            let mut along = Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keeping, failed: None };
             self.model.advance_with(next, stop, &mut along)?;
             along.failed.map_or(Ok(()), Err)?;
             let has_arrived = self.model.time() >= next;
@@ -169,9 +170,9 @@ impl Simulation {
                 }
             }
             let stopped = self.model.time() < until && stop.load(Ordering::Relaxed);
-            if stopped || Instant::now() >= keep_at {
+            if stopped || keeping.is_due() {
                 self.keep(sinks, start)?;
-                keep_at = Instant::now() + keep_every;
+                kept = Instant::now();
             }
             if stopped {
                 return Ok(Status::Stopped);
@@ -237,6 +238,19 @@ impl Meter {
     }
 }
 
+/// When the state was last kept, and how often it is to be, s of wall-clock time.
+#[derive(Clone, Copy)]
+struct Keeping {
+    kept: Instant,
+    every: f64,
+}
+
+impl Keeping {
+    fn is_due(self) -> bool {
+        self.kept.elapsed().as_secs_f64() >= self.every
+    }
+}
+
 /// Goes along with the model from one frame or picture to the next.
 struct Along<'a, 'sink> {
     sinks: &'a mut [&'sink mut dyn Sink],
@@ -245,8 +259,7 @@ struct Along<'a, 'sink> {
     until: f64,
     meter: &'a Meter,
     on_progress: &'a mut dyn FnMut(&Progress),
-    /// When the state is to be kept next.
-    keep_at: Instant,
+    keeping: Keeping,
     /// What a sink failed with.
     failed: Option<Error>,
 }
@@ -268,6 +281,6 @@ impl Companion for Along<'_, '_> {
 
     fn passed(&mut self, passed: Passed) -> bool {
         (self.on_progress)(&self.meter.progress(passed, self.until));
-        self.failed.is_none() && Instant::now() < self.keep_at
+        self.failed.is_none() && !self.keeping.is_due()
     }
 }
