@@ -249,9 +249,11 @@ impl Flood {
             card.flows(&mut state.flows)?;
             card.falling(&mut state.falling)?;
             card.wetness(&mut state.wetness)?;
-            card.maps(&mut state.maps)?;
-            state.maps.set_last(looked);
-            state.next_look += done.looks as u64;
+            if done.looks > 0 {
+                card.maps(&mut state.maps)?;
+                state.maps.set_last(looked);
+                state.next_look += done.looks as u64;
+            }
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.owed, self.state.next_id) = (owed, done.next_id);
