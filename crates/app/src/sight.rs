@@ -31,5 +31,6 @@ impl Sight {
 
 /// What pictures show of a snapshot.
 pub(crate) fn moment(snapshot: &Snapshot) -> Moment<'_> {
-    Moment { frame: &snapshot.frame, on_device: None, paths: &snapshot.paths, container: snapshot.container }
+    let Snapshot { frame, on_device, paths, container, .. } = snapshot;
+    Moment { frame, on_device: on_device.as_ref(), paths, container: *container }
 }

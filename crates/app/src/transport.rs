@@ -40,6 +40,8 @@ pub struct Transport<'a> {
     pub times: f64,
     /// Pictures in a second.
     pub pictures: f64,
+    /// Where it is computed, and why there.
+    pub computed_on: Option<&'a str>,
 }
 
 impl Transport<'_> {
@@ -92,14 +94,19 @@ impl Transport<'_> {
             Some(_) => format!("{particles} balls"),
             None => format!("{particles} particles"),
         };
-        ui.label(RichText::new(words).small().weak());
+        let count = ui.label(RichText::new(words).small().weak());
+        let told = |response: egui::Response| match self.computed_on {
+            Some(computed_on) => response.on_hover_text(computed_on),
+            None => response,
+        };
+        told(count);
         let work = if self.scene.gas().is_some() { "collisions/s" } else { "particle steps/s" };
         let rate = if snapshot.playing {
             format!("{:.0} pictures/s  ·  {} {work}", self.pictures, text::short_number(snapshot.rate))
         } else {
             String::new()
         };
-        let quick = ui.label(RichText::new(rate).small().weak());
+        let quick = told(ui.label(RichText::new(rate).small().weak()));
         if snapshot.behind {
             let told = "This machine cannot compute the scene at this speed: it goes as fast as it can.";
             let mark = ui.label(RichText::new("as fast as it can").small().color(ui.visuals().warn_fg_color));

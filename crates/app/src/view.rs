@@ -1,6 +1,7 @@
 //! The window of the system.
 
 use crate::meter::Meter;
+use crate::physics::Backend;
 use crate::{Measurement, Meshes, Screen, Start, Window};
 use corpuscle::gpu::{Gpu, wgpu};
 use egui_wgpu::{RenderState, WgpuSetup, WgpuSetupCreateNew};
@@ -19,11 +20,12 @@ pub enum ViewError {
     NoDisplay(String),
 }
 
-/// Opens the window, and comes back when it is closed. With `measure` it counts pictures for so many seconds, and closes.
+/// Opens the window, and comes back when it is closed. Scenes are computed on a backend. With `measure` it counts pictures for so many seconds,
+/// and closes.
 ///
 /// # Errors
 /// [`ViewError`] where there is no display, or nothing that draws on it.
-pub fn view(start: Start, measure: Option<f64>) -> Result<Option<Measurement>, ViewError> {
+pub fn view(start: Start, backend: Backend, measure: Option<f64>) -> Result<Option<Measurement>, ViewError> {
     keep_memory();
     let measured = Arc::new(Mutex::new(None));
     let meter = measure.map(|seconds| Meter::new(seconds, measured.clone()));
@@ -48,7 +50,7 @@ pub fn view(start: Start, measure: Option<f64>) -> Result<Option<Measurement>, V
         if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
             context.egui_ctx.add_plugin(meshes);
         }
-        let window = Window::new(&context.egui_ctx, screen, start)?;
+        let window = Window::new(&context.egui_ctx, screen, start, backend)?;
         Ok(Box::new(App { window, meter }) as Box<dyn eframe::App>)
     };
     let ended = eframe::run_native("Corpuscle", options, Box::new(create));

@@ -178,12 +178,22 @@ fn film_length(text: &str) -> Result<f64, String> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
-    /// `run`: a GPU if there is one and the scene is large enough, else the CPU; `validate`, `bench`: the CPU
+    /// `run`, `view`: a GPU if there is one and the scene is large enough, else the CPU; `validate`, `bench`: the CPU
     Auto,
     /// The CPU, all cores
     Cpu,
     /// A GPU
     Gpu,
+}
+
+impl From<Backend> for corpuscle_app::physics::Backend {
+    fn from(backend: Backend) -> Self {
+        match backend {
+            Backend::Auto => Self::Auto,
+            Backend::Cpu => Self::Cpu,
+            Backend::Gpu => Self::Gpu,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -245,6 +255,9 @@ pub struct ViewOptions {
     /// Change a value of the scene, as in `--set flood.scheme=paper`; rows of lists are counted from 0
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, requires = "what")]
     pub set: Vec<(String, String)>,
+    /// Where to compute: `auto` takes the graphics card that draws, if it is one and the scene is large enough
+    #[arg(long, value_enum, default_value = "auto")]
+    pub backend: Backend,
     /// Play for so many seconds, tell how many pictures there were in a second, and close
     #[arg(long, value_name = "S", hide = true, requires = "what")]
     pub measure: Option<f64>,

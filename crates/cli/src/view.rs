@@ -16,7 +16,7 @@ pub fn view(options: &ViewOptions) -> anyhow::Result<ExitCode> {
         None => Start::Welcome,
         Some(name) => start(name, &options.set)?,
     };
-    let measured = open_window(start, options.measure)?;
+    let measured = open_window(start, options.backend.into(), options.measure)?;
     if let Some(Measurement { pictures_per_s, slowest_s, particles, pace }) = measured {
         println!(
             "{pictures_per_s:.1} pictures/s, the slowest took {slowest_s:.3} s; {particles} particles, \

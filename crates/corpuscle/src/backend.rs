@@ -24,6 +24,11 @@ impl Simulation {
         self.use_best_of(Gpu::open)
     }
 
+    /// The same with a device that is open.
+    pub fn use_best_on(&mut self, gpu: &Gpu) -> Choice {
+        self.use_best_of(|| Ok(gpu.clone()))
+    }
+
     fn use_best_of(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Choice {
         match self.try_card(open) {
             Ok(name) => Choice { is_gpu: true, why: format!("{name}, {} particles", self.model().particles()) },

@@ -1,8 +1,8 @@
 //! What is drawn on the card is what the frame has.
 
 use corpuscle_flood::Flood;
-use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
-use corpuscle_model::{Model, Values};
+use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, require_gpu};
+use corpuscle_model::{Companion, Model, Passed, Values};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -109,12 +109,13 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     let [mut shown, mut plain] = [(); 2].map(|()| on_card(FALL, &gpu));
     let stop = AtomicBool::new(false);
     let (mut last, mut times) = (Vec::new(), Vec::new());
-    let mut show = |time: f64, particles: &corpuscle_gpu::DeviceParticles| {
+    let mut show = |time: f64, particles: &DeviceParticles| {
         times.push(time);
         last = particles.read(&gpu).unwrap();
         stop.store(times.len() == 90, Ordering::Relaxed);
+        None
     };
-    shown.advance_shown(60.0, &stop, &mut show).unwrap();
+    shown.advance_shown(60.0, &stop, &mut (), &mut show).unwrap();
     assert_eq!((times.len(), shown.steps()), (90, 90));
     assert!(times.is_sorted() && (times[89] / shown.time() - 1.0).abs() < 0.1, "{times:?} {}", shown.time());
     last.sort_unstable_by_key(|particle| particle.id);
@@ -126,11 +127,81 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
 }
 
 #[test]
+fn who_asks_for_more_sees_water_drift_between_two_steps() {
+    let Some(gpu) = require_gpu("water between two steps") else { return };
+    let mut flood = on_card(PAPER, &gpu);
+    flood.advance_to(0.5, &AtomicBool::new(false)).unwrap();
+    let (stop, more) = (AtomicBool::new(false), 0.3 * flood.time_step());
+    let mut looks: Vec<(f64, Vec<DeviceParticle>)> = Vec::new();
+    let mut show = |time: f64, particles: &DeviceParticles| {
+        looks.push((time, particles.read(&gpu).unwrap()));
+        stop.store(looks.len() >= 6, Ordering::Relaxed);
+        Some(more)
+    };
+    flood.advance_shown(60.0, &stop, &mut (), &mut show).unwrap();
+    let times: Vec<f64> = looks.iter().map(|(time, _)| time - looks[0].0).collect();
+    assert!(times.len() >= 6 && times.is_sorted(), "{times:?}");
+    for pair in looks.windows(2) {
+        let since = (pair[1].0 - pair[0].0) as f32;
+        let same = pair[0].1.len() == pair[1].1.len() && pair[0].1.iter().zip(&pair[1].1).all(|(a, b)| a.id == b.id);
+        if (f64::from(since) - more).abs() > 1e-9 || !same {
+            continue;
+        }
+        let off = pair[0].1.iter().zip(&pair[1].1).flat_map(|(before, after)| {
+            (0..2).map(move |axis| (after.place[axis] - before.place[axis] - since * before.velocity[axis]).abs())
+        });
+        let (off, moved) = (off.fold(0.0_f32, f32::max), pair[0].1.iter().any(|water| water.velocity[0].abs() > 0.1));
+        assert!(off < 1e-4 && moved, "{off} m off");
+    }
+    let drifts = times.windows(2).filter(|pair| (pair[1] - pair[0] - more).abs() < 1e-9).count();
+    assert!(drifts >= 3, "{times:?}");
+}
+
+/// Takes gauges every tenth of a second, and is told how far it is.
+struct Rows(Vec<(f64, Vec<f64>)>);
+
+impl Companion for Rows {
+    fn gauges_after(&self, time: f64) -> Option<f64> {
+        Some(((time / 0.1 + 1e-9).floor() + 1.0) * 0.1)
+    }
+
+    fn gauges(&mut self, time: f64, row: &[f64]) {
+        self.0.push((time, row.to_vec()));
+    }
+
+    fn passed(&mut self, _passed: Passed) -> bool {
+        true
+    }
+}
+
+#[test]
+fn who_is_shown_every_step_has_the_gauges_of_who_is_not() {
+    let Some(gpu) = require_gpu("gauges beside a flood that is shown") else { return };
+    let stop = AtomicBool::new(false);
+    let [shown, plain] = [true, false].map(|is_shown| {
+        let (mut flood, mut rows) = (on_card(FALL, &gpu), Rows(Vec::new()));
+        if is_shown {
+            flood.advance_shown(1.05, &stop, &mut rows, &mut |_, _| None).unwrap();
+        } else {
+            flood.advance_with(1.05, &stop, &mut rows).unwrap();
+        }
+        rows.0
+    });
+    assert_eq!([&shown, &plain].map(Vec::len), [10, 10]);
+    for ((time, one), (same_time, other)) in shown.iter().zip(&plain) {
+        // What comes and goes is summed up batch by batch, and batches differ.
+        let is_near = one.iter().zip(other).all(|(one, other)| (one - other).abs() <= 1e-7 * one.abs());
+        assert!(time == same_time && is_near, "{time} s: {one:?} {other:?}");
+    }
+}
+
+#[test]
 fn without_a_card_nobody_is_shown_anything() {
     let Some(gpu) = require_gpu("a flood without a card") else { return };
     assert!(on_card(PAPER, &gpu).card().is_some_and(|card| card.device == gpu.device));
     let mut flood = open(PAPER);
     assert!(flood.card().is_none() && flood.on_device().unwrap().is_none());
-    flood.advance_shown(0.5, &AtomicBool::new(false), &mut |_, _| panic!("there is no card")).unwrap();
+    let mut show = |_: f64, _: &DeviceParticles| panic!("there is no card");
+    flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), &mut show).unwrap();
     assert!(flood.time() == 0.5 && flood.steps() > 0);
 }

@@ -34,6 +34,19 @@ pub trait Companion {
     fn passed(&mut self, passed: Passed) -> bool;
 }
 
+/// Nobody goes along.
+impl Companion for () {
+    fn gauges_after(&self, _time: f64) -> Option<f64> {
+        None
+    }
+
+    fn gauges(&mut self, _time: f64, _row: &[f64]) {}
+
+    fn passed(&mut self, _passed: Passed) -> bool {
+        true
+    }
+}
+
 /// [`Model::advance_with`] of a model that can be looked at wherever it stands: it is advanced from one time that is due to the next.
 ///
 /// # Errors

@@ -37,10 +37,14 @@ impl Filming {
             return Ok(());
         }
         let (frame, paths, container) = subject.look();
-        let moment = Moment { frame: &frame, on_device: None, paths: &paths, container };
-        let image = sight.still(&mut self.pictures, &moment)?;
+        self.add(&Moment { frame: &frame, on_device: None, paths: &paths, container }, sight)
+    }
+
+    /// Adds a picture of a moment.
+    pub fn add(&mut self, moment: &Moment<'_>, sight: &Sight) -> Result<(), Error> {
+        let image = sight.still(&mut self.pictures, moment)?;
         self.film.add(&image.rgba)?;
-        self.next = subject.time() + self.every;
+        self.next = moment.frame.time + self.every;
         Ok(())
     }
 
@@ -54,6 +58,7 @@ impl Filming {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::Backend;
     use corpuscle::gpu::require_gpu;
     use corpuscle::pictures::Hand;
     use corpuscle::scene::{Scene, builtin};
@@ -63,7 +68,7 @@ mod tests {
         let Some(gpu) = require_gpu("a film that follows the view") else { return };
         let name = "gas/free-expansion";
         let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
-        let subject = Subject::live(scene, Path::new("")).unwrap();
+        let subject = Subject::live(scene, Path::new(""), Backend::Cpu, &gpu).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();

@@ -1,6 +1,7 @@
 //! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
 
 mod filming;
+mod glide;
 mod pace;
 mod snapshot;
 mod subject;
@@ -38,6 +39,18 @@ pub(crate) fn round(value: f64) -> f64 {
     let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
     let far = |step: &f64| (step / value).ln().abs();
     steps.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(value)
+}
+
+/// Where steps are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Backend {
+    /// On the graphics card that draws the window, where it is one and the scene is work for it.
+    #[default]
+    Auto,
+    /// On the processor.
+    Cpu,
+    /// On the device that draws the window, whatever it is; a gas on the processor all the same.
+    Gpu,
 }
 
 /// What the physics is asked to do.
@@ -99,6 +112,8 @@ pub struct Opened {
     pub gauges: Vec<String>,
     /// What a user should know.
     pub warnings: Vec<String>,
+    /// Where it is computed, and why there, in words; none of a finished run.
+    pub computed_on: Option<String>,
     /// Of a finished run its gauges: times, s, and rows of values.
     pub history: Option<Vec<(f64, Vec<f64>)>>,
     /// Its ground, where it has one.
@@ -112,9 +127,31 @@ struct Shared {
     newest: Mutex<Option<Arc<Snapshot>>>,
     /// How it is seen, for films.
     sight: Mutex<Sight>,
+    /// Whether a single particle is followed.
+    follows: AtomicBool,
     /// Breaks off what is being computed, so that a command is taken.
     stop: AtomicBool,
     wake: Wake,
+}
+
+/// What it draws and computes on.
+#[derive(Clone, Copy)]
+struct Devices<'a> {
+    /// The window's.
+    gpu: &'a Gpu,
+    slow: &'a SlowDevice,
+    backend: Backend,
+}
+
+impl Shared {
+    fn publish(&self, snapshot: Snapshot) {
+        *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(snapshot));
+        (self.wake)();
+    }
+
+    fn sight(&self) -> Sight {
+        *self.sight.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The physics, seen from outside. Dropping it ends its thread.
@@ -126,17 +163,18 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// Starts the thread; pictures are made for a device, films drawn on one that may take long.
+    /// Starts the thread; pictures are made for a device, which may take the steps too, and films drawn on one that may take long.
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub(crate) fn start(gpu: &Gpu, slow: SlowDevice, wake: Wake) -> std::io::Result<Self> {
+    pub(crate) fn start(gpu: &Gpu, slow: SlowDevice, backend: Backend, wake: Wake) -> std::io::Result<Self> {
         let (commands, taken) = channel();
         let (tell, events) = channel();
-        let shared =
-            Arc::new(Shared { newest: Mutex::default(), sight: Mutex::default(), stop: AtomicBool::new(false), wake });
+        let (newest, sight) = (Mutex::default(), Mutex::default());
+        let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
+        let shared = Arc::new(Shared { newest, sight, follows, stop, wake });
         let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &tell, &own, (&gpu, &slow));
+        let run = move || thread::run(&taken, &tell, &own, Devices { gpu: &gpu, slow: &slow, backend });
         let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
     }
@@ -154,6 +192,11 @@ impl Physics {
     /// It is seen so from now on. Never waits.
     pub fn see(&self, sight: Sight) {
         *self.shared.sight.lock().unwrap_or_else(PoisonError::into_inner) = sight;
+    }
+
+    /// A single particle is followed from now on, or none: all of them come to the host again and again. Never waits.
+    pub fn follow(&self, follows: bool) {
+        self.shared.follows.store(follows, Ordering::Relaxed);
     }
 
     /// What it told since, the oldest first.

@@ -1,6 +1,7 @@
 //! What the physics shows at one time.
 
 use corpuscle::Sample;
+use corpuscle::gpu::DeviceParticles;
 use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
 use std::sync::Arc;
 
@@ -9,8 +10,12 @@ use std::sync::Arc;
 pub struct Snapshot {
     /// Number of the scene that it is of.
     pub number: u64,
-    /// The particles.
-    pub frame: Frame,
+    /// The time, and the particles; of a scene that goes on on the device that draws only those that are elsewhere.
+    pub frame: Arc<Frame>,
+    /// Particles that are drawn from where they lie.
+    pub on_device: Option<DeviceParticles>,
+    /// All particles as they last came to the host.
+    pub known: Arc<Frame>,
     /// The ways of those that are followed.
     pub paths: Vec<Path>,
     /// The box round them.

@@ -1,16 +1,17 @@
 //! What goes on in the thread: a scene that is computed, or a finished run that is shown again.
 
-use super::{Change, Measures};
+use super::{Backend, Change, Measures};
+use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
 use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
-use corpuscle::{Error, Sample, Simulation};
+use corpuscle::{Choice, Error, Sample, Simulation};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// What goes on.
 pub(super) enum Subject {
-    Live(Box<Simulation>),
+    Live(Box<Simulation>, Choice),
     Recorded(Box<Recorded>),
 }
 
@@ -29,9 +30,36 @@ pub(super) struct Recorded {
 }
 
 impl Subject {
-    /// A scene at its start.
-    pub fn live(scene: Scene, folder: &Path) -> Result<Self, Error> {
-        Ok(Self::Live(Box::new(Simulation::open(scene, folder)?)))
+    /// A scene at its start, on a backend, with the device of the window.
+    pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: &Gpu) -> Result<Self, Error> {
+        let mut simulation = Simulation::open(scene, folder)?;
+        let asked = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
+        let choice = match backend {
+            Backend::Auto => simulation.use_best_on(gpu),
+            Backend::Gpu if simulation.scene().gas().is_some() => asked(false, "a gas computes nowhere else"),
+            Backend::Gpu => {
+                simulation.use_this_gpu(gpu.clone())?;
+                asked(true, &gpu.name)
+            }
+            Backend::Cpu => asked(false, "as asked for"),
+        };
+        Ok(Self::Live(Box::new(simulation), choice))
+    }
+
+    /// What is computed where it is drawn, by a card; elsewhere particles come to the host for every picture.
+    pub fn gliding(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
+        match self {
+            Self::Live(simulation, _) if gpu.kind == GpuKind::Card && simulation.is_seen_on(gpu) => Some(simulation),
+            Self::Live(..) | Self::Recorded(_) => None,
+        }
+    }
+
+    /// The particles where they are drawn, as they stand.
+    pub fn on_device(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
+        match self {
+            Self::Live(simulation, _) if gpu.kind == GpuKind::Card => simulation.seen_on(gpu),
+            Self::Live(..) | Self::Recorded(_) => Ok(None),
+        }
     }
 
     /// A finished run at its start.
@@ -51,15 +79,25 @@ impl Subject {
     /// The scene as it stood at its start; of one that is computed, as it stands.
     pub fn simulation(&self) -> &Simulation {
         match self {
-            Self::Live(simulation) => simulation,
+            Self::Live(simulation, _) => simulation,
             Self::Recorded(run) => &run.simulation,
+        }
+    }
+
+    /// Where it is computed, and why there.
+    pub fn computed_on(&self) -> Option<String> {
+        match self {
+            Self::Live(_, Choice { is_gpu, why }) => {
+                Some(format!("Computed on the {}: {why}", if *is_gpu { "graphics card" } else { "CPU" }))
+            }
+            Self::Recorded(_) => None,
         }
     }
 
     /// The time shown, s.
     pub fn time(&self) -> f64 {
         match self {
-            Self::Live(simulation) => simulation.model().time(),
+            Self::Live(simulation, _) => simulation.model().time(),
             Self::Recorded(run) => run.time,
         }
     }
@@ -67,7 +105,7 @@ impl Subject {
     /// Where it ends, s.
     pub fn end(&self) -> f64 {
         match self {
-            Self::Live(simulation) => simulation.scene().run.until_s,
+            Self::Live(simulation, _) => simulation.scene().run.until_s,
             Self::Recorded(run) => run.end,
         }
     }
@@ -75,15 +113,15 @@ impl Subject {
     /// Where it waits next: who plays a scene on from its end wants to see more.
     pub fn next_end(&self) -> f64 {
         match self {
-            Self::Live(_) if self.time() >= self.end() => f64::INFINITY,
-            Self::Live(_) | Self::Recorded(_) => self.end(),
+            Self::Live(..) if self.time() >= self.end() => f64::INFINITY,
+            Self::Live(..) | Self::Recorded(_) => self.end(),
         }
     }
 
     /// Goes on to a time, or to where it was told to stop.
     pub fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
         match self {
-            Self::Live(simulation) => Ok(simulation.model_mut().advance_to(time, stop)?),
+            Self::Live(simulation, _) => Ok(simulation.model_mut().advance_to(time, stop)?),
             Self::Recorded(run) => run.show(time),
         }
     }
@@ -91,7 +129,7 @@ impl Subject {
     /// Shows another time of a finished run; nothing happens to a scene that is computed.
     pub fn seek(&mut self, time: f64) -> Result<(), Error> {
         match self {
-            Self::Live(_) => Ok(()),
+            Self::Live(..) => Ok(()),
             Self::Recorded(run) => run.show(time),
         }
     }
@@ -99,7 +137,7 @@ impl Subject {
     /// Changes what is computed; a finished run stays as it is.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         match self {
-            Self::Live(simulation) => change(simulation),
+            Self::Live(simulation, _) => change(simulation),
             Self::Recorded(_) => Ok(()),
         }
     }
@@ -107,7 +145,7 @@ impl Subject {
     /// Work done so far.
     pub fn work(&self) -> u64 {
         match self {
-            Self::Live(simulation) => simulation.model().particle_steps(),
+            Self::Live(simulation, _) => simulation.model().particle_steps(),
             Self::Recorded(_) => 0,
         }
     }
@@ -115,7 +153,7 @@ impl Subject {
     /// Names of the gauges.
     pub fn gauge_names(&self) -> Vec<String> {
         match self {
-            Self::Live(simulation) => simulation.model().gauge_columns().iter().map(GaugeColumn::header).collect(),
+            Self::Live(simulation, _) => simulation.model().gauge_columns().iter().map(GaugeColumn::header).collect(),
             Self::Recorded(run) => run.gauges.columns.clone(),
         }
     }
@@ -123,7 +161,7 @@ impl Subject {
     /// Of a finished run its gauges over time.
     pub fn history(&self) -> Option<Vec<(f64, Vec<f64>)>> {
         match self {
-            Self::Live(_) => None,
+            Self::Live(..) => None,
             Self::Recorded(run) => {
                 let rows = run.gauges.times.iter().copied().zip(run.gauges.rows.iter().cloned());
                 Some(rows.collect())
@@ -134,7 +172,7 @@ impl Subject {
     /// What is seen now.
     pub fn look(&self) -> (Frame, Vec<Way>, Option<Container>) {
         match self {
-            Self::Live(simulation) => {
+            Self::Live(simulation, _) => {
                 let model = simulation.model();
                 (model.frame(), model.paths(), model.container())
             }
@@ -149,7 +187,7 @@ impl Subject {
     /// The water at a place of a flood that is computed.
     pub fn water_at(&self, place: [f64; 2]) -> Option<Sample> {
         match self {
-            Self::Live(simulation) => simulation.water_at(place),
+            Self::Live(simulation, _) => simulation.water_at(place),
             Self::Recorded(_) => None,
         }
     }
@@ -157,7 +195,7 @@ impl Subject {
     /// What is measured now.
     pub fn measures(&self) -> Measures {
         match self {
-            Self::Live(simulation) => Measures::of(simulation.model()),
+            Self::Live(simulation, _) => Measures::of(simulation.model()),
             Self::Recorded(run) => {
                 let row = run.gauges.times.partition_point(|time| *time <= run.time).saturating_sub(1);
                 let gauges = run.gauges.rows.get(row).cloned().unwrap_or_default();

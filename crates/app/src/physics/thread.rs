@@ -1,37 +1,33 @@
 //! The thread itself.
 
 use super::filming::Filming;
+use super::glide::{self, Fault};
 use super::pace::Pace;
 use super::subject::Subject;
-use super::{Command, Event, Measures, Opened, Shared, Snapshot, default_pace};
-use crate::darkroom::SlowDevice;
-use corpuscle::Error;
+use super::{Command, Devices, Event, Measures, Opened, Shared, Snapshot, default_pace};
 use corpuscle::gpu::Gpu;
+use corpuscle::model::Frame;
 use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
+use corpuscle::{Error, Sample};
 use corpuscle_render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
-use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Pictures in a second at most.
-const PICTURES: f64 = 60.0;
+pub(super) const PICTURES: f64 = 60.0;
 /// Time between two measurements at least, and how many times longer than one takes.
-const MEASURE: Duration = Duration::from_millis(120);
+pub(super) const MEASURE: Duration = Duration::from_millis(120);
 const MEASURE_SHARE: u32 = 10;
 /// Size that pictures are opened with; whoever shows them makes them larger.
 const SMALL: [u32; 2] = [16, 16];
 
-/// Takes commands and goes on until there is nobody to give commands. Pictures are made for the first device, films drawn on the other.
-pub(super) fn run(
-    commands: &Receiver<Command>,
-    tell: &Sender<Event>,
-    shared: &Arc<Shared>,
-    (gpu, slow): (&Gpu, &SlowDevice),
-) {
-    let mut thread = Thread { tell, shared, gpu, slow, number: 0, running: None };
+/// Takes commands and goes on until there is nobody to give commands.
+pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &Arc<Shared>, devices: Devices<'_>) {
+    let mut thread = Thread { tell, shared, devices, number: 0, running: None };
     loop {
         let next = match thread.time_left() {
             None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -64,31 +60,51 @@ pub(super) fn run(
 struct Thread<'a> {
     tell: &'a Sender<Event>,
     shared: &'a Arc<Shared>,
-    gpu: &'a Gpu,
-    slow: &'a SlowDevice,
+    devices: Devices<'a>,
     /// Scenes opened so far.
     number: u64,
     running: Option<Running>,
 }
 
 /// The scene that is open.
-struct Running {
-    subject: Subject,
+pub(super) struct Running {
+    pub subject: Subject,
     playing: bool,
     /// Where it waits next, s.
-    until: f64,
-    pace: Pace,
+    pub until: f64,
+    pub pace: Pace,
     /// When the last slice began.
     began: Instant,
-    measured: Arc<Measures>,
+    pub measured: Arc<Measures>,
     /// When it may be measured again.
-    measure_at: Instant,
-    /// Work done and when, as it was last told; work in a second since.
-    work: (u64, Instant),
-    rate: f64,
+    pub measure_at: Instant,
+    pub rate: Rate,
     /// Where to tell of the water.
-    probe: Option<[f64; 2]>,
-    filming: Option<Filming>,
+    pub probe: Option<[f64; 2]>,
+    pub filming: Option<Filming>,
+    /// The water there, and all particles, as they last came.
+    pub probed: Option<Sample>,
+    pub known: Arc<Frame>,
+}
+
+/// Work done in a second.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rate {
+    /// Work done, and when, as it was last told.
+    told: (u64, Instant),
+    pub now: f64,
+}
+
+impl Rate {
+    /// So much work is done by now.
+    pub fn note(&mut self, work: u64) {
+        let (before, when) = self.told;
+        let since = when.elapsed().as_secs_f64();
+        if since > 0.5 {
+            self.now = work.saturating_sub(before) as f64 / since;
+            self.told = (work, Instant::now());
+        }
+    }
 }
 
 impl Thread<'_> {
@@ -106,7 +122,10 @@ impl Thread<'_> {
 
     fn take(&mut self, command: Command) {
         let command = match command {
-            Command::Open(scene, folder) => return self.open(|| Subject::live(*scene, &folder)),
+            Command::Open(scene, folder) => {
+                let Devices { gpu, backend, .. } = self.devices;
+                return self.open(|| Subject::live(*scene, &folder, backend, gpu));
+            }
             Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
             command => command,
         };
@@ -154,11 +173,11 @@ impl Thread<'_> {
         let simulation = subject.simulation();
         let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
         let scenery = Scenery::of(simulation);
-        let pictures = Pictures::open_scenery(self.gpu, &scenery, settings)?;
+        let pictures = Pictures::open_scenery(self.devices.gpu, &scenery, settings)?;
         let scene = simulation.scene().clone();
         let now = Instant::now();
         let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
-        let history = subject.history();
+        let (history, computed_on) = (subject.history(), subject.computed_on());
         let terrain = simulation.terrain().cloned();
         let end = subject.end();
         self.running = Some(Running {
@@ -168,18 +187,30 @@ impl Thread<'_> {
             began: now,
             measured: Arc::default(),
             measure_at: now,
-            work: (subject.work(), now),
-            rate: 0.0,
+            rate: Rate { told: (subject.work(), now), now: 0.0 },
             probe: None,
             filming: None,
+            probed: None,
+            known: Arc::new(Frame { time: 0.0, sets: Vec::new() }),
             subject,
         });
-        Ok(Opened { number: self.number, scene, pictures, scenery, gauges, warnings, history, terrain, end })
+        Ok(Opened {
+            number: self.number,
+            scene,
+            pictures,
+            scenery,
+            gauges,
+            warnings,
+            computed_on,
+            history,
+            terrain,
+            end,
+        })
     }
 
     fn film(&mut self, path: &Path) {
         let Some(running) = &mut self.running else { return };
-        let gpu = self.slow.gpu().map_err(|error| Error::from(RenderError::from(error)));
+        let gpu = self.devices.slow.gpu().map_err(|error| Error::from(RenderError::from(error)));
         match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.asked)) {
             Ok(filming) => {
                 running.filming = Some(filming);
@@ -203,6 +234,10 @@ impl Thread<'_> {
     fn slice(&mut self) {
         let Some(running) = &mut self.running else { return };
         let begun = Instant::now();
+        if running.subject.gliding(self.devices.gpu).is_some() {
+            running.began = begun;
+            return self.glide();
+        }
         let from = running.subject.time();
         let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
         // A film has its pictures at their times.
@@ -212,15 +247,40 @@ impl Thread<'_> {
         let gone = running.subject.advance_to(to, &self.shared.stop);
         let now = running.subject.time();
         running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
+        self.look_for_film();
+        self.went(gone);
+    }
+
+    /// Goes on where it is drawn until something is asked for, or looks at its particles.
+    fn glide(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        match glide::glide(running, self.shared, self.devices.gpu, self.number) {
+            Err(Fault::OfModel(error)) => self.went(Err(error)),
+            Err(Fault::OfFilm(error)) => {
+                running.filming = None;
+                self.tell(Event::Filmed(Err(error.to_string())));
+                self.went(Ok(()));
+            }
+            Ok(recalled) => {
+                self.went(Ok(()));
+                if let (Some(recalled), Some(running)) = (recalled, &mut self.running) {
+                    running.measure_at = Instant::now() + MEASURE.max(recalled.elapsed() * MEASURE_SHARE);
+                }
+            }
+        }
+    }
+
+    /// Shows what it came to, and waits where it came to an end.
+    fn went(&mut self, gone: Result<(), Error>) {
+        let Some(running) = &mut self.running else { return };
         let told = match gone {
             Err(error) => Some(Event::Fault(error.to_string())),
-            Ok(()) if now >= running.until => Some(Event::Ended),
+            Ok(()) if running.subject.time() >= running.until => Some(Event::Ended),
             Ok(()) => None,
         };
         if told.is_some() {
             running.wait();
         }
-        self.look_for_film();
         self.publish();
         if let Some(event) = told {
             self.tell(event);
@@ -231,7 +291,7 @@ impl Thread<'_> {
     fn look_for_film(&mut self) {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
-        let sight = *self.shared.sight.lock().unwrap_or_else(PoisonError::into_inner);
+        let sight = self.shared.sight();
         if let Err(error) = filming.look(&running.subject, &sight) {
             running.filming = None;
             self.tell(Event::Filmed(Err(error.to_string())));
@@ -248,9 +308,10 @@ impl Thread<'_> {
     /// Shows how it stands now.
     fn publish(&mut self) {
         let Some(running) = &mut self.running else { return };
-        let snapshot = running.snapshot(self.number);
-        *self.shared.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(snapshot));
-        (self.shared.wake)();
+        match running.snapshot(self.number, self.devices.gpu) {
+            Ok(snapshot) => self.shared.publish(snapshot),
+            Err(error) => self.tell(Event::Fault(error.to_string())),
+        }
     }
 }
 
@@ -262,30 +323,30 @@ impl Running {
         self.measure_at = Instant::now();
     }
 
-    fn snapshot(&mut self, number: u64) -> Snapshot {
+    fn snapshot(&mut self, number: u64, gpu: &Gpu) -> Result<Snapshot, Error> {
         let now = Instant::now();
         if now >= self.measure_at {
             self.measured = Arc::new(self.subject.measures());
             self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
         }
-        let since = now.duration_since(self.work.1).as_secs_f64();
-        if since > 0.5 {
-            self.rate = (self.subject.work() - self.work.0) as f64 / since;
-            self.work = (self.subject.work(), now);
-        }
+        self.rate.note(self.subject.work());
         let (frame, paths, container) = self.subject.look();
-        Snapshot {
+        self.known = Arc::new(frame);
+        self.probed = self.probe.and_then(|place| self.subject.water_at(place));
+        Ok(Snapshot {
             number,
-            particles: frame.sets.iter().map(|set| set.len()).sum(),
-            frame,
+            particles: self.known.sets.iter().map(|set| set.len()).sum(),
+            frame: self.known.clone(),
+            on_device: self.subject.on_device(gpu)?,
+            known: self.known.clone(),
             paths,
             container,
             playing: self.playing,
             pace: self.pace.real,
             behind: self.playing && self.pace.is_behind(),
-            rate: if self.playing { self.rate } else { 0.0 },
-            probed: self.probe.and_then(|place| self.subject.water_at(place)),
+            rate: if self.playing { self.rate.now } else { 0.0 },
+            probed: self.probed,
             measures: self.measured.clone(),
-        }
+        })
     }
 }

@@ -43,7 +43,7 @@ impl Window {
             open.picture.hand.plan = !open.picture.hand.plan;
         }
         if pressed(Key::Escape) {
-            (open.picked, open.spot) = (None, None);
+            (open.picked, open.spot, open.clicked) = (None, None, None);
         }
         for (key, (quality, ..)) in [Key::Num1, Key::Num2, Key::Num3].into_iter().zip(QUALITIES) {
             if pressed(key) {

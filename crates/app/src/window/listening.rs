@@ -31,8 +31,9 @@ impl Window {
         {
             open.plots.take(&newest);
             if let Some(picked) = &mut open.picked {
-                picked.follow(&newest.frame);
+                picked.follow(&newest.known);
             }
+            self.physics.follow(open.picked.is_some() || open.clicked.is_some());
             open.snapshot = Some(newest);
         }
     }

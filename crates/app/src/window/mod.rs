@@ -13,7 +13,7 @@ pub use source::{Source, Start};
 
 use crate::darkroom::{Darkroom, SlowDevice};
 use crate::gallery::Gallery;
-use crate::physics::{Command, Opened, Physics, Snapshot, Wake, default_pace};
+use crate::physics::{Backend, Command, Opened, Physics, Snapshot, Wake, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::touch::Hands;
@@ -89,16 +89,16 @@ impl PictureClock {
 }
 
 impl Window {
-    /// A window that begins so.
+    /// A window that begins so, and has scenes computed on a backend.
     ///
     /// # Errors
     /// Where the system gives no thread for the physics or for pictures that take long.
-    pub fn new(context: &Context, screen: Screen, start: Start) -> std::io::Result<Self> {
+    pub fn new(context: &Context, screen: Screen, start: Start, backend: Backend) -> std::io::Result<Self> {
         style::set_up(context);
         let wake = context.clone();
         let wake: Wake = Arc::new(move || wake.request_repaint());
         let slow = SlowDevice::beside(&screen.gpu);
-        let physics = Physics::start(&screen.gpu, slow.clone(), wake.clone())?;
+        let physics = Physics::start(&screen.gpu, slow.clone(), backend, wake.clone())?;
         let darkroom = Darkroom::start(slow, wake)?;
         let mut window = Self {
             screen,
@@ -190,7 +190,7 @@ impl Window {
     fn take(&mut self, opened: Opened) {
         let Some(awaited) = self.awaited.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, scenery, terrain, end, .. } = opened;
+        let Opened { number, scene, pictures, scenery, terrain, end, computed_on, .. } = opened;
         let recorded = matches!(awaited, Awaited::Run(_));
         let source = match awaited {
             Awaited::Scene(source) => source,
@@ -220,6 +220,7 @@ impl Window {
             parameters: parameters(&source),
             plots,
             picked: None,
+            clicked: None,
             terrain,
             spot: None,
             filming: false,
@@ -229,6 +230,7 @@ impl Window {
             end,
             scene,
             picture,
+            computed_on,
             snapshot: None,
             playing: false,
             times,

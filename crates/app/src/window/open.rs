@@ -9,9 +9,10 @@ use crate::picture::{Picture, Quality};
 use crate::plots::Plots;
 use crate::spot::Spot;
 use crate::touch::Hands;
+use corpuscle::model::Frame;
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
-use egui::Ui;
+use egui::{Pos2, Rect, Ui};
 use std::sync::Arc;
 
 /// The scene that is open.
@@ -27,11 +28,15 @@ pub(super) struct Open {
     pub(super) parameters: Parameters,
     pub(super) plots: Plots,
     pub(super) picked: Option<Picked>,
+    /// Where the picture was clicked on, and the particles that were known then, until it is known what is there.
+    pub(super) clicked: Option<(Pos2, Arc<Frame>)>,
     /// The ground, and the spot of it that was picked.
     pub(super) terrain: Option<Arc<Terrain>>,
     pub(super) spot: Option<Spot>,
     /// What hands hold of a gas.
     pub(super) hands: Hands,
+    /// Where it is computed, and why there.
+    pub(super) computed_on: Option<String>,
     /// True while a film is made.
     pub(super) filming: bool,
     pub(super) snapshot: Option<Arc<Snapshot>>,
@@ -79,28 +84,38 @@ impl Open {
 
     /// Picks what was clicked on, and draws what is picked.
     pub(super) fn pick(&mut self, ui: &Ui, response: &egui::Response, snapshot: &Snapshot) {
-        let Some(shown) = self.picture.shown() else { return };
-        if response.clicked()
-            && let Some(pointer) = response.interact_pointer_pos()
-        {
-            self.picked = Picked::at(shown, response.rect, &snapshot.frame, pointer);
-            let place = self.picked.as_ref().and_then(|picked| picked.place(&snapshot.frame));
-            self.spot = self.terrain.as_ref().and_then(|terrain| match place {
-                // Who clicks on water means the place below it.
-                Some(place) => Some(Spot::under(terrain, place)),
-                None => Spot::at(shown, response.rect, terrain, pointer),
-            });
-            if let Some(picked) = &mut self.picked {
-                picked.follow(&snapshot.frame);
-            }
+        if response.clicked() {
+            self.clicked = response.interact_pointer_pos().map(|at| (at, snapshot.known.clone()));
         }
+        // Where particles were is not where they are: a click waits until they come.
+        let newer = |(_, before): &(Pos2, Arc<Frame>)| {
+            snapshot.known.time == snapshot.frame.time || !Arc::ptr_eq(before, &snapshot.known)
+        };
+        if let Some((pointer, _)) = self.clicked.take_if(|clicked| newer(clicked)) {
+            self.pick_at(pointer, response.rect, &snapshot.known);
+        }
+        let Some(shown) = self.picture.shown() else { return };
         let painter = ui.painter_at(response.rect);
         let over = Over { shown, rect: response.rect, painter: &painter, dark: ui.visuals().dark_mode };
         if let Some(spot) = &self.spot {
             spot.paint(&over);
         }
         if let Some(picked) = &self.picked {
-            picked.paint(&over, &snapshot.frame, (shown.stage.to - shown.stage.from).max_element());
+            picked.paint(&over, &snapshot.known, (shown.stage.to - shown.stage.from).max_element());
+        }
+    }
+
+    fn pick_at(&mut self, pointer: Pos2, rect: Rect, known: &Frame) {
+        let Some(shown) = self.picture.shown() else { return };
+        self.picked = Picked::at(shown, rect, known, pointer);
+        let place = self.picked.as_ref().and_then(|picked| picked.place(known));
+        self.spot = self.terrain.as_ref().and_then(|terrain| match place {
+            // Who clicks on water means the place below it.
+            Some(place) => Some(Spot::under(terrain, place)),
+            None => Spot::at(shown, rect, terrain, pointer),
+        });
+        if let Some(picked) = &mut self.picked {
+            picked.follow(known);
         }
     }
 }

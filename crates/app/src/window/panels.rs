@@ -34,8 +34,10 @@ impl Window {
     pub(super) fn strip(&mut self, ui: &mut Ui, pictures: f64) -> Option<Pressed> {
         let open = self.open.as_ref()?;
         let snapshot = open.snapshot.as_deref();
-        let Open { scene, end, recorded, playing, times, .. } = open;
-        Transport { scene, end: *end, recorded: *recorded, snapshot, playing: *playing, times: *times, pictures }.ui(ui)
+        let Open { scene, end, recorded, playing, times, computed_on, .. } = open;
+        let computed_on = computed_on.as_deref();
+        let [recorded, playing] = [*recorded, *playing];
+        Transport { scene, end: *end, recorded, snapshot, playing, times: *times, pictures, computed_on }.ui(ui)
     }
 
     pub(super) fn scenes(&mut self, ui: &mut Ui) {
@@ -84,7 +86,7 @@ impl Window {
         }
         if let Some(open) = &mut self.open
             && let (Some(picked), Some(snapshot)) = (&open.picked, &open.snapshot)
-            && picked.card(&mut over, &snapshot.frame, open.scene.gas().is_none_or(|gas| gas.units == Units::Si))
+            && picked.card(&mut over, &snapshot.known, open.scene.gas().is_none_or(|gas| gas.units == Units::Si))
         {
             open.picked = None;
         }

@@ -2,7 +2,8 @@
 
 mod reference;
 
-use corpuscle::gpu::{Gpu, require_gpu, wgpu};
+use corpuscle::gpu::{Gpu, GpuKind, require_gpu, wgpu};
+use corpuscle_app::physics::Backend;
 use corpuscle_app::{Meshes, Screen, Start, Window};
 use egui::mutex::RwLock;
 use egui::{Role, TexturesDelta, vec2};
@@ -58,8 +59,19 @@ pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
     stage_by(test, theme, start, false)
 }
 
+/// A window whose device is taken for a graphics card, which computes too.
+#[allow(dead_code)]
+pub fn stage_of_card(test: &str) -> Option<Stage> {
+    let mut card = require_gpu(test)?;
+    card.kind = GpuKind::Card;
+    Some(stage_on(card, egui::Theme::Light, Start::Welcome, false, Backend::Gpu))
+}
+
 fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Option<Stage> {
-    let gpu = require_gpu(test)?;
+    Some(stage_on(require_gpu(test)?, theme, start, by_meshes, Backend::Auto))
+}
+
+fn stage_on(gpu: Gpu, theme: egui::Theme, start: Start, by_meshes: bool, backend: Backend) -> Stage {
     let renderer = egui_wgpu::Renderer::new(
         &gpu.device,
         FORMAT,
@@ -79,7 +91,7 @@ fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Op
             if let Some(meshes) = Meshes::new(&own.gpu, FORMAT).filter(|_| by_meshes) {
                 context.add_plugin(meshes);
             }
-            *made_first.borrow_mut() = Some(Window::new(context, own, start).unwrap());
+            *made_first.borrow_mut() = Some(Window::new(context, own, start, backend).unwrap());
         })
         .build_ui_state(
             move |ui, window: &mut Option<Window>| {
@@ -90,7 +102,7 @@ fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Op
             },
             None,
         );
-    Some(Stage { harness, screen, renderer })
+    Stage { harness, screen, renderer }
 }
 
 impl Stage {

@@ -2,13 +2,55 @@
 
 use super::{Moment, Pictures, Subject};
 use crate::{Error, Simulation};
+#[cfg(feature = "gpu")]
+use corpuscle_flood::Flood;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
-use corpuscle_model::{Frame, Model};
+use corpuscle_model::ModelError;
+use corpuscle_model::{Companion, Frame, Model};
+use std::any::Any;
+use std::sync::atomic::AtomicBool;
+
+/// What is seen of a model that steps on the device that draws, while it goes on.
+#[derive(Debug, Clone)]
+pub struct Glance {
+    /// The time, s, and what of it the host has without asking the device.
+    pub frame: Frame,
+    /// The particles, where they lie. They change with the next step.
+    pub on_device: DeviceParticles,
+}
 
 impl Simulation {
     /// The graphics card that takes the steps of a flood, where one does.
     pub(super) fn card(&self) -> Option<Gpu> {
         card_of(self.model())
+    }
+
+    /// The particles as they stand, where the model steps on a device and can be drawn there; else none.
+    ///
+    /// # Errors
+    /// [`Error::Model`] where the device has too little memory.
+    pub fn seen_on(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
+        if self.is_seen_on(gpu) { particles_of(self.model()) } else { Ok(None) }
+    }
+
+    /// Whether the model steps on a device and can be drawn there without its particles coming back.
+    pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
+        self.model().name() == "flood" && self.card().is_some_and(|card| card.device == gpu.device)
+    }
+
+    /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
+    /// glance after each step, and says after how long, s, it wants the next, if no step ends before; particles come back only at the end.
+    ///
+    /// # Errors
+    /// [`Error::Model`] where the model breaks down, or its device is lost.
+    pub fn advance_shown(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+        show: &mut dyn FnMut(Glance) -> Option<f64>,
+    ) -> Result<(), Error> {
+        Ok(advance_shown(self.model_mut(), time, stop, companion, show)?)
     }
 }
 
@@ -39,17 +81,45 @@ impl Pictures {
 
 #[cfg(feature = "gpu")]
 fn card_of(model: &dyn Model) -> Option<Gpu> {
-    flood(model).and_then(corpuscle_flood::Flood::card)
+    flood(model).and_then(Flood::card)
 }
 
 #[cfg(feature = "gpu")]
 fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
-    Ok(flood(model).map(corpuscle_flood::Flood::on_device).transpose()?.flatten())
+    Ok(flood(model).map(Flood::on_device).transpose()?.flatten())
 }
 
 #[cfg(feature = "gpu")]
-fn flood(model: &dyn Model) -> Option<&corpuscle_flood::Flood> {
-    (model as &dyn std::any::Any).downcast_ref()
+fn flood(model: &dyn Model) -> Option<&Flood> {
+    (model as &dyn Any).downcast_ref()
+}
+
+#[cfg(feature = "gpu")]
+fn advance_shown(
+    model: &mut dyn Model,
+    time: f64,
+    stop: &AtomicBool,
+    companion: &mut dyn Companion,
+    show: &mut dyn FnMut(Glance) -> Option<f64>,
+) -> Result<(), ModelError> {
+    let mut show = |time: f64, particles: &DeviceParticles| {
+        show(Glance { frame: Frame { time, sets: Vec::new() }, on_device: particles.clone() })
+    };
+    match (model as &mut dyn Any).downcast_mut::<Flood>() {
+        Some(flood) => flood.advance_shown(time, stop, companion, &mut show),
+        None => model.advance_with(time, stop, companion),
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn advance_shown(
+    model: &mut dyn Model,
+    time: f64,
+    stop: &AtomicBool,
+    companion: &mut dyn Companion,
+    _: &mut dyn FnMut(Glance) -> Option<f64>,
+) -> Result<(), ModelError> {
+    model.advance_with(time, stop, companion)
 }
 
 #[cfg(not(feature = "gpu"))]

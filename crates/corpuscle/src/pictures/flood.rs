@@ -131,7 +131,8 @@ impl FloodPicture {
             Look::Simple if self.depth.is_none() => sets.iter().map(|set| self.discs(studio, set)).collect(),
             _ => Vec::new(),
         };
-        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
+        let is_full = studio.look == Look::Full || sets.is_empty();
+        let is_wet = self.depth.is_none() && is_full && self.fill_water(studio, moment, &sets)?;
         let quick = studio.look == Look::Simple;
         self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
@@ -197,7 +198,8 @@ impl FloodPicture {
         }
         let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
         let blues = || Key::Values("Depth, m".into(), self.blues.clone());
-        let simple = (studio.look == Look::Simple).then(blues);
+        let has_discs = moment.on_device.is_none() || !moment.frame.sets.is_empty();
+        let simple = (studio.look == Look::Simple && has_discs).then(blues);
         let key = self.depth.as_ref().map(|depth| Key::Kinds(depth.key())).or(simple);
         Overlay {
             title: title.into(),

@@ -20,6 +20,7 @@ use corpuscle_render::{
 };
 use corpuscle_scene::{Flood, ModelScene};
 use corpuscle_terrain::Terrain;
+pub use device::Glance;
 use dew::DewPicture;
 use flood::FloodPicture;
 use gas::GasPicture;
@@ -57,8 +58,8 @@ impl Default for PictureSettings {
 pub struct Moment<'a> {
     /// The particles.
     pub frame: &'a Frame,
-    /// Those of a flood as buffers of the device that draws, in place of the frame's: only the full look draws them, where the ground
-    /// does not show depth.
+    /// Those of a flood as buffers of the device that draws. They are drawn in place of the frame's, but where the ground shows depth,
+    /// and in the simple look, if the frame has any.
     pub on_device: Option<&'a DeviceParticles>,
     /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
     pub paths: &'a [Path],

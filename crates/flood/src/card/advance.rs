@@ -21,11 +21,15 @@ const LAID_OUT: u64 = 64;
 /// A batch of steps takes about so long at most, s: then the host looks whether it is to stop.
 const BATCH: f64 = 0.2;
 
+/// The same where somebody watches, who may take as long as he likes for each: rows of gauges come after it.
+const WATCHED: f64 = 0.1;
+
 /// Who looks at the particles after each step, on the device.
 pub(crate) struct Watch<'a> {
     pub shown: Shown,
-    /// Is told the time, s, as far as the host knows it without asking, and where the particles are.
-    pub show: &'a mut dyn FnMut(f64, &DeviceParticles),
+    /// Is told the time, s, as far as the host knows it without asking, and where the particles are. Gives after how long, s, it wants to
+    /// see them again, if no step ends before.
+    pub show: &'a mut dyn FnMut(f64, &DeviceParticles) -> Option<f64>,
     /// Whether this was the last.
     pub stop: &'a AtomicBool,
 }
@@ -135,11 +139,16 @@ impl Card {
 
     /// Orders so many steps from the time `now` s on, one by one, and shows what each leaves.
     fn order_watched(&mut self, count: u32, now: f64, watch: &mut Watch<'_>) -> Result<(), GpuError> {
+        let began = Instant::now();
         for step in 0..count {
             self.order(|tasks, pass| if step == 0 { tasks.steps(pass, 1) } else { tasks.step(pass) });
             let time = now + f64::from(step + 1) * f64::from(self.status.step);
-            (watch.show)(time, &self.seen(watch.shown)?);
-            if watch.stop.load(Ordering::Relaxed) {
+            let mut since = Some(0.0);
+            while let Some(passed) = since.filter(|passed| *passed < f64::from(self.status.step)) {
+                let particles = self.seen(Shown { since: passed, ..watch.shown })?;
+                since = (watch.show)(time + passed, &particles).filter(|more| *more > 0.0).map(|more| passed + more);
+            }
+            if watch.stop.load(Ordering::Relaxed) || began.elapsed().as_secs_f64() > WATCHED {
                 break;
             }
         }

@@ -19,7 +19,17 @@ pub(super) struct Onlookers<'a> {
     pub call_back: bool,
 }
 
-impl Onlookers<'_> {
+impl<'a> Onlookers<'a> {
+    /// A companion alone.
+    pub fn of(companion: &'a mut dyn Companion) -> Self {
+        Self { companion: Some(companion), ..Self::default() }
+    }
+
+    /// Whether rows of gauges are to be taken.
+    pub fn measure(&self) -> bool {
+        self.companion.as_ref().is_some_and(|companion| companion.gauges_after(self.told).is_some())
+    }
+
     /// The next rows of gauges up to a time, s.
     pub fn due(&self, until: f64) -> Vec<f64> {
         let Some(companion) = &self.companion else { return Vec::new() };
@@ -45,9 +55,8 @@ impl Flood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        mut onlookers: Onlookers<'_>,
     ) -> Result<(), ModelError> {
-        let mut onlookers = Onlookers { companion: Some(companion), ..Onlookers::default() };
         self.advance_on_card(time, stop, &mut onlookers)?;
         if self.shown < time {
             return Ok(());

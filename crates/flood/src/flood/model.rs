@@ -55,7 +55,7 @@ impl Model for Flood {
     #[cfg(feature = "gpu")]
     fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
         if self.card.is_some() {
-            self.advance_measured(time, stop, companion)
+            self.advance_measured(time, stop, Onlookers::of(companion))
         } else {
             advance_with(self, time, stop, companion)
         }

@@ -169,7 +169,7 @@ impl Flood {
             let look = if keeps_maps { f64::INFINITY } else { self.state.next_look as f64 * self.map_period };
             let before = (self.state.steps, onlookers.told);
             self.make_room().map_err(|error| failed(&error))?;
-            if onlookers.companion.is_some() {
+            if onlookers.measure() {
                 self.measure_on_card()?;
             }
             let done = self.advance_to_look(time, look, stop, onlookers).map_err(|error| failed(&error))?;

@@ -5,7 +5,7 @@ use super::measured_on_card::Onlookers;
 use super::on_card::failed;
 use crate::card::{Card, Shown, Watch};
 use corpuscle_gpu::{DeviceParticles, Gpu};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{Companion, Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
 impl Flood {
@@ -24,10 +24,10 @@ impl Flood {
         seen.transpose().map_err(|error| failed(&error))
     }
 
-    /// Goes on to `time`, s, as [`Model::advance_to`] does, and tells `show` after each step about what
-    /// time it is, s, and where the particles are on the card. Until it arrives, or `stop` becomes true, nothing comes back but a few
-    /// numbers every 64 steps, so what draws them need not wait; before a time that is waited for, and before a look at the maps, the same may be
-    /// shown again. Without a card nobody is told.
+    /// Goes on to `time`, s, as [`Model::advance_with`] does, and tells `show` after each step what time it is, s, and where the particles
+    /// are on the card; it gives after how long, s, it wants to see them again, if no step ends before. Until it arrives, or
+    /// `stop` becomes true, nothing comes back but a few numbers every 64 steps and rows of gauges, so what draws the particles need not
+    /// wait; before a time that is waited for the same may be shown again. Without a card nobody is shown anything.
     ///
     /// # Errors
     /// Those of `advance_to`, and [`ModelError::Device`] where the card has too little memory.
@@ -35,20 +35,21 @@ impl Flood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        show: &mut dyn FnMut(f64, &DeviceParticles),
+        companion: &mut dyn Companion,
+        show: &mut dyn FnMut(f64, &DeviceParticles) -> Option<f64>,
     ) -> Result<(), ModelError> {
         if self.card.is_none() {
-            return self.advance_to(time, stop);
+            return self.advance_with(time, stop, companion);
         }
         let shown = self.particles_shown(0.0);
         let mut latest = self.state.time;
         // A guess may have been too late: time does not go back.
         let mut show = |time: f64, particles: &DeviceParticles| {
             latest = latest.max(time);
-            show(latest, particles);
+            show(latest, particles)
         };
         let watch = Some(Watch { shown, show: &mut show, stop });
-        self.advance_on_card(time, stop, &mut Onlookers { watch, ..Onlookers::default() })
+        self.advance_measured(time, stop, Onlookers { watch, ..Onlookers::of(companion) })
     }
 
     fn particles_shown(&self, since: f64) -> Shown {

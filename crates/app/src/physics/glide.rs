@@ -1,0 +1,158 @@
+//! A scene that steps where it is drawn: while it goes on its particles stay there, and rows of gauges come by themselves.
+
+mod clock;
+mod ordered;
+
+use super::filming::Filming;
+use super::pace::Pace;
+use super::thread::{MEASURE, PICTURES, Rate, Running};
+use super::{Measures, Shared, Snapshot};
+use clock::Clock;
+use corpuscle::gpu::Gpu;
+use corpuscle::model::{Companion, Container, Frame, Passed};
+use corpuscle::pictures::{Glance, Moment};
+use corpuscle::{Error, Sample};
+use ordered::Ordered;
+use std::cell::RefCell;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// What went wrong.
+pub(super) enum Fault {
+    OfModel(Error),
+    OfFilm(Error),
+}
+
+/// Goes on until it is told to stop, comes to where it waits next, or its particles are to be looked at; gives when they were called back,
+/// if they were.
+pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u64) -> Result<Option<Instant>, Fault> {
+    let Running { subject, until, pace, measured, measure_at, rate, probe, probed, filming, known, .. } = running;
+    let (from, container) = (subject.time(), subject.simulation().model().container());
+    let Some(simulation) = subject.gliding(gpu) else { return Ok(None) };
+    let glide = RefCell::new(Glide {
+        shared,
+        number,
+        container,
+        known: known.clone(),
+        probed: *probed,
+        particles: simulation.model().particles(),
+        look_at: (*measure_at, probe.is_some()),
+        clock: Clock::at(from, pace.asked),
+        ordered: Ordered::new(gpu),
+        pace,
+        measured,
+        rate,
+        filming: filming.as_mut(),
+        film_fault: None,
+        recalled: None,
+    });
+    let gone = simulation.advance_shown(*until, &shared.stop, &mut Along(&glide), &mut |glance| {
+        let mut glide = glide.borrow_mut();
+        glide.show(glance)
+    });
+    let Glide { film_fault, recalled, .. } = glide.into_inner();
+    gone.map_err(Fault::OfModel)?;
+    film_fault.map_or(Ok(recalled), |error| Err(Fault::OfFilm(error)))
+}
+
+struct Glide<'a> {
+    shared: &'a Shared,
+    number: u64,
+    container: Option<Container>,
+    known: Arc<Frame>,
+    /// The water where it was asked for, as it was when the particles last came.
+    probed: Option<Sample>,
+    particles: usize,
+    /// From when on particles may be called back, and whether somebody asks for the water somewhere.
+    look_at: (Instant, bool),
+    clock: Clock,
+    ordered: Ordered<'a>,
+    pace: &'a mut Pace,
+    measured: &'a mut Arc<Measures>,
+    rate: &'a mut Rate,
+    filming: Option<&'a mut Filming>,
+    film_fault: Option<Error>,
+    /// When the particles were called back.
+    recalled: Option<Instant>,
+}
+
+impl Glide<'_> {
+    /// Shows what a step leaves, and waits until it is time for the next; gives when it is to be shown again before that.
+    fn show(&mut self, glance: Glance) -> Option<f64> {
+        let time = glance.frame.time;
+        self.film(&glance);
+        if let Some((far, worked, whole)) = self.clock.picture(time) {
+            self.pace.went(far, worked, whole);
+            self.shared.publish(self.snapshot(glance));
+        }
+        self.ordered.wait();
+        self.clock.wait_until(time, &self.shared.stop);
+        self.ordered.begin();
+        let picture = self.pace.asked / PICTURES;
+        Some(self.filming.as_ref().map_or(picture, |filming| picture.min(filming.next - time)))
+    }
+
+    fn snapshot(&self, glance: Glance) -> Snapshot {
+        Snapshot {
+            number: self.number,
+            frame: Arc::new(glance.frame),
+            on_device: Some(glance.on_device),
+            known: self.known.clone(),
+            paths: Vec::new(),
+            container: self.container,
+            particles: self.particles,
+            playing: true,
+            pace: self.pace.real,
+            behind: self.pace.is_behind(),
+            rate: self.rate.now,
+            probed: self.probed,
+            measures: self.measured.clone(),
+        }
+    }
+
+    /// Adds a picture to the film, if one is due. Where it fails, it is over.
+    fn film(&mut self, glance: &Glance) {
+        let Some(filming) = self.filming.as_mut().filter(|filming| filming.next <= glance.frame.time) else { return };
+        let Glance { frame, on_device } = glance;
+        let moment = Moment { frame, on_device: Some(on_device), paths: &[], container: self.container };
+        if let Err(error) = filming.add(&moment, &self.shared.sight()) {
+            (self.filming, self.film_fault) = (None, Some(error));
+            self.shared.stop.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Simulated time between two rows of gauges, s.
+    fn every(&self) -> f64 {
+        let pace = if self.pace.is_behind() { self.pace.real } else { self.pace.asked };
+        pace * MEASURE.as_secs_f64()
+    }
+}
+
+/// Goes along with the model.
+struct Along<'a, 'b>(&'a RefCell<Glide<'b>>);
+
+impl Companion for Along<'_, '_> {
+    fn gauges_after(&self, time: f64) -> Option<f64> {
+        let every = self.0.borrow().every();
+        (every > 0.0).then(|| ((time / every).floor() + 1.0) * every).filter(|next| *next > time)
+    }
+
+    fn gauges(&mut self, time: f64, row: &[f64]) {
+        let mut glide = self.0.borrow_mut();
+        let measured = Measures { time, gauges: row.to_vec(), ..(**glide.measured).clone() };
+        *glide.measured = Arc::new(measured);
+    }
+
+    fn passed(&mut self, passed: Passed) -> bool {
+        let mut glide = self.0.borrow_mut();
+        glide.particles = passed.particles;
+        glide.rate.note(passed.particle_steps);
+        let (from, probes) = glide.look_at;
+        let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);
+        if is_looked_at && Instant::now() >= from {
+            glide.recalled = Some(Instant::now());
+        }
+        glide.recalled.is_none()
+    }
+}

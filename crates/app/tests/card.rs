@@ -1,0 +1,99 @@
+//! A flood that steps on the device that draws the window is drawn where it lies.
+
+// Another test uses the rest of it.
+#[allow(dead_code)]
+mod stage;
+
+use corpuscle_app::physics::Snapshot;
+use stage::{Stage, stage_of_card};
+use std::sync::Arc;
+use std::time::Duration;
+
+const SOON: Duration = Duration::from_secs(90);
+const TITLE: &str = "Dam break in a channel";
+
+/// A dam that breaks, on the card, playing.
+fn dam(test: &str) -> Option<Stage> {
+    let mut stage = stage_of_card(test)?;
+    stage.choose(TITLE);
+    stage.until(SOON, "it goes on", |window| !window.is_waiting() && window.snapshot().is_some_and(goes_on));
+    Some(stage)
+}
+
+/// Whether it is seen where it goes on.
+fn goes_on(snapshot: Arc<Snapshot>) -> bool {
+    snapshot.playing && snapshot.frame.sets.is_empty() && snapshot.on_device.is_some() && snapshot.frame.time > 0.0
+}
+
+#[test]
+fn what_goes_on_is_drawn_where_it_lies_and_comes_back_when_it_waits() {
+    let Some(mut stage) = dam("a flood on the card in the window") else { return };
+    let first = stage.window().snapshot().unwrap();
+    // Rows of gauges come, and nothing else does.
+    let later = |window: &corpuscle_app::Window| {
+        let snapshot = window.snapshot().unwrap();
+        snapshot.measures.time > first.measures.time && snapshot.frame.time > first.frame.time
+    };
+    stage.until(SOON, "gauges come", later);
+    let now = stage.window().snapshot().unwrap();
+    assert!(goes_on(now.clone()) && Arc::ptr_eq(&now.known, &first.known) && now.particles > 1000, "{now:?}");
+    assert!(now.measures.gauges.len() == now.measures.names.len() && !now.measures.names.is_empty());
+    let before = stage.picture("card-plays");
+    stage.until(SOON, "water moves", |window| window.snapshot().unwrap().frame.time > now.frame.time + 0.5);
+    assert!(stage.picture("card-plays-on").rgba != before.rgba);
+    stage.click("Pause");
+    stage.until(SOON, "it waits", |window| window.snapshot().is_some_and(|snapshot| !snapshot.playing));
+    let waits = stage.window().snapshot().unwrap();
+    assert!(Arc::ptr_eq(&waits.known, &waits.frame) && waits.known.sets[0].len() == waits.particles);
+    assert!(waits.frame.time == waits.measures.time && waits.on_device.is_some());
+    stage.click("One step");
+    stage.until(SOON, "it steps", |window| window.snapshot().unwrap().frame.time > waits.frame.time);
+    stage.picture("card-waits");
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+#[test]
+fn who_is_followed_comes_back_again_and_again_and_nobody_else_does() {
+    let Some(mut stage) = dam("a particle of a flood on the card") else { return };
+    let known = |window: &corpuscle_app::Window| window.snapshot().unwrap().known.time;
+    // A particle is clicked on while it goes on, and with it the ground below.
+    let before = known(stage.window());
+    stage.click_picture([0.29, 0.39]);
+    assert!(!stage.has("Follow it no longer"));
+    let told =
+        |window: &corpuscle_app::Window| window.snapshot().unwrap().probed.is_some_and(|water| water.depth > 5.0);
+    stage.until(SOON, "the spot tells of the water", told);
+    assert!(stage.has("Follow it no longer") && known(stage.window()) > before);
+    for _ in 0..2 {
+        let from = known(stage.window());
+        stage.until(SOON, "it is followed", |window| known(window) > from && window.snapshot().is_some_and(goes_on));
+    }
+    assert!(stage.has("Follow it no longer") && !stage.has("It is no longer there."));
+    stage.picture("card-follows");
+    stage.key(egui::Key::Escape);
+    stage.run(Duration::from_secs(2));
+    let from = known(stage.window());
+    let now = stage.time();
+    stage.until(SOON, "it goes on", |window| window.snapshot().unwrap().frame.time > now + 0.2);
+    assert_eq!(known(stage.window()), from);
+}
+
+#[test]
+fn a_film_is_made_of_what_lies_on_the_card() {
+    let Some(mut stage) = dam("a film of a flood on the card") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    stage.window_mut().save_into(folder.path().to_owned());
+    stage.click("Record a film");
+    let from = stage.time();
+    stage.until(SOON, "it goes on", |window| window.snapshot().is_some_and(|now| now.frame.time > from + 0.3));
+    assert!(stage.window().snapshot().is_some_and(goes_on));
+    stage.click("End the film");
+    let is_there = || {
+        std::fs::read_dir(folder.path())
+            .unwrap()
+            .flatten()
+            .any(|file| file.path().extension().is_some_and(|end| end == "mp4"))
+    };
+    stage.until(SOON, "the film is there", |_| is_there());
+    assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
