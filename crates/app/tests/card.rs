@@ -1,4 +1,4 @@
-//! A flood that steps on the device that draws the window is drawn where it lies.
+//! What steps on the device that draws the window is drawn where it lies.
 
 // Another test uses the rest of it.
 #[allow(dead_code)]
@@ -14,15 +14,19 @@ const TITLE: &str = "Dam break in a channel";
 
 /// A dam that breaks, on the card, playing.
 fn dam(test: &str) -> Option<Stage> {
+    playing(test, TITLE)
+}
+
+fn playing(test: &str, title: &str) -> Option<Stage> {
     let mut stage = stage_of_card(test)?;
-    stage.choose(TITLE);
+    stage.choose(title);
     stage.until(SOON, "it goes on", |window| !window.is_waiting() && window.snapshot().is_some_and(goes_on));
     Some(stage)
 }
 
 /// Whether it is seen where it goes on.
 fn goes_on(snapshot: Arc<Snapshot>) -> bool {
-    snapshot.playing && snapshot.frame.sets.is_empty() && snapshot.on_device.is_some() && snapshot.frame.time > 0.0
+    snapshot.playing && snapshot.frame.time > 0.0 && !Arc::ptr_eq(&snapshot.frame, &snapshot.known)
 }
 
 #[test]
@@ -96,4 +100,27 @@ fn a_film_is_made_of_what_lies_on_the_card() {
     };
     stage.until(SOON, "the film is there", |_| is_there());
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+}
+
+#[test]
+fn dew_on_the_card_shows_its_drops_and_where_air_is_seen_the_air() {
+    for (title, sees_air) in [("A cold pane", false), ("Three ways to keep air out of a solid", true)] {
+        let Some(mut stage) = playing("dew on the card in the window", title) else { return };
+        let first = stage.window().snapshot().unwrap();
+        let later = |window: &corpuscle_app::Window| {
+            let now = window.snapshot().unwrap();
+            goes_on(now.clone()) && now.frame.time > first.frame.time && now.measures.time > first.measures.time
+        };
+        stage.until(SOON, "it goes on", later);
+        let now = stage.window().snapshot().unwrap();
+        assert!(now.on_device.is_some() == sees_air && now.frame.sets.iter().all(|set| set.name == "drops"));
+        assert!(now.particles > 300 && Arc::ptr_eq(&now.known, &first.known));
+        stage.picture(if sees_air { "card-air" } else { "card-pane" });
+        stage.click("Pause");
+        stage.until(SOON, "it waits", |window| window.snapshot().is_some_and(|snapshot| !snapshot.playing));
+        let waits = stage.window().snapshot().unwrap();
+        let has_air = waits.known.sets.iter().any(|set| set.name == "air" && set.len() > 300);
+        assert!(has_air == sees_air && waits.particles > 300);
+        assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
+    }
 }

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
     /// Time from the state to the time shown, s.
-    fn since(&self) -> f64 {
+    pub(crate) fn since(&self) -> f64 {
         self.shown - self.state.time
     }
 
@@ -119,7 +119,7 @@ impl Model for Dew {
     #[cfg(feature = "gpu")]
     fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
         if self.card.is_some() {
-            self.advance_measured(time, stop, companion)
+            self.advance_measured(time, stop, companion, &mut None)
         } else {
             advance_with(self, time, stop, companion)
         }

@@ -89,6 +89,12 @@ impl Gpu {
         Self { device, queue, name: info.name, kind, faults }
     }
 
+    /// Whether this is the same device, opened once: what lies on one is not on another. (wgpu's own comparison takes the first devices of two
+    /// instances for one.)
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.faults.0, &other.faults.0)
+    }
+
     /// What a device is asked for: the portable floor, as much memory as there is, and its clock if it has one.
     pub fn request(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {

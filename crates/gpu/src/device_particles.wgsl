@@ -12,7 +12,9 @@ struct DeviceParticle {
     // m3; 0 where there is no particle.
     volume: f32,
     id: u32,
-    unused: vec2u,
+    // Of air, degrees C.
+    temperature: f32,
+    unused: u32,
 }
 
 struct DeviceParticles {

@@ -25,8 +25,10 @@ pub struct DeviceParticle {
     pub volume: f32,
     /// Lasting identity: its lowest 32 bits.
     pub id: u32,
+    /// Of air, degrees Celsius; of water 0.
+    pub temperature: f32,
     /// Nothing.
-    pub unused: [u32; 2],
+    pub unused: u32,
 }
 
 /// Particles on a device.

@@ -31,7 +31,7 @@ mod tone;
 mod tubes;
 mod view;
 
-pub use balls::{BallPainter, BallStyle, Balls, Shading};
+pub use balls::{BallPainter, BallStyle, Balls, BallsOfDevice, Shading, ValueOfDevice};
 pub use camera::{Camera, Lens};
 pub use camera_path::CameraPath;
 pub use caps::{Cap, CapPainter, Caps};

@@ -97,7 +97,7 @@ impl Glide<'_> {
         Snapshot {
             number: self.number,
             frame: Arc::new(glance.frame),
-            on_device: Some(glance.on_device),
+            on_device: glance.on_device,
             known: self.known.clone(),
             paths: Vec::new(),
             container: self.container,
@@ -115,7 +115,7 @@ impl Glide<'_> {
     fn film(&mut self, glance: &Glance) {
         let Some(filming) = self.filming.as_mut().filter(|filming| filming.next <= glance.frame.time) else { return };
         let Glance { frame, on_device } = glance;
-        let moment = Moment { frame, on_device: Some(on_device), paths: &[], container: self.container };
+        let moment = Moment { frame, on_device: on_device.as_ref(), paths: &[], container: self.container };
         if let Err(error) = filming.add(&moment, &self.shared.sight()) {
             (self.filming, self.film_fault) = (None, Some(error));
             self.shared.stop.store(true, Ordering::Relaxed);

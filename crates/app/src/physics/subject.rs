@@ -150,6 +150,14 @@ impl Subject {
         }
     }
 
+    /// Particles that are computed now; of a finished run those that are shown.
+    pub fn particles(&self) -> usize {
+        match self {
+            Self::Live(simulation, _) => simulation.model().particles(),
+            Self::Recorded(run) => run.shown.1.sets.iter().map(|set| set.len()).sum(),
+        }
+    }
+
     /// Names of the gauges.
     pub fn gauge_names(&self) -> Vec<String> {
         match self {

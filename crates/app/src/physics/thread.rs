@@ -335,7 +335,7 @@ impl Running {
         self.probed = self.probe.and_then(|place| self.subject.water_at(place));
         Ok(Snapshot {
             number,
-            particles: self.known.sets.iter().map(|set| set.len()).sum(),
+            particles: self.subject.particles(),
             frame: self.known.clone(),
             on_device: self.subject.on_device(gpu)?,
             known: self.known.clone(),

@@ -1,7 +1,10 @@
 //! Pictures of a model that steps on the device that draws: its particles stay there.
 
+use super::dew::shows_air;
 use super::{Moment, Pictures, Subject};
 use crate::{Error, Simulation};
+#[cfg(feature = "gpu")]
+use corpuscle_dew::Dew;
 #[cfg(feature = "gpu")]
 use corpuscle_flood::Flood;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
@@ -13,33 +16,38 @@ use std::sync::atomic::AtomicBool;
 /// What is seen of a model that steps on the device that draws, while it goes on.
 #[derive(Debug, Clone)]
 pub struct Glance {
-    /// The time, s, and what of it the host has without asking the device.
+    /// The time, s, and what of it the host has without asking the device: drops of dew.
     pub frame: Frame,
-    /// The particles, where they lie. They change with the next step.
-    pub on_device: DeviceParticles,
+    /// The particles that pictures show, where they lie; they change with the next step. None where pictures show but drops.
+    pub on_device: Option<DeviceParticles>,
 }
 
 impl Simulation {
-    /// The graphics card that takes the steps of a flood, where one does.
+    /// The graphics card that takes the steps, where one does.
     pub(super) fn card(&self) -> Option<Gpu> {
         card_of(self.model())
     }
 
-    /// The particles as they stand, where the model steps on a device and can be drawn there; else none.
+    /// The particles that pictures show as they stand, where the model steps on a device and is drawn there; else none.
     ///
     /// # Errors
     /// [`Error::Model`] where the device has too little memory.
     pub fn seen_on(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
-        if self.is_seen_on(gpu) { particles_of(self.model()) } else { Ok(None) }
+        if self.is_seen_on(gpu) { particles_of(self.model(), self.shows_air()) } else { Ok(None) }
     }
 
     /// Whether the model steps on a device and can be drawn there without its particles coming back.
     pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
-        self.model().name() == "flood" && self.card().is_some_and(|card| card.device == gpu.device)
+        self.card().is_some_and(|card| card.is_same(gpu))
+    }
+
+    fn shows_air(&self) -> bool {
+        self.scene().dew().is_some_and(shows_air)
     }
 
     /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
-    /// glance after each step, and says after how long, s, it wants the next, if no step ends before; particles come back only at the end.
+    /// glance after each step (of dew: few steps), and says after how long, s, it wants the next, if no step ends before; particles come
+    /// back only at the end.
     ///
     /// # Errors
     /// [`Error::Model`] where the model breaks down, or its device is lost.
@@ -50,7 +58,8 @@ impl Simulation {
         companion: &mut dyn Companion,
         show: &mut dyn FnMut(Glance) -> Option<f64>,
     ) -> Result<(), Error> {
-        Ok(advance_shown(self.model_mut(), time, stop, companion, show)?)
+        let shows_air = self.shows_air();
+        Ok(advance_shown(self.model_mut(), shows_air, (time, stop), companion, show)?)
     }
 }
 
@@ -71,9 +80,10 @@ impl Pictures {
 
     /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
     fn on_device(&self, model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
-        let is_here = card_of(model).is_some_and(|card| card.device == self.gpu().device);
+        let is_here = card_of(model).is_some_and(|card| card.is_same(self.gpu()));
         match &self.subject {
-            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model),
+            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model, false),
+            Subject::Dew(dew) if is_here && dew.shows_air() => particles_of(model, true),
             _ => Ok(None),
         }
     }
@@ -81,41 +91,50 @@ impl Pictures {
 
 #[cfg(feature = "gpu")]
 fn card_of(model: &dyn Model) -> Option<Gpu> {
-    flood(model).and_then(Flood::card)
+    let model: &dyn Any = model;
+    let dew = || model.downcast_ref().and_then(Dew::card);
+    model.downcast_ref().map_or_else(dew, Flood::card)
 }
 
+/// The water of a flood, and of dew the air, if it is seen.
 #[cfg(feature = "gpu")]
-fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
-    Ok(flood(model).map(Flood::on_device).transpose()?.flatten())
-}
-
-#[cfg(feature = "gpu")]
-fn flood(model: &dyn Model) -> Option<&Flood> {
-    (model as &dyn Any).downcast_ref()
+fn particles_of(model: &dyn Model, sees_air: bool) -> Result<Option<DeviceParticles>, Error> {
+    let model: &dyn Any = model;
+    if let Some(flood) = model.downcast_ref::<Flood>() {
+        return Ok(flood.on_device()?);
+    }
+    let dew = model.downcast_ref::<Dew>().filter(|_| sees_air);
+    Ok(dew.map(Dew::on_device).transpose()?.flatten())
 }
 
 #[cfg(feature = "gpu")]
 fn advance_shown(
     model: &mut dyn Model,
-    time: f64,
-    stop: &AtomicBool,
+    shows_air: bool,
+    (time, stop): (f64, &AtomicBool),
     companion: &mut dyn Companion,
     show: &mut dyn FnMut(Glance) -> Option<f64>,
 ) -> Result<(), ModelError> {
-    let mut show = |time: f64, particles: &DeviceParticles| {
-        show(Glance { frame: Frame { time, sets: Vec::new() }, on_device: particles.clone() })
-    };
-    match (model as &mut dyn Any).downcast_mut::<Flood>() {
-        Some(flood) => flood.advance_shown(time, stop, companion, &mut show),
-        None => model.advance_with(time, stop, companion),
+    let any: &mut dyn Any = model;
+    if let Some(flood) = any.downcast_mut::<Flood>() {
+        return flood.advance_shown(time, stop, companion, &mut |time, particles| {
+            show(Glance { frame: Frame { time, sets: Vec::new() }, on_device: Some(particles.clone()) })
+        });
     }
+    if let Some(dew) = any.downcast_mut::<Dew>() {
+        return dew.advance_shown(time, stop, companion, shows_air, &mut |frame, on_device| {
+            // A batch of steps is too short for another look in it.
+            let _ = show(Glance { frame, on_device });
+        });
+    }
+    model.advance_with(time, stop, companion)
 }
 
 #[cfg(not(feature = "gpu"))]
 fn advance_shown(
     model: &mut dyn Model,
-    time: f64,
-    stop: &AtomicBool,
+    _: bool,
+    (time, stop): (f64, &AtomicBool),
     companion: &mut dyn Companion,
     _: &mut dyn FnMut(Glance) -> Option<f64>,
 ) -> Result<(), ModelError> {
@@ -128,14 +147,14 @@ fn card_of(_: &dyn Model) -> Option<Gpu> {
 }
 
 #[cfg(not(feature = "gpu"))]
-fn particles_of(_: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+fn particles_of(_: &dyn Model, _: bool) -> Result<Option<DeviceParticles>, Error> {
     Ok(None)
 }
 
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
-    use crate::pictures::{GroundLook, PictureSettings};
+    use crate::pictures::{GroundLook, Hand, Look, PictureSettings};
     use corpuscle_gpu::require_gpu;
     use corpuscle_scene::{Scene, builtin};
     use std::path::Path;
@@ -170,7 +189,7 @@ mod tests {
             ..PictureSettings::default()
         };
         let mut pictures = Pictures::open(&simulation, settings(GroundLook::Natural)).unwrap();
-        assert!(pictures.gpu().device == gpu.device && pictures.on_device(simulation.model()).unwrap().is_some());
+        assert!(pictures.gpu().is_same(&gpu) && pictures.on_device(simulation.model()).unwrap().is_some());
         let image = pictures.draw_model(simulation.model()).unwrap();
         let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundLook::Natural)).unwrap();
         let apart = difference(&image, &by_frame(&mut others, simulation.model()));
@@ -179,9 +198,42 @@ mod tests {
         let nothing = Frame { time: 4.0, sets: Vec::new() };
         let dry = others.draw(&Moment { frame: &nothing, on_device: None, paths: &[], container: None }).unwrap();
         assert!(difference(&image, &dry) > 100.0 * SAME, "{}", difference(&image, &dry));
+        // So it is in the simple look.
+        let device = simulation.seen_on(&gpu).unwrap().unwrap();
+        let frame = simulation.model().frame();
+        let mut simple = |on_device| {
+            let moment = Moment { frame: &frame, on_device, paths: &[], container: None };
+            let shown = others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            assert!(!shown.finished);
+            others.resize([480, 270], 2).unwrap();
+            others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            let image = others.read().unwrap();
+            others.resize([480, 270], 1).unwrap();
+            image
+        };
+        let apart = difference(&simple(Some(&device)), &simple(None));
+        assert!(apart < SAME, "{apart}");
         // What the ground shows of the water is the host's to draw.
         let mut of_depth = Pictures::open(&simulation, settings(GroundLook::Depth)).unwrap();
         assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
         assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);
+    }
+
+    #[test]
+    fn air_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
+        let Some(gpu) = require_gpu("air drawn where it lies") else { return };
+        let coarse = [("dew.spacing_m".to_owned(), "0.002".to_owned())];
+        let scene = Scene::parse(builtin("dew/three-boundaries").unwrap().text, "three", &coarse).unwrap();
+        let mut simulation = Simulation::open(scene, Path::new("")).unwrap();
+        simulation.use_this_gpu(gpu.clone()).unwrap();
+        simulation.model_mut().advance_to(0.002, &AtomicBool::new(false)).unwrap();
+        let settings = PictureSettings { size: [480, 270], samples: 1, ..PictureSettings::default() };
+        let mut pictures = Pictures::open(&simulation, settings).unwrap();
+        let from_device = pictures.draw_model(simulation.model()).unwrap();
+        let by_frame = by_frame(&mut pictures, simulation.model());
+        let apart = difference(&from_device, &by_frame);
+        assert!(pictures.on_device(simulation.model()).unwrap().is_some() && apart < SAME, "{apart}");
+        // A card that is not the one that draws has its frame drawn.
+        assert!(!simulation.is_seen_on(&Gpu::open().unwrap()));
     }
 }

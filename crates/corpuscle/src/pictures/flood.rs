@@ -7,10 +7,12 @@ use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
 use corpuscle_flood::obstacle_shapes;
+use corpuscle_gpu::DeviceParticles;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
-    Axes, BallStyle, Balls, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle, HeightField, Key,
-    KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, Water, WaterSides, natural_colours,
+    Axes, BallStyle, Balls, BallsOfDevice, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle,
+    HeightField, Key, KeyPlace, Lens, Light, Overlay, Shading, Solid, SolidStyle, Stage, Terrain, ValueOfDevice, Water,
+    WaterSides, natural_colours,
 };
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain as Ground;
@@ -121,18 +123,20 @@ impl FloodPicture {
         let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
         let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
         let light = studio.lit(Light::day().from_azimuth(DIRECTION[0] + SUN));
+        let is_of_frame = |set: &&ParticleSet| !set.is_empty() && (moment.on_device.is_none() || self.depth.is_some());
         let sets: Vec<ParticleSet> =
-            moment.frame.sets.iter().filter(|set| !set.is_empty()).map(|set| raised(set, self.heights)).collect();
+            moment.frame.sets.iter().filter(is_of_frame).map(|set| raised(set, self.heights)).collect();
         let overlay = self.overlay(studio, title, moment, is_plan);
         if let Some(depth) = &self.depth {
             self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
         }
-        let mut discs: Vec<Balls> = match studio.look {
-            Look::Simple if self.depth.is_none() => sets.iter().map(|set| self.discs(studio, set)).collect(),
-            _ => Vec::new(),
+        let mut discs: Vec<Balls> = match (studio.look, moment.on_device) {
+            (Look::Full, _) => Vec::new(),
+            _ if self.depth.is_some() => Vec::new(),
+            (Look::Simple, Some(particles)) => vec![self.discs_of_device(studio, particles)?],
+            (Look::Simple, None) => sets.iter().map(|set| self.discs(studio, set)).collect(),
         };
-        let is_full = studio.look == Look::Full || sets.is_empty();
-        let is_wet = self.depth.is_none() && is_full && self.fill_water(studio, moment, &sets)?;
+        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
         let quick = studio.look == Look::Simple;
         self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
@@ -178,9 +182,20 @@ impl FloodPicture {
         Ok(true)
     }
 
+    fn disc_style(&self) -> BallStyle {
+        BallStyle { shading: Shading::Matt, ..BallStyle::new(self.blues.clone()) }
+    }
+
+    /// Particles on the device as balls, coloured by depth as maps are.
+    fn discs_of_device(&self, studio: &Studio, particles: &DeviceParticles) -> Result<Balls, Error> {
+        let shows = BallsOfDevice { radius: 0.5, raise: self.heights, value: ValueOfDevice::Depth };
+        let gpu = studio.renderer.gpu();
+        Ok(studio.balls.balls_of_device(gpu, &self.stage, &self.disc_style(), particles, shows)?)
+    }
+
     /// Particles as balls, coloured by depth as maps are.
     fn discs(&self, studio: &Studio, set: &ParticleSet) -> Balls {
-        let style = BallStyle { shading: Shading::Matt, ..BallStyle::new(self.blues.clone()) };
+        let style = self.disc_style();
         let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
         let depth = |at: usize| match depths {
             Some(Values::Scalar(depths)) => depths[at],
@@ -198,8 +213,7 @@ impl FloodPicture {
         }
         let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
         let blues = || Key::Values("Depth, m".into(), self.blues.clone());
-        let has_discs = moment.on_device.is_none() || !moment.frame.sets.is_empty();
-        let simple = (studio.look == Look::Simple && has_discs).then(blues);
+        let simple = (studio.look == Look::Simple).then(blues);
         let key = self.depth.as_ref().map(|depth| Key::Kinds(depth.key())).or(simple);
         Overlay {
             title: title.into(),

@@ -58,8 +58,7 @@ impl Default for PictureSettings {
 pub struct Moment<'a> {
     /// The particles.
     pub frame: &'a Frame,
-    /// Those of a flood as buffers of the device that draws. They are drawn in place of the frame's, but where the ground shows depth,
-    /// and in the simple look, if the frame has any.
+    /// Those of a flood, or the air, as buffers of the device that draws: drawn in place of the frame's, but where the ground shows depth.
     pub on_device: Option<&'a DeviceParticles>,
     /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
     pub paths: &'a [Path],
@@ -100,7 +99,7 @@ enum Subject {
 }
 
 impl Pictures {
-    /// Makes ready to draw a scene: on the card that takes the steps of a flood, else on the best device.
+    /// Makes ready to draw a scene: on the card that takes the steps, else on the best device.
     ///
     /// # Errors
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.

@@ -11,6 +11,7 @@ mod layout;
 mod measure;
 mod numbers;
 mod origin;
+mod seen;
 mod solids;
 mod tasks;
 
@@ -26,7 +27,9 @@ use layout::{
     CardBody, CardParticle, CardRow, CardSolid, CardWater, MOST_STEPS, OutsideColumn, Parameters, Status, TURN,
 };
 use origin::Origin;
+use seen::Seen;
 use solids::CardSolids;
+use std::sync::OnceLock;
 use std::time::Instant;
 use tasks::Tasks;
 
@@ -52,6 +55,10 @@ pub(crate) struct Card {
     ahead: bool,
     /// Wall-clock time spent on steps, s.
     pub busy: f64,
+    /// What the last batch took for a step, s.
+    took: f64,
+    /// Once somebody draws the air.
+    seen: OnceLock<Seen>,
     /// Where passes are timed.
     pub stopwatch: Option<Stopwatch>,
     /// Batches of steps until the device is lost.
@@ -128,6 +135,8 @@ impl Card {
             held_before,
             ahead: false,
             busy: 0.0,
+            took: 0.0,
+            seen: OnceLock::new(),
             stopwatch: None,
             #[cfg(test)]
             lost_after: None,
@@ -187,6 +196,8 @@ impl Card {
             phase: std::array::from_fn(|number| layout::account(phases[number])),
             ..Status::zeroed()
         };
+        // Who draws before the first step reads it too.
+        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
         self.sent_at = state.time;
         self.ahead = false;
     }
@@ -236,6 +247,11 @@ impl Card {
         Ok(())
     }
 
+    /// Steps that take about so long, s: one at least.
+    pub fn steps_in(&self, seconds: f64) -> u64 {
+        (seconds / self.took.max(1e-9)).max(1.0) as u64
+    }
+
     /// Takes `count` steps, or fewer: only up to `until` s from now.
     pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
         #[cfg(test)]
@@ -265,7 +281,9 @@ impl Card {
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
-        self.busy += began.elapsed().as_secs_f64();
+        let took = began.elapsed().as_secs_f64();
+        self.busy += took;
+        self.took = took / f64::from(self.status.steps.max(1));
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies))

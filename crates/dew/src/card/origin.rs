@@ -22,13 +22,15 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    fn middle(&self, axis: usize) -> f64 {
-        0.5 * (self.room.low[axis] + self.room.high[axis])
+    /// The middle of the room.
+    pub fn middle(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| 0.5 * (self.room.low[axis] + self.room.high[axis]))
     }
 
     /// A place from the middle of the room.
     pub fn relative(&self, place: [f64; 3]) -> [f32; 3] {
-        [0, 1, 2].map(|axis| (place[axis] - self.middle(axis)) as f32)
+        let middle = self.middle();
+        [0, 1, 2].map(|axis| (place[axis] - middle[axis]) as f32)
     }
 
     /// The same for a parcel: rounding must not put it over a high face.
@@ -61,9 +63,9 @@ impl Origin {
 
     pub fn to_host(self, particle: &CardParticle) -> Particle {
         let wide = |vector: [f32; 3]| vector.map(f64::from);
-        let place = wide(particle.place);
+        let (place, middle) = (wide(particle.place), self.middle());
         Particle {
-            position: [0, 1, 2].map(|axis| place[axis] + self.middle(axis)),
+            position: [0, 1, 2].map(|axis| place[axis] + middle[axis]),
             velocity: wide(particle.velocity),
             acceleration: wide(particle.acceleration),
             spreading: wide(particle.spreading),

@@ -10,7 +10,7 @@ use corpuscle_gpu::{
 };
 
 /// Pieces that the shaders import.
-const LIBRARY: &[(&str, &str)] = &[
+pub(super) const LIBRARY: &[(&str, &str)] = &[
     SUMS_BEFORE,
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_columns", include_str!("dew_columns.wgsl")),
@@ -32,6 +32,7 @@ pub(super) const MEASURING_GROUPS: u32 = 64;
 /// Everything on the device.
 #[derive(Debug)]
 pub(super) struct Tasks {
+    pub parameters: wgpu::Buffer,
     pub status: wgpu::Buffer,
     pub particles: wgpu::Buffer,
     pub solids: wgpu::Buffer,
@@ -145,6 +146,7 @@ impl Tasks {
             finish: shader!("dew_finish", [all, status, partials, groups, bodies, *own]),
             measure: shader!("dew_measure", [None, status, particles, measured]),
             measured,
+            parameters,
             status,
             particles,
             solids: states,

@@ -5,6 +5,7 @@ struct Ball {
     x: f32,
     y: f32,
     z: f32,
+    // Below 0 where there is none.
     radius: f32,
     value: f32,
 }
@@ -31,6 +32,13 @@ fn sphere(number: u32) -> vec4f {
     let ball = balls[number];
     let centre = vec3f(ball.x, ball.y, ball.z);
     return vec4f(centre, max(ball.radius, style.least * pixel_at(centre)));
+}
+
+// The same for all corners of a ball that is none, beyond what is seen.
+const NOWHERE = vec4f(2.0, 2.0, 2.0, 1.0);
+
+fn is_there(number: u32) -> bool {
+    return balls[number].radius >= 0.0;
 }
 
 fn colour_of(number: u32) -> vec3f {

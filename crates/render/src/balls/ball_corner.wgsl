@@ -16,7 +16,8 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let round = round_of(ball);
     let corner = corner_of(vertex);
     let place = ball.xyz + round.reach * (corner.x * round.right + corner.y * round.up);
-    return Corner(view.clip_from_world * vec4f(place, 1.0), place, ball, colour_of(number), number);
+    let clip = select(NOWHERE, view.clip_from_world * vec4f(place, 1.0), is_there(number));
+    return Corner(clip, place, ball, colour_of(number), number);
 }
 
 // The line of sight through a triangle; nothing is drawn where it misses the sphere.

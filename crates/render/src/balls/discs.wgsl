@@ -17,7 +17,8 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let disc = sphere(number);
     let aside = corner_of(vertex);
     let across = view.world_from_view * vec4f(aside, 0.0, 0.0);
-    let clip = view.clip_from_world * vec4f(disc.xyz + disc.w * across.xyz, 1.0);
+    let seen = view.clip_from_world * vec4f(disc.xyz + disc.w * across.xyz, 1.0);
+    let clip = select(NOWHERE, seen, is_there(number));
     // A pixel of the finished picture wide, and narrower on small ones.
     let pixel = pixel_at(disc.xyz) / disc.w;
     let rim = vec3f(1.0 - min(2.4 * pixel, 0.3), pixel, 0.65 * smoothstep(1.5, 8.0, 1.0 / pixel));

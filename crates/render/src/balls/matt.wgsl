@@ -22,7 +22,7 @@ fn vertex(@builtin(vertex_index) vertex: u32) -> Corner {
     let place = ball.xyz + round.reach * (aside.x * round.right + aside.y * round.up);
     let turned = mat3x3f(round.right, round.up, -round.sight);
     return Corner(
-        view.clip_from_world * vec4f(place, 1.0),
+        select(NOWHERE, view.clip_from_world * vec4f(place, 1.0), is_there(number)),
         aside,
         colour_of(number),
         view.sun.xyz * turned,

@@ -1,11 +1,14 @@
 //! Balls: shaded spheres in space, flat discs on paper. Millions of them.
 
+mod device;
 mod seen;
 
 use crate::buffer::{storage, uniform};
 use crate::pipeline::Recipe;
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, wgpu};
+use device::Maker;
+pub use device::{BallsOfDevice, ValueOfDevice};
 use seen::{Seen, SeenPainter};
 use std::sync::Arc;
 
@@ -20,7 +23,7 @@ const MANY: u32 = 20_000;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Instance {
-    /// Place and radius, in stage coordinates.
+    /// Place and radius, in stage coordinates; where that is below 0 there is no ball.
     ball: [f32; 4],
     /// The number that its colour shows.
     value: f32,
@@ -67,6 +70,7 @@ pub struct BallPainter {
     discs: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
     seen: Arc<SeenPainter>,
+    maker: Maker,
 }
 
 /// Balls of one style, on the device.
@@ -103,6 +107,7 @@ impl BallPainter {
             discs: Recipe { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }.opaque(gpu),
             layout,
             seen,
+            maker: Maker::new(gpu),
         }
     }
 
@@ -120,11 +125,22 @@ impl BallPainter {
         };
         let drawn = |instance: &Instance| instance.ball.iter().all(|number| number.is_finite());
         let all: Vec<Instance> = balls.into_iter().map(instance).filter(drawn).collect();
+        let part = |part: &[Instance]| (storage(gpu, "balls", part), part.len() as u32);
+        let parts: Vec<_> = all.chunks(MOST).map(part).collect();
+        self.balls_in(gpu, style, parts.iter().map(|(buffer, count)| (buffer, *count)))
+    }
+
+    /// Balls that are on the device, so many in each buffer.
+    fn balls_in<'a>(
+        &self,
+        gpu: &Gpu,
+        style: &BallStyle,
+        parts: impl IntoIterator<Item = (&'a wgpu::Buffer, u32)>,
+    ) -> Balls {
         let numbers = [style.colours.low, style.colours.high, style.gloss, style.least_radius];
         let settings = uniform(gpu, "balls", &numbers);
         let colours = style.colours.upload(gpu);
-        let part = |part: &[Instance]| {
-            let buffer = storage(gpu, "balls", part);
+        let part = |(buffer, count): (&wgpu::Buffer, u32)| {
             let resources = [
                 settings.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&colours),
@@ -134,9 +150,9 @@ impl BallPainter {
                 (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
             let layout = &self.layout;
             let descriptor = wgpu::BindGroupDescriptor { label: Some("balls"), layout, entries: &entries };
-            (gpu.device.create_bind_group(&descriptor), part.len() as u32)
+            (gpu.device.create_bind_group(&descriptor), count)
         };
-        let parts = all.chunks(MOST).map(part).collect();
+        let parts = parts.into_iter().map(part).collect();
         let opaque = match style.shading {
             Shading::Full => &self.opaque,
             Shading::Matt => &self.matt,

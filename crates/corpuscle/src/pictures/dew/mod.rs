@@ -26,6 +26,11 @@ const GLASS: [u8; 3] = [232, 242, 238];
 /// What is not glass.
 const MATT: [u8; 3] = [150, 152, 156];
 
+/// Whether the air of a scene is shown, and not but what lies on solids: where these are kept clear of it in different ways.
+pub(super) fn shows_air(dew: &Dew) -> bool {
+    dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
+}
+
 /// Draws dew.
 pub(super) enum DewPicture {
     Room(Room),
@@ -34,11 +39,15 @@ pub(super) enum DewPicture {
 
 impl DewPicture {
     pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
-        let differ = dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment);
-        match differ {
+        match shows_air(dew) {
             true => Self::Section(Section::new(studio, dew, surfaces)),
             false => Self::Room(Room::new(studio, dew, surfaces)),
         }
+    }
+
+    /// Whether the air is seen.
+    pub(super) fn shows_air(&self) -> bool {
+        matches!(self, Self::Section(_))
     }
 
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {

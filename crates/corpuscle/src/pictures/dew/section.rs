@@ -7,7 +7,8 @@ use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{
-    Axes, BallStyle, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Shading, Solid, SolidStyle, Stage,
+    Axes, BallStyle, BallsOfDevice, Camera, ColourTable, Drawable, Key, KeyPlace, Light, Overlay, Shading, Solid,
+    SolidStyle, Stage, ValueOfDevice,
 };
 use corpuscle_scene::Dew;
 
@@ -50,13 +51,19 @@ impl Section {
         let stage = self.stage;
         let camera = studio.hand.moved(Camera::front(&stage, studio.aspect(), MARGINS));
         let sets = |name: &'static str| moment.frame.sets.iter().filter(move |set| set.name == name);
-        let air = sets("air").flat_map(|set| {
-            let temperatures = temperatures(set);
-            set.position.iter().zip(temperatures).map(|(place, kelvin)| (*place, self.radius, kelvin - ZERO_CELSIUS))
-        });
         let shading = if studio.look == Look::Simple { Shading::Matt } else { Shading::Full };
         let style = BallStyle { gloss: 0.4, shading, ..BallStyle::new(self.colours.clone()) };
-        let mut air = studio.balls.balls(gpu, &stage, &style, air);
+        let mut air = match moment.on_device {
+            Some(air) => {
+                let shows = BallsOfDevice { radius: RADIUS, raise: 1.0, value: ValueOfDevice::Temperature };
+                studio.balls.balls_of_device(gpu, &stage, &style, air, shows)?
+            }
+            None => {
+                let balls = |(place, kelvin): (&[f64; 3], &f64)| (*place, self.radius, kelvin - ZERO_CELSIUS);
+                let air = sets("air").flat_map(|set| set.position.iter().zip(temperatures(set)).map(balls));
+                studio.balls.balls(gpu, &stage, &style, air)
+            }
+        };
         let mut drops = studio.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
         let overlay = Overlay {
             title: title.into(),

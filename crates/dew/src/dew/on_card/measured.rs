@@ -1,23 +1,24 @@
 //! Gauges of humid air whose steps the graphics card takes: the air stays there, and only what they tell comes back.
 
-use super::{Dew, GpuError};
+use super::{Dew, GpuError, Watch};
 use corpuscle_model::{Companion, Model, ModelError, Passed};
 use std::sync::atomic::AtomicBool;
 
 impl Dew {
-    /// [`Model::advance_with`] on the card. Where gauges tell how near the air comes to walls, all of it comes back for them.
+    /// [`Model::advance_with`] on the card, which is shown to a watch. Where gauges tell how near the air comes to walls, all of it comes back for them.
     pub(crate) fn advance_measured(
         &mut self,
         time: f64,
         stop: &AtomicBool,
         companion: &mut dyn Companion,
+        watch: &mut Option<Watch<'_>>,
     ) -> Result<(), ModelError> {
         self.advance_and_fetch(|dew| {
             while dew.shown < time {
                 let now = dew.shown;
                 let gauges = companion.gauges_after(now);
                 let next = [gauges, companion.pause_after(now)].into_iter().flatten().fold(time, f64::min);
-                let broken = dew.go_on_card(next, stop)?;
+                let broken = dew.go_on_card(next, stop, watch)?;
                 if broken.is_some() || dew.shown < next {
                     return Ok(broken);
                 }

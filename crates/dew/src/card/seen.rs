@@ -1,0 +1,46 @@
+//! Air as it is seen, for whoever draws it on the same device.
+
+use super::Card;
+use super::tasks::LIBRARY;
+use corpuscle_gpu::{DEVICE_PARTICLES, DeviceParticles, GpuError, Kernel, Pass, THREADS, Task, uniform, wgpu};
+
+/// Air as it is seen, and what writes it.
+#[derive(Debug)]
+pub(super) struct Seen {
+    air: DeviceParticles,
+    task: Task,
+    shown: wgpu::Buffer,
+}
+
+impl Seen {
+    fn new(card: &Card, spacing: f64) -> Result<Self, GpuError> {
+        let gpu = &card.gpu;
+        let air = DeviceParticles::new(gpu, card.room, card.origin.middle(), spacing)?;
+        let shown = uniform(gpu, "time shown", &[0.0_f32; 4]);
+        let library: Vec<_> = LIBRARY.iter().copied().chain([DEVICE_PARTICLES]).collect();
+        let kernel = Kernel::new(gpu, "dew_seen", include_str!("dew_seen.wgsl"), &library);
+        let tasks = &card.tasks;
+        let buffers = [&tasks.parameters, &tasks.status, &tasks.particles, &shown, &air.buffer];
+        let task = kernel.on(gpu, &buffers.map(wgpu::Buffer::as_entire_binding));
+        Ok(Self { air, task, shown })
+    }
+}
+
+impl Card {
+    /// The air as it is seen so long after the last step, s, on the device.
+    pub fn seen(&self, spacing: f64, since: f64) -> Result<DeviceParticles, GpuError> {
+        if self.seen.get().is_none() {
+            // Nobody else can have been faster and done otherwise.
+            let _ = self.seen.set(Seen::new(self, spacing)?);
+        }
+        let Seen { air, task, shown } = self.seen.get().expect("it was set above");
+        self.gpu.queue.write_buffer(shown, 0, bytemuck::bytes_of(&(since as f32)));
+        let mut encoder =
+            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        task.run(&mut pass, (air.room as u32).div_ceil(THREADS));
+        drop(pass);
+        self.gpu.queue.submit([encoder.finish()]);
+        Ok(air.clone())
+    }
+}
