@@ -37,7 +37,8 @@ pub struct Case {
     pub about: &'static str,
     /// True where it takes more than about ten seconds.
     pub slow: bool,
-    /// By how much particles are farther apart at its reduced size; 1 where it has none, as it takes little.
+    /// By how much particles are farther apart at its reduced size, or, of dew, how much less time goes by; 1 where it has none, as it takes
+    /// little.
     pub reduced: f64,
     /// Runs it.
     pub run: fn(&Options) -> Vec<Row>,

@@ -6,7 +6,7 @@ use corpuscle_model::ModelError;
 use std::cell::{Cell, RefCell};
 
 thread_local! {
-    /// By how much the particles of the case that this thread runs are farther apart than they should be.
+    /// By how much the case that this thread runs is smaller than at full size: its particles are farther apart, or less time goes by.
     static COARSER: Cell<f64> = const { Cell::new(1.0) };
 
     /// The card that takes the steps of the case that this thread runs, if one does.
@@ -21,7 +21,7 @@ pub(crate) fn on_card<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Sets particles `factor` times as far apart in all models that `case` sets up.
+/// Has `case` `factor` times as small: it asks for that by [`sized`] or [`reduction`].
 pub(crate) fn coarser<T>(factor: f64, case: impl FnOnce() -> T) -> T {
     let before = COARSER.replace(factor);
     let result = case();
@@ -32,6 +32,11 @@ pub(crate) fn coarser<T>(factor: f64, case: impl FnOnce() -> T) -> T {
 /// Whether cases have their reduced size.
 pub(crate) fn is_reduced() -> bool {
     COARSER.get() > 1.0
+}
+
+/// By how much the case is smaller than at full size.
+pub(crate) fn reduction() -> f64 {
+    COARSER.get()
 }
 
 /// A distance of particles at the size of the case.

@@ -1,6 +1,7 @@
 //! Air pressed on solids stays outside them.
 
 use super::{advance, ready, rows};
+use crate::device::{is_reduced, reduction};
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::{Particle, Properties};
 use corpuscle_dew::solids::{Body, Material};
@@ -18,7 +19,7 @@ pub(super) const BOUNDARIES: Case = Case {
             for no treatment at all as control; what ghosts cost over density correction. The air is humid and the solids are \
             cold: water condenses on them and nowhere inside.",
     slow: true,
-    reduced: 1.0,
+    reduced: 6.0,
     run: boundaries,
 };
 
@@ -130,6 +131,10 @@ fn measure() -> Result<Vec<Row>, ModelError> {
         rows.push(Row::at_most(name, &of("water_inside_over_water_on"), corrected.water_inside, "", 0.0));
         let control = press(&case, WallTreatment::None)?;
         rows.push(Row::at_most(name, &of("deepest_over_spacing_without_treatment"), control.deepest, "", INSIDE));
+        // The rest is only shown.
+        if is_reduced() {
+            continue;
+        }
         let ghosts = press(&case, WallTreatment::Ghosts)?;
         let forced = press(&case, WallTreatment::VirtualForce)?;
         let beside = |measure: &str, value, bound, why| Row::beside(name, &of(measure), value, "", bound, why);
@@ -171,10 +176,10 @@ fn press(case: &Pressed, walls: WallTreatment) -> Result<Found, ModelError> {
     dew.stir(|_| case.velocity);
     let mut dew = ready(dew)?;
     let (mut deepest, mut gaps, mut layers, mut spent) = (f64::INFINITY, Vec::new(), Vec::new(), 0.0);
-    let looks = 150;
+    let looks = (150.0 / reduction()) as u32;
     for look in 1..=looks {
         let start = Instant::now();
-        advance(&mut dew, f64::from(look) / f64::from(looks) * LASTING * D / SOUND)?;
+        advance(&mut dew, f64::from(look) / f64::from(looks) * LASTING / reduction() * D / SOUND)?;
         spent += start.elapsed().as_secs_f64();
         let distances: Vec<f64> = dew.air().iter().map(|particle| (case.distance)(particle.position)).collect();
         deepest = distances.iter().copied().fold(deepest, f64::min);

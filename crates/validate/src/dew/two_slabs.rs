@@ -1,6 +1,7 @@
 //! Heat between two slabs: warming up against the error function, and steady flux.
 
 use super::{ACROSS, advance, column, ready, rows, slab};
+use crate::device::reduction;
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
@@ -15,7 +16,7 @@ pub(super) const TWO_SLABS: Case = Case {
             the error function (Carslaw & Jaeger 1959, section 2.14). Steady flux through 25 particles of a solid and 25 of \
             air, their conductivities as 10, 38 and 15000 to 1, against two resistances in a row; the arithmetic mean beside.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.5,
     run: two_slabs,
 };
 
@@ -67,29 +68,30 @@ fn still() -> Settings {
     Settings { gravity: [0.0; 3], fog: false, ..Settings::new(SPACING, WARM, 0.0) }
 }
 
-/// Layers of a slab that is as good as without end.
-const LAYERS: usize = 80;
+/// Layers of a slab that is as good as without end for so long, s.
+const LAYERS: f64 = 80.0;
+const LASTING: f64 = 16.0;
 
 /// Errors of contact temperature and of profile over the difference: `steel` against warm glass, or, without it, glass against
 /// warm air.
 fn warming(steel: Option<Material>) -> Result<[f64; 2], ModelError> {
+    let (layers, time) = ((LAYERS / reduction()) as usize, LASTING / reduction().powi(2));
     let air = air();
     let cold = steel.unwrap_or(GLASS);
     let of_air = Material { conductivity: air.conductivity, heat_capacity: air.heat_capacity, density: air.density };
     let warm = if steel.is_some() { GLASS } else { of_air };
-    let mut bodies = vec![slab(0, LAYERS, SPACING, cold, COLD, false)];
+    let mut bodies = vec![slab(0, layers, SPACING, cold, COLD, false)];
     if steel.is_some() {
-        bodies.push(slab(LAYERS, LAYERS, SPACING, warm, WARM, false));
+        bodies.push(slab(layers, layers, SPACING, warm, WARM, false));
     }
-    let room = column(2.0 * LAYERS as f64 * SPACING, SPACING);
+    let room = column(2.0 * layers as f64 * SPACING, SPACING);
     let setup = Setup { settings: still(), air, room, bodies, fans: Vec::new(), seed: 1 };
     let mut dew = ready(Dew::new(&setup, |_| [WARM, 0.0])?)?;
-    let time = 16.0;
     advance(&mut dew, time)?;
     let effusivity = |m: Material| (m.conductivity * m.heat_capacity * m.density).sqrt();
     let (e_cold, e_warm) = (effusivity(cold), effusivity(warm));
     let contact = (e_cold * COLD + e_warm * WARM) / (e_cold + e_warm);
-    let face = LAYERS as f64 * SPACING;
+    let face = layers as f64 * SPACING;
     let exact = |x: f64| {
         let (far, material) = if x < face { (COLD, cold) } else { (WARM, warm) };
         let diffusivity = material.conductivity / (material.heat_capacity * material.density);
@@ -112,32 +114,33 @@ fn warming(steel: Option<Material>) -> Result<[f64; 2], ModelError> {
 }
 
 /// Layers of each slab of the steady flux.
-const THICK: usize = 25;
+const THICK: f64 = 25.0;
 /// Layers of the plates that hold the temperatures.
 const PLATE: usize = 2;
 
 /// Relative error of the steady flux through a solid that conducts `ratio` times as well as air, and air.
 fn flux_error(ratio: f64, mean: Mean) -> Result<f64, ModelError> {
+    let thick = (THICK / reduction()) as usize;
     let air = air();
     let conductivity = ratio * air.conductivity;
     // It warms twice as fast as the air, so that neither delays the other.
     let capacity = conductivity / (2.0 * air.heat_diffusivity());
     let solid = Material { conductivity, heat_capacity: capacity / 1000.0, density: 1000.0 };
     // From the middle of the plate's last layer to the face; the plates are of what they touch.
-    let length = (THICK as f64 + 0.5) * SPACING;
+    let length = (thick as f64 + 0.5) * SPACING;
     let resistance = length / air.conductivity + length / conductivity;
     let flux = (WARM - COLD) / resistance;
     let contact = COLD + flux * length / conductivity;
     let of_air = Material { conductivity: air.conductivity, heat_capacity: air.heat_capacity, density: air.density };
     let bodies = vec![
         slab(0, PLATE, SPACING, solid, COLD, true),
-        slab(PLATE, THICK, SPACING, solid, 0.5 * (COLD + contact), false),
-        slab(PLATE + 2 * THICK, PLATE, SPACING, of_air, WARM, true),
+        slab(PLATE, thick, SPACING, solid, 0.5 * (COLD + contact), false),
+        slab(PLATE + 2 * thick, PLATE, SPACING, of_air, WARM, true),
     ];
-    let layers = 2 * PLATE + 2 * THICK;
+    let layers = 2 * PLATE + 2 * thick;
     let room = column(layers as f64 * SPACING, SPACING);
     let setup = Setup { settings: Settings { mean, ..still() }, air, room, bodies, fans: Vec::new(), seed: 1 };
-    let face = (PLATE + THICK) as f64 * SPACING;
+    let face = (PLATE + thick) as f64 * SPACING;
     let mut dew = ready(Dew::new(&setup, |[x, ..]| [contact + (WARM - contact) * (x - face) / length, 0.0])?)?;
     // Several times the time of the slowest part, L^2 / (pi^2 / 4 kappa).
     let slowest = length * length / (0.25 * std::f64::consts::PI.powi(2) * air.heat_diffusivity());

@@ -19,10 +19,10 @@ mod triangular_obstacle;
 mod weather;
 
 use crate::Case;
-use crate::device::{rows, sized};
+use crate::device::{is_reduced, rows, sized};
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
+use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scene, builtin};
 use corpuscle_terrain::{Bounds, Terrain};
 use device::ready;
 use std::path::Path;
@@ -91,6 +91,25 @@ fn run(settings: &Settings, terrain: &Arc<Terrain>, water: &[InitialWater], time
     let mut flood = ready(Flood::with_water(settings, SEED, Path::new("."), Arc::clone(terrain), water)?)?;
     flood.advance_to(time, &AtomicBool::new(false))?;
     Ok(flood)
+}
+
+/// A built-in scene of scheme paper with changes of it, and its ground; at the reduced size particles are farther apart, and have as many
+/// neighbours.
+fn built_in(name: &str, changes: &[(&str, &str)]) -> Result<(Scene, Settings, Arc<Terrain>), ModelError> {
+    let setup = |error: &dyn std::fmt::Display| ModelError::Setup(error.to_string());
+    let text = builtin(name).ok_or_else(|| setup(&format!("no built-in scene {name}")))?.text;
+    let mut all: Vec<_> = changes.iter().map(|(path, value)| ((*path).to_owned(), (*value).to_owned())).collect();
+    if is_reduced() {
+        for (path, metres) in [("flood.spacing_m", 1.0), ("flood.paper.smoothing_length_m", 2.66)] {
+            all.push((path.to_owned(), sized(metres).to_string()));
+        }
+    }
+    let mut scene = Scene::parse(text, name, &all).map_err(|error| setup(&error))?;
+    scene.resolve_defaults();
+    let flood = scene.flood().ok_or_else(|| setup(&format!("{name} is no flood")))?;
+    let terrain = Terrain::open(&flood.terrain, scene.seed, Path::new(".")).map_err(|error| setup(&error))?;
+    let settings = flood.flood.clone();
+    Ok((scene, settings, Arc::new(terrain)))
 }
 
 /// Order of convergence from the errors at two spacings, the second `ratio` times the first.

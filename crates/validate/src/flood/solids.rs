@@ -1,11 +1,11 @@
 //! Water round solids: the paper's cuboid and cylinder, and the force of a stream on a cylinder.
 
 use super::device::ready;
-use super::{SEED, rows, settings, water_everywhere};
+use super::{SEED, built_in, rows, settings, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Circle, Edge, Edges, Flood as Settings, Obstacle, Scene, Scheme, builtin};
+use corpuscle_scene::{Circle, Edge, Edges, Flood as Settings, Obstacle, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ pub(super) const CUBOID: Case = Case {
     name: "flood/cuboid",
     about: "The built-in scene flood/cuboid in both schemes: no particle inside the cuboid at any step.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: cuboid,
 };
 
@@ -25,7 +25,7 @@ pub(super) const CYLINDER: Case = Case {
             deep, in a channel 12 m wide past a cylinder of 3 m: the force on its wall against the momentum that a control section \
             before it takes in and one behind it gives out.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: cylinder,
 };
 
@@ -52,15 +52,10 @@ fn none_inside(case: &'static str, distance: impl Fn(f64, f64) -> f64) -> Result
         (Scheme::Paper, "nearest_m_paper", "put_back_share_paper"),
         (Scheme::Balanced, "nearest_m_balanced", "put_back_share_balanced"),
     ] {
-        let text = builtin(case).ok_or_else(|| ModelError::Setup(format!("no built-in scene {case}")))?.text;
-        let mut scene = Scene::parse(text, case, &[]).map_err(|error| ModelError::Setup(error.to_string()))?;
-        scene.resolve_defaults();
+        let (scene, settings, terrain) = built_in(case, &[])?;
         let until = scene.run.until_s;
-        let flood = scene.flood().ok_or_else(|| ModelError::Setup(format!("{case} is no flood")))?;
-        let terrain = Terrain::open(&flood.terrain, scene.seed, Path::new("."));
-        let terrain = terrain.map_err(|error| ModelError::Setup(error.to_string()))?;
-        let settings = Settings { scheme, ..flood.flood.clone() };
-        let mut flood = ready(Flood::new(&settings, scene.seed, Path::new("."), Arc::new(terrain))?)?;
+        let settings = Settings { scheme, ..settings };
+        let mut flood = ready(Flood::new(&settings, scene.seed, Path::new("."), terrain)?)?;
         let mut nearest = f64::INFINITY;
         while flood.time() < until {
             flood.advance_to((flood.time() + flood.time_step()).min(until), &AtomicBool::new(false))?;
