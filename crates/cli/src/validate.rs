@@ -4,11 +4,15 @@ use crate::args::{Backend, ValidateOptions};
 use crate::output::{number, print, print_json};
 use crate::select::select;
 use corpuscle::gpu::Gpu;
+use corpuscle::model::Chart;
 use corpuscle_record::{ValidatedCase, ValidatedMeasure, ValidationReport};
-use corpuscle_validate::{Options, Row, cases};
+use corpuscle_validate::{Case, Options, Row, cases};
+use std::collections::BTreeMap;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::channel;
 
-/// Runs cases and prints their rows as they come.
+/// Runs cases and prints their rows in the order of the cases.
 pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let data = std::env::var_os("CORPUSCLE_DATA").filter(|path| !path.is_empty()).map(Into::into);
     let mut with = Options::new(data, std::env::var_os("CORPUSCLE_REQUIRE_DATA").is_some_and(|value| value == "1"));
@@ -16,17 +20,17 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         with.gpu = Some(Gpu::open().map_err(corpuscle::Error::from)?);
     }
     let mut report = options.report.as_deref().map(ValidationReport::create).transpose()?;
-    let mut rows = Vec::new();
-    for case in select(cases(), |case| case.name, &options.cases)? {
-        if options.fast && case.slow {
-            continue;
-        }
-        if with.gpu.is_some() && case.name.starts_with("gas/") {
+    let mut chosen = select(cases(), |case| case.name, &options.cases)?;
+    chosen.retain(|case| !options.fast || !case.slow);
+    if with.gpu.is_some() {
+        for case in chosen.extract_if(.., |case| case.name.starts_with("gas/")) {
             eprintln!("{} left out: it computes on the CPU only", case.name);
-            continue;
         }
+    }
+    let mut rows = Vec::new();
+    each(&chosen, &with, |case, Done { rows: of_case, charts }| {
         let first = rows.len();
-        for row in case.rows(&with) {
+        for row in of_case {
             let line = line(&row);
             if as_json {
                 eprint!("{line}");
@@ -37,10 +41,11 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         }
         if let Some(report) = &mut report {
             let measures = rows[first..].iter().map(measure).collect();
-            report.add(ValidatedCase { name: case.name, about: case.about, measures, charts: with.take_charts() });
+            report.add(ValidatedCase { name: case.name, about: case.about, measures, charts });
             report.write()?;
         }
-    }
+        Ok(())
+    })?;
     if as_json {
         print_json(&rows)?;
     }
@@ -49,6 +54,57 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     let skipped = rows.iter().filter(|row| row.pass.is_none() && row.value.is_none()).count();
     eprintln!("{} passed, {failed} failed, {skipped} skipped", count(Some(true)));
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// What a case gave.
+struct Done {
+    rows: Vec<Row>,
+    charts: Vec<Chart>,
+}
+
+/// Runs cases beside each other and takes what they gave in their order: most are so small that two of them on a thread each are done sooner than
+/// one after the other on both. A card takes one after the other.
+fn each(
+    cases: &[&Case],
+    with: &Options,
+    mut take: impl FnMut(&Case, Done) -> anyhow::Result<()>,
+) -> anyhow::Result<()> {
+    let threads = rayon::current_num_threads();
+    let beside = if with.gpu.is_some() { 1 } else { (threads as f64).sqrt().ceil() as usize };
+    let next = AtomicUsize::new(0);
+    let (tell, told) = channel();
+    std::thread::scope(|scope| {
+        for _ in 0..beside {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / beside).max(1)).build()?;
+            let (tell, with, next) = (tell.clone(), with.clone(), &next);
+            let work = move || {
+                while let Some((index, case)) = next_of(cases, next) {
+                    let rows = case.rows(&with);
+                    if tell.send((index, Done { rows, charts: with.take_charts() })).is_err() {
+                        break;
+                    }
+                }
+            };
+            scope.spawn(move || pool.install(work));
+        }
+        drop(tell);
+        let mut waiting = BTreeMap::new();
+        let mut taken = 0;
+        for (index, done) in told {
+            waiting.insert(index, done);
+            while let Some(done) = waiting.remove(&taken) {
+                take(cases[taken], done)?;
+                taken += 1;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The next of the cases that nobody has begun.
+fn next_of<'a>(cases: &[&'a Case], next: &AtomicUsize) -> Option<(usize, &'a Case)> {
+    let index = next.fetch_add(1, Ordering::Relaxed);
+    cases.get(index).map(|case| (index, *case))
 }
 
 /// A row as the report has it.
