@@ -1,8 +1,9 @@
 //! A film of a run while it runs.
 
-use crate::pictures::{PictureSettings, Pictures};
+use crate::pictures::{Glance, PictureSettings, Pictures};
 use crate::{Error, Simulation, Sink};
 use corpuscle_film::{Film, Format};
+use corpuscle_gpu::{Gpu, Image};
 use corpuscle_model::Model;
 use corpuscle_record::Summary;
 use std::path::Path;
@@ -38,6 +39,10 @@ impl Filming {
 
     fn add(&mut self, model: &dyn Model) -> Result<(), Error> {
         let image = self.pictures.draw_model(model)?;
+        self.keep(&image)
+    }
+
+    fn keep(&mut self, image: &Image) -> Result<(), Error> {
         Ok(self.film.as_mut().map_or(Ok(()), |film| film.add(&image.rgba))?)
     }
 }
@@ -49,6 +54,15 @@ impl Sink for Filming {
 
     fn picture(&mut self, model: &dyn Model) -> Result<(), Error> {
         self.add(model)
+    }
+
+    fn glances_on(&self) -> Option<&Gpu> {
+        self.pictures.show_glances().then(|| self.pictures.gpu())
+    }
+
+    fn glance(&mut self, glance: &Glance) -> Result<(), Error> {
+        let image = self.pictures.draw_glance(glance)?;
+        self.keep(&image)
     }
 
     fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {

@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+mod along;
 #[cfg(feature = "gpu")]
 mod backend;
 mod by_hand;

@@ -1,13 +1,15 @@
 //! A scene made ready, and its run.
 
+use crate::along::{Along, Glances, Going, Keeping, Meter};
 use crate::schedule::Schedule;
 use crate::{ByHand, Error, Progress, Sink};
 use corpuscle_flood::{Flood, Sample};
-use corpuscle_model::{Companion, Model, ModelError, Passed};
+use corpuscle_model::{Model, ModelError};
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::any::Any;
+use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -134,8 +136,11 @@ impl Simulation {
         let (until, keep_every) = (run.until_s, run.checkpoint_every_wall_s);
         let [gauges, pauses] = [run.gauge_period_s(), until / PAUSES].map(|period| Schedule::new(period, until));
         let frames = Schedule::new(run.frame_period_s(), until);
-        let pictures: Vec<_> =
-            sinks.iter().map(|sink| sink.picture_period().map(|period| Schedule::new(period, until))).collect();
+        let [mut pictures, mut glances] = [(); 2].map(|()| vec![None; sinks.len()]);
+        for (number, sink) in sinks.iter().enumerate() {
+            let schedules = if self.glances(&**sink) { &mut glances } else { &mut pictures };
+            schedules[number] = sink.picture_period().map(|period| Schedule::new(period, until));
+        }
         let counted = if self.scene.gas().is_some() { "collisions" } else { "particle-steps" };
         let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
         if !self.resumed {
@@ -147,19 +152,21 @@ impl Simulation {
             // From here on the run can be resumed, whatever ends it.
             self.keep(sinks, start)?;
         }
-        let mut kept = start;
+        let (mut kept, mut seen) = (start, self.model.time());
         loop {
             let now = self.model.time();
             let frame = frames.after(now);
-            let picture: Vec<_> = pictures.iter().map(|schedule| schedule.and_then(|due| due.after(now))).collect();
+            let picture: Vec<_> =
+                pictures.iter().map(|due: &Option<Schedule>| due.and_then(|due| due.after(now))).collect();
             let due = picture.iter().copied().chain([frame]).flatten();
             let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
             let keeping = Keeping { kept, every: keep_every };
-            let mut along = Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keeping, failed: None };
-            self.model.advance_with(next, stop, &mut along)?;
-            along.failed.map_or(Ok(()), Err)?;
+            let glances = Glances { due: &glances, seen };
+            let along =
+                Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keeping, glances, failed: None };
+            seen = self.advance(next, stop, along)?.max(self.model.time());
             let has_arrived = self.model.time() >= next;
             for (sink, picture) in sinks.iter_mut().zip(picture) {
                 if has_arrived && picture == Some(next) {
@@ -178,6 +185,37 @@ impl Simulation {
                 return Ok(Status::Stopped);
             }
         }
+    }
+
+    /// Whether a sink takes glances of this model for its pictures.
+    #[cfg(feature = "pictures")]
+    fn glances(&self, sink: &dyn Sink) -> bool {
+        sink.glances_on().is_some_and(|gpu| self.is_seen_on(gpu))
+    }
+
+    #[cfg(not(feature = "pictures"))]
+    fn glances(&self, _: &dyn Sink) -> bool {
+        false
+    }
+
+    /// Goes on to a time, s; gives up to when glances were given.
+    #[cfg(feature = "pictures")]
+    fn advance(&mut self, time: f64, stop: &AtomicBool, along: Along<'_, '_>) -> Result<f64, Error> {
+        let first = along.glances.next();
+        let along = RefCell::new(along);
+        let mut show = |glance| along.borrow_mut().show(&glance);
+        self.advance_shown(time, stop, &mut Going(&along), first, &mut show)?;
+        let Along { glances, failed, .. } = along.into_inner();
+        // A model that was called back may stand a little before what it has shown.
+        failed.map_or(Ok(glances.seen), Err)
+    }
+
+    #[cfg(not(feature = "pictures"))]
+    fn advance(&mut self, time: f64, stop: &AtomicBool, along: Along<'_, '_>) -> Result<f64, Error> {
+        let along = RefCell::new(along);
+        self.model.advance_with(time, stop, &mut Going(&along))?;
+        let Along { glances, failed, .. } = along.into_inner();
+        failed.map_or(Ok(glances.seen), Err)
     }
 
     /// Has the state kept, to go on from.
@@ -211,76 +249,5 @@ impl Simulation {
             ledger: ledger_entries(&model.ledger()),
             extent: None,
         }
-    }
-}
-
-/// Where this part of the run began, to measure its rate.
-struct Meter {
-    start: Instant,
-    time: f64,
-    particle_steps: u64,
-    counted: &'static str,
-}
-
-impl Meter {
-    fn progress(&self, passed: Passed, until: f64) -> Progress {
-        let Passed { time, particles, particle_steps } = passed;
-        let wall = self.start.elapsed().as_secs_f64();
-        let done = time - self.time;
-        Progress {
-            time,
-            until,
-            particles,
-            particle_steps_per_s: (particle_steps - self.particle_steps) as f64 / wall,
-            counted: self.counted,
-            left_s: (done > 0.0).then(|| wall * (until - time) / done),
-        }
-    }
-}
-
-/// When the state was last kept, and how often it is to be, s of wall-clock time.
-#[derive(Clone, Copy)]
-struct Keeping {
-    kept: Instant,
-    every: f64,
-}
-
-impl Keeping {
-    fn is_due(self) -> bool {
-        self.kept.elapsed().as_secs_f64() >= self.every
-    }
-}
-
-/// Goes along with the model from one frame or picture to the next.
-struct Along<'a, 'sink> {
-    sinks: &'a mut [&'sink mut dyn Sink],
-    gauges: Schedule,
-    pauses: Schedule,
-    until: f64,
-    meter: &'a Meter,
-    on_progress: &'a mut dyn FnMut(&Progress),
-    keeping: Keeping,
-    /// What a sink failed with.
-    failed: Option<Error>,
-}
-
-impl Companion for Along<'_, '_> {
-    fn gauges_after(&self, time: f64) -> Option<f64> {
-        self.gauges.after(time)
-    }
-
-    fn pause_after(&self, time: f64) -> Option<f64> {
-        self.pauses.after(time)
-    }
-
-    fn gauges(&mut self, time: f64, row: &[f64]) {
-        if self.failed.is_none() {
-            self.failed = self.sinks.iter_mut().try_for_each(|sink| sink.gauges(time, row)).err();
-        }
-    }
-
-    fn passed(&mut self, passed: Passed) -> bool {
-        (self.on_progress)(&self.meter.progress(passed, self.until));
-        self.failed.is_none() && !self.keeping.is_due()
     }
 }

@@ -1,6 +1,10 @@
 //! Where what a run shows goes.
 
 use crate::Error;
+#[cfg(feature = "pictures")]
+use crate::pictures::Glance;
+#[cfg(feature = "pictures")]
+use corpuscle_gpu::Gpu;
 use corpuscle_model::Model;
 use corpuscle_record::{Clock, Summary};
 
@@ -33,6 +37,21 @@ pub trait Sink {
     /// # Errors
     /// Where it cannot be taken.
     fn picture(&mut self, _model: &dyn Model) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The device on which it draws, if a [`Glance`] of a model that steps there is all that it wants for pictures; none: it wants the model.
+    #[cfg(feature = "pictures")]
+    fn glances_on(&self) -> Option<&Gpu> {
+        None
+    }
+
+    /// [`Sink::picture`] of a model whose particles do not come back for it. The picture of the start is one of the model.
+    ///
+    /// # Errors
+    /// Where it cannot be taken.
+    #[cfg(feature = "pictures")]
+    fn glance(&mut self, _glance: &Glance) -> Result<(), Error> {
         Ok(())
     }
 

@@ -119,7 +119,7 @@ impl Model for Dew {
     #[cfg(feature = "gpu")]
     fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
         if self.card.is_some() {
-            self.advance_measured(time, stop, companion, &mut None)
+            self.advance_measured(time, stop, companion, None)
         } else {
             advance_with(self, time, stop, companion)
         }

@@ -1,22 +1,17 @@
 //! A scene that steps where it is drawn: while it goes on its particles stay there, and rows of gauges come by themselves.
 
-mod clock;
-mod ordered;
-
 use super::filming::Filming;
 use super::pace::Pace;
 use super::thread::{MEASURE, PICTURES, Rate, Running};
 use super::{Measures, Shared, Snapshot};
-use clock::Clock;
 use corpuscle::gpu::Gpu;
 use corpuscle::model::{Companion, Container, Frame, Passed};
 use corpuscle::pictures::{Glance, Moment};
 use corpuscle::{Error, Sample};
-use ordered::Ordered;
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What went wrong.
 pub(super) enum Fault {
@@ -38,8 +33,7 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         probed: *probed,
         particles: simulation.model().particles(),
         look_at: (*measure_at, probe.is_some()),
-        clock: Clock::at(from, pace.asked),
-        ordered: Ordered::new(gpu),
+        slice: Slice { from, began: Instant::now(), before: Duration::ZERO },
         pace,
         measured,
         rate,
@@ -47,13 +41,20 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         film_fault: None,
         recalled: None,
     });
-    let gone = simulation.advance_shown(*until, &shared.stop, &mut Along(&glide), &mut |glance| {
-        let mut glide = glide.borrow_mut();
-        glide.show(glance)
-    });
+    let mut show = |glance| glide.borrow_mut().show(glance);
+    let gone = simulation.advance_shown(*until, &shared.stop, &mut Along(&glide), from, &mut show);
     let Glide { film_fault, recalled, .. } = glide.into_inner();
     gone.map_err(Fault::OfModel)?;
     film_fault.map_or(Ok(recalled), |error| Err(Fault::OfFilm(error)))
+}
+
+/// From one picture to the next.
+struct Slice {
+    /// The time of the last picture, s, and when the steps since began.
+    from: f64,
+    began: Instant,
+    /// How long before the last ones had.
+    before: Duration,
 }
 
 struct Glide<'a> {
@@ -66,8 +67,7 @@ struct Glide<'a> {
     particles: usize,
     /// From when on particles may be called back, and whether somebody asks for the water somewhere.
     look_at: (Instant, bool),
-    clock: Clock,
-    ordered: Ordered<'a>,
+    slice: Slice,
     pace: &'a mut Pace,
     measured: &'a mut Arc<Measures>,
     rate: &'a mut Rate,
@@ -78,19 +78,18 @@ struct Glide<'a> {
 }
 
 impl Glide<'_> {
-    /// Shows what a step leaves, and waits until it is time for the next; gives when it is to be shown again before that.
-    fn show(&mut self, glance: Glance) -> Option<f64> {
-        let time = glance.frame.time;
+    /// Shows the scene as it stands, and waits until it is time to go on; gives up to when, s.
+    fn show(&mut self, glance: Glance) -> f64 {
+        let Slice { from, began, before } = self.slice;
+        let (time, worked) = (glance.frame.time, began.elapsed());
+        self.pace.went(time - from, worked, before.max(worked));
         self.film(&glance);
-        if let Some((far, worked, whole)) = self.clock.picture(time) {
-            self.pace.went(far, worked, whole);
-            self.shared.publish(self.snapshot(glance));
-        }
-        self.ordered.wait();
-        self.clock.wait_until(time, &self.shared.stop);
-        self.ordered.begin();
-        let picture = self.pace.asked / PICTURES;
-        Some(self.filming.as_ref().map_or(picture, |filming| picture.min(filming.next - time)))
+        self.shared.publish(self.snapshot(glance));
+        std::thread::sleep(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(began.elapsed()));
+        let since = began.elapsed();
+        self.slice = Slice { from: time, began: Instant::now(), before: since };
+        let next = time + self.pace.next(since);
+        self.filming.as_ref().map_or(next, |filming| next.min(filming.next))
     }
 
     fn snapshot(&self, glance: Glance) -> Snapshot {

@@ -71,14 +71,16 @@ impl Drawn {
         let stop = AtomicBool::new(false);
         let mut ended = Ok(());
         let pictures = &mut self.pictures;
-        self.flood.advance_shown(LONG, &stop, &mut (), &mut |time, particles| {
+        // After each step.
+        let always = 0.0;
+        self.flood.advance_shown(LONG, &stop, &mut (), always, &mut |time, particles| {
             let frame = Frame { time, sets: Vec::new() };
             let moment = Moment { frame: &frame, on_device: Some(particles), paths: &[], container: None };
             let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
             let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
             stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);
             ended = over.map(|_| ());
-            None
+            always
         })?;
         ended
     }

@@ -10,6 +10,7 @@ use corpuscle_flood::Flood;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 use corpuscle_model::ModelError;
 use corpuscle_model::{Companion, Frame, Model};
+#[cfg(feature = "gpu")]
 use std::any::Any;
 use std::sync::atomic::AtomicBool;
 
@@ -46,8 +47,8 @@ impl Simulation {
     }
 
     /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
-    /// glance after each step (of dew: few steps), and says after how long, s, it wants the next, if no step ends before; particles come
-    /// back only at the end.
+    /// glance from the time `first`, s, on, and says when it wants the next, s (a time that has passed stands for the end of the next
+    /// step); particles come back only at the end.
     ///
     /// # Errors
     /// [`Error::Model`] where the model breaks down, or its device is lost.
@@ -56,10 +57,11 @@ impl Simulation {
         time: f64,
         stop: &AtomicBool,
         companion: &mut dyn Companion,
-        show: &mut dyn FnMut(Glance) -> Option<f64>,
+        first: f64,
+        show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), Error> {
         let shows_air = self.shows_air();
-        Ok(advance_shown(self.model_mut(), shows_air, (time, stop), companion, show)?)
+        Ok(advance_shown(self.model_mut(), (time, stop), companion, (first, shows_air), show)?)
     }
 }
 
@@ -76,6 +78,20 @@ impl Pictures {
         };
         let (paths, container) = (model.paths(), model.container());
         self.draw(&Moment { frame: &frame, on_device: particles.as_ref(), paths: &paths, container })
+    }
+
+    /// The picture of a glance.
+    ///
+    /// # Errors
+    /// [`Error::Render`] where the device was lost.
+    pub fn draw_glance(&mut self, glance: &Glance) -> Result<Image, Error> {
+        let Glance { frame, on_device } = glance;
+        self.draw(&Moment { frame, on_device: on_device.as_ref(), paths: &[], container: None })
+    }
+
+    /// Whether pictures show all that there is by a glance: not where the ground shows the water's depth.
+    pub fn show_glances(&self) -> bool {
+        !matches!(&self.subject, Subject::Flood(flood) if flood.shows_depth())
     }
 
     /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
@@ -110,21 +126,20 @@ fn particles_of(model: &dyn Model, sees_air: bool) -> Result<Option<DevicePartic
 #[cfg(feature = "gpu")]
 fn advance_shown(
     model: &mut dyn Model,
-    shows_air: bool,
     (time, stop): (f64, &AtomicBool),
     companion: &mut dyn Companion,
-    show: &mut dyn FnMut(Glance) -> Option<f64>,
+    (first, shows_air): (f64, bool),
+    show: &mut dyn FnMut(Glance) -> f64,
 ) -> Result<(), ModelError> {
     let any: &mut dyn Any = model;
     if let Some(flood) = any.downcast_mut::<Flood>() {
-        return flood.advance_shown(time, stop, companion, &mut |time, particles| {
+        return flood.advance_shown(time, stop, companion, first, &mut |time, particles| {
             show(Glance { frame: Frame { time, sets: Vec::new() }, on_device: Some(particles.clone()) })
         });
     }
     if let Some(dew) = any.downcast_mut::<Dew>() {
-        return dew.advance_shown(time, stop, companion, shows_air, &mut |frame, on_device| {
-            // A batch of steps is too short for another look in it.
-            let _ = show(Glance { frame, on_device });
+        return dew.advance_shown(time, stop, companion, (first, shows_air), &mut |frame, on_device| {
+            show(Glance { frame, on_device })
         });
     }
     model.advance_with(time, stop, companion)
@@ -133,10 +148,10 @@ fn advance_shown(
 #[cfg(not(feature = "gpu"))]
 fn advance_shown(
     model: &mut dyn Model,
-    _: bool,
     (time, stop): (f64, &AtomicBool),
     companion: &mut dyn Companion,
-    _: &mut dyn FnMut(Glance) -> Option<f64>,
+    _: (f64, bool),
+    _: &mut dyn FnMut(Glance) -> f64,
 ) -> Result<(), ModelError> {
     model.advance_with(time, stop, companion)
 }

@@ -55,8 +55,6 @@ pub(crate) struct Card {
     ahead: bool,
     /// Wall-clock time spent on steps, s.
     pub busy: f64,
-    /// What the last batch took for a step, s.
-    took: f64,
     /// Once somebody draws the air.
     seen: OnceLock<Seen>,
     /// Where passes are timed.
@@ -135,7 +133,6 @@ impl Card {
             held_before,
             ahead: false,
             busy: 0.0,
-            took: 0.0,
             seen: OnceLock::new(),
             stopwatch: None,
             #[cfg(test)]
@@ -247,11 +244,6 @@ impl Card {
         Ok(())
     }
 
-    /// Steps that take about so long, s: one at least.
-    pub fn steps_in(&self, seconds: f64) -> u64 {
-        (seconds / self.took.max(1e-9)).max(1.0) as u64
-    }
-
     /// Takes `count` steps, or fewer: only up to `until` s from now.
     pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
         #[cfg(test)]
@@ -281,9 +273,7 @@ impl Card {
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
-        let took = began.elapsed().as_secs_f64();
-        self.busy += took;
-        self.took = took / f64::from(self.status.steps.max(1));
+        self.busy += began.elapsed().as_secs_f64();
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies))

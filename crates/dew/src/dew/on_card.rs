@@ -10,7 +10,7 @@ use crate::room::Face;
 use crate::wetting::WettingState;
 use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::ModelError;
-use on_device::{AHEAD, Watch};
+use on_device::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// So many steps are ordered at once where there are no drops to be told of.
@@ -119,7 +119,7 @@ impl Dew {
             self.shown = time;
             return Ok(());
         }
-        self.advance_and_fetch(|dew| dew.go_on_card(time, stop, &mut None))
+        self.advance_and_fetch(|dew| dew.go_on_card(time, stop))
     }
 
     /// Brings the state back after steps that may break down. Where the card fails, it is that of before.
@@ -146,13 +146,8 @@ impl Dew {
         }
     }
 
-    /// Goes on to `time`, batch by batch, each of which a watch is shown; gives what broke down.
-    fn go_on_card(
-        &mut self,
-        time: f64,
-        stop: &AtomicBool,
-        watch: &mut Option<Watch<'_>>,
-    ) -> Result<Option<ModelError>, GpuError> {
+    /// Goes on to `time`, batch by batch; gives what broke down.
+    fn go_on_card(&mut self, time: f64, stop: &AtomicBool) -> Result<Option<ModelError>, GpuError> {
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
                 self.shown = self.shown.max(self.state.time);
@@ -160,11 +155,8 @@ impl Dew {
             }
             let left = time - self.state.time;
             let planned = (left / self.state.time_step).ceil().clamp(1.0, TOGETHER as f64) as u64;
-            let mut count = self.steps_to_drops().min(planned);
+            let count = self.steps_to_drops().min(planned);
             let Some(card) = &mut self.card else { break };
-            if watch.is_some() {
-                count = count.min(card.steps_in(AHEAD));
-            }
             let progress = card.advance(left, count as usize)?;
             self.book_progress(&progress);
             self.tend_drops_beside_card()?;
@@ -175,9 +167,6 @@ impl Dew {
             if progress.full {
                 self.make_room()?;
                 continue;
-            }
-            if let Some(watch) = watch {
-                self.show_to(watch)?;
             }
             // To the card, which rounds more coarsely, a step that ends at that time may end after it.
             if progress.lengths.is_empty() {

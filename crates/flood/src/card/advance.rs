@@ -2,11 +2,10 @@
 
 use super::layout::{self, CardBirth, Grid, Status};
 use super::tasks::Tasks;
-use super::{Card, Progress, Shown, Span};
+use super::{Card, Progress, Span};
 use crate::gauges::Reading;
 use crate::rain::Ground;
-use corpuscle_gpu::{DeviceParticles, GpuError, Pass, read, wgpu};
-use std::sync::atomic::{AtomicBool, Ordering};
+use corpuscle_gpu::{GpuError, Pass, read, wgpu};
 use std::time::Instant;
 
 /// Size of a cell over the mean reach, as on the CPU in scheme balanced.
@@ -21,19 +20,6 @@ const LAID_OUT: u64 = 64;
 /// A batch of steps takes about so long at most, s: then the host looks whether it is to stop.
 const BATCH: f64 = 0.2;
 
-/// The same where somebody watches, who may take as long as he likes for each: rows of gauges come after it.
-const WATCHED: f64 = 0.1;
-
-/// Who looks at the particles after each step, on the device.
-pub(crate) struct Watch<'a> {
-    pub shown: Shown,
-    /// Is told the time, s, as far as the host knows it without asking, and where the particles are. Gives after how long, s, it wants to
-    /// see them again, if no step ends before.
-    pub show: &'a mut dyn FnMut(f64, &DeviceParticles) -> Option<f64>,
-    /// Whether this was the last.
-    pub stop: &'a AtomicBool,
-}
-
 impl Card {
     /// Whether the room may not do for `births` more, and where particles are split for half of them, until it is time to ask again; none
     /// where it is not time to.
@@ -46,15 +32,10 @@ impl Card {
             && particles + self.status.falling as usize + halves + births(horizon) > self.room
     }
 
-    /// Takes some steps, through all of a span at most. It rains on `ground`. Nothing comes back between two steps, whoever watches. Gives what
-    /// was done, and of the rows of gauges that are due those that were passed.
-    pub fn advance(
-        &mut self,
-        span: Span<'_>,
-        ground: Option<&Ground>,
-        watch: &mut Option<Watch<'_>>,
-    ) -> Result<(Progress, Vec<Reading>), GpuError> {
-        let Span { now, until, look, looks, looked, births, due } = span;
+    /// Takes some steps, through all of a span at most. It rains on `ground`. Nothing comes back between two steps. Gives what was done, and of
+    /// the rows of gauges that are due those that were passed.
+    pub fn advance(&mut self, span: Span<'_>, ground: Option<&Ground>) -> Result<(Progress, Vec<Reading>), GpuError> {
+        let Span { now, until, most, look, looks, looked, births, due } = span;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             let [sum, lacking] = self.status.clock;
@@ -79,8 +60,7 @@ impl Card {
         self.gpu.queue.write_buffer(&self.tasks.births, 0, bytemuck::cast_slice(&births));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
         let planned = (until.min(look) / f64::from(self.status.step)).ceil().clamp(1.0, LAID_OUT as f64) as u32;
-        let batch = if watch.is_some() { LAID_OUT as u32 } else { self.batch };
-        let count = planned.min(batch).min(to_layout as u32);
+        let count = planned.min(most).min(self.batch).min(to_layout as u32);
         self.status = Status {
             halted: layout::SPOKEN,
             steps_before: self.status.steps_before.wrapping_add(self.status.steps),
@@ -103,19 +83,14 @@ impl Card {
         self.tell_looks(now, looks, looked);
         let began = Instant::now();
         self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
-        match watch {
-            None => self.order(|tasks, pass| tasks.steps(pass, count)),
-            Some(watch) => self.order_watched(count, now, watch)?,
-        }
+        self.order(|tasks, pass| tasks.steps(pass, count));
         let (status, readings) = self.learn(due.len())?;
         self.status = status;
         let took = began.elapsed().as_secs_f64();
         self.busy += took;
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
-        if watch.is_none() {
-            let next = if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) };
-            self.batch = next.min(LAID_OUT as u32);
-        }
+        let next = if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { (count / 2).max(1) };
+        self.batch = next.min(LAID_OUT as u32);
         self.steps += u64::from(self.status.steps);
         self.ahead |= self.status.steps > 0;
         Ok((self.progress(), readings))
@@ -135,24 +110,6 @@ impl Card {
         drop(pass);
         self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
-    }
-
-    /// Orders so many steps from the time `now` s on, one by one, and shows what each leaves.
-    fn order_watched(&mut self, count: u32, now: f64, watch: &mut Watch<'_>) -> Result<(), GpuError> {
-        let began = Instant::now();
-        for step in 0..count {
-            self.order(|tasks, pass| if step == 0 { tasks.steps(pass, 1) } else { tasks.step(pass) });
-            let time = now + f64::from(step + 1) * f64::from(self.status.step);
-            let mut since = Some(0.0);
-            while let Some(passed) = since.filter(|passed| *passed < f64::from(self.status.step)) {
-                let particles = self.seen(Shown { since: passed, ..watch.shown })?;
-                since = (watch.show)(time + passed, &particles).filter(|more| *more > 0.0).map(|more| passed + more);
-            }
-            if watch.stop.load(Ordering::Relaxed) || began.elapsed().as_secs_f64() > WATCHED {
-                break;
-            }
-        }
-        Ok(())
     }
 
     /// Twice as long a step as the next, or as those since the cells were last laid out, s; the longest that there can be, at most.

@@ -20,7 +20,6 @@ mod walls;
 mod weather;
 mod works;
 
-pub(crate) use advance::Watch;
 pub(crate) use gauges::MOST_ROWS;
 pub(crate) use maps::MOST_LOOKS;
 pub(crate) use seen::Shown;

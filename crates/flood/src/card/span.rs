@@ -14,6 +14,8 @@ pub(crate) struct Birth {
 pub(crate) struct Span<'a> {
     pub now: f64,
     pub until: f64,
+    /// Steps at most.
+    pub most: u32,
     /// The first step that ends then or after is the last: the host is to look at the maps.
     pub look: f64,
     /// When the card is to look at the maps itself, [`MOST_LOOKS`](super::MOST_LOOKS) at most, and when it last did.

@@ -2,7 +2,8 @@
 
 use super::Flood;
 use super::on_card::failed;
-use crate::card::{MOST_ROWS, Progress, Watch};
+use super::on_device::Watch;
+use crate::card::{MOST_ROWS, Progress};
 use crate::gauges::Reading;
 use crate::sampling::Sample;
 use corpuscle_model::{Companion, ModelError, Passed};
@@ -23,6 +24,15 @@ impl<'a> Onlookers<'a> {
     /// A companion alone.
     pub fn of(companion: &'a mut dyn Companion) -> Self {
         Self { companion: Some(companion), ..Self::default() }
+    }
+
+    /// From `now` until when to go on, s, and how many steps at most, before somebody looks at the particles, or `until`.
+    pub fn steps_to_look(&self, now: f64, until: f64) -> (f64, u32) {
+        match &self.watch {
+            Some(watch) if watch.wanted > now => (until.min(watch.wanted), u32::MAX),
+            Some(_) => (until, 1),
+            None => (until, u32::MAX),
+        }
     }
 
     /// Whether rows of gauges are to be taken.

@@ -180,10 +180,12 @@ impl Flood {
                 self.look();
             }
             // To the card, which rounds more coarsely, a step that ends at that time may end after it.
-            if (self.state.steps, onlookers.told) == before {
+            let is_stopped = stop.load(Ordering::Relaxed) || onlookers.call_back;
+            if (self.state.steps, onlookers.told) == before && !is_stopped {
                 break;
             }
         }
+        self.show_to(onlookers, self.state.time, time.next_up()).map_err(|error| failed(&error))?;
         self.shown = time;
         Ok(())
     }
@@ -202,23 +204,29 @@ impl Flood {
         let mut looked = self.state.maps.last();
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
+            self.show_to(onlookers, now, now + done.step)?;
+            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+                break;
+            }
             let longest = self.card.as_ref().map_or(0.0, Card::longest_batch);
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
             let looks = self.looks(now, done.looks);
             let due = onlookers.due(time);
             let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
+            let (target, most) = onlookers.steps_to_look(now, until);
             let from_now: Vec<f64> = due.iter().map(|due| due - now).collect();
             let Some(card) = &mut self.card else { break };
             let span = Span {
                 now,
-                until: until - now,
+                until: target - now,
+                most,
                 look: looks.last().copied().unwrap_or(look - now),
                 looks: &looks,
                 looked: looked - now,
                 births: &births,
                 due: &from_now,
             };
-            let (progress, readings) = card.advance(span, self.ground.as_ref(), &mut onlookers.watch)?;
+            let (progress, readings) = card.advance(span, self.ground.as_ref())?;
             let particles = card.particles();
             for (due, reading) in due.iter().zip(&readings) {
                 onlookers.tell(*due, &self.row_of_card(reading, &done));
@@ -234,12 +242,11 @@ impl Flood {
             let particle_steps = self.state.particle_steps + done.particle_steps;
             onlookers.pass(Passed { time: began + done.elapsed, particles, particle_steps });
             let lacks_room = |card: &Card| card.lacks_room(|horizon| self.most_births(&owed, now, horizon));
-            if progress.steps == 0 && readings.is_empty()
-                || done.broken
-                || self.card.as_ref().is_some_and(lacks_room)
-                || stop.load(Ordering::Relaxed)
-                || onlookers.call_back
-            {
+            let is_held = progress.steps == 0 && readings.is_empty();
+            if is_held && target < until && !done.broken {
+                // To the card, which rounds more coarsely, a step that ends when somebody looks may end after it.
+                self.show_to(onlookers, now, target.next_up())?;
+            } else if is_held || done.broken || self.card.as_ref().is_some_and(lacks_room) {
                 break;
             }
         }

@@ -3,10 +3,19 @@
 use super::Flood;
 use super::measured_on_card::Onlookers;
 use super::on_card::failed;
-use crate::card::{Card, Shown, Watch};
-use corpuscle_gpu::{DeviceParticles, Gpu};
+use crate::card::{Card, Shown};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError};
 use corpuscle_model::{Companion, Model, ModelError};
 use std::sync::atomic::AtomicBool;
+
+/// Who looks at the particles on the card.
+pub(super) struct Watch<'a> {
+    /// When it wants to see them, s: at the end of the next step if that has passed.
+    pub wanted: f64,
+    pub shown: Shown,
+    /// Is told the time, s, and where they are, and gives when it wants to see them next.
+    pub show: &'a mut dyn FnMut(f64, &DeviceParticles) -> f64,
+}
 
 impl Flood {
     /// The card that takes the steps, where one does.
@@ -24,10 +33,10 @@ impl Flood {
         seen.transpose().map_err(|error| failed(&error))
     }
 
-    /// Goes on to `time`, s, as [`Model::advance_with`] does, and tells `show` after each step what time it is, s, and where the particles
-    /// are on the card; it gives after how long, s, it wants to see them again, if no step ends before. Until it arrives, or
-    /// `stop` becomes true, nothing comes back but a few numbers every 64 steps and rows of gauges, so what draws the particles need not
-    /// wait; before a time that is waited for the same may be shown again. Without a card nobody is shown anything.
+    /// Goes on to `time`, s, as [`Model::advance_with`] does, and shows from the time `first`, s, on where the particles are on the card: `show` is
+    /// told what time it is, and gives when it wants to see them next, s; a time that has passed stands for the end of the next step.
+    /// Nothing comes back in between but a few numbers and rows of gauges, so what draws the particles need not wait for the host. Without
+    /// a card nobody is shown anything.
     ///
     /// # Errors
     /// Those of `advance_to`, and [`ModelError::Device`] where the card has too little memory.
@@ -36,20 +45,28 @@ impl Flood {
         time: f64,
         stop: &AtomicBool,
         companion: &mut dyn Companion,
-        show: &mut dyn FnMut(f64, &DeviceParticles) -> Option<f64>,
+        first: f64,
+        show: &mut dyn FnMut(f64, &DeviceParticles) -> f64,
     ) -> Result<(), ModelError> {
         if self.card.is_none() {
             return self.advance_with(time, stop, companion);
         }
-        let shown = self.particles_shown(0.0);
-        let mut latest = self.state.time;
-        // A guess may have been too late: time does not go back.
-        let mut show = |time: f64, particles: &DeviceParticles| {
-            latest = latest.max(time);
-            show(latest, particles)
-        };
-        let watch = Some(Watch { shown, show: &mut show, stop });
+        let watch = Some(Watch { wanted: first, shown: self.particles_shown(0.0), show });
         self.advance_measured(time, stop, Onlookers { watch, ..Onlookers::of(companion) })
+    }
+
+    /// Shows the particles, as the card has them after a step that ended at `now`, to who wants to see them before `before`, s.
+    pub(super) fn show_to(&self, onlookers: &mut Onlookers<'_>, now: f64, before: f64) -> Result<(), GpuError> {
+        let (Some(card), Some(watch)) = (&self.card, &mut onlookers.watch) else { return Ok(()) };
+        let mut is_first = true;
+        while watch.wanted < before && (watch.wanted > now || is_first) {
+            let at = watch.wanted.max(now);
+            let particles = card.seen(Shown { since: at - now, ..watch.shown })?;
+            let next = (watch.show)(at, &particles);
+            watch.wanted = if next > at { next } else { f64::NEG_INFINITY };
+            is_first = false;
+        }
+        Ok(())
     }
 
     fn particles_shown(&self, since: f64) -> Shown {

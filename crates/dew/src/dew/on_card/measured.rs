@@ -11,14 +11,16 @@ impl Dew {
         time: f64,
         stop: &AtomicBool,
         companion: &mut dyn Companion,
-        watch: &mut Option<Watch<'_>>,
+        mut watch: Option<Watch<'_>>,
     ) -> Result<(), ModelError> {
         self.advance_and_fetch(|dew| {
             while dew.shown < time {
+                dew.show_to(&mut watch)?;
                 let now = dew.shown;
                 let gauges = companion.gauges_after(now);
-                let next = [gauges, companion.pause_after(now)].into_iter().flatten().fold(time, f64::min);
-                let broken = dew.go_on_card(next, stop, watch)?;
+                let wanted = watch.as_ref().map(|watch| watch.wanted);
+                let next = [gauges, companion.pause_after(now), wanted].into_iter().flatten().fold(time, f64::min);
+                let broken = dew.go_on_card(next, stop)?;
                 if broken.is_some() || dew.shown < next {
                     return Ok(broken);
                 }
@@ -30,6 +32,7 @@ impl Dew {
                     break;
                 }
             }
+            dew.show_to(&mut watch)?;
             Ok(None)
         })
     }

@@ -7,15 +7,14 @@ use corpuscle_gpu::{DeviceParticles, Gpu, GpuError};
 use corpuscle_model::{Companion, Frame, Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-/// So long, s of wall-clock time, are steps ordered at once for who watches.
-pub(super) const AHEAD: f64 = 0.012;
-
-/// Who looks after each batch of steps.
+/// Who looks at the drops, and at the air on the card.
 pub(crate) struct Watch<'a> {
+    /// When it wants to see them, s.
+    pub wanted: f64,
     /// Whether the air is seen, or only what the host has.
     pub sees_air: bool,
-    /// Is given the time, s, and the drops, and the air on the device.
-    pub show: &'a mut dyn FnMut(Frame, Option<DeviceParticles>),
+    /// Is given the time, s, and the drops, and the air on the device; gives when it wants to see them next.
+    pub show: &'a mut dyn FnMut(Frame, Option<DeviceParticles>) -> f64,
 }
 
 impl Dew {
@@ -34,8 +33,8 @@ impl Dew {
         seen.transpose().map_err(|error| failed(&error))
     }
 
-    /// Goes on to `time`, s, as [`Model::advance_with`] does, and shows every few steps (a hundredth of a second of wall-clock time, and all
-    /// between which drops have their turn, at most) what time it is and the drops, and where `sees_air` the air on the card. Nothing of
+    /// Goes on to `time`, s, as [`Model::advance_with`] does, and shows from the time `first`, s, on what time it is, the drops, and where
+    /// `sees_air` the air on the card; `show` gives when it wants to see them next, s, no sooner than at the end of the next step. Nothing of
     /// the air comes back until it arrives, or `stop` becomes true. Without a card nobody is shown anything.
     ///
     /// # Errors
@@ -45,21 +44,26 @@ impl Dew {
         time: f64,
         stop: &AtomicBool,
         companion: &mut dyn Companion,
-        sees_air: bool,
-        show: &mut dyn FnMut(Frame, Option<DeviceParticles>),
+        (first, sees_air): (f64, bool),
+        show: &mut dyn FnMut(Frame, Option<DeviceParticles>) -> f64,
     ) -> Result<(), ModelError> {
         match &self.card {
             None => self.advance_with(time, stop, companion),
-            Some(_) => self.advance_measured(time, stop, companion, &mut Some(Watch { sees_air, show })),
+            Some(_) => {
+                let watch = Some(Watch { wanted: first, sees_air, show });
+                self.advance_measured(time, stop, companion, watch)
+            }
         }
     }
 
-    /// Shows how it stands after a step.
-    pub(super) fn show_to(&self, watch: &mut Watch<'_>) -> Result<(), GpuError> {
+    /// Shows how it stands now to who wants to see it by now.
+    pub(super) fn show_to(&self, watch: &mut Option<Watch<'_>>) -> Result<(), GpuError> {
+        let Some(watch) = watch.as_mut().filter(|watch| watch.wanted <= self.shown) else { return Ok(()) };
         let drops = self.wetting.as_ref().map(Wetting::set);
         let card = self.card.as_ref().filter(|_| watch.sees_air);
-        let air = card.map(|card| card.seen(self.scale().spacing, 0.0)).transpose()?;
-        (watch.show)(Frame { time: self.state.time, sets: drops.into_iter().collect() }, air);
+        let air = card.map(|card| card.seen(self.scale().spacing, self.since())).transpose()?;
+        let next = (watch.show)(Frame { time: self.shown, sets: drops.into_iter().collect() }, air);
+        watch.wanted = next.max(self.shown + self.state.time_step);
         Ok(())
     }
 }

@@ -78,8 +78,8 @@ fn what_finds_no_room_stays_whole() {
     card.restore(&host.save()).unwrap();
     card.open_card_with(gpu, count + 3).unwrap();
     let on_card = card.card.as_mut().unwrap();
-    let span = Span { now: 0.0, until: 10.0, look: 1e-6, looks: &[], looked: 0.0, births: &[], due: &[] };
-    assert_eq!(on_card.advance(span, None, &mut None).unwrap().0.steps, 1);
+    let span = Span { now: 0.0, until: 10.0, most: 64, look: 1e-6, looks: &[], looked: 0.0, births: &[], due: &[] };
+    assert_eq!(on_card.advance(span, None).unwrap().0.steps, 1);
     on_card.fetch(&mut card.state.particles, &card.surroundings.terrain).unwrap();
     host.step().unwrap();
     assert!(host.state.particles.len() > count + 3, "{} became {}", count, host.state.particles.len());
