@@ -66,22 +66,28 @@ pub fn read_together<T, const COUNT: usize>(
         }
         start += length;
     }
-    gpu.queue.submit([encoder.finish()]);
-    let mapped = map(gpu, &copy)?;
+    let mapped = map(gpu, &copy, encoder)?;
     Ok(std::array::from_fn(|part| taken_as(&mapped[starts[part]..starts[part] + parts[part].1])))
 }
 
-/// What a buffer of usage `MAP_READ` holds. Waits for the device.
+/// Has the device do what fills a buffer of usage `MAP_READ`, and gives what it holds then. Waits for that, and not for what others order
+/// after it.
 ///
 /// # Errors
 /// [`GpuError::Lost`].
-pub(crate) fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<wgpu::BufferView, GpuError> {
+pub(crate) fn map(
+    gpu: &Gpu,
+    buffer: &wgpu::Buffer,
+    filling: wgpu::CommandEncoder,
+) -> Result<wgpu::BufferView, GpuError> {
+    let filled = gpu.queue.submit([filling.finish()]);
     let lost = |reason: String| GpuError::Lost { name: gpu.name.clone(), reason };
     let (done, answer) = std::sync::mpsc::channel();
     buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
         let _ = done.send(result);
     });
-    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| lost(error.to_string()))?;
+    let wait = wgpu::PollType::Wait { submission_index: Some(filled), timeout: None };
+    gpu.device.poll(wait).map_err(|error| lost(error.to_string()))?;
     gpu.check()?;
     answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
     buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))

@@ -50,8 +50,7 @@ pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError>
         wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
         texture.size(),
     );
-    gpu.queue.submit([encoder.finish()]);
-    let bytes = map(gpu, &buffer)?;
+    let bytes = map(gpu, &buffer, encoder)?;
     let rgba = bytes.chunks_exact(row as usize).flat_map(|line| &line[..4 * width as usize]).copied().collect();
     Ok(Image { width, height, rgba })
 }
