@@ -33,8 +33,8 @@ pub struct Over<'a> {
 }
 
 impl Over<'_> {
-    /// Draws all of it.
-    pub fn paint(&self) {
+    /// Draws all of it; gives how much of the top its key takes, points.
+    pub fn paint(&self) -> f32 {
         self.axes();
         for border in &self.shown.overlay.borders {
             self.border(border);
@@ -47,9 +47,10 @@ impl Over<'_> {
                 self.text(at, Align2::CENTER_CENTER, label, 12.5);
             }
         }
-        self.key();
+        let key = self.key();
         let corner = self.rect.right_bottom() - vec2(12.0, 10.0);
         self.text(corner, Align2::RIGHT_BOTTOM, &self.shown.overlay.remark, 11.5);
+        key
     }
 
     /// Where a place of the world is in the window.
@@ -156,7 +157,8 @@ impl Over<'_> {
         }
     }
 
-    fn key(&self) {
+    /// Draws the key of colours and lines; gives how much of the top it takes, points.
+    fn key(&self) -> f32 {
         let overlay = &self.shown.overlay;
         let mut rows: Vec<(String, Row<'_>)> = match &overlay.key {
             Some(Key::Values(label, table)) => vec![(label.clone(), Row::Bar(table))],
@@ -167,7 +169,7 @@ impl Over<'_> {
         };
         rows.extend(overlay.lines.iter().map(|(look, name)| (name.clone(), Row::Line(*look))));
         if rows.is_empty() {
-            return;
+            return 0.0;
         }
         let wide = |text: &str| self.painter.layout_no_wrap(text.into(), FontId::proportional(12.0), INK[0]).size().x;
         let widths: Vec<f32> = rows.iter().map(|(name, row)| row.width(&wide, name)).collect();
@@ -198,6 +200,7 @@ impl Over<'_> {
         for ((name, row), off) in rows.iter().zip(at) {
             self.row(panel.min + vec2(9.0, 4.0) + off, name, row, ink, &wide);
         }
+        panel.bottom() - self.rect.top()
     }
 
     fn row(&self, at: Pos2, name: &str, row: &Row<'_>, ink: Color32, wide: &impl Fn(&str) -> f32) {

@@ -121,7 +121,8 @@ impl Picked {
                     row("velocity", vector(set.velocity[at]), unit("m/s"));
                     row("speed", number(speed), unit("m/s"));
                     row("mass", number(set.mass[at]), unit("kg"));
-                    for column in &set.columns {
+                    // Its speed is told of any particle.
+                    for column in set.columns.iter().filter(|column| column.name != "speed") {
                         let value = match &column.values {
                             Values::Scalar(values) => number(values[at]),
                             Values::Vector(values) => vector(values[at]),

@@ -54,6 +54,8 @@ pub struct Picture {
     pub quality: Quality,
     /// When something last changed.
     changed: Instant,
+    /// How much of its top the key takes, points.
+    key_height: f32,
     /// What went wrong with it.
     fault: Option<String>,
 }
@@ -85,6 +87,7 @@ impl Picture {
             lifted: None,
             quality: Quality::Auto,
             changed: Instant::now(),
+            key_height: 0.0,
             fault: None,
         }
     }
@@ -144,8 +147,13 @@ impl Picture {
                 self.wish(snapshot, best, linear, darkroom);
             }
         }
-        self.paint(ui, rect);
+        self.key_height = self.paint(ui, rect);
         response
+    }
+
+    /// How much of the picture's top its key takes, points.
+    pub fn key_height(&self) -> f32 {
+        self.key_height
     }
 
     /// True where what was drawn last has all there is to its look.
@@ -194,18 +202,18 @@ impl Picture {
         Ok(())
     }
 
-    fn paint(&self, ui: &Ui, rect: Rect) {
+    fn paint(&self, ui: &Ui, rect: Rect) -> f32 {
         let painter = ui.painter_at(rect);
         if let Some(on_screen) = &self.on_screen {
             painter.add(egui_wgpu::Callback::new_paint_callback(rect, on_screen.clone()));
         }
-        if let Some(shown) = &self.shown {
-            Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode }.paint();
-        }
+        let over = |shown| Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode };
+        let key_height = self.shown.as_ref().map_or(0.0, |shown| over(shown).paint());
         if let Some(fault) = &self.fault {
             let font = egui::FontId::proportional(13.5);
             painter.text(rect.center(), egui::Align2::CENTER_CENTER, fault, font, ui.visuals().error_fg_color);
         }
+        key_height
     }
 
     /// Turns, shifts and zooms.

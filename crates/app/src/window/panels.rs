@@ -67,7 +67,9 @@ impl Window {
                 self.physics.ask(Command::Probe(spot));
             }
         }
-        let inside = whole.shrink2(vec2(16.0, 12.0));
+        let mut inside = whole.shrink2(vec2(16.0, 12.0));
+        // Cards lie below the key of colours.
+        inside.min.y += self.open.as_ref().map_or(0.0, |open| open.picture.key_height());
         let mut over = ui.new_child(egui::UiBuilder::new().max_rect(inside));
         if self.awaited.is_some() {
             over.horizontal(|ui| {
