@@ -59,6 +59,8 @@ fn what_goes_on_is_drawn_where_it_lies_and_comes_back_when_it_waits() {
 #[test]
 fn who_is_followed_comes_back_again_and_again_and_nobody_else_does() {
     let Some(mut stage) = dam("a particle of a flood on the card") else { return };
+    // The simple look, which is quicker without a card.
+    stage.key(egui::Key::Num2);
     let known = |window: &corpuscle_app::Window| window.snapshot().unwrap().known.time;
     // A particle is clicked on while it goes on, and with it the ground below.
     let before = known(stage.window());
@@ -85,6 +87,7 @@ fn who_is_followed_comes_back_again_and_again_and_nobody_else_does() {
 #[test]
 fn a_film_is_made_of_what_lies_on_the_card() {
     let Some(mut stage) = dam("a film of a flood on the card") else { return };
+    stage.key(egui::Key::Num2);
     let folder = tempfile::tempdir().unwrap();
     stage.window_mut().save_into(folder.path().to_owned());
     stage.click("Record a film");
