@@ -32,8 +32,9 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         known: known.clone(),
         probed: *probed,
         particles: simulation.model().particles(),
+        work: simulation.model().particle_steps(),
         look_at: (*measure_at, probe.is_some()),
-        slice: Slice { from, began: Instant::now(), before: Duration::ZERO },
+        slice: Slice { from, began: Instant::now(), before: Duration::ZERO, has_stepped: false },
         pace,
         measured,
         rate,
@@ -55,6 +56,8 @@ struct Slice {
     began: Instant,
     /// How long before the last ones had.
     before: Duration,
+    /// Whether any of them is done.
+    has_stepped: bool,
 }
 
 struct Glide<'a> {
@@ -65,6 +68,8 @@ struct Glide<'a> {
     /// The water where it was asked for, as it was when the particles last came.
     probed: Option<Sample>,
     particles: usize,
+    /// Particles moved so far.
+    work: u64,
     /// From when on particles may be called back, and whether somebody asks for the water somewhere.
     look_at: (Instant, bool),
     slice: Slice,
@@ -80,15 +85,15 @@ struct Glide<'a> {
 impl Glide<'_> {
     /// Shows the scene as it stands, and waits until it is time to go on; gives up to when, s.
     fn show(&mut self, glance: Glance) -> f64 {
-        let Slice { from, began, before } = self.slice;
+        let Slice { from, began, before, has_stepped } = self.slice;
         let (time, worked) = (glance.frame.time, began.elapsed());
         self.pace.went(time - from, worked, before.max(worked));
         self.film(&glance);
         self.shared.publish(self.snapshot(glance));
         std::thread::sleep(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(began.elapsed()));
         let since = began.elapsed();
-        self.slice = Slice { from: time, began: Instant::now(), before: since };
-        let next = time + self.pace.next(since);
+        self.slice = Slice { from: time, began: Instant::now(), before: since, has_stepped: false };
+        let next = time + self.pace.next_beside_pictures(since, time - from, worked, has_stepped);
         self.filming.as_ref().map_or(next, |filming| next.min(filming.next))
     }
 
@@ -146,6 +151,8 @@ impl Companion for Along<'_, '_> {
     fn passed(&mut self, passed: Passed) -> bool {
         let mut glide = self.0.borrow_mut();
         glide.particles = passed.particles;
+        glide.slice.has_stepped |= passed.particle_steps > glide.work;
+        glide.work = passed.particle_steps;
         glide.rate.note(passed.particle_steps);
         let (from, probes) = glide.look_at;
         let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);

@@ -6,6 +6,10 @@ use std::time::Duration;
 const LONGEST: f64 = 0.015;
 /// A slice that was waited for longer than this is not made up for, s.
 const MOST_OWED: f64 = 0.1;
+/// A slice on a device that draws as well waits for pictures besides, which makes it no use to have it as short as may be: it may take from
+/// so long to so long, s, and goes farther or less far by this factor where it does not.
+const BESIDE_PICTURES: [f64; 2] = [0.03, 0.04];
+const FARTHER: f64 = 1.25;
 /// Weight of the newest slice in what a slice costs, and in the pace that is told.
 const NEWEST: f64 = 0.2;
 
@@ -16,13 +20,15 @@ pub(super) struct Pace {
     pub asked: f64,
     /// Wall-clock seconds that a simulated second takes; none before the first slice.
     cost: Option<f64>,
+    /// How far a slice goes at most on a device that draws as well, s; none before the first.
+    most: Option<f64>,
     /// Simulated seconds in a second, as it goes.
     pub real: f64,
 }
 
 impl Pace {
     pub fn new(asked: f64) -> Self {
-        Self { asked, cost: None, real: 0.0 }
+        Self { asked, cost: None, most: None, real: 0.0 }
     }
 
     /// How far to go, s, when the last slice began so long ago. The first slice is a try.
@@ -32,6 +38,20 @@ impl Pace {
             Some(cost) => wanted.min(LONGEST / cost.max(1e-300)),
             None => 0.02 * wanted,
         }
+    }
+
+    /// The same on a device that draws as well, after a slice that went so far, s, and worked so long; one without a step only waited.
+    pub fn next_beside_pictures(&mut self, since: Duration, far: f64, worked: Duration, has_stepped: bool) -> f64 {
+        let wanted = self.asked * since.as_secs_f64().min(MOST_OWED);
+        let most = self.most.get_or_insert(wanted);
+        let [short, long] = BESIDE_PICTURES;
+        let (worked, is_most) = (worked.as_secs_f64(), far > 0.9 * *most);
+        if has_stepped && worked > long {
+            *most /= FARTHER;
+        } else if is_most && (!has_stepped || worked < short) {
+            *most *= FARTHER;
+        }
+        wanted.min(*most)
     }
 
     /// A slice went so far, s; it took `worked`, and with waiting `whole`.
@@ -80,6 +100,44 @@ mod tests {
         let (simulated, _) = second(&mut pace, 0.1);
         assert!((simulated - 3.0).abs() < 0.2, "{simulated}");
         assert!(!pace.is_behind());
+    }
+
+    /// Goes on for ten seconds of the wall clock where steps of so many simulated seconds cost so much work each, and each slice waits besides;
+    /// gives how far it went, and the mean length of a slice.
+    fn beside_pictures(asked: f64, step: f64, cost: f64, wait: f64) -> (f64, f64) {
+        let mut pace = Pace::new(asked);
+        let (mut clock, mut time, mut stepped, mut slices) = (0.0, 0.0, 0.0, 0.0);
+        let (mut far, mut worked, mut has_stepped, mut since) = (0.0, 0.0, false, 0.016);
+        while clock < 10.0 {
+            let whole = Duration::from_secs_f64(since);
+            far = pace.next_beside_pictures(whole, far, Duration::from_secs_f64(worked), has_stepped);
+            time += far;
+            let steps = ((time - stepped) / step).floor();
+            (stepped, has_stepped) = (stepped + steps * step, steps > 0.0);
+            worked = wait + steps * cost;
+            since = worked.max(0.016);
+            (clock, slices) = (clock + since, slices + 1.0);
+        }
+        (time, clock / slices)
+    }
+
+    #[test]
+    fn beside_pictures_what_can_be_computed_keeps_its_pace() {
+        let (time, slice) = beside_pictures(1.0, 0.005, 0.0002, 0.006);
+        assert!((time - 10.0).abs() < 0.5 && slice < 0.02, "{time} {slice}");
+        // Steps much longer than slices.
+        let (time, slice) = beside_pictures(0.1, 0.05, 0.0002, 0.001);
+        assert!((time - 1.0).abs() < 0.1 && slice < 0.02, "{time} {slice}");
+    }
+
+    #[test]
+    fn pictures_that_take_long_do_not_bring_the_physics_to_a_stop() {
+        // A million particles: steps of 1.2 ms, pictures of 22 ms.
+        let (time, slice) = beside_pictures(10.0, 0.005, 0.0012, 0.022);
+        assert!(time > 10.0 && slice < 0.045, "{time} {slice}");
+        // Software in place of a card: a step at least every few pictures.
+        let (time, _) = beside_pictures(1.0, 0.05, 0.02, 0.5);
+        assert!(time > 0.4, "{time}");
     }
 
     #[test]

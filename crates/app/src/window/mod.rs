@@ -223,6 +223,7 @@ impl Window {
             clicked: None,
             terrain,
             spot: None,
+            probed: None,
             filming: false,
             hands: Hands::default(),
             source,

@@ -33,6 +33,8 @@ pub(super) struct Open {
     /// The ground, and the spot of it that was picked.
     pub(super) terrain: Option<Arc<Terrain>>,
     pub(super) spot: Option<Spot>,
+    /// The place that the physics was asked to tell of.
+    pub(super) probed: Option<[f64; 2]>,
     /// What hands hold of a gas.
     pub(super) hands: Hands,
     /// Where it is computed, and why there.

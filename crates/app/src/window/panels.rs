@@ -60,10 +60,11 @@ impl Window {
         {
             let response = open.picture.ui(ui, &snapshot, open.playing, &self.darkroom);
             self.physics.see(open.picture.sight());
-            let before = open.spot.map(|spot| spot.at_model());
             open.pick(ui, &response, &snapshot);
             let spot = open.spot.map(|spot| spot.at_model());
-            if spot != before {
+            // A key, or its card, may have put it away.
+            if spot != open.probed {
+                open.probed = spot;
                 self.physics.ask(Command::Probe(spot));
             }
         }

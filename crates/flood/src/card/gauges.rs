@@ -3,11 +3,11 @@
 use super::Card;
 use super::air::NO_AIR;
 use super::layout::{Patch, Status};
-use super::resource::Resource;
-use super::tasks::{LIBRARY, Tasks};
+use super::resource::shader;
+use super::tasks::Tasks;
 use crate::gauges::Reading;
 use crate::sampling::Sample;
-use corpuscle_gpu::{GpuError, Kernel, Pass, THREADS, Task, read, read_together, storage, wgpu};
+use corpuscle_gpu::{GpuError, Pass, THREADS, Task, read, read_together, storage, wgpu};
 
 /// Rows that wait at a time, at most.
 pub(crate) const MOST_ROWS: usize = 64;
@@ -78,25 +78,19 @@ impl Gauges {
         let ground = card.weather.as_ref().map_or(&no_ground, |weather| &weather.ground);
         let air = card.air.as_ref().map_or(&no_air, |air| &air.buffer);
         let Tasks { parameters, status, particles, due, sort, near, .. } = tasks;
-        let task = |name, text, resources: &[Resource<'_>]| {
-            Kernel::new(gpu, name, text, LIBRARY).on_those(gpu, resources.iter().map(Resource::binding))
-        };
-        macro_rules! shader {
-            ($name:literal, [$($resource:expr),*]) => {
-                task($name, include_str!(concat!($name, ".wgsl")), &[$(Resource::from($resource)),*])
-            };
-        }
         Ok(Self {
             places: places.to_vec(),
             extent,
-            volumes: shader!("flood_volumes", [parameters, status, particles, ground, air, &sums]),
+            volumes: shader!(gpu, "flood_volumes", [parameters, status, particles, ground, air, sums]),
             totals: shader!(
+                gpu,
                 "flood_totals",
-                [parameters, status, &sums, &works.buffer, &walls.on_obstacles, &walls.knocks, due, &rows]
+                [parameters, status, sums, works.buffer, walls.on_obstacles, walls.knocks, due, rows]
             ),
             samples: shader!(
+                gpu,
                 "flood_gauges",
-                [parameters, status, particles, &sort.start, &(), &card.nodes, near, &walls.start, &walls.sites, &rows]
+                [parameters, status, particles, sort.start, (), card.nodes, near, walls.start, walls.sites, rows]
             ),
             rows,
         })

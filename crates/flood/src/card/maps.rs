@@ -1,12 +1,11 @@
 //! Maps that the device keeps: it looks at the water in each of their cells itself.
 
 use super::layout::{CardCell, Origin};
-use super::resource::Resource;
-use super::tasks::LIBRARY;
+use super::resource::shader;
 use super::{Card, MOST_CELLS};
 use crate::maps::{Maps, Record};
 use crate::obstacles::Obstacles;
-use corpuscle_gpu::{Gpu, GpuError, Kernel, Pass, Task, read, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Pass, Task, read, storage, wgpu};
 use corpuscle_terrain::Terrain;
 
 /// Looks that the device can be told of at a time.
@@ -38,21 +37,22 @@ impl CardMaps {
         if numbers.len() > MOST_CELLS {
             return Ok(None);
         }
-        let nodes = &card.nodes;
-        let resources: [Resource<'_>; 10] = [
-            (&tasks.parameters).into(),
-            (&tasks.status).into(),
-            (&tasks.particles).into(),
-            (&tasks.sort.start).into(),
-            Resource::Unused,
-            nodes.into(),
-            (&tasks.near).into(),
-            (&walls.start).into(),
-            (&walls.sites).into(),
-            (&cells).into(),
-        ];
-        let kernel = Kernel::new(gpu, "flood_maps", include_str!("flood_maps.wgsl"), LIBRARY);
-        let task = kernel.on_those(gpu, resources.iter().map(Resource::binding));
+        let task = shader!(
+            gpu,
+            "flood_maps",
+            [
+                tasks.parameters,
+                tasks.status,
+                tasks.particles,
+                tasks.sort.start,
+                (),
+                card.nodes,
+                tasks.near,
+                walls.start,
+                walls.sites,
+                cells
+            ]
+        );
         Ok(Some(Self { numbers, places, wet_depth: maps.wet_depth(), cells, task }))
     }
 

@@ -4,11 +4,11 @@ use super::air::Air;
 use super::gauges::{Gauges, MOST_ROWS};
 use super::layout::{CardBirth, CardParticle, Column, Parameters, Partial, Plan, Slopes, Status};
 use super::maps::{CardMaps, MOST_LOOKS};
-use super::resource::Resource;
+use super::resource::shader;
 use super::walls::Walls;
 use super::weather::Weather;
 use super::works::Works;
-use corpuscle_gpu::{CellSort, Gpu, GpuError, Kernel, SUMS_BEFORE, THREADS, Task, storage, uniform, wgpu};
+use corpuscle_gpu::{CellSort, Gpu, GpuError, SUMS_BEFORE, THREADS, Task, storage, uniform, wgpu};
 
 /// Pieces that the shaders import.
 pub(super) const LIBRARY: &[(&str, &str)] = &[
@@ -131,46 +131,43 @@ impl Tasks {
         let of_particles = of_particles.into_iter().chain([&plans, &tallies]);
         let bytes: u64 = of_particles.chain(of_cells).map(wgpu::Buffer::size).sum();
         let bytes = bytes + weather.map_or(0, Weather::bytes);
-        let task = |name, text, resources: &[Resource<'_>]| {
-            Kernel::new(gpu, name, text, LIBRARY).on_those(gpu, resources.iter().map(Resource::binding))
-        };
-        macro_rules! shader {
-            ($name:literal, [$($resource:expr),*]) => {
-                task($name, include_str!(concat!($name, ".wgsl")), &[$(Resource::from(&$resource)),*])
-            };
-        }
         let has_walls = walls.count > 0;
         let comes_in = !works.sources.is_empty() || works.holds_level;
         let comes_between = comes_in || refines || works.has_structures || air.is_some() || weather.is_some();
         Ok(Self {
             carry: works.holds_level.then(|| {
                 shader!(
+                    gpu,
                     "flood_carry",
                     [parameters, status, particles, sort.start, (), *nodes, near, walls.start, walls.sites]
                 )
             }),
             drift: shader!(
+                gpu,
                 "flood_drift",
                 [parameters, status, particles, walls.outlines, walls.knocks, partials, *rough]
             ),
             refine: refines.then(|| {
                 [
                     shader!(
+                        gpu,
                         "flood_plans",
                         [parameters, walls.outlines, status, particles, sort.start, sites, plans, tallies]
                     ),
-                    shader!("flood_halves", [(), (), status, tallies, groups, plans]),
-                    shader!("flood_refine", [parameters, walls.outlines, particles, plans, tallies]),
+                    shader!(gpu, "flood_halves", [(), (), status, tallies, groups, plans]),
+                    shader!(gpu, "flood_refine", [parameters, walls.outlines, particles, plans, tallies]),
                 ]
             }),
             regulate: works.has_structures.then(|| {
                 shader!(
+                    gpu,
                     "flood_regulate",
                     [parameters, status, particles, sort.start, works.buffer, *nodes, near, walls.start, walls.sites]
                 )
             }),
             bear: comes_in.then(|| {
                 shader!(
+                    gpu,
                     "flood_births",
                     [parameters, status, particles, sort.start, works.buffer, *nodes, births, groups]
                 )
@@ -178,20 +175,22 @@ impl Tasks {
             weather: weather.map(|weather| {
                 let Weather { ground, tallies, laws, sums, rates, .. } = weather;
                 [
-                    shader!("flood_cover", [parameters, status, particles, *tallies]),
+                    shader!(gpu, "flood_cover", [parameters, status, particles, *tallies]),
                     shader!(
+                        gpu,
                         "flood_wet",
                         [parameters, status, works.buffer, *ground, *tallies, *laws, *sums, rates.buffer]
                     ),
-                    shader!("flood_share", [parameters, status, particles, *ground, *tallies, *sums]),
+                    shader!(gpu, "flood_share", [parameters, status, particles, *ground, *tallies, *sums]),
                 ]
             }),
             drops: weather.map(|Weather { ground, sums, .. }| {
-                shader!("flood_drops", [parameters, status, particles, (), (), (), *ground, *sums, groups])
+                shader!(gpu, "flood_drops", [parameters, status, particles, (), (), (), *ground, *sums, groups])
             }),
             land: air.map(|air| {
                 [
                     shader!(
+                        gpu,
                         "flood_land",
                         [
                             parameters,
@@ -206,15 +205,17 @@ impl Tasks {
                             air.buffer
                         ]
                     ),
-                    shader!("flood_landed", [status, air.buffer, groups]),
+                    shader!(gpu, "flood_landed", [status, air.buffer, groups]),
                 ]
             }),
             leave: shader!(
+                gpu,
                 "flood_leave",
                 [parameters, status, particles, (), (), partials, (), sort.counts, sort.places, keys]
             ),
             moves: (!comes_between).then(|| {
                 shader!(
+                    gpu,
                     "flood_move",
                     [
                         parameters,
@@ -230,23 +231,30 @@ impl Tasks {
                     ]
                 )
             }),
-            reorder: shader!("flood_reorder", [parameters, status, sort.start, sort.order, particles, sorted, sites]),
-            reach_own: shader!("flood_reach_own", [parameters, sort.start, sites, own]),
-            reach_rows: shader!("flood_reach_rows", [parameters, own, along_rows]),
-            reach: shader!("flood_reach", [parameters, along_rows, near]),
+            reorder: shader!(
+                gpu,
+                "flood_reorder",
+                [parameters, status, sort.start, sort.order, particles, sorted, sites]
+            ),
+            reach_own: shader!(gpu, "flood_reach_own", [parameters, sort.start, sites, own]),
+            reach_rows: shader!(gpu, "flood_reach_rows", [parameters, own, along_rows]),
+            reach: shader!(gpu, "flood_reach", [parameters, along_rows, near]),
             density: if is_paper {
                 shader!(
+                    gpu,
                     "flood_paper_density",
                     [parameters, status, sort.start, sites, sorted, columns, walls.start, walls.sites, *nodes]
                 )
             } else {
                 shader!(
+                    gpu,
                     "flood_density",
                     [parameters, status, sort.start, near, sites, sorted, columns, walls.start, walls.sites, *nodes]
                 )
             },
             gradients: (!is_paper).then(|| {
                 shader!(
+                    gpu,
                     "flood_slopes",
                     [parameters, status, sort.start, near, columns, sorted, slopes, walls.start, walls.sites, *nodes]
                 )
@@ -254,24 +262,29 @@ impl Tasks {
             push: match (has_walls, is_paper) {
                 (false, _) => None,
                 (true, false) => Some(shader!(
+                    gpu,
                     "flood_push",
                     [parameters, status, columns, slopes, walls.start, walls.sites, sorted, pushes]
                 )),
                 (true, true) => Some(shader!(
+                    gpu,
                     "flood_paper_push",
                     [parameters, status, columns, walls.start, walls.sites, sorted, pushes]
                 )),
             },
-            on_obstacles: has_walls
-                .then(|| shader!("flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles])),
+            on_obstacles: has_walls.then(|| {
+                shader!(gpu, "flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles])
+            }),
             obstacles: walls.count as u32,
             forces: if is_paper {
                 shader!(
+                    gpu,
                     "flood_paper_forces",
                     [parameters, status, sort.start, columns, sorted, particles, partials, *nodes, *rough]
                 )
             } else {
                 shader!(
+                    gpu,
                     "flood_forces",
                     [
                         parameters, status, sort.start, near, columns, slopes, sorted, particles, partials, *nodes,
@@ -279,7 +292,7 @@ impl Tasks {
                     ]
                 )
             },
-            finish: shader!("flood_finish", [parameters, status, partials, groups, works.buffer, due, looks]),
+            finish: shader!(gpu, "flood_finish", [parameters, status, partials, groups, works.buffer, due, looks]),
             gauges: None,
             maps: None,
             parameters,
