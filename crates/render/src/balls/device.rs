@@ -37,16 +37,9 @@ struct Settings {
     room: u32,
 }
 
-/// Makes balls on the device.
-#[derive(Debug)]
-pub(super) struct Maker {
-    kernel: Kernel,
-}
-
-impl Maker {
-    pub fn new(gpu: &Gpu) -> Self {
-        Self { kernel: Kernel::new(gpu, "balls_device", include_str!("balls_device.wgsl"), &[DEVICE_PARTICLES]) }
-    }
+/// What makes balls of particles on the device.
+fn maker(gpu: &Gpu) -> Kernel {
+    Kernel::new(gpu, "balls_device", include_str!("balls_device.wgsl"), &[DEVICE_PARTICLES])
 }
 
 impl BallPainter {
@@ -75,7 +68,7 @@ impl BallPainter {
         let settings = uniform(gpu, "balls of the device", &settings);
         let balls = storage::<Instance>(gpu, "balls of the device", particles.room)?;
         let buffers = [&settings, &particles.buffer, &balls].map(wgpu::Buffer::as_entire_binding);
-        make(gpu, &self.maker.kernel.on(gpu, &buffers), particles.room);
+        make(gpu, &self.maker.get_or_init(|| maker(gpu)).on(gpu, &buffers), particles.room);
         Ok(self.balls_in(gpu, style, [(&balls, particles.room as u32)]))
     }
 }

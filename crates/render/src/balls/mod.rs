@@ -6,11 +6,10 @@ mod seen;
 use crate::buffer::{storage, uniform};
 use crate::pipeline::Recipe;
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
-use device::Maker;
+use corpuscle_gpu::{Gpu, Kernel, wgpu};
 pub use device::{BallsOfDevice, ValueOfDevice};
 use seen::{Seen, SeenPainter};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Corners that are drawn for a ball: one triangle.
 const CORNERS: u32 = 3;
@@ -70,7 +69,8 @@ pub struct BallPainter {
     discs: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
     seen: Arc<SeenPainter>,
-    maker: Maker,
+    /// What makes balls of particles on the device, once somebody has some.
+    maker: OnceLock<Kernel>,
 }
 
 /// Balls of one style, on the device.
@@ -107,7 +107,7 @@ impl BallPainter {
             discs: Recipe { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }.opaque(gpu),
             layout,
             seen,
-            maker: Maker::new(gpu),
+            maker: OnceLock::new(),
         }
     }
 
