@@ -54,8 +54,19 @@ pub fn view(start: Start, backend: Backend, measure: Option<f64>) -> Result<Opti
         Ok(Box::new(App { window, meter }) as Box<dyn eframe::App>)
     };
     let ended = eframe::run_native("Corpuscle", options, Box::new(create));
-    ended.map_err(|error| ViewError::NoDisplay(error.to_string()))?;
+    ended.map_err(|error| ViewError::NoDisplay(reason(&error)))?;
     Ok(measured.lock().unwrap_or_else(PoisonError::into_inner).take())
+}
+
+/// Why the system gives no window. Its own words for a missing display name source files of the toolkit, and are not
+/// shown.
+fn reason(error: &eframe::Error) -> String {
+    match error {
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
+            "no display was found; on Linux, DISPLAY or WAYLAND_DISPLAY must name one that can be reached".into()
+        }
+        error => error.to_string(),
+    }
 }
 
 /// Lets the system's allocator keep what is freed. Software in place of a card takes some megabytes for every picture and frees them;

@@ -111,7 +111,7 @@ pub struct SceneOptions {
     /// A built-in scene (`corpuscle scenes` lists them) or a TOML file [default: flood/valley]
     #[arg(value_name = "SCENE")]
     pub scene: Option<String>,
-    /// Change a value of the scene, as in `--set flood.scheme=paper`; rows of lists are counted from 0
+    /// Change a value of the scene, as in `--set flood.scheme=sph-swe`; rows of lists are counted from 0
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub set: Vec<(String, String)>,
     /// End of the run, s: short for `--set run.until_s=T`
@@ -252,7 +252,7 @@ pub struct ViewOptions {
     /// A built-in scene (`corpuscle scenes` lists them), a TOML file, or the folder of a run [default: the first page]
     #[arg(value_name = "SCENE|RUN")]
     pub what: Option<String>,
-    /// Change a value of the scene, as in `--set flood.scheme=paper`; rows of lists are counted from 0
+    /// Change a value of the scene, as in `--set flood.scheme=sph-swe`; rows of lists are counted from 0
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, requires = "what")]
     pub set: Vec<(String, String)>,
     /// Where to compute: `auto` takes the graphics card that draws, if it is one and the scene is large enough

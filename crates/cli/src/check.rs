@@ -26,6 +26,9 @@ const PROBE_STEPS: u64 = 50;
 /// The part of the run that is looked at first; it is doubled until there are enough steps.
 const SHORTEST_PROBE: f64 = 1e-3;
 
+/// Parts of a run for which the particles to come are counted.
+const ESTIMATE_PARTS: usize = 20;
+
 /// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
 
@@ -51,7 +54,7 @@ struct Report {
     memory_bytes: f64,
     /// At the start; none where nothing moves yet.
     time_step_s: Option<f64>,
-    /// On this machine; none where the start says little about the rest.
+    /// On this machine; none where nothing moves yet and nothing comes.
     estimated_wall_time_s: Option<f64>,
     until_s: f64,
     frames: u64,
@@ -113,14 +116,14 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     fetch_for(&named.scene, &stop_on_interrupt()?)?;
     let mut simulation = Simulation::open(named.scene, &named.folder)?;
     let particles_at_start = simulation.model().particles();
-    let particles_to_come = corpuscle::particles_to_come(simulation.scene(), &named.folder)? as usize;
+    let particles_to_come = simulation.particles_to_come().round() as usize;
     let probe = Probe::run(&mut simulation)?;
+    let estimated_wall_time_s = probe.estimate(&simulation);
     let (terrain, scene) = (simulation.terrain(), simulation.scene());
     let (run, is_gas) = (&scene.run, scene.gas().is_some());
     let terrain = terrain.map(|terrain| Ground::of(terrain));
     let cells = terrain.as_ref().map_or(0, |ground| ground.columns * ground.rows);
     let particles = (particles_at_start + particles_to_come) as f64;
-    let growth = particles_to_come as f64 / particles_at_start.max(1) as f64;
     let rows = |period: f64| (run.until_s / period).ceil() as u64 + 1;
     Ok(Report {
         ok: true,
@@ -131,10 +134,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         particles_to_come,
         memory_bytes: particles * bytes_per_particle(simulation.model().name()) + cells as f64 * BYTES_PER_CELL,
         time_step_s: probe.time_step.filter(|_| !is_gas),
-        // Where most of the water comes later its start says little about the rest.
-        estimated_wall_time_s: (particles_to_come < particles_at_start)
-            .then(|| Some(probe.wall_time_per_time? * run.until_s * (1.0 + 0.5 * growth)))
-            .flatten(),
+        estimated_wall_time_s,
         until_s: run.until_s,
         frames: rows(run.frame_period_s()),
         gauge_rows: rows(run.gauge_period_s()),
@@ -155,8 +155,36 @@ fn bytes_per_particle(model: &str) -> f64 {
 struct Probe {
     /// Mean time step, s; none where nothing moved.
     time_step: Option<f64>,
-    /// Wall-clock time for a unit of simulated time; none where nothing moved.
-    wall_time_per_time: Option<f64>,
+    /// All of it.
+    whole: Work,
+    /// Its last part, in which something moved: at least half of its simulated time.
+    last: Work,
+}
+
+/// What a part of a run took.
+#[derive(Debug, Clone, Copy, Default)]
+struct Work {
+    time: f64,
+    steps: u64,
+    particle_steps: u64,
+    wall: f64,
+}
+
+impl Work {
+    /// Of a run up to now, that began at `start`.
+    fn of(model: &dyn Model, start: Instant) -> Self {
+        let wall = start.elapsed().as_secs_f64();
+        Self { time: model.time(), steps: model.steps(), particle_steps: model.particle_steps(), wall }
+    }
+
+    fn since(self, before: Self) -> Self {
+        Self {
+            time: self.time - before.time,
+            steps: self.steps - before.steps,
+            particle_steps: self.particle_steps - before.particle_steps,
+            wall: self.wall - before.wall,
+        }
+    }
 }
 
 impl Probe {
@@ -170,18 +198,45 @@ impl Probe {
             timer.store(true, Ordering::Relaxed);
         });
         let start = Instant::now();
+        let comes = simulation.particles_to_come() > 0.0;
         let model = simulation.model_mut();
-        let enough = |model: &dyn Model| model.particle_steps() >= PROBE_STEPS * model.particles().max(1) as u64;
+        // Where water is to come the start alone says little.
+        let enough =
+            |model: &dyn Model| !comes && model.particle_steps() >= PROBE_STEPS * model.particles().max(1) as u64;
         let mut until = SHORTEST_PROBE * end;
+        let [mut now, mut last] = [Work::default(); 2];
         while !enough(model) && model.time() < end && !stop.load(Ordering::Relaxed) {
             model.advance_to(until.min(end), &stop)?;
             until *= 2.0;
+            let before = std::mem::replace(&mut now, Work::of(model, start));
+            let part = now.since(before);
+            if part.particle_steps > 0 && part.time > 0.0 {
+                last = part;
+            }
         }
-        let moved = model.steps() > 0 && model.time() > 0.0;
-        Ok(Self {
-            time_step: moved.then(|| model.time() / model.steps() as f64),
-            wall_time_per_time: moved.then(|| start.elapsed().as_secs_f64() / model.time()),
-        })
+        let moved = now.steps > 0 && now.time > 0.0;
+        Ok(Self { time_step: moved.then(|| now.time / now.steps as f64), whole: now, last })
+    }
+
+    /// Wall-clock time that the whole run takes, s. The particles to come are taken to come when the scene says, and to
+    /// stay; time step and rate to be those at the end of the probe.
+    fn estimate(&self, simulation: &Simulation) -> Option<f64> {
+        let Self { whole, last, .. } = self;
+        self.time_step?;
+        let (now, until) = (simulation.model().time(), simulation.scene().run.until_s);
+        if simulation.particles_to_come() == 0.0 {
+            return Some(whole.wall / whole.time * until);
+        }
+        if last.particle_steps == 0 {
+            return None;
+        }
+        let part = (until - now) / ESTIMATE_PARTS as f64;
+        let particles = |k: usize| {
+            simulation.model().particles() as f64 + simulation.particles_to_come_until(now + (k as f64 + 0.5) * part)
+        };
+        let mean = (0..ESTIMATE_PARTS).map(particles).sum::<f64>() / ESTIMATE_PARTS as f64;
+        let [steps_per_time, wall_per_step] = [last.steps as f64 / last.time, last.wall / last.particle_steps as f64];
+        Some(whole.wall + mean * (until - now) * steps_per_time * wall_per_step)
     }
 }
 

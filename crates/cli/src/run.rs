@@ -79,7 +79,8 @@ fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpu
     match backend {
         Backend::Auto => {
             let Choice { is_gpu, why } = simulation.use_best();
-            eprintln!("computing on the {}: {why}", if is_gpu { "graphics card" } else { "CPU" });
+            let reason = if why.is_empty() { String::new() } else { format!(": {why}") };
+            eprintln!("computing on the {}{reason}", if is_gpu { "graphics card" } else { "CPU" });
             Ok(())
         }
         Backend::Cpu => Ok(()),

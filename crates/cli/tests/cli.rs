@@ -74,8 +74,8 @@ fn overrides_are_named_when_they_are_wrong() {
     let place = Place::new();
     for (arguments, words) in [
         (
-            ["--set", "flood.scheme=papr"],
-            "--set flood.scheme=papr: flood.scheme: `papr` is not known here; did you mean `paper`",
+            ["--set", "flood.scheme=sph-sw"],
+            "--set flood.scheme=sph-sw: flood.scheme: `sph-sw` is not known here; did you mean `sph-swe`",
         ),
         (["--until", "-3"], "run.until_s = -3"),
         (["--until", "nan"], "run.until_s = nan"),
@@ -145,6 +145,11 @@ fn check_says_what_would_be_run_and_writes_nothing() {
     let inflow = "flood.inflow.0={ name = \"river\", at = [5, 5], discharge_m3_per_s = 100 }";
     let report = place.run(&["check", "lake.toml", "--json", "--set", inflow]).expect_status(0).json();
     assert_eq!(report["particles_to_come"], 25, "200 m3 in particles of 2 x 2 x 2 m3");
+    assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 0.0);
+    // Nothing is there at the start.
+    let report = place.run(&["check", "flood/valley", "--json"]).expect_status(0).json();
+    assert_eq!((&report["particles_at_start"], &report["particles_to_come"]), (&0.into(), &34_167.into()));
+    assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 1.0);
     assert!(!place.path("runs").exists());
 }
 

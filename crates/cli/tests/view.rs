@@ -15,6 +15,11 @@ fn without_a_display_there_is_one_line_and_status_1() {
         let told = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{told}");
         assert!(told.starts_with("error: no window can be opened") && told.lines().count() == 1, "{told}");
+        assert!(told.contains("no display was found") && told.contains("WAYLAND_DISPLAY"), "{told}");
+        // Neither words of the toolkit nor places on the machine where it was built.
+        for foreign in [".rs", "os error", "winit", "cargo", "WAYLAND_SOCKET"] {
+            assert!(!told.contains(foreign), "{foreign}: {told}");
+        }
     }
 }
 

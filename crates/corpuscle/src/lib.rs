@@ -54,7 +54,6 @@ pub use error::Error;
 pub use filming::Filming;
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
-pub use open::particles_to_come;
 pub use progress::Progress;
 pub use recorder::Recorder;
 pub use simulation::Simulation;

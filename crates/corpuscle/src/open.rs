@@ -4,7 +4,9 @@ use crate::ground::ground;
 use crate::{Error, Simulation};
 #[cfg(feature = "gpu")]
 use corpuscle_dew::Dew;
+#[cfg(feature = "gpu")]
 use corpuscle_flood::Flood;
+use corpuscle_flood::FloodModel;
 use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
@@ -20,7 +22,7 @@ impl Simulation {
     /// # Errors
     /// Where the scene, its ground or a file that it names cannot be used.
     pub fn open(scene: Scene, folder: &Path) -> Result<Self, Error> {
-        Self::open_with(scene, folder, Flood::new)
+        Self::open_with(scene, folder, corpuscle_flood::open)
     }
 
     /// As [`Simulation::open`], for a state that is restored, or frames that are read back: a flood does not arrange its water at
@@ -29,7 +31,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::open`].
     pub fn open_to_restore(scene: Scene, folder: &Path) -> Result<Self, Error> {
-        Self::open_with(scene, folder, Flood::to_restore)
+        Self::open_with(scene, folder, corpuscle_flood::open_to_restore)
     }
 
     /// Lets the graphics card take the steps from here on, in single precision.
@@ -63,7 +65,10 @@ impl Simulation {
     #[cfg(feature = "gpu")]
     fn on_processor_only(&self) -> Error {
         let name = self.model().name();
-        let what = format!("the model {name} computes on the CPU only: leave `--backend gpu` out");
+        let what = match self.scene().flood() {
+            Some(_) => "scheme voronoi of floods runs on the CPU only: leave `--backend gpu` out".into(),
+            None => format!("the {name} model runs on the CPU only: leave `--backend gpu` out"),
+        };
         ModelError::Setup(what).into()
     }
 
@@ -78,7 +83,7 @@ impl Simulation {
                 let flood = new_flood(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();
                 check_inflow(&scene, folder)?;
-                Ok(Self::new(scene, Some(terrain), Box::new(flood)))
+                Ok(Self::new(scene, Some(terrain), flood))
             }
             ModelScene::Gas(gas) => {
                 let model = corpuscle_gas::open(gas, scene.seed, scene.run.until_s, folder)?;
@@ -93,17 +98,14 @@ impl Simulation {
 }
 
 /// How a flood is made ready: its settings, seed, folder of relative paths, and ground.
-type NewFlood = fn(&corpuscle_scene::Flood, u64, &Path, Arc<Terrain>) -> Result<Flood, ModelError>;
+type NewFlood = fn(&corpuscle_scene::Flood, u64, &Path, Arc<Terrain>) -> Result<Box<dyn FloodModel>, ModelError>;
 
 /// More particles than this over a run are days of computation.
 const MOST_TO_COME: f64 = 2e8;
 
 /// Particles that the inflows of a scene with its defaults filled in bring in over the run; relative paths are taken
 /// from `folder`.
-///
-/// # Errors
-/// Where a hydrograph cannot be read.
-pub fn particles_to_come(scene: &Scene, folder: &Path) -> Result<f64, Error> {
+fn particles_of_inflows(scene: &Scene, folder: &Path) -> Result<f64, Error> {
     let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0.0) };
     let Some(depth) = flood.spacing_depth_m else { return Ok(0.0) };
     let mut volume = 0.0;
@@ -115,7 +117,7 @@ pub fn particles_to_come(scene: &Scene, folder: &Path) -> Result<f64, Error> {
 
 /// Refuses discharges that no machine could follow, most likely a slip of the unit.
 fn check_inflow(scene: &Scene, folder: &Path) -> Result<(), Error> {
-    let count = particles_to_come(scene, folder)?;
+    let count = particles_of_inflows(scene, folder)?;
     if count <= MOST_TO_COME {
         return Ok(());
     }

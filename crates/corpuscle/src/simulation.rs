@@ -3,7 +3,7 @@
 use crate::along::{Along, Glances, Going, Keeping, Meter};
 use crate::schedule::Schedule;
 use crate::{ByHand, Error, Progress, Sink};
-use corpuscle_flood::{Flood, Sample};
+use corpuscle_flood::{Sample, as_flood, as_flood_mut};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
@@ -65,7 +65,19 @@ impl Simulation {
     /// The water at a place of a flood, in model coordinates; none where the scene is none.
     pub fn water_at(&self, [x, y]: [f64; 2]) -> Option<Sample> {
         let model: &dyn Any = &*self.model;
-        model.downcast_ref::<Flood>().map(|flood| flood.sample(x, y))
+        as_flood(model).map(|flood| flood.sample(x, y))
+    }
+
+    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run. What
+    /// leaves meanwhile is not taken off. 0 for models that no water comes into.
+    pub fn particles_to_come(&self) -> f64 {
+        self.particles_to_come_until(self.scene.run.until_s)
+    }
+
+    /// [`Simulation::particles_to_come`] up to a time, s.
+    pub fn particles_to_come_until(&self, time: f64) -> f64 {
+        let model: &dyn Any = &*self.model;
+        as_flood(model).map_or(0.0, |flood| flood.particles_to_come(self.model.time(), time))
     }
 
     /// Places a gauge in a flood while it runs, at a place in model coordinates. Its columns come after all others.
@@ -75,7 +87,7 @@ impl Simulation {
     pub fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), Error> {
         let model: &mut dyn Any = &mut *self.model;
         let none = || ModelError::Setup("gauges are placed in floods only".into());
-        let flood = model.downcast_mut::<Flood>().ok_or_else(none)?;
+        let flood = as_flood_mut(model).ok_or_else(none)?;
         Ok(flood.place_gauge(name, at)?)
     }
 

@@ -33,8 +33,8 @@ const DEW: [(&str, f64, &str); 4] = [
     ("dew/glassware", 0.01, "0.006"),
 ];
 
-/// Looks and gauges are then due amid steps of scheme paper: a step that ends just then may end a little later in single precision.
-const UNEVEN: (&str, &str) = ("flood.paper.time_step_s", "0.0199");
+/// Looks and gauges are then due amid steps of scheme sph-swe: a step that ends just then may end a little later in single precision.
+const UNEVEN: (&str, &str) = ("flood.sph_swe.time_step_s", "0.0199");
 
 fn open(name: &str, overrides: &[(&str, &str)]) -> Simulation {
     let overrides: Vec<_> = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
@@ -144,8 +144,8 @@ fn built_in_floods_go_as_on_the_processor() {
         return;
     }
     for (name, time, bound) in FLOODS {
-        let is_paper = builtin(name).unwrap().text.contains("\nscheme = \"paper\"");
-        let mut both = both_from(name, time, if is_paper { &[UNEVEN] } else { &[] });
+        let is_sph_swe = builtin(name).unwrap().text.contains("\nscheme = \"sph-swe\"");
+        let mut both = both_from(name, time, if is_sph_swe { &[UNEVEN] } else { &[] });
         let ground = both[0].terrain().unwrap().bounds().size();
         for (steps, near) in WATER {
             step(&mut both, steps);

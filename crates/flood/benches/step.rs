@@ -40,7 +40,7 @@ fn basin(scheme: Scheme) -> Flood {
 fn step(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     group.sample_size(20).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
-    for (name, scheme) in [("balanced-12k", Scheme::Balanced), ("paper-12k", Scheme::Paper)] {
+    for (name, scheme) in [("balanced-12k", Scheme::Balanced), ("sph-swe-12k", Scheme::SphSwe)] {
         let mut flood = basin(scheme);
         let stop = AtomicBool::new(false);
         group.throughput(Throughput::Elements(flood.particles().len() as u64));

@@ -1,5 +1,6 @@
 //! The flood model: water that comes, moves and goes.
 
+mod breakdown;
 mod by_hand;
 mod exchange;
 mod measured;
@@ -14,6 +15,7 @@ mod open;
 mod placed;
 mod regulate;
 mod step;
+mod to_come;
 mod weather;
 
 pub use by_hand::ByHand;
@@ -110,16 +112,16 @@ impl Flood {
     /// Support of the sampling kernel over the scheme's own: the paper's h is the whole support, not half of it.
     fn smoothing(&self) -> f64 {
         match self.settings.scheme {
-            SchemeName::Balanced => 1.0,
-            SchemeName::Paper => 0.5,
+            SchemeName::Balanced | SchemeName::Voronoi => 1.0,
+            SchemeName::SphSwe => 0.5,
         }
     }
 
-    /// Distance of particles as they are shown where all are shown with the same, m: scheme paper's stand for no area.
+    /// Distance of particles as they are shown where all are shown with the same, m: scheme sph-swe's stand for no area.
     fn spacing_shown(&self) -> Option<f64> {
         match self.settings.scheme {
-            SchemeName::Balanced => None,
-            SchemeName::Paper => Some(self.settings.paper.radius_m.map_or(self.spacing, |radius| 2.0 * radius)),
+            SchemeName::Balanced | SchemeName::Voronoi => None,
+            SchemeName::SphSwe => Some(self.settings.sph_swe.radius_m.map_or(self.spacing, |radius| 2.0 * radius)),
         }
     }
 

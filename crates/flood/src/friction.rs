@@ -90,6 +90,11 @@ impl Coefficient {
         }
     }
 
+    /// The value, where it is the same everywhere.
+    pub fn even(&self) -> Option<f64> {
+        if let Self::Even(value) = self { Some(*value) } else { None }
+    }
+
     fn rest(&mut self) -> Option<&mut f64> {
         match self {
             Self::Even(value) => Some(value),

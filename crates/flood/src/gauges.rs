@@ -23,6 +23,18 @@ pub(crate) struct Reading {
     pub film: f64,
 }
 
+#[cfg(feature = "gpu")]
+impl Reading {
+    /// Whether all of it are finite numbers.
+    pub fn is_sound(&self) -> bool {
+        let samples = self.samples.iter().map(|water| water.depth + water.velocity[0] + water.velocity[1]);
+        let pushes = self.on_obstacles.iter().chain(&self.impulses).flatten();
+        let sum: f64 = samples.sum::<f64>() + self.flows.iter().chain(pushes).sum::<f64>();
+        let Self { stored, inflow, outflow, rained, infiltrated, film, .. } = self;
+        (sum + stored + inflow + outflow + rained + infiltrated + film).is_finite()
+    }
+}
+
 /// A point where depth, level and velocity are measured.
 #[derive(Debug, Clone)]
 pub(crate) struct PointGauge {

@@ -52,7 +52,7 @@ impl Law {
 
 /// Poleni's formula Q = C b h1^(3/2), less what the water behind the crest holds back: (1 - (h2/h1)^(3/2))^0.385 (Villemonte
 /// 1947).
-fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64 {
+pub(crate) fn over_weir(weir: &WeirScene, upper: f64, lower: Option<f64>) -> f64 {
     let head = (upper - weir.crest_m).max(0.0);
     let behind = (lower.unwrap_or(f64::NEG_INFINITY) - weir.crest_m).clamp(0.0, head);
     if head == 0.0 {

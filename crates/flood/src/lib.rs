@@ -1,7 +1,8 @@
 //! Shallow water as particles over terrain.
 //!
-//! [`Flood`] is the model. Two formulations move the water, chosen in the scene: `balanced` (the default: right as well
-//! as stable) and `paper` (the published one). Both move [`Particle`]s, columns of water.
+//! Three schemes move the water, chosen in the scene ([`open`]): `voronoi` ([`VoronoiFlood`]: finite volumes over Voronoi cells, right on any
+//! ground), and two of smoothed-particle hydrodynamics, [`Flood`]: `balanced` (the default) and `sph-swe` (the published one), which move
+//! [`Particle`]s, columns of water.
 
 #![warn(missing_docs)]
 
@@ -21,15 +22,17 @@ mod inflow;
 mod limits;
 mod maps;
 mod obstacles;
-mod paper;
 mod particle;
 mod rain;
 mod refinement;
 mod sampling;
 mod scheme;
+mod schemes;
 mod seeding;
 mod setup;
+mod sph_swe;
 mod structures;
+mod voronoi;
 mod zone;
 
 pub use flood::{ByHand, Flood};
@@ -37,4 +40,6 @@ pub use obstacles::obstacle_shapes;
 pub use particle::Particle;
 pub use rain::RainFunction;
 pub use sampling::Sample;
+pub use schemes::{FloodModel, as_flood, as_flood_mut, open, open_to_restore};
 pub use setup::InitialWater;
+pub use voronoi::{Filling, OfPosition, StartWater, VoronoiFlood, WetCell};

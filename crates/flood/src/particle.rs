@@ -41,6 +41,15 @@ pub struct Particle {
     pub id: u64,
 }
 
+/// A value that no water has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Defect {
+    /// The lower, the nearer to the cause.
+    pub rank: usize,
+    pub quantity: &'static str,
+    pub value: f64,
+}
+
 impl Particle {
     /// A particle at rest at (x, y) whose depth is not known yet.
     pub fn new(id: u64, x: f64, y: f64, volume: f64, h: f64) -> Self {
@@ -64,6 +73,44 @@ impl Particle {
         }
     }
 
+    /// Whether all its values are finite numbers, and its volume is positive.
+    #[inline]
+    pub(crate) fn is_sound(&self) -> bool {
+        let Self { x, y, u, v, ax, ay, volume, weight, h, next_h, depth, ground, ground_slope, surface_slope, .. } =
+            self;
+        let [ground_x, ground_y] = ground_slope;
+        let [surface_x, surface_y] = surface_slope;
+        let sum = x + y + u + v + ax + ay + volume + weight + h + next_h + depth + ground;
+        // A sum of finite numbers of this size is finite; one with a number that is not, is not.
+        *volume > 0.0 && (sum + ground_x + ground_y + surface_x + surface_y).is_finite()
+    }
+
+    /// The first of its quantities that is no finite number, or a volume that is not positive, with its value; none
+    /// where it is sound. Those of which the others are computed come first.
+    pub(crate) fn defect(&self) -> Option<Defect> {
+        let quantities = [
+            ("volume", [if self.volume > 0.0 { 0.0 } else { f64::NAN }, self.volume]),
+            ("position", [self.x, self.y]),
+            ("velocity", [self.u, self.v]),
+            ("height of the ground", [self.ground, 0.0]),
+            ("slope of the ground", self.ground_slope),
+            ("smoothing length", [self.h, self.next_h]),
+            ("weight", [self.weight, 0.0]),
+            ("depth", [self.depth, 0.0]),
+            ("slope of the surface", self.surface_slope),
+            ("acceleration", [self.ax, self.ay]),
+        ];
+        let is_bad = |values: &[f64; 2]| values.iter().any(|value| !value.is_finite());
+        let rank = quantities.iter().position(|(_, values)| is_bad(values))?;
+        let (quantity, values) = quantities[rank];
+        let value = match rank {
+            0 => self.volume,
+            _ if values[0].is_finite() => values[1],
+            _ => values[0],
+        };
+        Some(Defect { rank, quantity, value })
+    }
+
     /// Height of the water's surface, m.
     pub fn surface(&self) -> f64 {
         self.ground + self.depth
@@ -77,5 +124,47 @@ impl Particle {
     /// Speed, m/s.
     pub fn speed(&self) -> f64 {
         (self.u * self.u + self.v * self.v).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_value_that_is_not_a_number_is_found() {
+        let sound = Particle { depth: 2.0, ..Particle::new(7, 1e6, -3e6, 1e-9, 5.0) };
+        assert!(sound.is_sound() && sound.defect().is_none());
+        let values: [fn(&mut Particle) -> &mut f64; 16] = [
+            |p| &mut p.x,
+            |p| &mut p.y,
+            |p| &mut p.u,
+            |p| &mut p.v,
+            |p| &mut p.ax,
+            |p| &mut p.ay,
+            |p| &mut p.volume,
+            |p| &mut p.weight,
+            |p| &mut p.h,
+            |p| &mut p.next_h,
+            |p| &mut p.depth,
+            |p| &mut p.ground,
+            |p| &mut p.ground_slope[0],
+            |p| &mut p.ground_slope[1],
+            |p| &mut p.surface_slope[0],
+            |p| &mut p.surface_slope[1],
+        ];
+        for value in values {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut particle = sound;
+                *value(&mut particle) = bad;
+                let Defect { quantity, value, .. } = particle.defect().unwrap();
+                assert!(!particle.is_sound() && value.to_bits() == bad.to_bits(), "{quantity}");
+            }
+        }
+        for volume in [0.0, -1e-9] {
+            let particle = Particle { volume, ..sound };
+            assert!(!particle.is_sound());
+            assert_eq!(particle.defect(), Some(Defect { rank: 0, quantity: "volume", value: volume }));
+        }
     }
 }

@@ -19,6 +19,10 @@ const COVERED: f64 = 0.5;
 /// A particle that has lost all but this share of its water to the ground is gone.
 const DRAINED: f64 = 1e-6;
 
+/// Steps and cells in which the rain that runs off is estimated.
+const STEPS_OF_RUNOFF: usize = 40;
+const CELLS_OF_RUNOFF: usize = 2000;
+
 /// Where and when it rains: intensity, m/s, over x, y, and time.
 pub type RainFunction = Box<dyn Fn(f64, f64, f64) -> f64 + Send + Sync>;
 
@@ -199,6 +203,35 @@ impl Ground {
         row * self.columns + column
     }
 
+    /// About how much of the rain from `from` to `until` s does not soak in, m3.
+    pub fn runoff(&self, wetness: &Wetness, from: f64, until: f64) -> f64 {
+        let step = (until - from) / STEPS_OF_RUNOFF as f64;
+        let of_cell = |cell: usize| {
+            let law = self.laws[usize::from(self.law[cell])];
+            let (mut soaked, mut left) = (wetness.soaked[cell], wetness.film[cell] / self.area);
+            for k in 0..STEPS_OF_RUNOFF {
+                let [from, until] = [k, k + 1].map(|k| from + k as f64 * step);
+                left += self.rain(cell, self.rain_of_table(from, until), from, until);
+                let drunk = law.map_or(0.0, |law| law.demand(soaked, step)).min(left);
+                (soaked, left) = (soaked + drunk, left - drunk);
+            }
+            left
+        };
+        // Some cells stand for all.
+        let every = (self.factor.len() / CELLS_OF_RUNOFF).max(1);
+        let cells = (0..self.factor.len()).step_by(every);
+        let mean = cells.clone().map(of_cell).sum::<f64>() / cells.len().max(1) as f64;
+        mean * self.area * self.factor.len() as f64
+    }
+
+    /// Rain after the table from `from` to `until` s where the factor is 1, m.
+    fn rain_of_table(&self, from: f64, until: f64) -> f64 {
+        match &self.intensity {
+            Intensity::Table(table) => MM_PER_H * table.integral(from, until),
+            _ => 0.0,
+        }
+    }
+
     /// What has soaked in, on the terrain's own grid; none where nothing can.
     pub fn map(&self, wetness: &Wetness, terrain: &Terrain) -> Option<Map> {
         self.laws.iter().any(Option::is_some).then_some(())?;
@@ -237,10 +270,7 @@ impl Ground {
     pub fn wet(&self, wetness: &mut Wetness, particles: &mut [Particle], time: f64) -> Vec<Drop> {
         let (from, step) = (wetness.until, time - wetness.until);
         wetness.until = time;
-        let of_table = match &self.intensity {
-            Intensity::Table(table) => MM_PER_H * table.integral(from, time),
-            _ => 0.0,
-        };
+        let of_table = self.rain_of_table(from, time);
         let covered = self.covered(particles);
         // Of each cell: what each square metre of its water gains, and what the ground takes of that, m.
         let (mut gains, mut demands) = (vec![0.0; covered.len()], vec![0.0; covered.len()]);

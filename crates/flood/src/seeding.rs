@@ -81,10 +81,13 @@ impl Body<'_> {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
             self.relax(&arrangement, &mut particles, edges, on_water);
         }
-        // Obstacles are cut out of the glass, so that water stands before their walls as close as elsewhere.
-        particles.retain(|particle| !obstacles.hold([particle.x, particle.y]));
+        // Obstacles are cut out of the glass, so that water stands before their walls as close as elsewhere; and what
+        // stands on dry ground is no water.
+        particles
+            .retain(|particle| !obstacles.hold([particle.x, particle.y]) && (self.depth)(particle.x, particle.y) > 0.0);
         self.settle_smoothing(&mut arrangement, &mut particles, &mut spare, edges, obstacles);
-        particles.retain(|particle| (self.inside)(particle.x, particle.y));
+        // Those kept off walls may have come to dry ground.
+        particles.retain(|particle| (self.inside)(particle.x, particle.y) && particle.volume > 0.0);
         particles
     }
 

@@ -42,6 +42,9 @@ pub(crate) fn edge_rules(scene: &FloodScene, terrain: &Terrain, folder: &Path) -
             Edge::Wall => EdgeRule::Wall,
             Edge::Periodic => EdgeRule::Periodic,
             Edge::Stage(level) => EdgeRule::Stage(load(level, folder)?),
+            Edge::Discharge(_) | Edge::Wave(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
+                return Err(setup("sides of this kind are for scheme voronoi: see [flood.edges]"));
+            }
         })
     };
     let edges = &scene.edges;

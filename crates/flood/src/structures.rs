@@ -143,7 +143,11 @@ impl Flows {
 impl Link {
     /// Discharge, m3/s, positive from the first end to the second.
     pub fn discharge(&self, water: &Sampler, gravity: f64) -> f64 {
-        let [from, to] = [0, 1].map(|end| self.ends[end].level(water));
+        self.discharge_between([0, 1].map(|end| self.ends[end].level(water)), gravity)
+    }
+
+    /// Discharge, m3/s, positive from the first end to the second, where the water stands at these levels, m, or is away.
+    pub fn discharge_between(&self, [from, to]: [Option<f64>; 2], gravity: f64) -> f64 {
         let dry = f64::NEG_INFINITY;
         if from.unwrap_or(dry) >= to.unwrap_or(dry) {
             from.map_or(0.0, |level| self.law.discharge(level, to, [0, 1], gravity))

@@ -144,6 +144,18 @@ impl Zone {
         }
     }
 
+    /// Length of its rim, m; of a band that of its two sides.
+    pub fn rim(&self) -> f64 {
+        match self {
+            Self::Disc { radius, .. } => std::f64::consts::TAU * radius,
+            Self::Band { line, .. } => 2.0 * line.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>(),
+            Self::Polygon(corners) => {
+                let next = corners.iter().cycle().skip(1);
+                corners.iter().zip(next).map(|(a, b)| distance(*a, *b)).sum()
+            }
+        }
+    }
+
     /// Level of the water in it, the mean over where there is some, m; none where it is dry.
     pub fn level(&self, water: &Sampler) -> Option<f64> {
         let levels = self.looks().into_iter().filter_map(|[x, y]| {

@@ -154,9 +154,9 @@ fn rougher_ground_slows_the_water() {
 
 #[test]
 fn the_control_force_can_be_taken_away() {
-    let paper = [("flood.scheme", "\"paper\"")];
+    let sph_swe = [("flood.scheme", "\"sph-swe\"")];
     let at = |changes: &[ByHand]| {
-        let mut flood = open(RIVER, &paper);
+        let mut flood = open(RIVER, &sph_swe);
         go(&mut flood, 5.0);
         changes.iter().for_each(|change| change.change(&mut flood).unwrap());
         go(&mut flood, 10.0);
@@ -165,7 +165,7 @@ fn the_control_force_can_be_taken_away() {
     };
     let with = at(&[]);
     assert!(at(&[ByHand::ControlForce(false)]) != with);
-    let mut free = open(RIVER, &[paper[0], ("flood.paper.control_force", "false")]);
+    let mut free = open(RIVER, &[sph_swe[0], ("flood.sph_swe.control_force", "false")]);
     go(&mut free, 5.0);
     let before = free.particles().to_vec();
     ByHand::ControlForce(false).change(&mut free).unwrap();
@@ -231,7 +231,7 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
         (ByHand::EdgeLevel { side: 0, level: 1.0 }, "west"),
         (ByHand::EdgeLevel { side: 7, level: 1.0 }, "side"),
         (ByHand::Manning(f64::INFINITY), "Manning"),
-        (ByHand::ControlForce(true), "scheme paper"),
+        (ByHand::ControlForce(true), "scheme sph-swe"),
     ];
     for (change, word) in refused {
         let told = change.change(&mut flood).unwrap_err().to_string();

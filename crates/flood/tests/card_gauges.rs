@@ -92,12 +92,12 @@ infiltration.horton = { first_mm_per_h = 4000, last_mm_per_h = 400, decay_per_h 
 rain = { intensity_mm_per_h = 2000, film_m = 0.002 }
 "#;
 
-/// A block that falls, in scheme paper.
+/// A block that falls, in scheme sph-swe.
 const FALL: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 40, width_m = 30, cell_m = 1 }, slope_east = -0.03 }
 [flood]
-scheme = "paper"
+scheme = "sph-swe"
 spacing_m = 1
 spacing_depth_m = 1
 map_every_s = 60

@@ -30,17 +30,17 @@ name = "house"
 polygon = [[40, 15], [46, 17], [44, 25], [38, 23]]
 "#;
 
-/// Scheme paper, whose particles are all drawn with one radius.
-const PAPER: &str = r#"
+/// Scheme sph-swe, whose particles are all drawn with one radius.
+const SPH_SWE: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 30, width_m = 20, cell_m = 1 }, slope_east = -0.02 }
 [flood]
-scheme = "paper"
+scheme = "sph-swe"
 spacing_m = 1
 spacing_depth_m = 1
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
 water = [{ depth_m = 1, velocity_m_per_s = [1, 0.5] }]
-paper = { radius_m = 0.3 }
+sph_swe = { radius_m = 0.3 }
 "#;
 
 fn open(text: &str) -> Flood {
@@ -91,7 +91,7 @@ fn compare(flood: &Flood, gpu: &Gpu, in_air: bool) {
 #[test]
 fn particles_on_the_card_are_those_of_the_frame() {
     let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
-    for (text, in_air) in [(FALL, true), (PAPER, false)] {
+    for (text, in_air) in [(FALL, true), (SPH_SWE, false)] {
         let mut flood = on_card(text, &gpu);
         compare(&flood, &gpu, in_air);
         // Between two steps, and after the block has come down.
@@ -192,8 +192,8 @@ fn who_is_shown_has_the_gauges_of_who_is_not() {
 #[test]
 fn without_a_card_nobody_is_shown_anything() {
     let Some(gpu) = require_gpu("a flood without a card") else { return };
-    assert!(on_card(PAPER, &gpu).card().is_some_and(|card| card.is_same(&gpu)));
-    let mut flood = open(PAPER);
+    assert!(on_card(SPH_SWE, &gpu).card().is_some_and(|card| card.is_same(&gpu)));
+    let mut flood = open(SPH_SWE);
     assert!(flood.card().is_none() && flood.on_device().unwrap().is_none());
     let mut show = |_: f64, _: &DeviceParticles| panic!("there is no card");
     flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), 0.0, &mut show).unwrap();

@@ -71,7 +71,7 @@ fn water_reaches_up_to_walls_and_periodic_sides() {
         water = [{ depth_m = 1 }]
         edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
     "#;
-    for scheme in ["balanced", "paper"] {
+    for scheme in ["balanced", "sph-swe"] {
         let maps = open(&parse(basin, &[("flood.scheme".into(), scheme.into())])).maps();
         let depth = &maps.iter().find(|map| map.name == "depth").unwrap().values;
         let dry = depth.iter().filter(|depth| depth.is_nan()).count();
@@ -149,7 +149,7 @@ fn an_edge_held_at_a_level_fills_and_empties_a_pool() {
 
 #[test]
 fn both_schemes_land_what_falls() {
-    for scheme in ["paper", "balanced"] {
+    for scheme in ["sph-swe", "balanced"] {
         let text = "run.until_s = 10\nterrain.plane = { extent = { length_m = 40, width_m = 40, cell_m = 1 } }\n\
                     flood.spacing_m = 1\nflood.spacing_depth_m = 1\n\
                     [[flood.water]]\nblock = { from = [10, 10], to = [20, 20], height_m = 5, layers = 2 }\n";

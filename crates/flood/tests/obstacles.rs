@@ -87,7 +87,7 @@ fn bore(scheme: &str) -> Flood {
 
 #[test]
 fn no_water_comes_into_obstacles() {
-    for scheme in ["balanced", "paper"] {
+    for scheme in ["balanced", "sph-swe"] {
         let mut flood = bore(scheme);
         for look in 1..=40 {
             go(&mut flood, 0.25 * f64::from(look));
@@ -105,7 +105,7 @@ fn no_water_comes_into_obstacles() {
 /// What the water loses in momentum, walls and obstacles take.
 #[test]
 fn momentum_that_obstacles_take_is_booked() {
-    for scheme in ["balanced", "paper"] {
+    for scheme in ["balanced", "sph-swe"] {
         let mut flood = bore(scheme);
         go(&mut flood, 4.0);
         let balance = &flood.ledger().balances[1];

@@ -1,7 +1,7 @@
 //! The text of a scene as a tree that knows where each value is written.
 
 use crate::error::{Place, Problem};
-use crate::units;
+use crate::{old_names, units};
 use std::borrow::Cow;
 use std::ops::Range;
 use toml::de::{DeArray, DeTable, DeValue};
@@ -18,7 +18,7 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses `text`, then sets each `(path, value)` of `overrides` in it.
+    /// Parses `text`, then sets each `(path, value)` of `overrides` in it. Old names have become the present ones.
     pub fn parse(text: &'a str, name: &'a str, overrides: &'a [(String, String)]) -> Result<Self, Box<Problem>> {
         let mut document = Self { name, text, overrides, root: Spanned::new(0..0, DeValue::Table(DeTable::new())) };
         let table = DeTable::parse(text).map_err(|error| {
@@ -26,6 +26,7 @@ impl<'a> Document<'a> {
             Box::new(Problem { key: String::new(), what, place: error.span().map(|span| document.place(&span)) })
         })?;
         document.root = Spanned::new(table.span(), DeValue::Table(table.into_inner()));
+        document.rename_old()?;
         let mut offset = text.len() + 1;
         for (path, value) in overrides {
             set(&mut document.root, path, override_value(value, offset)).map_err(|what| {
@@ -34,7 +35,15 @@ impl<'a> Document<'a> {
             })?;
             offset += value.len() + 1;
         }
+        document.rename_old()?;
         Ok(document)
+    }
+
+    fn rename_old(&mut self) -> Result<(), Box<Problem>> {
+        old_names::rename(&mut self.root).map_err(|(key, what)| {
+            let place = self.place_of(&key);
+            Box::new(Problem { key, what, place })
+        })
     }
 
     /// The tree with the keys of a flood in feet called as they are in metres; whether it is one.
@@ -153,7 +162,7 @@ fn set<'a>(root: &mut Spanned<DeValue<'a>>, path: &'a str, value: Spanned<DeValu
         return Err(": a path is words joined by dots, as in --set flood.inflow.0.discharge_m3_per_s=30".into());
     }
     let mut node = root;
-    let mut words = path.split('.').peekable();
+    let mut words = old_names::present(path).into_iter().peekable();
     while let Some(word) = words.next() {
         let holder = match words.peek() {
             Some(&"0") => DeValue::Array(DeArray::new()),

@@ -56,10 +56,12 @@ pub struct Flood {
     pub map_every_s: Option<f64>,
     /// Parameters of scheme `balanced`.
     pub balanced: Balanced,
-    /// Parameters of scheme `paper`.
-    pub paper: Paper,
+    /// Parameters of scheme `sph-swe`.
+    pub sph_swe: SphSwe,
     /// What happens at the four sides of the terrain.
     pub edges: Edges,
+    /// What happens at parts of the sides.
+    pub edge_part: Vec<EdgePart>,
     /// Water that is there at the start.
     pub water: Vec<Water>,
     /// Water that comes in.
@@ -98,8 +100,9 @@ impl Default for Flood {
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),
-            paper: Paper::default(),
+            sph_swe: SphSwe::default(),
             edges: Edges::default(),
+            edge_part: Vec::new(),
             water: Vec::new(),
             inflow: Vec::new(),
             outflow: Vec::new(),
@@ -119,8 +122,10 @@ impl Default for Flood {
 pub enum Scheme {
     /// Well-balanced, conservative, with Riemann pair forces: right as well as stable.
     Balanced,
+    /// Columns of water over Voronoi cells, with fluxes through their closed faces: right on any ground.
+    Voronoi,
     /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
-    Paper,
+    SphSwe,
 }
 
 /// What the numbers of a flood are written in.
@@ -172,16 +177,18 @@ impl Default for Balanced {
     }
 }
 
-/// Parameters of scheme `paper`, defaults from its Table 1.
+/// Parameters of scheme `sph-swe`, defaults from its Table 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Paper {
+pub struct SphSwe {
     /// Fixed time step, s.
     pub time_step_s: f64,
     /// Initial smoothing length h0, m. Left out: that of Table 1, 2.66 m, scaled with the root of the particles' volume (which
     /// is 1 m3 there), so that a particle has as many neighbours as in the paper.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothing_length_m: Option<f64>,
+    /// How the smoothing length follows the water.
+    pub smoothing: SmoothingForm,
     /// Density of water rho0 (also the reference two-dimensional density), kg/m3.
     pub density_kg_per_m3: f64,
     /// Gas constant k.
@@ -203,11 +210,12 @@ pub struct Paper {
     pub largest_smoothing: f64,
 }
 
-impl Default for Paper {
+impl Default for SphSwe {
     fn default() -> Self {
         Self {
             time_step_s: 0.02,
             smoothing_length_m: None,
+            smoothing: SmoothingForm::Density,
             density_kg_per_m3: 1000.0,
             gas_constant: 10.0,
             viscosity: 0.1,
@@ -219,6 +227,16 @@ impl Default for Paper {
             largest_smoothing: 4.0,
         }
     }
+}
+
+/// How the smoothing length of scheme `sph-swe` follows the water.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SmoothingForm {
+    /// From the density: h = h0 (rho0 / rho)^(1/2).
+    Density,
+    /// The paper's general forms (8) and (9): at the start from the neighbours' area, then by its rate of change. On the CPU only.
+    Rate,
 }
 
 /// The four sides of the terrain.
@@ -237,7 +255,7 @@ pub struct Edges {
 
 /// What happens at one side.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub enum Edge {
     /// Water flows out and is counted; nothing comes in.
     #[default]
@@ -246,8 +264,58 @@ pub enum Edge {
     Wall,
     /// What leaves here comes in at the opposite side (which must be periodic too).
     Periodic,
-    /// The level is held at this value over time, m.
+    /// The level is held at this value over time, m. Waves that are short beside the time in which they cross the terrain leave.
     Stage(Series),
+    /// So much comes in over time, m3/s, shared out by conveyance (scheme voronoi).
+    Discharge(Series),
+    /// A wave comes in, and waves from inside leave (scheme voronoi).
+    Wave(Wave),
+    /// Water leaves at the depth of normal flow on this slope, and none comes in (scheme voronoi).
+    NormalDepth(f64),
+    /// Water leaves by the level before the side: rows of `[level, discharge]`, m and m3/s, linear between them (scheme voronoi).
+    Rating(Vec<[f64; 2]>),
+}
+
+/// A wave that comes in at a side. Give its level, its velocity, or both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Wave {
+    /// The level of the water at rest, m.
+    pub rest_level_m: f64,
+    /// The level of the incoming wave alone over time, m. Left out: that of a simple wave with the velocity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level_m: Option<Series>,
+    /// Its velocity inwards over time, m/s. Left out: that of a simple wave with the level.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity_m_per_s: Option<Series>,
+}
+
+/// What happens at a part of a side, in place of what happens at the rest of it (scheme voronoi).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EdgePart {
+    /// The side.
+    pub side: Side,
+    /// Where the part begins along the side, in the terrain's own coordinates: y at the west and east, x at the south and north.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What happens there.
+    pub edge: Edge,
+}
+
+/// A side of the terrain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// At the smallest x.
+    West,
+    /// At the largest x.
+    East,
+    /// At the smallest y.
+    South,
+    /// At the largest y.
+    North,
 }
 
 /// Water that is there at the start. Give exactly one of `level_m`, `depth_m`, `depth_raster` or `block`.

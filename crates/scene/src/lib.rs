@@ -13,6 +13,7 @@ mod error;
 mod flood;
 mod gas;
 mod model;
+mod old_names;
 mod parse;
 mod resolve;
 mod series;

@@ -42,9 +42,16 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
         paths.push(raster);
     }
     let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
-    for edge in edges {
-        if let Edge::Stage(Series::File { csv, .. }) = edge {
-            paths.push(csv);
+    for edge in edges.into_iter().chain(flood.edge_part.iter_mut().map(|part| &mut part.edge)) {
+        let series = match edge {
+            Edge::Stage(series) | Edge::Discharge(series) => [Some(series), None],
+            Edge::Wave(wave) => [wave.level_m.as_mut(), wave.velocity_m_per_s.as_mut()],
+            Edge::Open | Edge::Wall | Edge::Periodic | Edge::NormalDepth(_) | Edge::Rating(_) => [None, None],
+        };
+        for series in series.into_iter().flatten() {
+            if let Series::File { csv, .. } = series {
+                paths.push(csv);
+            }
         }
     }
     for inflow in &mut flood.inflow {

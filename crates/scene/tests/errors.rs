@@ -219,8 +219,8 @@ fn names_and_edges() {
 fn overrides_are_named() {
     let others = ("flood.wet_depth_m", "0.5");
     for ((path, value), words) in [
-        (("flood.scheme", "papr"), "did you mean `paper`"),
-        (("flood.scheme", ""), "known: balanced, paper"),
+        (("flood.scheme", "sph-sw"), "did you mean `sph-swe`"),
+        (("flood.scheme", ""), "known: balanced, voronoi, sph-swe"),
         (("flood.spacing_m", "-1"), "must be larger than 0"),
         (("flood.spcing_m", "1"), "did you mean `spacing_m`"),
         (("flood.gauge.5.name", "b"), "the number of a row, 0 to 1"),
@@ -269,6 +269,23 @@ fn rain_and_ground() {
 }
 
 #[test]
+fn sides_of_scheme_voronoi() {
+    let line = "manning = 0.03";
+    let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
+    spoil("edge_part = [{ side = \"west\", from = 0, to = 1, edge = \"wall\" }]", &["flood.edge_part.0", "voronoi"]);
+    let spoil = |by: &str, words: &[&str]| assert_refused("scheme = \"balanced\"", by, words);
+    let part = |rest: &str| format!("edge_part = [{{ side = \"west\", {rest} }}]\nscheme = \"voronoi\"");
+    spoil(&part("from = 2, to = 1, edge = \"wall\""), &["flood.edge_part.0.to", "larger than from = 2"]);
+    spoil(&part("from = 0, to = 1, edge = \"periodic\""), &["flood.edge_part.0.edge", "whole sides"]);
+    spoil(&part("from = 0, to = 1, edge = { normal_depth = 0 }"), &["normal_depth = 0", "larger than 0"]);
+    spoil(&part("from = 0, to = 1, edge = { rating = [[1, 1], [0, 2]] }"), &["edge.rating.1", "must rise"]);
+    spoil(
+        &part("from = 0, to = 1, edge = { wave = { rest_level_m = 1 } }"),
+        &["edge.wave", "level_m, velocity_m_per_s, or both"],
+    );
+}
+
+#[test]
 fn structures() {
     let line = "manning = 0.03";
     let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
@@ -277,6 +294,14 @@ fn structures() {
     spoil(&sluice("rating = [[2, 1], [1, 2]]"), &["flood.outflow.0.rating.1", "must rise"]);
     spoil(&sluice("rating = [[2, -1]]"), &["flood.outflow.0.rating.0", "must not be negative"]);
     spoil(&sluice("polygon = [[0, 0], [1, 0], [1, 1]], rating = [[0, 1]]"), &["not at and polygon together"]);
+    let wall = |rest: &str| format!("obstacle = [{{ name = \"a\", {rest} }}]");
+    let line = "line = [[0, 0], [1, 1]]";
+    spoil(&wall(line), &["flood.obstacle.0.line", "voronoi", "polygon"]);
+    let refused = |by: &str, words: &[&str]| assert_refused("scheme = \"balanced\"", by, words);
+    let voronoi = |rest: &str| format!("{}\nscheme = \"voronoi\"", wall(rest));
+    refused(&voronoi("line = [[0, 0]]"), &["flood.obstacle.0.line", "at least two points"]);
+    refused(&voronoi(&format!("{line}, crest_m = 1, height_m = 1")), &["flood.obstacle.0.crest_m", "not both"]);
+    refused(&voronoi("polygon = [[0, 0], [1, 0], [1, 1]], crest_m = 1"), &["flood.obstacle.0.crest_m", "height_m"]);
     spoil("stage = [{ name = \"a\", level_m = 1 }]", &["flood.stage.0", "exactly one of line, polygon; none"]);
     let link = |law: &str| format!("link = [{{ name = \"a\", from = [0, 0], to = [9, 9], law = {{ {law} }} }}]");
     spoil(&link("culvert = {}"), &["flood.link.0.law.culvert", "diameter_m, width_m and height_m; none"]);

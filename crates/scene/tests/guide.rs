@@ -72,6 +72,11 @@ fn all_terrains() -> [Terrain; 8] {
     ]
 }
 
+fn full_wave() -> Edge {
+    let one = || Some(Series::Constant(1.0));
+    Edge::Wave(Wave { rest_level_m: 1.0, level_m: one(), velocity_m_per_s: one() })
+}
+
 /// A scene with every key written, whether or not they go together. No field is left to a default.
 fn full(terrain: Terrain) -> Scene {
     let block = Block { from: [0.0; 2], to: [1.0; 2], height_m: 1.0, layers: 1 };
@@ -90,7 +95,7 @@ fn full(terrain: Terrain) -> Scene {
         units: FloodUnits::Si,
         spacing_m: 1.0,
         spacing_depth_m: Some(1.0),
-        paper: Paper { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..Paper::default() },
+        sph_swe: SphSwe { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..SphSwe::default() },
         gravity_m_per_s2: 1.0,
         manning: Manning::Number(0.0),
         friction: None,
@@ -105,6 +110,11 @@ fn full(terrain: Terrain) -> Scene {
         map_every_s: Some(1.0),
         balanced: Balanced::default(),
         edges: Edges::default(),
+        // What happens at a side is a word or a table.
+        edge_part: vec![
+            EdgePart { side: Side::West, from: 0.0, to: 1.0, edge: Edge::Wall },
+            EdgePart { side: Side::West, from: 1.0, to: 2.0, edge: full_wave() },
+        ],
         water: vec![water, in_the_air],
         inflow: vec![Inflow {
             name: "a".into(),
@@ -131,8 +141,10 @@ fn full(terrain: Terrain) -> Scene {
             name: "a".into(),
             polygon: Some(vec![[0.0; 2]]),
             circle: Some(Circle { centre: [0.0; 2], radius_m: 1.0 }),
+            line: Some(vec![[0.0; 2]]),
             file: Some("a".into()),
             height_m: Some(1.0),
+            crest_m: Some(1.0),
         }],
         gauge: vec![Gauge { name: "a".into(), at: place, lon_lat: place }],
         section: vec![Section { name: "a".into(), line: vec![[0.0; 2]] }],
@@ -365,6 +377,7 @@ fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
         "diameter_m",
         "gauge",
         "section",
+        "edge_part",
         "count",
         "relative_humidity",
     ];
@@ -411,7 +424,7 @@ fn the_guide_tells_the_forms_of_values() {
         "\"wall\"",
         "\"periodic\"",
         "\"fill\"",
-        "\"paper\"",
+        "\"sph-swe\"",
     ];
     for form in forms {
         assert!(text.contains(form), "{form}");

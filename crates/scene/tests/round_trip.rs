@@ -1,6 +1,8 @@
 //! A scene written and read again is the same scene, and no text makes the parser panic.
 
-use corpuscle_scene::{BUILTIN, Edge, FloodScene, Infiltration, LinkLaw, Manning, Scene, Series, Terrain, builtin};
+use corpuscle_scene::{
+    BUILTIN, Edge, FloodScene, Infiltration, LinkLaw, Manning, Scene, Scheme, Series, Terrain, builtin,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -130,21 +132,52 @@ fn overrides_change_numbers_words_rows_and_kinds() {
     };
     let scene = set(&[
         ("run.until_s", "10"),
-        ("flood.scheme", "paper"),
+        ("flood.scheme", "sph-swe"),
         ("title", "Two words"),
         ("flood.inflow.0.discharge_m3_per_s", "[[0, 1], [5, 2]]"),
         ("flood.gauge.0.name", "P1"),
         ("flood.gauge.0.at", "[1, 2]"),
         ("flood.gauge.1", "{ name = \"P2\", at = [3, 4] }"),
-        ("flood.paper.control_force", "false"),
+        ("flood.sph_swe.control_force", "false"),
     ]);
     assert_eq!(scene.run.until_s, 10.0);
     assert_eq!(scene.title, "Two words");
     let flood = &scene.flood().unwrap().flood;
     assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::Table(vec![[0.0, 1.0], [5.0, 2.0]]));
     assert_eq!(flood.gauge[1].at, Some([3.0, 4.0]));
-    assert!(!flood.paper.control_force);
+    assert!(!flood.sph_swe.control_force);
     assert_eq!(set(&[("terrain", "{ plane = {} }")]).flood().unwrap().terrain, Terrain::Plane(Default::default()));
+}
+
+/// Scheme `sph-swe` was called `paper`, and its table likewise.
+#[test]
+fn old_names_are_read_and_the_new_ones_written() {
+    let new = builtin("flood/rough-terrain").unwrap().text;
+    let old = new.replace("\"sph-swe\"", "\"paper\"").replace("[flood.sph_swe]", "[flood.paper]");
+    assert_ne!(old, new);
+    let read = |text: &str, overrides: &[(&str, &str)]| {
+        let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();
+        Scene::parse(text, "test.toml", &overrides)
+    };
+    let scene = read(&old, &[]).unwrap();
+    assert_eq!(scene, read(new, &[]).unwrap());
+    let written = scene.to_toml().unwrap();
+    assert!(written.contains("scheme = \"sph-swe\"") && written.contains("[flood.sph_swe]"), "{written}");
+    assert!(!written.contains("flood.paper") && !written.contains("\"paper\""), "{written}");
+    for text in [new, &old] {
+        for path in ["flood.paper.control_square", "flood.sph_swe.control_square"] {
+            let scene = read(text, &[("flood.scheme", "paper"), (path, "0.25")]).unwrap();
+            let flood = &scene.flood().unwrap().flood;
+            assert_eq!((flood.scheme, flood.sph_swe.control_square), (Scheme::SphSwe, 0.25), "{path}");
+        }
+    }
+    let wrong = old.replace("control_square = 0.5", "control_square = -1.0");
+    let message = read(&wrong, &[]).unwrap_err().to_string();
+    let line = 1 + wrong.lines().position(|line| line.starts_with("control_square")).unwrap();
+    assert!(message.starts_with(&format!("test.toml:{line}:")), "{message}");
+    let both = old + "[flood.sph_swe]\nviscosity = 0.2\n";
+    let message = read(&both, &[]).unwrap_err().to_string();
+    assert!(message.contains("flood.paper") && message.contains("old name of flood.sph_swe"), "{message}");
 }
 
 proptest! {

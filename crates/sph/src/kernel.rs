@@ -62,6 +62,14 @@ pub fn poly6(r_squared: f64, h: f64) -> f64 {
     4.0 / (PI * h_squared * h_squared * h_squared * h_squared) * inside * inside * inside
 }
 
+/// Magnitude of the gradient of poly6, over r: 24/(pi h^8) (h^2 - r^2)^2. 1/m4.
+#[inline(always)]
+pub fn poly6_slope_over_r(r_squared: f64, h: f64) -> f64 {
+    let h_squared = h * h;
+    let inside = (h_squared - r_squared).max(0.0);
+    24.0 / (PI * h_squared * h_squared * h_squared * h_squared) * inside * inside
+}
+
 /// Magnitude of the gradient of the spiky kernel (Desbrun & Gascuel 1996, in two dimensions 10/(pi h^5) (h - r)^3),
 /// support h: 30/(pi h^5) (h - r)^2. Does not vanish at the centre, so it keeps close particles apart. 1/m3.
 #[inline(always)]
@@ -104,6 +112,16 @@ mod tests {
         // Green's second identity with r^2/4, whose Laplacian is 1, gives the same for the viscosity kernel; its normal
         // derivative and value vanish at h.
         assert!((over_the_plane(h, |r| 0.25 * r * r * viscosity_laplacian(r, h)) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn slope_of_poly6_is_its_derivative() {
+        let (h, e) = (0.7, 1e-6);
+        for r in [0.05, 0.3, 0.6, 0.69, 0.71] {
+            let value = |r: f64| poly6(r * r, h);
+            let difference = (value(r + e) - value(r - e)) / (2.0 * e);
+            assert!((-r * poly6_slope_over_r(r * r, h) - difference).abs() < 1e-6, "at {r}: {difference}");
+        }
     }
 
     #[inline(always)]

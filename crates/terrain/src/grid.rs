@@ -49,7 +49,7 @@ impl MapGrid {
     }
 
     /// The place in model coordinates of a fractional (column, row).
-    pub(crate) fn place(&self, position: [f64; 2]) -> [f64; 2] {
+    pub fn place(&self, position: [f64; 2]) -> [f64; 2] {
         self.frame.to_model(self.georeference.place(position))
     }
 

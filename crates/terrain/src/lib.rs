@@ -1,7 +1,8 @@
 //! Terrain: rasters with their reference systems, generated ground, smooth interpolation.
 //!
 //! A model sees the ground through [`Terrain`]: heights and slopes in model coordinates (metres), a rectangle of
-//! validity, and the grid on which maps are given back (the terrain's own).
+//! validity, and the grid on which maps are given back (the terrain's own). [`Terrain::mean_over`] gives
+//! the mean height over a polygon, for finite-volume schemes.
 
 mod bounds;
 mod conversion;
@@ -13,6 +14,7 @@ mod georeference;
 mod grid;
 mod ground;
 mod holes;
+mod mean;
 mod mosaic;
 mod polygons;
 mod raster;

@@ -6,10 +6,13 @@
 //! property of Bernstein polynomials): the surface never over- or undershoots the data, makes no pits and no bumps of
 //! its own, and is exact for a plane.
 
+mod mean;
+
 use crate::Bounds;
 use bytemuck::{Pod, Zeroable};
 use corpuscle_lanes::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
+use std::sync::OnceLock;
 
 /// A slope is at most this many times the lesser of the two one-sided differences. 3 keeps an edge of a patch monotone
 /// (Fritsch and Carlson 1980); half of that keeps the inner Bezier points in range as well, as they add two slopes.
@@ -85,6 +88,8 @@ pub(crate) struct Surface {
     corner: [f64; 2],
     /// Nodes per metre.
     per_metre: [f64; 2],
+    /// For each row of patches the running sums of their integrals, made when first needed.
+    row_sums: Vec<OnceLock<Box<[f64]>>>,
 }
 
 impl Surface {
@@ -100,6 +105,7 @@ impl Surface {
             patches: [columns + 1, rows + 1],
             corner: [first[0] - cell[0], first[1] - cell[1]],
             per_metre: [1.0 / cell[0], 1.0 / cell[1]],
+            row_sums: vec![OnceLock::new(); rows + 1],
         }
     }
 

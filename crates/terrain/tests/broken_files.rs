@@ -1,19 +1,32 @@
 //! Files that are no terrain: each is an error of one paragraph that names the file, never a panic.
 
 use corpuscle_scene::{NoData, TerrainFile};
-use corpuscle_terrain::{Terrain, TerrainError, read_raster};
+use corpuscle_terrain::{MapBox, Terrain, TerrainError, read_raster, read_raster_part, read_rasters, summarize};
 use geotiff_writer::{Compression, GeoTiffBuilder};
 use ndarray::Array2;
 use proptest::prelude::*;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// What reading these bytes from a file of this name says.
-fn read(name: &str, bytes: &[u8]) -> Result<(), TerrainError> {
+/// What every reader says of these bytes in a file of this name: that of all of it, that of a part, that of several files as one, and
+/// the summary.
+fn read_by_all(name: &str, bytes: &[u8]) -> [Result<(), TerrainError>; 4] {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
-    read_raster(&path).map(|_| ())
+    let part = MapBox::new([50.0, 50.0, 150.0, 250.0]).unwrap();
+    [
+        read_raster(&path).map(|_| ()),
+        read_raster_part(&path, &part).map(|_| ()),
+        read_rasters(&[path.clone(), path.clone()], None, Some(&part)).map(|_| ()),
+        summarize(&path, None).map(|_| ()),
+    ]
+}
+
+/// What reading these bytes from a file of this name says.
+fn read(name: &str, bytes: &[u8]) -> Result<(), TerrainError> {
+    let [whole, ..] = read_by_all(name, bytes);
+    whole
 }
 
 /// The one-paragraph message, which must hold `hint`.
@@ -93,6 +106,26 @@ fn a_header_that_claims_too_much_is_refused_before_anything_is_reserved() {
     let unlikely = with_tag(&with_tag(&DEFLATED, width, 9_999), length, 9_999);
     refused("unlikely.tif", &unlikely, "cannot hold");
     refused("thin.tif", &with_tag(&PLAIN, width, 1), "at least 2 x 2");
+}
+
+#[test]
+fn a_raster_without_columns_or_rows_is_refused_by_every_reader() {
+    let (width, length) = (256, 257);
+    let grid =
+        |columns: usize, rows: usize| format!("ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
+    let files = [
+        ("flat.tif", with_tag(&PLAIN, width, 0), "0 columns and 40 rows"),
+        ("flat.tif", with_tag(&DEFLATED, length, 0), "30 columns and 0 rows"),
+        ("flat.tif", with_tag(&with_tag(&LZW, width, 0), length, 0), "0 columns and 0 rows"),
+        ("flat.asc", grid(0, 40).into_bytes(), "0 columns and 40 rows"),
+        ("flat.asc", grid(30, 0).into_bytes(), "30 columns and 0 rows"),
+    ];
+    for (name, bytes, hint) in files {
+        for (reader, answer) in read_by_all(name, &bytes).into_iter().enumerate() {
+            let text = answer.expect_err(hint).to_string();
+            assert!(text.contains(name) && text.contains(hint) && text.contains("damaged"), "reader {reader}: {text}");
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What a bench is and what it gives.
 
 use corpuscle_dew::Dew;
-use corpuscle_flood::Flood;
+use corpuscle_flood::{Flood, VoronoiFlood};
 use corpuscle_gpu::{Gpu, Taken};
 use corpuscle_model::{Model, ModelError};
 use serde::Serialize;
@@ -125,6 +125,28 @@ macro_rules! stepped {
             }
         }
     };
+}
+
+impl Stepped for VoronoiFlood {
+    fn time_step(&self) -> f64 {
+        self.time_step()
+    }
+    fn bytes(&self) -> usize {
+        self.bytes()
+    }
+    fn use_card(&mut self, _: Gpu) -> Result<(), ModelError> {
+        Err(ModelError::Setup("scheme voronoi runs on the CPU only".into()))
+    }
+    fn seconds_on_card(&self) -> Option<f64> {
+        None
+    }
+    fn bytes_on_card(&self) -> Option<u64> {
+        None
+    }
+    fn time_passes(&mut self) {}
+    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+        Vec::new()
+    }
 }
 
 stepped!(Flood);

@@ -48,7 +48,8 @@ impl Case {
     /// Runs it, its floods and its dew on the card where `options` names one.
     pub fn rows(&self, options: &Options) -> Vec<Row> {
         let factor = if options.reduced { self.reduced } else { 1.0 };
-        crate::device::coarser(factor, || crate::device::on_card(options.gpu.clone(), || (self.run)(options)))
+        let run = || crate::device::on_card(options.gpu.clone(), || (self.run)(options));
+        crate::missed::mark(crate::device::coarser(factor, run))
     }
 }
 

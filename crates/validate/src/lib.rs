@@ -10,6 +10,7 @@ mod device;
 mod dew;
 mod flood;
 mod gas;
+mod missed;
 
 pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
 pub use case::{Case, Options, Row, cases};

@@ -6,7 +6,7 @@ use crate::physics::Change;
 use corpuscle::FloodByHand as ByHand;
 use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
 
-const SCHEMES: &[(&str, &str)] = &[("balanced", "\"balanced\""), ("paper (published)", "\"paper\"")];
+const SCHEMES: &[(&str, &str)] = &[("balanced", "\"balanced\""), ("sph-swe (published)", "\"sph-swe\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];
 
 /// How many times more water a slider lets in at most.
@@ -54,14 +54,14 @@ pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
         .group("Method")
         .add("flood.scheme", "Scheme", "", "Which formulation moves the water", Control::Choice(SCHEMES))
         .add(
-            "flood.paper.control_force",
-            "Control force (paper)",
+            "flood.sph_swe.control_force",
+            "Control force (sph-swe)",
             "",
             "The published scheme's guard of particles",
             Control::Choice(CONTROL),
         );
-    if now.scheme == Scheme::Paper {
-        builder.live("flood.paper.control_force", control);
+    if now.scheme == Scheme::SphSwe {
+        builder.live("flood.sph_swe.control_force", control);
     }
     builder.scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles").number(
         "flood.balanced.viscosity",

@@ -39,24 +39,18 @@ pub struct Plots {
     time_unit: &'static str,
 }
 
-/// Gauges that are shown first, where there are such: the end of what they measure.
-const FIRST: [(&str, [&str; 2]); 3] = [
-    ("gas", ["gas.temperature", "gas.pressure_walls"]),
-    ("flood", ["flood.volume", "water.volume"]),
-    ("dew", ["dew.water", "covered"]),
-];
+/// Columns that are shown before the others, by the beginning of their headers. Of a flood those come first that the
+/// scene asks for, as they are.
+const FIRST_OF_GAS: &[&str] = &["gas.temperature", "gas.pressure_walls"];
+const FIRST_OF_FLOOD: &[&str] = &[];
+const FIRST_OF_DEW: &[&str] = &["solids.covered_area"];
 
 impl Plots {
     /// The plots of a scene that was opened.
     pub fn new(opened: &Opened) -> Self {
         let gas = opened.scene.gas();
-        let model = match opened.scene.model {
-            ModelScene::Gas(_) => FIRST[0].1,
-            ModelScene::Flood(_) => FIRST[1].1,
-            ModelScene::Dew(_) => FIRST[2].1,
-        };
-        let by_name = |word: &&str| opened.gauges.iter().position(|gauge| gauge.contains(*word));
-        let mut first: Vec<usize> = model.iter().filter_map(by_name).collect();
+        let by_name = |beginning: &&str| opened.gauges.iter().position(|gauge| gauge.starts_with(*beginning));
+        let mut first: Vec<usize> = first_of(&opened.scene.model).iter().filter_map(by_name).collect();
         first.extend(0..opened.gauges.len());
         first.dedup();
         let mut chosen: Vec<Kind> = gas.iter().filter(|_| opened.history.is_none()).map(|_| Kind::Speeds(0)).collect();
@@ -187,6 +181,14 @@ impl Plots {
     }
 }
 
+fn first_of(model: &ModelScene) -> &'static [&'static str] {
+    match model {
+        ModelScene::Gas(_) => FIRST_OF_GAS,
+        ModelScene::Flood(_) => FIRST_OF_FLOOD,
+        ModelScene::Dew(_) => FIRST_OF_DEW,
+    }
+}
+
 fn time_unit(scene: &Scene) -> &'static str {
     match scene.gas().map(|gas| gas.units) {
         Some(Units::Reduced) => "",
@@ -211,7 +213,22 @@ fn table(chart: &Chart) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use corpuscle::Simulation;
     use corpuscle::model::{ChartAxis, ChartSeries};
+    use corpuscle::scene::builtin;
+    use std::path::Path;
+
+    #[test]
+    fn what_is_shown_first_is_measured() {
+        for name in ["gas/maxwell", "flood/lake-at-rest", "dew/lens"] {
+            let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+            let simulation = Simulation::open(scene, Path::new("")).unwrap();
+            let columns: Vec<_> = simulation.model().gauge_columns().iter().map(|column| column.header()).collect();
+            for first in first_of(&simulation.scene().model) {
+                assert!(columns.iter().any(|column| column.starts_with(first)), "{name} {first}: {columns:?}");
+            }
+        }
+    }
 
     #[test]
     fn a_table_names_its_series_and_its_units() {

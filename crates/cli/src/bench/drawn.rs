@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_flood_is_drawn_and_nothing_else_is() {
         let Some(gpu) = require_gpu("a flood stepped and drawn") else { return };
-        let rate = draw_for("flood/paper-60k", &gpu, 0.0, 1, true).unwrap().unwrap();
+        let rate = draw_for("flood/sph-swe-60k", &gpu, 0.0, 1, true).unwrap().unwrap();
         let once = |name: &str| rate.passes.iter().any(|pass| pass.name == name && pass.times_a_step == 1.0);
         assert!(once("composing") && (gpu.device.features().is_empty() || once("water_discs")), "{rate:?}");
         assert!(rate.rate > 0.0 && rate.particles > 50_000 && rate.device == Some(gpu.name.clone()), "{rate:?}");

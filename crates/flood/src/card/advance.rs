@@ -11,8 +11,8 @@ use std::time::Instant;
 /// Size of a cell over the mean reach, as on the CPU in scheme balanced.
 const CELL_OVER_REACH: f64 = 0.6;
 
-/// The same in scheme paper.
-const CELL_OVER_REACH_PAPER: f64 = 1.4;
+/// The same in scheme sph-swe.
+const CELL_OVER_REACH_SPH_SWE: f64 = 1.4;
 
 /// The cells are laid out anew after so many steps; in between the host reads no more than it must.
 const LAID_OUT: u64 = 64;
@@ -146,7 +146,8 @@ impl Card {
     fn lay_out(&mut self) -> Result<(), GpuError> {
         let Status { low, high, mean_h, particles, .. } = self.status;
         let any = particles > 0;
-        let over_reach = if self.parameters.scheme == layout::PAPER { CELL_OVER_REACH_PAPER } else { CELL_OVER_REACH };
+        let over_reach =
+            if self.parameters.scheme == layout::SPH_SWE { CELL_OVER_REACH_SPH_SWE } else { CELL_OVER_REACH };
         let cell_over_h = over_reach * f64::from(self.parameters.reach_over_h);
         let [mut low, mut high] =
             [low, high].map(|corner| corner.map(|value| if any { f64::from(value) } else { 0.0 }));

@@ -59,7 +59,7 @@ struct Parameters {
     film: f32,
     // Smoothing length of a particle that comes of a film, m.
     drop_h: f32,
-    // BALANCED or PAPER.
+    // BALANCED or SPH_SWE.
     scheme: u32,
     // The part of a step's acceleration that comes before the particles move, and their reach over their smoothing length.
     before: f32,
@@ -67,10 +67,10 @@ struct Parameters {
     // Particles in the air at the start, and the longest step while any are, s.
     in_air: u32,
     fall_step: f32,
-    // Of scheme paper, in its own units.
+    // Of scheme sph-swe, in its own units.
     rest_density: f32,
     gas_constant: f32,
-    paper_viscosity: f32,
+    sph_swe_viscosity: f32,
     clips_pressure: u32,
     control: u32,
     control_strength: f32,
@@ -92,7 +92,7 @@ struct Parameters {
 }
 
 const BALANCED = 0u;
-const PAPER = 1u;
+const SPH_SWE = 1u;
 
 const OPEN = 0u;
 const WALL = 1u;

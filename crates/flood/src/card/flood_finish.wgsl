@@ -81,8 +81,8 @@ fn book(all: Partial) {
     var clock = status.clock;
     add(&clock, status.step);
     status.clock = clock;
-    // The force over the step by its means at both ends, in scheme paper by that at its end.
-    let mean = select(0.5 * (status.from_outside + all.from_outside), all.from_outside, parameters.scheme == PAPER);
+    // The force over the step by its means at both ends, in scheme sph-swe by that at its end.
+    let mean = select(0.5 * (status.from_outside + all.from_outside), all.from_outside, parameters.scheme == SPH_SWE);
     let push = status.step * mean;
     let bookings = array(all.booked_in_drift, all.gained_at_edges, -all.lost_at_edges, all.booked_in_kick, push.x, push.y);
     var lost = status.momentum_lost;
@@ -119,7 +119,7 @@ fn is_number(value: f32) -> bool {
 }
 
 fn decide() {
-    // Scheme paper has steps of one length, whatever comes of its particles.
+    // Scheme sph-swe has steps of one length, whatever comes of its particles.
     let is_sound = is_number(status.step) && is_number(status.mean_h) && all(is_numbers(status.from_outside));
     let has_reach = status.particles == 0u || status.mean_h > 0.0;
     if !is_sound || !has_reach || status.step <= parameters.shortest_step {

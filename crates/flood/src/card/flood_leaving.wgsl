@@ -29,7 +29,7 @@ fn keep(value: f32, low: f32, high: f32, low_rule: u32, high_rule: u32) -> vec3f
 
 // How near a particle comes to walls, m. Twin of `BeforeWalls::of` in `edges.rs`.
 fn before_walls(h: f32) -> f32 {
-    return select(0.25 * min(parameters.spacing, h / parameters.eta), 0.0, parameters.scheme == PAPER);
+    return select(0.25 * min(parameters.spacing, h / parameters.eta), 0.0, parameters.scheme == SPH_SWE);
 }
 
 // A coordinate that is too near a wall, and its velocity, put off it: both, as they then are.

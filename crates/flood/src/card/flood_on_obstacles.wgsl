@@ -34,8 +34,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         workgroupBarrier();
     }
     if thread == 0u && status.halted == GOING {
-        // Over the step by its means at both ends, in scheme paper by that at its end.
-        let mean = select(0.5 * (obstacles[number].force + sums[0]), sums[0], parameters.scheme == PAPER);
+        // Over the step by its means at both ends, in scheme sph-swe by that at its end.
+        let mean = select(0.5 * (obstacles[number].force + sums[0]), sums[0], parameters.scheme == SPH_SWE);
         var east = obstacles[number].impulse_east;
         var north = obstacles[number].impulse_north;
         add(&east, status.step * mean.x);

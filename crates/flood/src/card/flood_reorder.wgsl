@@ -8,7 +8,7 @@
 @group(0) @binding(3) var<storage, read> order: array<u32>;
 @group(0) @binding(4) var<storage, read> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> sorted: array<Packed>;
-// Place, weight and reach of each.
+// Place, weight (in scheme sph-swe volume) and reach of each.
 @group(0) @binding(6) var<storage, read_write> sites: array<vec4f>;
 
 @compute @workgroup_size(256)
@@ -22,7 +22,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             particle.h = particle.next_h;
         }
         sorted[i] = packed(particle);
-        sites[i] = vec4f(particle.place, particle.weight, parameters.reach_over_h * particle.h);
+        let weight = select(particle.weight, particle.volume, parameters.scheme == SPH_SWE);
+        sites[i] = vec4f(particle.place, weight, parameters.reach_over_h * particle.h);
     }
     if i == 0u {
         status.particles = left;

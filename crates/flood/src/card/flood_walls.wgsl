@@ -8,7 +8,7 @@ struct WallSite {
     // Area of the obstacle that it stands for, m2.
     area: f32,
     obstacle: u32,
-    // Its area as scheme paper has it, m2.
+    // Its area as scheme sph-swe has it, m2.
     volume: f32,
     unused: f32,
 }

@@ -61,7 +61,7 @@ pub(super) struct Parameters {
     pub fall_step: f32,
     pub rest_density: f32,
     pub gas_constant: f32,
-    pub paper_viscosity: f32,
+    pub sph_swe_viscosity: f32,
     pub clips_pressure: u32,
     pub control: u32,
     pub control_strength: f32,
@@ -80,8 +80,8 @@ pub(super) struct Parameters {
     pub most_near: u32,
 }
 
-/// Scheme paper.
-pub(super) const PAPER: u32 = 1;
+/// Scheme sph-swe.
+pub(super) const SPH_SWE: u32 = 1;
 
 /// What the sides do.
 pub(super) const OPEN: u32 = 0;
@@ -203,7 +203,7 @@ pub(super) struct WallSite {
     pub normal: [f32; 2],
     pub area: f32,
     pub obstacle: u32,
-    /// Its area as scheme paper has it, m2.
+    /// Its area as scheme sph-swe has it, m2.
     pub volume: f32,
     pub unused: f32,
 }

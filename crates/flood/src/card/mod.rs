@@ -53,9 +53,9 @@ const MOST_NEAR: usize = 35;
 /// Births that the card can be told of at once.
 pub(crate) const MOST_BIRTHS: usize = 16_384;
 
-/// Neighbours for whose lists there is room; scheme paper has none.
+/// Neighbours for whose lists there is room; scheme sph-swe has none.
 fn most_near(gpu: &Gpu, count: usize, cells: usize, setting: &Setting<'_>) -> usize {
-    if setting.paper.is_some() {
+    if setting.sph_swe.is_some() {
         return 0;
     }
     let fours = (gpu.most_bytes() / 16) as usize;
@@ -109,7 +109,7 @@ impl Card {
             level: surroundings.terrain.height(bounds.centre()[0], bounds.centre()[1]),
         };
         let (nodes, patches) = ground::texture(&gpu, &surroundings.terrain, origin.level)?;
-        let farthest = setting.paper.map_or(2.0 * scheme.largest_h, |paper| paper.largest_smoothing * setting.h);
+        let farthest = setting.sph_swe.map_or(2.0 * scheme.largest_h, |sph_swe| sph_swe.largest_smoothing * setting.h);
         let walls = Walls::new(&gpu, &surroundings.obstacles, origin, farthest)?;
         let rain = ground.and_then(|ground| match &ground.intensity {
             Intensity::Table(table) => Some(table),
@@ -122,7 +122,7 @@ impl Card {
         if let Some(ground) = ground {
             weather = Some(Weather::new(&gpu, ground, count, scheme.eta, &mut parameters)?);
         }
-        if setting.paper.is_some() {
+        if setting.sph_swe.is_some() {
             parameters.drop_h = setting.h as f32;
         }
         let air = (setting.falling > 0).then(|| Air::new(&gpu, setting.falling)).transpose()?;
@@ -141,7 +141,7 @@ impl Card {
             &works,
             weather.as_ref(),
             air.as_ref(),
-            setting.paper.is_some(),
+            setting.sph_swe.is_some(),
             setting.refinement.is_some(),
             most_near,
         )?;

@@ -11,7 +11,7 @@ use crate::rain::Ground;
 use crate::refinement::Refinement;
 use crate::scheme::Surroundings;
 use crate::structures::Structures;
-use corpuscle_scene::Paper;
+use corpuscle_scene::SphSwe;
 use corpuscle_terrain::GroundPatches;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -21,8 +21,8 @@ use rand_chacha::ChaCha8Rng;
 pub(crate) struct Setting<'a> {
     pub surroundings: &'a Surroundings,
     pub scheme: &'a balanced::Parameters,
-    /// Scheme paper in its place, and its smoothing length at the start is `h`.
-    pub paper: Option<&'a Paper>,
+    /// Scheme sph-swe in its place, and its smoothing length at the start is `h`.
+    pub sph_swe: Option<&'a SphSwe>,
     /// Particles in the air.
     pub falling: usize,
     /// The longest step while any are, s.
@@ -85,8 +85,8 @@ impl Setting<'_> {
             [parameters.widest, parameters.smallest, parameters.largest] =
                 refinement.numbers().map(|value| value as f32);
         }
-        if let Some(paper) = self.paper {
-            tell_of_paper(&mut parameters, paper, self.h);
+        if let Some(sph_swe) = self.sph_swe {
+            tell_of_sph_swe(&mut parameters, sph_swe, self.h);
         }
         parameters
     }
@@ -101,24 +101,24 @@ fn rule(rule: &EdgeRule) -> u32 {
     }
 }
 
-/// What the shaders of scheme paper must know; `h` is the smoothing length at the start, m.
-fn tell_of_paper(parameters: &mut Parameters, paper: &Paper, h: f64) {
-    let widest = paper.largest_smoothing * h;
+/// What the shaders of scheme sph-swe must know; `h` is the smoothing length at the start, m.
+fn tell_of_sph_swe(parameters: &mut Parameters, sph_swe: &SphSwe, h: f64) {
+    let widest = sph_swe.largest_smoothing * h;
     *parameters = Parameters {
-        scheme: layout::PAPER,
+        scheme: layout::SPH_SWE,
         before: 0.0,
         reach_over_h: 1.0,
         smoothing: 0.5,
         // A kernel reaches twice that far.
         largest_h: (0.5 * widest) as f32,
-        longest_step: paper.time_step_s as f32,
-        rest_density: paper.density_kg_per_m3 as f32,
-        gas_constant: paper.gas_constant as f32,
-        paper_viscosity: paper.viscosity as f32,
-        clips_pressure: u32::from(paper.clip_negative_pressure),
-        control: u32::from(paper.control_force),
-        control_strength: paper.control_strength as f32,
-        control_square: paper.control_square as f32,
+        longest_step: sph_swe.time_step_s as f32,
+        rest_density: sph_swe.density_kg_per_m3 as f32,
+        gas_constant: sph_swe.gas_constant as f32,
+        sph_swe_viscosity: sph_swe.viscosity as f32,
+        clips_pressure: u32::from(sph_swe.clip_negative_pressure),
+        control: u32::from(sph_swe.control_force),
+        control_strength: sph_swe.control_strength as f32,
+        control_square: sph_swe.control_square as f32,
         first_h: h as f32,
         widest_h: widest as f32,
         ..*parameters

@@ -27,7 +27,7 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_wetness", include_str!("flood_wetness.wgsl")),
     ("flood_air", include_str!("flood_air.wgsl")),
     ("flood_sums", include_str!("flood_sums.wgsl")),
-    ("flood_paper", include_str!("flood_paper.wgsl")),
+    ("flood_sph_swe", include_str!("flood_sph_swe.wgsl")),
     ("flood_moves", include_str!("flood_moves.wgsl")),
     ("flood_drifting", include_str!("flood_drifting.wgsl")),
     ("flood_leaving", include_str!("flood_leaving.wgsl")),
@@ -100,7 +100,7 @@ impl Tasks {
         works: &Works,
         weather: Option<&Weather>,
         air: Option<&Air>,
-        is_paper: bool,
+        is_sph_swe: bool,
         refines: bool,
         most_near: usize,
     ) -> Result<Self, GpuError> {
@@ -239,10 +239,10 @@ impl Tasks {
             reach_own: shader!(gpu, "flood_reach_own", [parameters, sort.start, sites, own]),
             reach_rows: shader!(gpu, "flood_reach_rows", [parameters, own, along_rows]),
             reach: shader!(gpu, "flood_reach", [parameters, along_rows, near]),
-            density: if is_paper {
+            density: if is_sph_swe {
                 shader!(
                     gpu,
-                    "flood_paper_density",
+                    "flood_sph_swe_density",
                     [parameters, status, sort.start, sites, sorted, columns, walls.start, walls.sites, *nodes]
                 )
             } else {
@@ -252,14 +252,14 @@ impl Tasks {
                     [parameters, status, sort.start, near, sites, sorted, columns, walls.start, walls.sites, *nodes]
                 )
             },
-            gradients: (!is_paper).then(|| {
+            gradients: (!is_sph_swe).then(|| {
                 shader!(
                     gpu,
                     "flood_slopes",
                     [parameters, status, sort.start, near, columns, sorted, slopes, walls.start, walls.sites, *nodes]
                 )
             }),
-            push: match (has_walls, is_paper) {
+            push: match (has_walls, is_sph_swe) {
                 (false, _) => None,
                 (true, false) => Some(shader!(
                     gpu,
@@ -268,7 +268,7 @@ impl Tasks {
                 )),
                 (true, true) => Some(shader!(
                     gpu,
-                    "flood_paper_push",
+                    "flood_sph_swe_push",
                     [parameters, status, columns, walls.start, walls.sites, sorted, pushes]
                 )),
             },
@@ -276,10 +276,10 @@ impl Tasks {
                 shader!(gpu, "flood_on_obstacles", [parameters, status, sort.start, pushes, walls.on_obstacles])
             }),
             obstacles: walls.count as u32,
-            forces: if is_paper {
+            forces: if is_sph_swe {
                 shader!(
                     gpu,
-                    "flood_paper_forces",
+                    "flood_sph_swe_forces",
                     [parameters, status, sort.start, columns, sorted, particles, partials, *nodes, *rough]
                 )
             } else {

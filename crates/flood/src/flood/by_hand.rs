@@ -5,11 +5,12 @@
 
 use super::weather::widest;
 use super::{Flood, State};
+use crate::as_flood_mut;
 use crate::edges::EdgeRule;
 use crate::rain::{Ground, Intensity, Wetness};
 use crate::setup::{load, setup};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Paper, Series, Table};
+use corpuscle_scene::{Series, SphSwe, Table};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::path::Path;
@@ -51,7 +52,7 @@ pub enum ByHand {
     },
     /// Manning's n, s/m^(1/3), 0 or more, where no kind of ground has its own.
     Manning(f64),
-    /// The control force of scheme paper is on or off.
+    /// The control force of scheme sph-swe is on or off.
     ControlForce(bool),
 }
 
@@ -84,14 +85,14 @@ impl ByHand {
     /// [`ModelError::Setup`] where it is none, has nothing of the kind, or the number is out of range: nothing has changed then.
     /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
     pub fn change(self, model: &mut dyn Any) -> Result<(), ModelError> {
-        match model.downcast_mut::<Flood>() {
-            Some(flood) => flood.change_by_hand(self),
+        match as_flood_mut(model) {
+            Some(flood) => flood.change(self),
             None => Err(setup("this model is no flood")),
         }
     }
 
     /// Refuses numbers that cannot be.
-    fn check(self) -> Result<(), ModelError> {
+    pub(crate) fn check(self) -> Result<(), ModelError> {
         let (value, what, least) = match self {
             Self::Discharge { discharge, .. } => (discharge, "a discharge", 0.0),
             Self::DischargeTimes { times, .. } => (times, "the factor of a discharge", 0.0),
@@ -110,7 +111,7 @@ impl ByHand {
 }
 
 impl Flood {
-    fn change_by_hand(&mut self, change: ByHand) -> Result<(), ModelError> {
+    pub(crate) fn change_by_hand(&mut self, change: ByHand) -> Result<(), ModelError> {
         change.check()?;
         match change {
             ByHand::Discharge { inflow, discharge } => self.stay(Over::Discharge(inflow), discharge)?,
@@ -134,7 +135,7 @@ impl Flood {
             }
             ByHand::ControlForce(on) => {
                 if !self.scheme.control(on) {
-                    return Err(setup("only scheme paper has a control force"));
+                    return Err(setup("only scheme sph-swe has a control force"));
                 }
                 self.state.hand.control = Some(on);
             }
@@ -247,7 +248,7 @@ impl Flood {
         if let (Some(rest), corpuscle_scene::Manning::Number(n)) = (self.roughness.rest(), &self.settings.manning) {
             *rest = *n;
         }
-        self.scheme.control(self.settings.paper.control_force);
+        self.scheme.control(self.settings.sph_swe.control_force);
         self.state.hand = Hand::default();
     }
 
@@ -273,11 +274,11 @@ impl Flood {
         Ok(())
     }
 
-    /// The parameters of scheme paper as they are now.
+    /// The parameters of scheme sph-swe as they are now.
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the card asks for them"))]
-    pub(super) fn paper(&self) -> Paper {
-        let written = &self.settings.paper;
-        Paper { control_force: self.state.hand.control.unwrap_or(written.control_force), ..written.clone() }
+    pub(super) fn sph_swe(&self) -> SphSwe {
+        let written = &self.settings.sph_swe;
+        SphSwe { control_force: self.state.hand.control.unwrap_or(written.control_force), ..written.clone() }
     }
 
     /// A card that takes the steps gets to know what has changed.

@@ -2,19 +2,9 @@
 
 use super::{DENSITY, Flood};
 use crate::gauges::{LineGauge, PointGauge, Reading};
+use crate::obstacles::force_columns;
 use crate::rain::Wetness;
 use corpuscle_model::GaugeColumn;
-
-/// Columns of an obstacle: the force on it, and its sum over time.
-fn obstacle_columns(name: &str) -> [GaugeColumn; 4] {
-    let column = |quantity, unit| GaugeColumn { gauge: name.into(), quantity, unit };
-    [
-        column("force_east", "N"),
-        column("force_north", "N"),
-        column("impulse_east", "N_s"),
-        column("impulse_north", "N_s"),
-    ]
-}
 
 impl Flood {
     pub(super) fn measured_columns(&self) -> Vec<GaugeColumn> {
@@ -22,7 +12,7 @@ impl Flood {
         let points = self.points.iter().flat_map(PointGauge::columns);
         let lines = self.lines.iter().map(LineGauge::column).chain(self.structures.columns());
         let weather = self.ground.iter().flat_map(|_| ["total_rain", "total_infiltration", "film"].map(total));
-        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| obstacle_columns(name)));
+        let lines = lines.chain(self.surroundings.obstacles.names.iter().flat_map(|name| force_columns(name)));
         let placed = self.placed().flat_map(|point| point.columns().collect::<Vec<_>>());
         points
             .chain(lines)

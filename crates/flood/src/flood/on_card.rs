@@ -3,10 +3,12 @@
 use super::measured_on_card::Onlookers;
 use super::{DENSITY, Flood, State, open};
 use crate::card::{Birth, Card, MOST_BIRTHS, MOST_LOOKS, MOST_ROWS, Progress, Setting, Span, Water};
+use crate::gauges::Reading;
 use crate::inflow::Source;
+use crate::particle::Particle;
 use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{ExactSum, ModelError, Passed};
-use corpuscle_scene::Scheme as SchemeName;
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName, SmoothingForm};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Births are looked for so many steps beyond the next look at the maps: the step that passes it may be longer than the last.
@@ -23,8 +25,14 @@ impl Flood {
     /// Lets a graphics card take the steps, in single precision.
     ///
     /// # Errors
-    /// [`ModelError::Setup`] where the card has too little memory.
+    /// [`ModelError::Setup`] where the card has too little memory, or the scene asks for what the CPU alone computes: nothing has
+    /// changed then.
     pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        let Settings { scheme, sph_swe, .. } = &self.settings;
+        if *scheme == SchemeName::SphSwe && sph_swe.smoothing == SmoothingForm::Rate {
+            let what = "flood.sph_swe.smoothing = \"rate\" computes on the CPU only: leave `--backend gpu` out, or take \"density\"";
+            return Err(ModelError::Setup(what.into()));
+        }
         // Particles that were only just set up may not yet say how long a step may be: the first is then 0 s long, and is taken here.
         if self.state.steps == 0 && self.state.time_step == 0.0 {
             self.step()?;
@@ -70,11 +78,11 @@ impl Flood {
     fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let depth = self.volume / (self.spacing * self.spacing);
         let scheme = open::balanced_parameters(&self.settings, depth, self.h);
-        let paper = self.paper();
+        let sph_swe = self.sph_swe();
         let setting = Setting {
             surroundings: &self.surroundings,
             scheme: &scheme,
-            paper: (self.settings.scheme == SchemeName::Paper).then_some(&paper),
+            sph_swe: (self.settings.scheme == SchemeName::SphSwe).then_some(&sph_swe),
             falling: self.state.falling.len(),
             fall_step: self.fall_step(),
             roughness: &self.roughness,
@@ -172,7 +180,7 @@ impl Flood {
             if onlookers.measure() {
                 self.measure_on_card()?;
             }
-            let done = self.advance_to_look(time, look, stop, onlookers).map_err(|error| failed(&error))?;
+            let done = self.advance_to_look(time, look, stop, onlookers)?;
             if done.broken {
                 return Err(self.breakdown(done.step));
             }
@@ -197,14 +205,14 @@ impl Flood {
         look: f64,
         stop: &AtomicBool,
         onlookers: &mut Onlookers<'_>,
-    ) -> Result<Progress, GpuError> {
+    ) -> Result<Progress, ModelError> {
         let began = self.state.time;
         let mut done = Progress::none(self.state.time_step);
         let mut owed = self.state.owed.clone();
         let mut looked = self.state.maps.last();
         while began + done.elapsed + done.step <= time && began + done.elapsed < look {
             let now = began + done.elapsed;
-            self.show_to(onlookers, now, now + done.step)?;
+            self.show_to(onlookers, now, now + done.step).map_err(|error| failed(&error))?;
             if stop.load(Ordering::Relaxed) || onlookers.call_back {
                 break;
             }
@@ -226,8 +234,13 @@ impl Flood {
                 births: &births,
                 due: &from_now,
             };
-            let (progress, readings) = card.advance(span, self.ground.as_ref())?;
+            let (mut progress, mut readings) =
+                card.advance(span, self.ground.as_ref()).map_err(|error| failed(&error))?;
             let particles = card.particles();
+            if !readings.iter().all(Reading::is_sound) {
+                progress.broken = true;
+                readings.clear();
+            }
             for (due, reading) in due.iter().zip(&readings) {
                 onlookers.tell(*due, &self.row_of_card(reading, &done));
             }
@@ -245,14 +258,37 @@ impl Flood {
             let is_held = progress.steps == 0 && readings.is_empty();
             if is_held && target < until && !done.broken {
                 // To the card, which rounds more coarsely, a step that ends when somebody looks may end after it.
-                self.show_to(onlookers, now, target.next_up())?;
+                self.show_to(onlookers, now, target.next_up()).map_err(|error| failed(&error))?;
             } else if is_held || done.broken || self.card.as_ref().is_some_and(lacks_room) {
                 break;
             }
         }
-        if let Some(card) = self.card.as_mut().filter(|_| done.steps > 0) {
+        if done.steps > 0 {
+            let particles = self.fetched().map_err(|error| failed(&error))?;
+            let (time, steps) = (began + done.elapsed, self.state.steps + done.steps);
+            if let Some(error) = self.defect_among(&particles, time, steps) {
+                return Err(error);
+            }
+            self.state.particles = particles;
+            self.take_over(&done, owed, looked).map_err(|error| failed(&error))?;
+        }
+        Ok(done)
+    }
+
+    /// The particles as the card has them.
+    fn fetched(&mut self) -> Result<Vec<Particle>, GpuError> {
+        let mut particles = Vec::new();
+        if let Some(card) = &mut self.card {
+            card.fetch(&mut particles, &self.surroundings.terrain)?;
+        }
+        Ok(particles)
+    }
+
+    /// Takes over what else the card has, after steps that did what `done` says: sources owe `owed`, and it was last
+    /// looked at the maps at `looked` s.
+    fn take_over(&mut self, done: &Progress, owed: Vec<ExactSum>, looked: f64) -> Result<(), GpuError> {
+        if let Some(card) = &self.card {
             let state = &mut self.state;
-            card.fetch(&mut state.particles, &self.surroundings.terrain)?;
             card.flows(&mut state.flows)?;
             card.falling(&mut state.falling)?;
             card.wetness(&mut state.wetness)?;
@@ -264,10 +300,10 @@ impl Flood {
             let pushed = card.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
             (self.state.owed, self.state.next_id) = (owed, done.next_id);
-            self.book(&done);
+            self.book(done);
             self.arrange();
         }
-        Ok(done)
+        Ok(())
     }
 
     /// The next times at which the card is to look at the maps, s from `now`, when so many have passed; none where the host does.

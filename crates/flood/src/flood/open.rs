@@ -8,15 +8,15 @@ use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
 use crate::obstacles;
-use crate::paper::Paper;
 use crate::rain::Ground;
 use crate::refinement::Refinement;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
+use crate::sph_swe::{SphSwe, h_of_density};
 use crate::structures::Structures;
 use corpuscle_model::{Account, ExactSum, ModelError};
-use corpuscle_scene::{Flood as Settings, Scheme as SchemeName};
+use corpuscle_scene::{Flood as Settings, Scheme as SchemeName, SmoothingForm};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 /// The depth over `spacing_depth_m` whose wave speed sets the time step where there is no water.
 const DRY_DEPTH: f64 = 0.05;
 
-/// Smoothing length in Table 1 of scheme paper, over the root of the volume of its particles, m^(-1/2).
+/// Smoothing length in Table 1 of scheme sph-swe, over the root of the volume of its particles, m^(-1/2).
 const TABLE_1_SMOOTHING: f64 = 2.66;
 
 /// The numbers of scheme balanced in water of `depth` m, whose particles have smoothing length `h`, m.
@@ -80,7 +80,7 @@ impl Flood {
     ) -> Result<Self, ModelError> {
         let mut model = Self::empty(settings, seed, folder, terrain, bodies)?;
         model.fill(bodies);
-        model.begin();
+        model.begin()?;
         Ok(model)
     }
 
@@ -92,6 +92,9 @@ impl Flood {
         terrain: Arc<Terrain>,
         bodies: &[InitialWater],
     ) -> Result<Self, ModelError> {
+        if settings.scheme == SchemeName::Voronoi {
+            return Err(setup::setup("scheme voronoi is a model of its own: corpuscle_flood::open chooses"));
+        }
         let mut settings = settings.clone();
         let flood = &mut settings;
         let map_period = flood
@@ -101,24 +104,24 @@ impl Flood {
         let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
         let (scheme, h): (Box<dyn Scheme>, f64) = match flood.scheme {
-            SchemeName::Balanced => {
+            SchemeName::Balanced | SchemeName::Voronoi => {
                 let h = flood.balanced.smoothing * spacing;
                 let parameters = balanced_parameters(flood, depth, h);
                 (Box::new(Balanced::new(parameters)), h)
             }
-            SchemeName::Paper => {
+            SchemeName::SphSwe => {
                 // Neighbours in the reach: pi h0^2 rho0 / m, whatever the depth. Table 1 has particles of 1 m3.
-                let h = *flood.paper.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
-                flood.paper.radius_m.get_or_insert(0.5 * spacing);
-                (Box::new(Paper::new(flood.paper.clone(), h, flood.gravity_m_per_s2)), h)
+                let h = *flood.sph_swe.smoothing_length_m.get_or_insert(TABLE_1_SMOOTHING * volume.sqrt());
+                flood.sph_swe.radius_m.get_or_insert(0.5 * spacing);
+                (Box::new(SphSwe::new(flood.sph_swe.clone(), h, flood.gravity_m_per_s2)), h)
             }
         };
         limits::check_blocks(flood, &terrain)?;
         limits::check_count(flood, bodies, &terrain, spacing, volume)?;
         let edges = setup::edge_rules(flood, &terrain, folder)?;
         let reach = match flood.scheme {
-            SchemeName::Balanced => 2.0 * flood.balanced.largest_smoothing * h,
-            SchemeName::Paper => flood.paper.largest_smoothing * h,
+            SchemeName::Balanced | SchemeName::Voronoi => 2.0 * flood.balanced.largest_smoothing * h,
+            SchemeName::SphSwe => flood.sph_swe.largest_smoothing * h,
         };
         let obstacles =
             obstacles::open(flood, &terrain, folder, setup::closest(bodies, &terrain, spacing, volume), reach, h)?;
@@ -183,6 +186,16 @@ impl Flood {
         BeforeWalls { eta: self.settings.balanced.smoothing, spacing }
     }
 
+    /// The smoothing length of scheme sph-swe with which the density is found for the first time in water of a depth, m.
+    fn first_h(&self, depth: f64) -> f64 {
+        let sph_swe = &self.settings.sph_swe;
+        match sph_swe.smoothing {
+            SmoothingForm::Density => self.h,
+            // Form (8) counts neighbours by their distances there.
+            SmoothingForm::Rate => h_of_density(sph_swe, self.h, sph_swe.density_kg_per_m3 * depth),
+        }
+    }
+
     /// Fills in the water at the start.
     fn fill(&mut self, bodies: &[InitialWater]) {
         let flood = &self.settings;
@@ -210,8 +223,9 @@ impl Flood {
             }
             for particle in &mut particles {
                 [particle.u, particle.v] = (body.velocity)(particle.x, particle.y);
-                if flood.scheme == SchemeName::Paper {
-                    (particle.h, particle.next_h) = (self.h, self.h);
+                if flood.scheme == SchemeName::SphSwe {
+                    particle.h = self.first_h(particle.depth);
+                    particle.next_h = particle.h;
                 }
             }
             self.state.particles.append(&mut particles);
@@ -239,7 +253,7 @@ impl Flood {
         }
     }
 
-    fn begin(&mut self) {
+    fn begin(&mut self) -> Result<(), ModelError> {
         self.state.water.initial = self.stored();
         self.state.momentum.initial = self.momentum();
         self.renew();
@@ -253,6 +267,10 @@ impl Flood {
         self.state.time_step = self.limited(evaluation.time_step);
         self.state.external = evaluation.external;
         self.state.on_obstacles.copy_from_slice(self.scheme.on_obstacles());
+        if let Some(error) = self.defect_among(&self.state.particles, 0.0, 0) {
+            return Err(error);
+        }
         self.look();
+        Ok(())
     }
 }

@@ -12,8 +12,8 @@ use rayon::prelude::*;
 /// longer pieces. Scheme balanced, whose particles must find all that reach them, gains from a close fit.
 const CELL_OVER_H_BALANCED: f64 = 1.2;
 
-/// The same for scheme paper, whose particles look as far as they reach themselves.
-const CELL_OVER_H_PAPER: f64 = 1.4;
+/// The same for scheme sph-swe, whose particles look as far as they reach themselves.
+const CELL_OVER_H_SPH_SWE: f64 = 1.4;
 
 /// Particles are split and merged once in so many steps.
 const REFINED: u64 = 8;
@@ -47,8 +47,8 @@ impl Flood {
     /// Size of a cell over the mean smoothing length.
     pub(super) fn cell_over_h(&self) -> f64 {
         match self.settings.scheme {
-            SchemeName::Balanced => CELL_OVER_H_BALANCED,
-            SchemeName::Paper => CELL_OVER_H_PAPER,
+            SchemeName::Balanced | SchemeName::Voronoi => CELL_OVER_H_BALANCED,
+            SchemeName::SphSwe => CELL_OVER_H_SPH_SWE,
         }
     }
 
@@ -87,7 +87,7 @@ impl Flood {
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
         let step = self.state.time_step;
         self.carry_beyond();
-        self.push(step, Part::Before);
+        self.push(step, Part::Before)?;
         self.keep_out();
         let merged = self.refine();
         let taken = self.regulate(step);
@@ -102,24 +102,28 @@ impl Flood {
         self.surroundings.time = self.state.time;
         self.arrange();
         let evaluation = self.scheme.evaluate(&mut self.state.particles, &self.surroundings, step);
-        self.push(step, Part::After);
+        self.push(step, Part::After)?;
         let impulse = match self.settings.scheme {
-            SchemeName::Balanced => [0, 1].map(|k| 0.5 * step * (self.state.external[k] + evaluation.external[k])),
-            SchemeName::Paper => evaluation.external.map(|force| step * force),
+            SchemeName::Balanced | SchemeName::Voronoi => {
+                [0, 1].map(|k| 0.5 * step * (self.state.external[k] + evaluation.external[k]))
+            }
+            SchemeName::SphSwe => evaluation.external.map(|force| step * force),
         };
-        impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
-        self.state.external = evaluation.external;
-        self.push_obstacles(step);
         self.state.time_step = self.limited(evaluation.time_step);
+        self.state.external = evaluation.external;
         self.state.steps += 1;
         self.state.particle_steps += self.state.particles.len() as u64;
+        self.check(step)?;
+        impulse.into_iter().for_each(|along| self.state.momentum.book(DENSITY * along));
+        self.push_obstacles(step);
         self.look();
-        self.check(step)
+        Ok(())
     }
 
-    /// Accelerates the particles for their part of a step and slows them by friction for as long; before the middle of the step
-    /// they then move. So water that runs down a slope evenly goes as fast as it should, whatever the step.
-    fn push(&mut self, step: f64, part: Part) {
+    /// Accelerates the particles for their part of a step and slows them by friction for as long; before the middle of
+    /// the step they then move. So water that runs down a slope evenly goes as fast as it should, whatever the step. A
+    /// value that is no number ends the run here, at a place that is still known: what has one does not move.
+    fn push(&mut self, step: f64, part: Part) -> Result<(), ModelError> {
         let before = self.scheme.before();
         let (share, moved) = match part {
             Part::Before => (before, step),
@@ -135,13 +139,22 @@ impl Flood {
                 if let (Some(roughness), None) = (roughness, particle.outside) {
                     slowed += roughness.slow(particle, gravity, pushed);
                 }
-                particle.x += moved * particle.u;
-                particle.y += moved * particle.v;
+                if particle.is_sound() {
+                    particle.x += moved * particle.u;
+                    particle.y += moved * particle.v;
+                } else {
+                    slowed = f64::NAN;
+                }
             }
             slowed
         };
         self.state.particles.par_chunks_mut(BLOCK).map(push_block).collect_into_vec(&mut self.of_blocks);
-        self.state.momentum.book(DENSITY * self.of_blocks.iter().sum::<f64>());
+        let slowed: f64 = self.of_blocks.iter().sum();
+        if slowed.is_nan() {
+            return Err(self.remove_defects(step));
+        }
+        self.state.momentum.book(DENSITY * slowed);
+        Ok(())
     }
 
     /// Merges and splits particles, where it is time to; whether particles are left without volume, to be taken out.
@@ -172,8 +185,8 @@ impl Flood {
         let State { on_obstacles, impulses, .. } = &mut self.state;
         for ((impulse, before), now) in impulses.iter_mut().zip(on_obstacles.iter_mut()).zip(now) {
             let weights = match self.settings.scheme {
-                SchemeName::Balanced => [0.5, 0.5],
-                SchemeName::Paper => [0.0, 1.0],
+                SchemeName::Balanced | SchemeName::Voronoi => [0.5, 0.5],
+                SchemeName::SphSwe => [0.0, 1.0],
             };
             (0..2).for_each(|k| impulse[k] += step * (weights[0] * before[k] + weights[1] * now[k]));
             *before = *now;
@@ -222,7 +235,7 @@ impl Flood {
         Err(self.breakdown(step))
     }
 
-    /// Scheme paper has steps of one length, whatever comes of its particles.
+    /// Scheme sph-swe has steps of one length, whatever comes of its particles.
     fn has_forces(&self) -> bool {
         self.state.external.iter().all(|force| force.is_finite())
     }
@@ -239,7 +252,7 @@ impl Flood {
             time: self.state.time,
             step: self.state.steps,
             what: format!(
-                "{what}. Try a smaller flood.balanced.cfl (scheme balanced) or flood.paper.time_step_s (scheme paper), or look in the \
+                "{what}. Try a smaller flood.balanced.cfl (scheme balanced) or flood.sph_swe.time_step_s (scheme sph-swe), or look in the \
                  last frame for the place where the water is fast"
             ),
         }

@@ -59,8 +59,10 @@ impl Flood {
             drop.corner[axis] + part * drop.size[axis]
         });
         let h = match self.settings.scheme {
-            SchemeName::Balanced => self.settings.balanced.smoothing * (drop.size[0] * drop.size[1]).sqrt(),
-            SchemeName::Paper => self.h,
+            SchemeName::Balanced | SchemeName::Voronoi => {
+                self.settings.balanced.smoothing * (drop.size[0] * drop.size[1]).sqrt()
+            }
+            SchemeName::SphSwe => self.h,
         };
         Particle::new(id, x, y, drop.volume, h)
     }

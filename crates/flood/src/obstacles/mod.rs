@@ -1,6 +1,6 @@
 //! Rigid obstacles: buildings and walls that water goes round.
 //!
-//! Boundary particles fill them (Akinci et al. 2012). In scheme paper they have mass and push as published; in scheme balanced
+//! Boundary particles fill them (Akinci et al. 2012). In scheme sph-swe they have mass and push as published; in scheme balanced
 //! they make up for what a particle's kernel does not see, and push back with the particle's own pressure, as a mirror of the
 //! water before them would. Beyond that no particle stays inside: one that a step takes in is put back to the wall.
 
@@ -9,7 +9,7 @@ mod outline;
 mod shapes;
 mod sites;
 
-pub(crate) use open::open;
+pub(crate) use open::{check_overlap, open};
 #[cfg(feature = "gpu")]
 pub(crate) use outline::OutlineCells;
 pub(crate) use outline::{Outline, Outlines};
@@ -17,8 +17,20 @@ pub use shapes::obstacle_shapes;
 pub(crate) use sites::{Site, Sites};
 
 use crate::particle::Particle;
+use corpuscle_model::GaugeColumn;
 use corpuscle_sph::kernel::cubic_spline;
 use rayon::prelude::*;
+
+/// Gauge columns of an obstacle: the force on it, and its sum over time.
+pub(crate) fn force_columns(name: &str) -> [GaugeColumn; 4] {
+    let column = |quantity, unit| GaugeColumn { gauge: name.into(), quantity, unit };
+    [
+        column("force_east", "N"),
+        column("force_north", "N"),
+        column("impulse_east", "N_s"),
+        column("impulse_north", "N_s"),
+    ]
+}
 
 /// The obstacles of a flood.
 #[derive(Debug, Default)]
@@ -48,7 +60,7 @@ const BEFORE_WALL: f64 = 1e-3;
 const PITCH: f64 = 0.5;
 
 impl Obstacles {
-    /// Obstacles for particles `spacing` m apart that reach at most `reach` m; `h0` is the kernel's reach in scheme paper, m.
+    /// Obstacles for particles `spacing` m apart that reach at most `reach` m; `h0` is the kernel's reach in scheme sph-swe, m.
     pub fn new(names: Vec<String>, outlines: Vec<Outline>, spacing: f64, reach: f64, h0: f64) -> Self {
         let outlines = Outlines::new(outlines, reach);
         let sites = Sites::new(&outlines, PITCH * spacing, reach, h0);
@@ -62,7 +74,6 @@ impl Obstacles {
     }
 
     /// The outlines.
-    #[cfg(feature = "gpu")]
     pub fn outlines(&self) -> &[Outline] {
         &self.outlines.all
     }

@@ -12,7 +12,7 @@ use std::path::Path;
 const ROUND: usize = 360;
 
 /// Opens the obstacles of a scene for particles that stand `spacing` m apart where they are closest and reach at most `reach` m; `h0`
-/// is the kernel's reach in scheme paper, m.
+/// is the kernel's reach in scheme sph-swe, m.
 ///
 /// # Errors
 /// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain.
@@ -95,7 +95,7 @@ fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[
     ring
 }
 
-fn check_overlap(who: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check_overlap(who: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
     let bounds = terrain.bounds();
     let beyond = |axis: usize, low: f64, high: f64| {
         ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)

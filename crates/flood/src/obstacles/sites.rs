@@ -16,7 +16,7 @@ pub(crate) struct Site {
     pub y: f64,
     /// Area of the obstacle that it stands for, m2.
     pub area: f64,
-    /// V_k = 1 / sum_l W_kl over the boundary particles (Akinci et al. 2012, equation 4), m2: its area as scheme paper has it.
+    /// V_k = 1 / sum_l W_kl over the boundary particles (Akinci et al. 2012, equation 4), m2: its area as scheme sph-swe has it.
     pub volume: f64,
     /// Unit vector to the nearest wall, out of the obstacle.
     pub normal: [f64; 2],

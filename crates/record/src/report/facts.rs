@@ -90,8 +90,9 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let [low, high] = whole.heights.map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Balanced => "balanced",
-        Scheme::Paper if scene.flood.paper.control_force => "paper, control force on",
-        Scheme::Paper => "paper, control force off",
+        Scheme::Voronoi => "voronoi",
+        Scheme::SphSwe if scene.flood.sph_swe.control_force => "sph-swe, control force on",
+        Scheme::SphSwe => "sph-swe, control force off",
     };
     vec![
         ("Model", format!("{}, scheme {scheme}", summary.model)),

@@ -111,7 +111,7 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
     settle(&cells, &mut columns);
-    // Particles tremble, more so in scheme paper; what is seen is what they do together.
+    // Particles tremble, more so in scheme sph-swe; what is seen is what they do together.
     let calm = |own: &Column| Column { state: Planes::around(own, &cells, &columns).fit(own).here, ..*own };
     columns = columns.par_iter().map(calm).collect();
     let mut droplets: Vec<Droplet> = columns.par_iter().map(|own| disc(set, &cells, &columns, own)).collect();
@@ -122,7 +122,7 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     droplets
 }
 
-/// Takes down what stands steeper than water can: where scheme paper piles particles up before a wall, it finds columns of great
+/// Takes down what stands steeper than water can: where scheme sph-swe piles particles up before a wall, it finds columns of great
 /// height. The ground's slope comes on top.
 fn settle(cells: &Cells, columns: &mut Vec<Column>) {
     let bounded = |own: &Column, all: &[Column]| {

@@ -3,9 +3,7 @@
 mod ground;
 
 use super::{Check, Checked};
-use crate::{
-    Balanced, Block, Edge, Edges, Flood, Gauge, Inflow, Manning, Obstacle, Paper, Problem, Scheme, Series, Water,
-};
+use crate::{Balanced, Block, Edge, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe, Water};
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
@@ -26,8 +24,8 @@ impl Check {
             self.above("flood.map_every_s", period, 0.0)?;
         }
         self.balanced(&flood.balanced)?;
-        self.paper(&flood.paper)?;
-        self.edges(&flood.edges)?;
+        self.sph_swe(&flood.sph_swe)?;
+        self.edges(flood)?;
         for (index, water) in flood.water.iter().enumerate() {
             self.water(&format!("flood.water.{index}"), water)?;
         }
@@ -44,7 +42,7 @@ impl Check {
             self.link(&format!("flood.link.{index}"), link)?;
         }
         for (index, obstacle) in flood.obstacle.iter().enumerate() {
-            self.obstacle(&format!("flood.obstacle.{index}"), obstacle)?;
+            self.obstacle(&format!("flood.obstacle.{index}"), obstacle, flood.scheme)?;
         }
         for (index, gauge) in flood.gauge.iter().enumerate() {
             self.gauge(&format!("flood.gauge.{index}"), gauge)?;
@@ -58,7 +56,7 @@ impl Check {
     fn refinement(&self, flood: &Flood) -> Checked {
         let Some(refinement) = &flood.refinement else { return Ok(()) };
         self.require("flood.refinement", flood.scheme == Scheme::Balanced, || {
-            "is for scheme = \"balanced\": particles of scheme paper all have the same mass".into()
+            "is for scheme = \"balanced\": particles of the other schemes are not split".into()
         })?;
         if let Some(spacing) = refinement.spacing_m {
             self.above("flood.refinement.spacing_m", spacing, 0.0)?;
@@ -94,32 +92,70 @@ impl Check {
         })
     }
 
-    fn paper(&self, paper: &Paper) -> Checked {
-        self.above("flood.paper.time_step_s", paper.time_step_s, 0.0)?;
-        if let Some(length) = paper.smoothing_length_m {
-            self.above("flood.paper.smoothing_length_m", length, 0.0)?;
+    fn sph_swe(&self, sph_swe: &SphSwe) -> Checked {
+        self.above("flood.sph_swe.time_step_s", sph_swe.time_step_s, 0.0)?;
+        if let Some(length) = sph_swe.smoothing_length_m {
+            self.above("flood.sph_swe.smoothing_length_m", length, 0.0)?;
         }
-        self.above("flood.paper.density_kg_per_m3", paper.density_kg_per_m3, 0.0)?;
-        self.at_least("flood.paper.gas_constant", paper.gas_constant, 0.0)?;
-        self.at_least("flood.paper.viscosity", paper.viscosity, 0.0)?;
-        if let Some(radius) = paper.radius_m {
-            self.above("flood.paper.radius_m", radius, 0.0)?;
+        self.above("flood.sph_swe.density_kg_per_m3", sph_swe.density_kg_per_m3, 0.0)?;
+        self.at_least("flood.sph_swe.gas_constant", sph_swe.gas_constant, 0.0)?;
+        self.at_least("flood.sph_swe.viscosity", sph_swe.viscosity, 0.0)?;
+        if let Some(radius) = sph_swe.radius_m {
+            self.above("flood.sph_swe.radius_m", radius, 0.0)?;
         }
-        self.at_least("flood.paper.control_strength", paper.control_strength, 0.0)?;
-        self.above("flood.paper.control_square", paper.control_square, 0.0)?;
-        self.at_least("flood.paper.largest_smoothing", paper.largest_smoothing, 1.0)
+        self.at_least("flood.sph_swe.control_strength", sph_swe.control_strength, 0.0)?;
+        self.above("flood.sph_swe.control_square", sph_swe.control_square, 0.0)?;
+        self.at_least("flood.sph_swe.largest_smoothing", sph_swe.largest_smoothing, 1.0)
     }
 
-    fn edges(&self, edges: &Edges) -> Checked {
+    fn edges(&self, flood: &Flood) -> Checked {
+        let edges = &flood.edges;
         for (side, edge) in
             [("west", &edges.west), ("east", &edges.east), ("south", &edges.south), ("north", &edges.north)]
         {
-            if let Edge::Stage(series) = edge {
-                self.series(&format!("flood.edges.{side}.stage"), series)?;
-            }
+            self.edge(&format!("flood.edges.{side}"), edge, flood.scheme)?;
+        }
+        for (index, part) in flood.edge_part.iter().enumerate() {
+            let key = format!("flood.edge_part.{index}");
+            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\"".into())?;
+            self.require(&format!("{key}.to"), part.from.is_finite() && part.to > part.from, || {
+                format!("must be larger than from = {}", part.from)
+            })?;
+            self.require(&format!("{key}.edge"), part.edge != Edge::Periodic, || {
+                "whole sides are periodic, not parts of them: see [flood.edges]".into()
+            })?;
+            self.edge(&format!("{key}.edge"), &part.edge, flood.scheme)?;
         }
         self.periodic(("west", &edges.west), ("east", &edges.east))?;
         self.periodic(("south", &edges.south), ("north", &edges.north))
+    }
+
+    /// What happens at a side or a part of one.
+    fn edge(&self, key: &str, edge: &Edge, scheme: Scheme) -> Checked {
+        let is_common = matches!(edge, Edge::Open | Edge::Wall | Edge::Periodic | Edge::Stage(_));
+        self.require(key, is_common || scheme == Scheme::Voronoi, || {
+            "is for scheme = \"voronoi\"; other schemes know open, wall, periodic and stage".into()
+        })?;
+        match edge {
+            Edge::Open | Edge::Wall | Edge::Periodic => Ok(()),
+            Edge::Stage(level) => self.series(&format!("{key}.stage"), level),
+            Edge::Discharge(discharge) => self.series(&format!("{key}.discharge"), discharge),
+            Edge::NormalDepth(slope) => self.above(&format!("{key}.normal_depth"), *slope, 0.0),
+            Edge::Rating(rows) => self.rating(&format!("{key}.rating"), "level, discharge", rows),
+            Edge::Wave(wave) => {
+                let key = format!("{key}.wave");
+                self.at_least(&format!("{key}.rest_level_m"), wave.rest_level_m, f64::MIN)?;
+                self.require(&key, wave.level_m.is_some() || wave.velocity_m_per_s.is_some(), || {
+                    "must give level_m, velocity_m_per_s, or both".into()
+                })?;
+                for (name, series) in [("level_m", &wave.level_m), ("velocity_m_per_s", &wave.velocity_m_per_s)] {
+                    if let Some(series) = series {
+                        self.series(&format!("{key}.{name}"), series)?;
+                    }
+                }
+                Ok(())
+            }
+        }
     }
 
     /// What leaves at one side comes in at the other, so both are periodic or neither.
@@ -203,12 +239,13 @@ impl Check {
         })
     }
 
-    fn obstacle(&self, key: &str, obstacle: &Obstacle) -> Checked {
+    fn obstacle(&self, key: &str, obstacle: &Obstacle, scheme: Scheme) -> Checked {
         self.exactly_one(
             key,
             &[
                 ("polygon", obstacle.polygon.is_some()),
                 ("circle", obstacle.circle.is_some()),
+                ("line", obstacle.line.is_some()),
                 ("file", obstacle.file.is_some()),
             ],
         )?;
@@ -218,6 +255,19 @@ impl Check {
         if let Some(circle) = obstacle.circle {
             self.above(&format!("{key}.circle.radius_m"), circle.radius_m, 0.0)?;
         }
+        if let Some(line) = &obstacle.line {
+            let key = format!("{key}.line");
+            self.require(&key, scheme == Scheme::Voronoi, || {
+                "walls of no thickness are for scheme = \"voronoi\"; give a polygon".into()
+            })?;
+            self.line(&key, line)?;
+        }
+        self.require(&format!("{key}.crest_m"), obstacle.crest_m.is_none() || obstacle.line.is_some(), || {
+            "only a line has a crest; give height_m".into()
+        })?;
+        self.require(&format!("{key}.crest_m"), obstacle.crest_m.is_none() || obstacle.height_m.is_none(), || {
+            "give crest_m or height_m, not both".into()
+        })?;
         obstacle.height_m.map_or(Ok(()), |height| self.above(&format!("{key}.height_m"), height, 0.0))
     }
 

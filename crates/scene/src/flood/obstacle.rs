@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Something rigid that water goes round. Give exactly one of `polygon`, `circle` and `file`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Something rigid that water goes round. Give exactly one of `polygon`, `circle`, `line` and `file`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
     /// Its name.
@@ -15,12 +15,19 @@ pub struct Obstacle {
     /// A round one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub circle: Option<Circle>,
+    /// Positions along a wall of no thickness (scheme voronoi).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<Vec<[f64; 2]>>,
     /// A file with polygons: GeoJSON, shapefile, or CSV with a column each for x and y.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
-    /// How high it stands above the ground, m. Water that comes higher is told; it does not flow over it. Left out: high enough.
+    /// How high it stands above the ground, m. Water flows over a line that is lower than its level; over others it does not, and water that comes
+    /// higher is told. Left out: high enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
+    /// Level of the crest of a line, m, over which water flows as over a weir.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crest_m: Option<f64>,
 }
 
 /// A circle.

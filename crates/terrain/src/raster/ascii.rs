@@ -1,6 +1,6 @@
 //! ESRI ASCII grids.
 
-use super::{MapBox, Raster, Survey, check_size, outside};
+use super::{MapBox, Raster, Survey, check_not_empty, check_size, outside};
 use crate::{Georeference, TerrainError};
 use std::io::Read;
 use std::iter::Peekable;
@@ -45,6 +45,7 @@ pub(super) fn survey(path: &Path, source: impl Read) -> Result<Survey, TerrainEr
     let mut words = words(path, &start[..whole_words])?;
     let header = header(path, &mut words)?;
     let (columns, rows, georeference) = header.grid().map_err(|what| TerrainError::damaged(path, what))?;
+    check_not_empty(path, [columns, rows])?;
     let (format, samples) = ("ESRI ASCII grid", "text".to_owned());
     Ok(Survey { columns, rows, georeference, format, samples, height_unit_m: 1.0 })
 }

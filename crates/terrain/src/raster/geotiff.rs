@@ -1,6 +1,6 @@
 //! GeoTIFF, read with the `geotiff-reader` library.
 
-use super::{MapBox, Raster, Survey, Window, check_size, outside};
+use super::{MapBox, Raster, Survey, Window, check_not_empty, check_size, outside};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
 use geotiff_reader::transform::GeoTransform;
@@ -62,10 +62,12 @@ pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
 }
 
 fn open(path: &Path) -> Result<GeoTiffFile, TerrainError> {
-    GeoTiffFile::open(path).map_err(|error| match error {
+    let file = GeoTiffFile::open(path).map_err(|error| match error {
         ReaderError::NotGeoTiff => nowhere(path),
         error => refused(path, &error),
-    })
+    })?;
+    check_not_empty(path, [file.width() as usize, file.height() as usize])?;
+    Ok(file)
 }
 
 fn nowhere(path: &Path) -> TerrainError {

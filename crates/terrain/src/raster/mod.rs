@@ -127,8 +127,20 @@ fn text(path: &Path, source: impl Read) -> Result<Vec<u8>, TerrainError> {
     Ok(text)
 }
 
+/// Refuses a header without columns or rows, on which nothing can be read or said.
+fn check_not_empty(path: &Path, [columns, rows]: [usize; 2]) -> Result<(), TerrainError> {
+    if columns == 0 || rows == 0 {
+        return Err(TerrainError::damaged(
+            path,
+            format!("its header says that it has {columns} columns and {rows} rows"),
+        ));
+    }
+    Ok(())
+}
+
 /// Refuses a size that cannot be meant, before anything is reserved for it.
 pub(crate) fn check_size(path: &Path, size: [usize; 2]) -> Result<(), TerrainError> {
+    check_not_empty(path, size)?;
     let [columns, rows] = size.map(|count| count as u64);
     if columns < 2 || rows < 2 {
         let what = format!("it has {columns} x {rows} cells; at least 2 x 2 are needed");

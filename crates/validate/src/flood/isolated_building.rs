@@ -112,10 +112,8 @@ fn flume(folder: &Path) -> Settings {
     settings.wet_depth_m = 1e-3;
     let obstacle = |name: &str| Obstacle {
         name: name.into(),
-        polygon: None,
-        circle: None,
         file: Some(folder.join(name).with_extension("csv")),
-        height_m: None,
+        ..Obstacle::default()
     };
     settings.obstacle = ["dam_1", "dam_2", "building"].map(obstacle).into();
     settings

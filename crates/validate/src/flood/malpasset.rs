@@ -25,17 +25,18 @@ pub(super) const MALPASSET: Case = Case {
 /// Wholly west of the sea and east of the reservoir, m.
 const SEA: f64 = 10_000.0;
 
+/// Simulated time, s.
 const TIME: f64 = 4000.0;
 
 /// Time between looks at the water, s.
 const LOOK: f64 = 2.0;
 
 /// A place of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
-struct Place {
-    name: String,
-    at: [f64; 2],
-    level: f64,
-    arrival: Option<f64>,
+pub(super) struct Place {
+    pub name: String,
+    pub at: [f64; 2],
+    pub level: f64,
+    pub arrival: Option<f64>,
 }
 
 fn malpasset(options: &Options) -> Vec<Row> {
@@ -88,7 +89,7 @@ fn measure(folder: &Path) -> Result<Vec<Row>, ModelError> {
 }
 
 /// Highest level and time of arrival at each gauge; a gauge that stays dry has its bed's level and the end of the run.
-fn watch(flood: &mut Flood, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
+pub(super) fn watch(flood: &mut impl Model, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
     let mut highest = vec![f64::NEG_INFINITY; gauges];
     let mut arrival = vec![TIME; gauges];
     for (time, row) in Watched::run(flood, TIME, LOOK)?.rows() {
@@ -123,7 +124,7 @@ fn pool<'a>(ground: &'a Terrain, wet: &'a RasterField, level: f64, between: Rang
 }
 
 /// Reads name, x, y, highest level and, where there is one, arrival.
-fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
+pub(super) fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
     let place = |line: &str| {
@@ -136,10 +137,10 @@ fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
     parsed.collect::<Option<_>>().ok_or_else(|| ModelError::Setup(format!("{} is not as expected", path.display())))
 }
 
-fn root_mean_square(errors: &[f64]) -> f64 {
+pub(super) fn root_mean_square(errors: &[f64]) -> f64 {
     (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
-fn mean_magnitude(errors: &[f64]) -> f64 {
+pub(super) fn mean_magnitude(errors: &[f64]) -> f64 {
     errors.iter().map(|error| error.abs()).sum::<f64>() / errors.len() as f64
 }

@@ -1,6 +1,5 @@
 //! Reading what was measured, and watching gauges to compare with it.
 
-use corpuscle_flood::Flood;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, Companion, Model, ModelError, Passed};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -31,7 +30,7 @@ impl Companion for Watched {
 
 impl Watched {
     /// Runs a flood from its start to `until` s and looks at its gauges every `look` s.
-    pub fn run(flood: &mut Flood, until: f64, look: f64) -> Result<Self, ModelError> {
+    pub fn run(flood: &mut impl Model, until: f64, look: f64) -> Result<Self, ModelError> {
         let mut watched = Self { look, rows: vec![flood.gauge_row()] };
         let last = (until / look).round() * look;
         flood.advance_with(last, &AtomicBool::new(false), &mut watched)?;

@@ -16,6 +16,7 @@ mod structures;
 mod swashes;
 mod thacker;
 mod triangular_obstacle;
+mod voronoi;
 mod weather;
 
 use crate::Case;
@@ -54,6 +55,21 @@ pub(crate) const CASES: &[Case] = &[
     rough_terrain::ROUGH_TERRAIN,
     solids::CUBOID,
     solids::CYLINDER,
+    voronoi::BLOCKS,
+    voronoi::ISLANDS,
+    voronoi::JACKSBORO,
+    voronoi::STOKER,
+    voronoi::RITTER,
+    voronoi::PLANAR,
+    voronoi::RADIAL,
+    voronoi::WAVES,
+    voronoi::SHEETS,
+    voronoi::RAIN,
+    voronoi::MOMENTUM,
+    voronoi::LEDGER,
+    voronoi::ENERGY,
+    voronoi::INVARIANCE,
+    voronoi::MALPASSET,
 ];
 
 /// Seed of where particles stand at the start.
@@ -93,14 +109,14 @@ fn run(settings: &Settings, terrain: &Arc<Terrain>, water: &[InitialWater], time
     Ok(flood)
 }
 
-/// A built-in scene of scheme paper with changes of it, and its ground; at the reduced size particles are farther apart, and have as many
+/// A built-in scene of scheme sph-swe with changes of it, and its ground; at the reduced size particles are farther apart, and have as many
 /// neighbours.
 fn built_in(name: &str, changes: &[(&str, &str)]) -> Result<(Scene, Settings, Arc<Terrain>), ModelError> {
     let setup = |error: &dyn std::fmt::Display| ModelError::Setup(error.to_string());
     let text = builtin(name).ok_or_else(|| setup(&format!("no built-in scene {name}")))?.text;
     let mut all: Vec<_> = changes.iter().map(|(path, value)| ((*path).to_owned(), (*value).to_owned())).collect();
     if is_reduced() {
-        for (path, metres) in [("flood.spacing_m", 1.0), ("flood.paper.smoothing_length_m", 2.66)] {
+        for (path, metres) in [("flood.spacing_m", 1.0), ("flood.sph_swe.smoothing_length_m", 2.66)] {
             all.push((path.to_owned(), sized(metres).to_string()));
         }
     }

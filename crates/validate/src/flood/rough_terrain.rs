@@ -1,4 +1,4 @@
-//! What the control force of scheme paper does on rough ground.
+//! What the control force of scheme sph-swe does on rough ground.
 
 use super::device::ready;
 use super::{built_in, rows};
@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 
 pub(super) const ROUGH_TERRAIN: Case = Case {
     name: "flood/rough-terrain",
-    about: "The built-in scene flood/rough-terrain with the control force of scheme paper and without: how unevenly the water's \
+    about: "The built-in scene flood/rough-terrain with the control force of scheme sph-swe and without: how unevenly the water's \
             density is spread over the particles and how fast the fastest is, 20 s, 40 s and 60 s after the release. The paper's claim: \
             with it nothing piles up on valley floors, and nothing splashes about.",
     slow: true,
@@ -31,7 +31,7 @@ fn times() -> impl Iterator<Item = (f64, &'static str, &'static str)> {
     TABLE.into_iter().take(if is_reduced() { 1 } else { TABLE.len() })
 }
 
-/// The spread is no smaller with the force: it holds what has piled up on impact where it is.
+/// The spread is no smaller with the force: without it the water stays a spray over all of the ground, with it it collects in hollows.
 const WITHOUT: &str = "beside that without the control force";
 
 fn rough_terrain(_: &Options) -> Vec<Row> {
@@ -49,7 +49,7 @@ fn rough_terrain(_: &Options) -> Vec<Row> {
 
 /// Standard deviation over mean of the density, and the fastest particle's speed, m/s, at the times of the table.
 fn measured(control: &str) -> Result<Vec<[f64; 2]>, ModelError> {
-    let (scene, settings, terrain) = built_in(ROUGH_TERRAIN.name, &[("flood.paper.control_force", control)])?;
+    let (scene, settings, terrain) = built_in(ROUGH_TERRAIN.name, &[("flood.sph_swe.control_force", control)])?;
     let mut flood = ready(Flood::new(&settings, scene.seed, Path::new("."), terrain)?)?;
     let look = |(time, ..): (f64, &str, &str)| {
         flood.advance_to(time, &AtomicBool::new(false))?;

@@ -49,7 +49,7 @@ fn cylinder(_: &Options) -> Vec<Row> {
 fn none_inside(case: &'static str, distance: impl Fn(f64, f64) -> f64) -> Result<Vec<Row>, ModelError> {
     let mut rows = Vec::new();
     for (scheme, deepest_name, put_back_name) in [
-        (Scheme::Paper, "nearest_m_paper", "put_back_share_paper"),
+        (Scheme::SphSwe, "nearest_m_sph_swe", "put_back_share_sph_swe"),
         (Scheme::Balanced, "nearest_m_balanced", "put_back_share_balanced"),
     ] {
         let (scene, settings, terrain) = built_in(case, &[])?;
@@ -84,10 +84,8 @@ fn force() -> Result<Vec<Row>, ModelError> {
     let mut settings = settings(30.0, 0.25, DEPTH, edges);
     settings.obstacle = vec![Obstacle {
         name: "cylinder".into(),
-        polygon: None,
         circle: Some(Circle { centre: MIDDLE, radius_m: RADIUS }),
-        file: None,
-        height_m: None,
+        ..Obstacle::default()
     }];
     let water = water_everywhere(bounds, |_, _| DEPTH, |_, _| [SPEED, 0.0]);
     let mut flood = ready(Flood::with_water(&settings, SEED, Path::new("."), terrain, &[water])?)?;

@@ -30,11 +30,11 @@ pub(super) const PLANAR: Case = Case {
 const H0: f64 = 0.1;
 const A: f64 = 1.0;
 
-fn bounds() -> Bounds {
+pub(super) fn bounds() -> Bounds {
     Bounds { x_min: -2.0, x_max: 2.0, y_min: -2.0, y_max: 2.0 }
 }
 
-fn bowl() -> Arc<Terrain> {
+pub(super) fn bowl() -> Arc<Terrain> {
     Arc::new(Terrain::analytic(bounds(), 0.02, |x, y| {
         (H0 * ((x * x + y * y) / (A * A) - 1.0), [x, y].map(|x| 2.0 * H0 * x / (A * A)))
     }))

@@ -147,3 +147,24 @@ fn a_first_step_of_no_length_is_taken_before_the_card_goes_on() {
     pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
     assert!(pool.state.steps > 1 && pool.ledger().balances[0].relative_error().abs() < 1e-6);
 }
+
+/// What the card has of a particle is no number: the water here stays that of before, and the error names the place.
+#[test]
+fn a_value_that_is_no_number_does_not_come_back() {
+    let Some(gpu) = require_gpu("a value that is no number on the card") else { return };
+    let values: [fn(&mut Particle) -> &mut f64; 3] = [|p| &mut p.u, |p| &mut p.volume, |p| &mut p.ax];
+    for value in values {
+        let mut pool = opened(POOL);
+        pool.use_card(gpu.clone()).unwrap();
+        pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
+        let before = pool.state.particles.clone();
+        *value(&mut pool.state.particles[100]) = f64::NAN;
+        pool.send_to_card().unwrap();
+        pool.state.particles = before.clone();
+        let error = pool.advance_to(0.4, &AtomicBool::new(false)).unwrap_err();
+        let text = error.to_string();
+        assert!(matches!(error, ModelError::Breakdown { .. }) && text.contains("terrain's coordinates"), "{text}");
+        assert!(text.contains("NaN") && pool.state.particles == before, "{text}");
+        assert!(pool.ledger().balances.iter().all(|balance| balance.now.is_finite()), "{text}");
+    }
+}

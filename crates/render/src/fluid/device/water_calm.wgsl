@@ -1,4 +1,4 @@
-// Particles tremble, more so in scheme paper; what is seen is what they do together. What is in the air stays as it is.
+// Particles tremble, more so in scheme sph-swe; what is seen is what they do together. What is in the air stays as it is.
 #import water_planes
 
 @group(0) @binding(4) var<storage, read_write> calm_sites: array<vec4f>;

@@ -94,7 +94,7 @@ impl Check {
     }
 
     /// Rows of two numbers, the first rising, the second never negative.
-    fn rating(&self, key: &str, columns: &str, rows: &[[f64; 2]]) -> Checked {
+    pub(super) fn rating(&self, key: &str, columns: &str, rows: &[[f64; 2]]) -> Checked {
         self.require(key, !rows.is_empty(), || format!("there are no rows; give at least one of [{columns}]"))?;
         let falling = rows.windows(2).position(|pair| pair[0][0] >= pair[1][0]);
         if let Some(row) = falling {

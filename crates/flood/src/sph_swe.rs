@@ -1,4 +1,4 @@
-//! Scheme `paper`: the published stable SPH-SWE model, formula by formula.
+//! Scheme `sph-swe`: the published stable SPH-SWE model, formula by formula.
 //!
 //! Source: "Real-time simulation of realistic fluid animation based on a stable SPH-SWE numerical model", Acta Physica
 //! Sinica (2021). Poly6 for density, spiky for pressure, the viscosity kernel for viscosity, all in two dimensions at
@@ -7,17 +7,19 @@
 //! Not printed in the paper and taken from where its table points (Mueller, Charypar & Gross 2003): the pressure
 //! p = k (rho - rho0) with their symmetric pair force, and their viscosity.
 
+mod density;
+mod smoothing;
+
+use self::density::{Depths, NumberDensities};
 use crate::arrangement::{Arrangement, IMAGE};
 use crate::edges::EdgeRule;
 use crate::obstacles::Obstacles;
 use crate::particle::Particle;
 use crate::scheme::{Evaluation, Scheme, Sizes, Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
-use corpuscle_scene::Paper as Parameters;
+use corpuscle_scene::{SmoothingForm, SphSwe as Parameters};
 use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
-use corpuscle_sph::{
-    BLOCK, LANES, Lanes, LanesExt, Level, Near, Neighbours, PairSum, Simd, SimdBase, SimdFloat, dispatch, gather,
-};
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Near, Simd, SimdBase, SimdFloat, dispatch, gather};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -37,13 +39,16 @@ struct Parcel {
 }
 
 /// The scheme with its working memory.
-pub(crate) struct Paper {
+pub(crate) struct SphSwe {
     parameters: Parameters,
     /// Initial smoothing length, m.
     h0: f64,
     gravity: f64,
     arrangement: Arrangement,
     parcels: Vec<Parcel>,
+    /// Volumes at the places of the arrangement, m3; none where all particles have the same.
+    volumes: Vec<f64>,
+    /// Depths at the places of the arrangement, m; 1/m2, still to be taken times the volume, where all particles have the same.
     densities: Vec<f64>,
     accelerations: Vec<[f64; 2]>,
     of_groups: Vec<[f64; 2]>,
@@ -54,7 +59,7 @@ pub(crate) struct Paper {
     on_obstacles: Vec<[f64; 2]>,
 }
 
-impl Paper {
+impl SphSwe {
     pub fn new(parameters: Parameters, h0: f64, gravity: f64) -> Self {
         Self {
             parameters,
@@ -62,6 +67,7 @@ impl Paper {
             gravity,
             arrangement: Arrangement::default(),
             parcels: Vec::new(),
+            volumes: Vec::new(),
             densities: Vec::new(),
             accelerations: Vec::new(),
             of_groups: Vec::new(),
@@ -101,26 +107,50 @@ impl Paper {
         }
     }
 
-    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; h = h0 sqrt(rho0 / rho) for the next step; and what
-    /// follows from them for the forces.
-    fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings) {
-        let Parameters { density_kg_per_m3: rho0, largest_smoothing, .. } = self.parameters;
-        let h0 = self.h0;
-        let Arrangement { cells, lists, x, y, reach_squared, entries, .. } = &mut self.arrangement;
+    /// Gives every place the volume of its particle, where they are not all the same.
+    fn fill_volumes(&mut self, particles: &[Particle]) {
+        self.volumes.clear();
+        let is_first = |particle: &Particle| particle.volume == particles[0].volume;
+        if particles.par_iter().all(is_first) {
+            return;
+        }
+        let Arrangement { particle, images, .. } = &self.arrangement;
+        let volume = |&k: &u32| if k == IMAGE { 0.0 } else { particles[k as usize].volume };
+        particle.par_iter().map(volume).collect_into_vec(&mut self.volumes);
+        for &(place, shown) in images {
+            self.volumes[place as usize] = self.volumes[shown as usize];
+        }
+    }
+
+    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; and, where it follows from the density, the smoothing
+    /// length for the next step.
+    fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) {
+        self.fill_volumes(particles);
+        let Arrangement { cells, lists, x, y, reach_squared, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), 0.0);
-        // Kernels at h_i: what a particle does not reach itself adds nothing. All particles hold much the same water; the
-        // sum over W alone times the own mass is exact where they hold the same, and each list is read once only.
-        let sum = NumberDensities { reach_squared };
-        lists.search(Near::Reached, cells, x, y, reach_squared, &mut self.densities, &sum);
-        debug_assert_eq!(entries.len(), x.len());
-        let groups = particles.par_chunks_mut(TOGETHER).zip(self.arrangement.real.par_chunks(TOGETHER));
+        // Kernels at h_i: what a particle does not reach itself adds nothing.
+        let (out, volumes) = (&mut self.densities, &self.volumes);
+        if volumes.is_empty() {
+            lists.search(Near::Reached, cells, x, y, reach_squared, out, &NumberDensities { reach_squared });
+        } else {
+            lists.search(Near::Reached, cells, x, y, reach_squared, out, &Depths { reach_squared, volumes });
+        }
+        let (this, rho0) = (&*self, self.parameters.density_kg_per_m3);
+        let groups = particles.par_chunks_mut(TOGETHER).zip(this.arrangement.real.par_chunks(TOGETHER));
         groups.for_each(|(particles, places)| {
             surroundings.find_ground(particles);
             for (particle, &place) in particles.iter_mut().zip(places) {
-                let walls = covered(&surroundings.obstacles, particle);
-                let density = rho0 * (particle.volume * self.densities[place as usize] + walls);
+                let sum = this.densities[place as usize];
+                let water = if this.volumes.is_empty() { particle.volume * sum } else { sum };
+                // Whose density was never found has no smoothing length by forms (8) and (9) yet.
+                let is_new = step == 0.0 || particle.depth == 0.0;
+                let density = rho0 * (water + covered(&surroundings.obstacles, particle));
                 particle.depth = density / rho0;
-                particle.next_h = (h0 * (rho0 / density).sqrt()).min(largest_smoothing * h0);
+                particle.next_h = match this.parameters.smoothing {
+                    SmoothingForm::Density => h_of_density(&this.parameters, this.h0, density),
+                    SmoothingForm::Rate if is_new => 0.0,
+                    SmoothingForm::Rate => particle.h,
+                };
             }
         });
     }
@@ -164,11 +194,11 @@ impl Paper {
     /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
     fn take_over(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
         let controlled = self.parameters.control_force && step > 0.0;
-        let Self { parameters, gravity, accelerations, of_groups, .. } = self;
+        let Self { parameters, h0, gravity, accelerations, of_groups, .. } = self;
         let groups = particles.par_chunks_mut(CONTROLLED).zip(self.arrangement.real.par_chunks(CONTROLLED));
         let of_group = |(particles, places): (&mut [Particle], &[u32])| {
             let controls = if controlled {
-                control(parameters, particles, &surroundings.terrain, step)
+                control(parameters, *h0, particles, &surroundings.terrain, step)
             } else {
                 [[0.0; 2]; CONTROLLED]
             };
@@ -188,6 +218,11 @@ impl Paper {
         groups.map(of_group).collect_into_vec(of_groups);
         of_groups.iter().fold([0.0; 2], |all, group| [0, 1].map(|k| all[k] + group[k]))
     }
+}
+
+/// h = h0 (rho0 / rho)^(1/2), at most `largest_smoothing` times h0, m.
+pub(crate) fn h_of_density(parameters: &Parameters, h0: f64, density: f64) -> f64 {
+    (h0 * (parameters.density_kg_per_m3 / density).sqrt()).min(parameters.largest_smoothing * h0)
 }
 
 /// What boundary particles add to the density of a particle, over rho0: sum_k V_k W_ik (Akinci et al. 2012, equation 6).
@@ -227,12 +262,22 @@ const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.
 ///
 /// Our reading, for the paper's units do not close: the size of NP is |NP| in three dimensions, it acts against the horizontal
 /// motion, and it is an acceleration times `control_strength`. It stops the motion at most.
-fn control(parameters: &Parameters, particles: &[Particle], terrain: &Terrain, step: f64) -> [[f64; 2]; CONTROLLED] {
+fn control(
+    parameters: &Parameters,
+    h0: f64,
+    particles: &[Particle],
+    terrain: &Terrain,
+    step: f64,
+) -> [[f64; 2]; CONTROLLED] {
     let [mut dx, mut dy, mut side] = [[0.0; CONTROLLED]; 3];
     let [mut x, mut y] = [[0.0; TOGETHER]; 2];
     for (k, particle) in particles.iter().enumerate() {
         (dx[k], dy[k]) = (step * particle.u, step * particle.v);
-        side[k] = parameters.control_square * particle.next_h;
+        let h = match parameters.smoothing {
+            SmoothingForm::Density => particle.next_h,
+            SmoothingForm::Rate => h_of_density(parameters, h0, parameters.density_kg_per_m3 * particle.depth),
+        };
+        side[k] = parameters.control_square * h;
         for (corner, [across, up]) in CORNERS.into_iter().enumerate() {
             x[corner * CONTROLLED + k] = particle.x + across * side[k] - 0.5 * dx[k];
             y[corner * CONTROLLED + k] = particle.y + up * side[k] - 0.5 * dy[k];
@@ -277,25 +322,6 @@ fn ways<S: Simd>(
     ways
 }
 
-/// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2; from the squares of the reaches h.
-struct NumberDensities<'a> {
-    reach_squared: &'a [f64],
-}
-
-impl PairSum<f64> for NumberDensities<'_> {
-    #[inline(always)]
-    fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> f64 {
-        let h_squared = self.reach_squared[particle];
-        let own = poly6(0.0, h_squared.sqrt());
-        let mut sum = Lanes::splat(simd, 0.0);
-        for (_, r) in found.lanes(simd) {
-            let inside = (1.0 - r * r * (1.0 / h_squared)).positive();
-            sum += inside * inside * inside;
-        }
-        own * (1.0 + sum.sum())
-    }
-}
-
 /// Pressure and viscosity on the particles of one block: accelerations, m/s2.
 #[inline(always)]
 fn pair_forces<S: Simd>(
@@ -328,7 +354,7 @@ fn pair_forces<S: Simd>(
     }
 }
 
-impl Scheme for Paper {
+impl Scheme for SphSwe {
     fn before(&self) -> f64 {
         0.0
     }
@@ -339,8 +365,11 @@ impl Scheme for Paper {
     }
 
     fn evaluate(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> Evaluation {
-        self.find_densities(particles, surroundings);
+        self.find_densities(particles, surroundings, step);
         self.fill_parcels(particles, surroundings);
+        if self.parameters.smoothing == SmoothingForm::Rate {
+            self.find_smoothing(particles, &surroundings.obstacles, step);
+        }
         self.accelerations.resize(self.arrangement.len(), [0.0; 2]);
         self.accelerations.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
             let (viscosity, first) = (self.parameters.viscosity, block * BLOCK);
@@ -366,6 +395,9 @@ impl Scheme for Paper {
 
     fn bytes(&self) -> usize {
         let each = size_of::<Parcel>() + size_of::<f64>() + size_of::<[f64; 2]>();
-        self.arrangement.bytes() + self.arrangement.len() * each + self.spare.capacity() * size_of::<Particle>()
+        self.arrangement.bytes()
+            + self.volumes.capacity() * size_of::<f64>()
+            + self.arrangement.len() * each
+            + self.spare.capacity() * size_of::<Particle>()
     }
 }

@@ -1,4 +1,4 @@
-// What the passes of scheme paper read of each particle, and its kernels in the plane. Twins of `Parcel` in `paper.rs` and of the crate
+// What the passes of scheme sph-swe read of each particle, and its kernels in the plane. Twins of `Parcel` in `sph_swe.rs` and of the crate
 // sph, which name the sources.
 #import flood_walls
 
@@ -31,7 +31,7 @@ fn viscosity_laplacian(r: f32, h: f32) -> f32 {
     return 40.0 / (PI * h * h * h * h) * max(1.0 - r / h, 0.0);
 }
 
-fn paper_pressure(parameters: Parameters, density: f32) -> f32 {
+fn sph_swe_pressure(parameters: Parameters, density: f32) -> f32 {
     let pressure = parameters.gas_constant * (density - parameters.rest_density);
     return select(pressure, max(pressure, 0.0), parameters.clips_pressure == 1u);
 }

@@ -1,5 +1,5 @@
-// The push of boundary particles on each particle in scheme paper. Twin of `push_of_walls` and `add_walls` in `paper.rs`.
-#import flood_paper
+// The push of boundary particles on each particle in scheme sph-swe. Twin of `push_of_walls` and `add_walls` in `sph_swe.rs`.
+#import flood_sph_swe
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;

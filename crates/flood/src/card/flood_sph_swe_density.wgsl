@@ -1,11 +1,11 @@
-// Density of each particle in scheme paper, the ground under it, and what follows for the forces. Twin of `find_densities` and
-// `fill_parcels` in `paper.rs`.
-#import flood_paper
+// Density of each particle in scheme sph-swe, the ground under it, and what follows for the forces. Twin of `find_densities` and
+// `fill_parcels` in `sph_swe.rs`.
+#import flood_sph_swe
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
-// Place, weight and reach of each.
+// Place, volume and reach of each.
 @group(0) @binding(3) var<storage, read> sites: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(5) var<storage, read_write> parcels: array<Parcel>;
@@ -13,9 +13,9 @@
 @group(0) @binding(7) var<storage, read> walls: array<WallSite>;
 @group(0) @binding(8) var nodes: texture_2d<f32>;
 
-// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2.
-fn number_density(i: u32, place: vec2f, h: f32) -> f32 {
-    var sum = 0.0;
+// sum_j V_j W_poly6(r_ij, h_i), the particle itself included, m.
+fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
+    var sum = sites[i].z;
     let mirrors = mirrors_round(parameters, place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, parameters);
@@ -36,11 +36,11 @@ fn number_density(i: u32, place: vec2f, h: f32) -> f32 {
                     continue;
                 }
                 let inside = max(1.0 - dot(way, way) / (h * h), 0.0);
-                sum += inside * inside * inside;
+                sum += site.z * inside * inside * inside;
             }
         }
     }
-    return poly6(0.0, h) * (1.0 + sum);
+    return poly6(0.0, h) * sum;
 }
 
 // What boundary particles add to the density, over that of the water at rest (Akinci et al. 2012, equation 6).
@@ -66,8 +66,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var particle = unpacked(particles[i]);
-    let number = number_density(i, particle.place, particle.h);
-    let relative = particle.volume * number + covered(particle.place, particle.h);
+    let relative = depth_of_water(i, particle.place, particle.h) + covered(particle.place, particle.h);
     particle.depth = relative;
     particle.next_h = min(parameters.first_h / sqrt(relative), parameters.widest_h);
     particle.ground = ground_under(parameters, nodes, particle.place).x;
@@ -80,7 +79,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         particle.velocity,
         particle.volume / relative,
         density,
-        paper_pressure(parameters, density),
+        sph_swe_pressure(parameters, density),
         particle.h,
     );
 }

@@ -1,6 +1,6 @@
-// Pressure, viscosity, the slope of the ground and the control force of scheme paper, the step's acceleration, and what a group's
-// particles sum up to. Twin of `pair_forces`, `control` and `take_over` in `paper.rs` and of the second push in `flood/step.rs`.
-#import flood_paper
+// Pressure, viscosity, the slope of the ground and the control force of scheme sph-swe, the step's acceleration, and what a group's
+// particles sum up to. Twin of `pair_forces`, `control` and `take_over` in `sph_swe.rs` and of the second push in `flood/step.rs`.
+#import flood_sph_swe
 #import flood_friction
 #import flood_sums
 
@@ -40,7 +40,7 @@ fn by_pairs(i: u32, own: Parcel) -> vec2f {
                     continue;
                 }
                 let push = near.area * (near.pressure + own.pressure) * 0.5 * spiky_slope(r, h) / r;
-                let drag = near.area * parameters.paper_viscosity * viscosity_laplacian(r, h);
+                let drag = near.area * parameters.sph_swe_viscosity * viscosity_laplacian(r, h);
                 force += drag * (mirror.sign * near.velocity - own.velocity) - push * e;
             }
         }
@@ -48,7 +48,7 @@ fn by_pairs(i: u32, own: Parcel) -> vec2f {
     return force / own.density;
 }
 
-// The terrain-difference velocity control force: see `control` in `paper.rs`.
+// The terrain-difference velocity control force: see `control` in `sph_swe.rs`.
 fn control(particle: Particle) -> vec2f {
     let speed = length(particle.velocity);
     if parameters.control == 0u || status.step <= 0.0 || speed == 0.0 {

@@ -1,0 +1,124 @@
+//! Floods of any scheme.
+
+use crate::sampling::Sample;
+use crate::{ByHand, Flood, VoronoiFlood};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{Flood as Settings, Scheme};
+use corpuscle_terrain::Terrain;
+use std::any::Any;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What a flood of any scheme can be asked.
+pub trait FloodModel: Model {
+    /// The `[flood]` of the scene with every default that depends on ground and water filled in.
+    fn settings(&self) -> &Settings;
+
+    /// The water at a position in model coordinates, m, at the time shown.
+    fn sample(&self, x: f64, y: f64) -> Sample;
+
+    /// About how many particles inflows, rain and held levels bring from `from` to `until`, s; 0 where particles do not come with the water.
+    fn particles_to_come(&self, _from: f64, _until: f64) -> f64 {
+        0.0
+    }
+
+    /// Places a gauge at a point in model coordinates, m: depth, level and velocity are measured there from now on, in columns after all
+    /// others.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where another gauge has the name, or the position lies outside the terrain.
+    fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError>;
+
+    /// Changes the flood from the end of the last step on.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
+    /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
+    fn change(&mut self, change: ByHand) -> Result<(), ModelError>;
+}
+
+/// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what relative paths refer to.
+///
+/// # Errors
+/// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
+pub fn open(
+    settings: &Settings,
+    seed: u64,
+    folder: &Path,
+    terrain: Arc<Terrain>,
+) -> Result<Box<dyn FloodModel>, ModelError> {
+    Ok(match settings.scheme {
+        Scheme::Voronoi => Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?),
+        Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::new(settings, seed, folder, terrain)?),
+    })
+}
+
+/// As [`open`], but without the water at the start, which may take a while to arrange: for a state that is restored.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_to_restore(
+    settings: &Settings,
+    seed: u64,
+    folder: &Path,
+    terrain: Arc<Terrain>,
+) -> Result<Box<dyn FloodModel>, ModelError> {
+    Ok(match settings.scheme {
+        Scheme::Voronoi => Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?),
+        Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::to_restore(settings, seed, folder, terrain)?),
+    })
+}
+
+/// A model that is a flood, as one.
+pub fn as_flood(model: &dyn Any) -> Option<&dyn FloodModel> {
+    let kernels = model.downcast_ref::<Flood>().map(|flood| flood as &dyn FloodModel);
+    kernels.or_else(|| model.downcast_ref::<VoronoiFlood>().map(|flood| flood as &dyn FloodModel))
+}
+
+/// A model that is a flood, as one.
+pub fn as_flood_mut(model: &mut dyn Any) -> Option<&mut dyn FloodModel> {
+    if model.is::<Flood>() {
+        return model.downcast_mut::<Flood>().map(|flood| flood as &mut dyn FloodModel);
+    }
+    model.downcast_mut::<VoronoiFlood>().map(|flood| flood as &mut dyn FloodModel)
+}
+
+impl FloodModel for Flood {
+    fn settings(&self) -> &Settings {
+        Self::settings(self)
+    }
+
+    fn sample(&self, x: f64, y: f64) -> Sample {
+        Self::sample(self, x, y)
+    }
+
+    fn particles_to_come(&self, from: f64, until: f64) -> f64 {
+        Self::particles_to_come(self, from, until)
+    }
+
+    fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError> {
+        Self::place_gauge(self, name, at)
+    }
+
+    fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
+        self.change_by_hand(change)
+    }
+}
+
+impl FloodModel for VoronoiFlood {
+    fn settings(&self) -> &Settings {
+        Self::settings(self)
+    }
+
+    fn sample(&self, x: f64, y: f64) -> Sample {
+        Self::sample(self, x, y)
+    }
+
+    fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError> {
+        Self::place_gauge(self, name, at)
+    }
+
+    fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
+        Self::change(self, change)
+    }
+}

@@ -1,0 +1,266 @@
+//! Boundaries from a scene, and what they do at each face from step to step.
+
+use super::super::mesh::SOLID;
+use super::super::reconstruction::AtFace;
+use super::super::solver::Solver;
+use super::{Boundary, Now, state};
+use crate::setup::{load, setup};
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Edge, Flood as Settings, Side};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+
+/// How long a held level takes to be met exactly, in crossings of the terrain by waves: shorter waves leave.
+const CROSSINGS: f64 = 10.0;
+
+/// A part of a side with a rule of its own.
+#[derive(Debug, Clone)]
+struct Part {
+    side: usize,
+    /// Along the side, m.
+    from: f64,
+    to: f64,
+}
+
+/// What the sides of the terrain do, and parts of them.
+#[derive(Debug)]
+pub(crate) struct Boundaries {
+    /// West, east, south, north, then the parts.
+    pub rules: Vec<Boundary>,
+    parts: Vec<Part>,
+    /// The rule of each border face of the solver; none at solids.
+    of_faces: Vec<Option<u16>>,
+    /// What each border face does in the two stages of the step.
+    now: [Vec<Now>; 2],
+}
+
+impl Boundaries {
+    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
+        let edges = &scene.edges;
+        let sides = [&edges.west, &edges.east, &edges.south, &edges.north];
+        let of_parts = scene.edge_part.iter().map(|part| &part.edge);
+        let rules = sides.into_iter().chain(of_parts).map(|edge| boundary(edge, folder)).collect::<Result<_, _>>()?;
+        let part = |part: &corpuscle_scene::EdgePart| {
+            let side = match part.side {
+                Side::West => 0,
+                Side::East => 1,
+                Side::South => 2,
+                Side::North => 3,
+            };
+            let bounds = terrain.bounds();
+            let [x, y] = terrain.to_own(bounds.centre());
+            let along = |value: f64| {
+                let own = if side < 2 { [x, value] } else { [value, y] };
+                terrain.to_model(own)[usize::from(side < 2)]
+            };
+            Part { side, from: along(part.from), to: along(part.to) }
+        };
+        let parts = scene.edge_part.iter().map(part).collect();
+        Ok(Self { rules, parts, of_faces: Vec::new(), now: [Vec::new(), Vec::new()] })
+    }
+
+    /// Whether the west and east, and the south and north sides are joined.
+    pub fn periodic(&self) -> [bool; 2] {
+        [0, 2].map(|side| matches!(self.rules[side], Boundary::Periodic))
+    }
+
+    /// Whether water at each side, all along it, is mirrored.
+    pub fn mirrors(&self) -> [bool; 4] {
+        [0, 1, 2, 3].map(|side| {
+            let parts = self.parts.iter().zip(&self.rules[4..]).filter(|(part, _)| part.side == side);
+            self.rules[side].mirrors() && parts.clone().all(|(_, rule)| rule.mirrors())
+        })
+    }
+
+    /// Whether water may come in over each side, and over solids.
+    pub fn brings(&self) -> [bool; 5] {
+        [0, 1, 2, 3, 4].map(|side| {
+            let parts = self.parts.iter().zip(&self.rules[4..]).filter(|(part, _)| part.side == side);
+            self.rules.get(side).is_some_and(|rule| side < 4 && rule.brings())
+                || parts.clone().any(|(_, rule)| rule.brings())
+        })
+    }
+
+    /// Whether water may come in somewhere.
+    pub fn bring(&self) -> bool {
+        self.rules.iter().any(Boundary::brings)
+    }
+
+    /// Finds the rules of border faces that were added.
+    pub fn extend(&mut self, solver: &Solver) {
+        let mesh = &solver.mesh;
+        for &border in &solver.borders[self.of_faces.len()..] {
+            let face = &mesh.faces[border as usize];
+            let rule = face.border().filter(|side| *side != SOLID).map(|side| {
+                let side = usize::from(side);
+                let along = mesh.centroid[face.cells[0] as usize][usize::from(side < 2)]
+                    + f64::from(face.offset[usize::from(side < 2)]);
+                let here = |part: &Part| part.side == side && (part.from..part.to).contains(&along);
+                self.parts.iter().position(here).map_or(side as u16, |part| part as u16 + 4)
+            });
+            self.of_faces.push(rule);
+        }
+        self.now.iter_mut().for_each(|now| now.resize(self.of_faces.len(), Now::Wall));
+    }
+
+    /// What a border face does in a stage of the step.
+    #[inline]
+    pub fn now(&self, stage: usize, border: usize) -> Now {
+        self.now[stage][border]
+    }
+
+    /// What is known of the water beyond each border face at the start: at open sides its level, m, that of the water before it (minus infinity where it is
+    /// dry); at held ones its velocity outwards, m/s.
+    pub fn beyond_at_start(&self, solver: &Solver, border: usize) -> f64 {
+        let Some(Boundary::Open) = self.of_faces[border].map(|rule| &self.rules[usize::from(rule)]) else { return 0.0 };
+        let water = &solver.water[solver.mesh.faces[solver.borders[border] as usize].cells[0] as usize];
+        if water.depth > 0.0 { water.level } else { f64::NEG_INFINITY }
+    }
+
+    /// Finds what each border face does in a step of `step` s from `time` on; `beyond` is what is known of the water there (see
+    /// [`Boundaries::beyond_at_start`]).
+    pub fn prepare(&mut self, solver: &Solver, time: f64, step: f64, beyond: &[f64]) {
+        for number in 0..self.rules.len() {
+            let shared = match &self.rules[number] {
+                Boundary::Discharge(table) => Some(table.integral(time, time + step) / step),
+                Boundary::Rating(rating) => {
+                    let level = self.mean_level(solver, number as u16);
+                    Some(-level.map_or(0.0, |level| rating.at(level).max(0.0)))
+                }
+                _ => None,
+            };
+            if let Some(discharge) = shared {
+                self.share(solver, number as u16, discharge);
+            }
+        }
+        for (border, rule) in self.of_faces.iter().enumerate() {
+            let Some(rule) = rule.map(|rule| &self.rules[usize::from(rule)]) else { continue };
+            for (stage, at) in [time, time + step].into_iter().enumerate() {
+                let now = match rule {
+                    Boundary::Wall | Boundary::Periodic => Now::Wall,
+                    Boundary::Open => Now::Open(beyond[border]),
+                    Boundary::Level(level) => Now::Beyond(level.at(at), beyond[border]),
+                    Boundary::Wave { level, velocity, rest } => {
+                        let water = &solver.water[solver.mesh.faces[solver.borders[border] as usize].cells[0] as usize];
+                        let level = level.as_ref().map(|level| level.at(at));
+                        let velocity = velocity.as_ref().map(|velocity| velocity.at(at));
+                        wave(level, velocity, *rest, water.level - water.depth, solver.gravity)
+                    }
+                    Boundary::NormalDepth(root) => {
+                        let cell = solver.mesh.faces[solver.borders[border] as usize].cells[0] as usize;
+                        solver
+                            .slowing
+                            .conveyance(cell, solver.gravity)
+                            .map_or(Now::Open(f64::NEG_INFINITY), |conveyance| Now::Normal(root * conveyance))
+                    }
+                    Boundary::Discharge(_) | Boundary::Rating(_) => continue,
+                };
+                self.now[stage][border] = now;
+            }
+        }
+    }
+
+    /// The border faces of a rule: their number among all border faces, cell, length, m.
+    fn faces_of<'a>(&'a self, solver: &'a Solver, rule: u16) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+        let here = self.of_faces.iter().enumerate().filter(move |(_, of_face)| **of_face == Some(rule));
+        here.map(|(border, _)| {
+            let face = &solver.mesh.faces[solver.borders[border] as usize];
+            (border, face.cells[0] as usize, face.normal[0].hypot(face.normal[1]))
+        })
+    }
+
+    /// Mean level along the wet faces of a rule, m.
+    fn mean_level(&self, solver: &Solver, rule: u16) -> Option<f64> {
+        let wet = self.faces_of(solver, rule).filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
+        let (sum, length) = wet.fold((0.0, 0.0), |(sum, total), (_, cell, length)| {
+            (sum + length * solver.water[cell].level, total + length)
+        });
+        (length > 0.0).then(|| sum / length)
+    }
+
+    /// Shares a discharge inwards, m3/s, out over the faces of a rule by conveyance: length times depth to 5/3. Where all are dry it comes in at the
+    /// lowest ones.
+    fn share(&mut self, solver: &Solver, rule: u16, discharge: f64) {
+        let conveyance = |cell: usize| solver.water[cell].depth.powf(5.0 / 3.0);
+        let total: f64 = self.faces_of(solver, rule).map(|(_, cell, length)| length * conveyance(cell)).sum();
+        let lowest =
+            self.faces_of(solver, rule).map(|(_, cell, _)| solver.mesh.bed[cell]).fold(f64::INFINITY, f64::min);
+        let is_lowest = |cell: usize| solver.mesh.bed[cell] <= lowest + 1e-6 * (1.0 + lowest.abs());
+        let lowest_length: f64 =
+            self.faces_of(solver, rule).filter(|(_, cell, _)| is_lowest(*cell)).map(|(_, _, length)| length).sum();
+        let shares: Vec<(usize, f64)> = self
+            .faces_of(solver, rule)
+            .map(|(border, cell, _)| {
+                let dry = if is_lowest(cell) { 1.0 / lowest_length } else { 0.0 };
+                (border, if total > 0.0 { conveyance(cell) / total } else { dry })
+            })
+            .collect();
+        for (border, share) in shares {
+            self.now.iter_mut().for_each(|now| now[border] = Now::Discharge(discharge * share));
+        }
+    }
+
+    /// The velocity of the water beyond held levels after a step: a level that rises sends a wave in, as fast as a wave into still water is; over many crossings of the
+    /// terrain it comes to move as the water inside, so that the level is met exactly.
+    pub fn follow(&self, solver: &Solver, time: f64, step: f64, beyond: &mut [f64]) {
+        let size = solver.mesh.layout.bounds.size();
+        for (border, rule) in self.of_faces.iter().enumerate() {
+            let Some(Boundary::Level(level)) = rule.map(|rule| &self.rules[usize::from(rule)]) else { continue };
+            let face = &solver.mesh.faces[solver.borders[border] as usize];
+            let water = &solver.water[face.cells[0] as usize];
+            let bed = water.level - water.depth;
+            let [was, is] = [time, time + step].map(|at| (solver.gravity * (level.at(at) - bed).max(0.0)).sqrt());
+            if was == 0.0 || is == 0.0 || water.depth <= 0.0 {
+                beyond[border] = 0.0;
+                continue;
+            }
+            beyond[border] -= 2.0 * (is - was);
+            let length = face.normal[0].hypot(face.normal[1]);
+            let across = (water.velocity[0] * face.normal[0] + water.velocity[1] * face.normal[1]) / length;
+            let at = AtFace { depth: water.depth, level: water.level, across, along: 0.0 };
+            let found = state(Now::Beyond(level.at(time + step), beyond[border]), &at, solver.gravity);
+            let axis = usize::from(face.normal[1].abs() > face.normal[0].abs());
+            let relaxation = CROSSINGS * size[axis] / is;
+            beyond[border] += (step / relaxation).min(1.0) * (found.across - beyond[border]);
+        }
+    }
+}
+
+/// The water of an incoming simple wave over a bed: what is not given of level and velocity inwards follows from u = 2 (c - c0).
+fn wave(level: Option<f64>, velocity: Option<f64>, rest: f64, bed: f64, gravity: f64) -> Now {
+    let celerity = |level: f64| (gravity * (level - bed).max(0.0)).sqrt();
+    let at_rest = celerity(rest);
+    let level = level.unwrap_or_else(|| {
+        let celerity = (at_rest + 0.5 * velocity.unwrap_or(0.0)).max(0.0);
+        bed + celerity * celerity / gravity
+    });
+    let velocity = velocity.unwrap_or_else(|| 2.0 * (celerity(level) - at_rest));
+    Now::Beyond(level, -velocity)
+}
+
+fn boundary(edge: &Edge, folder: &Path) -> Result<Boundary, ModelError> {
+    let table = |rows: &Vec<[f64; 2]>| load(&corpuscle_scene::Series::Table(rows.clone()), folder);
+    Ok(match edge {
+        Edge::Open => Boundary::Open,
+        Edge::Wall => Boundary::Wall,
+        Edge::Periodic => Boundary::Periodic,
+        Edge::Stage(level) => Boundary::Level(load(level, folder)?),
+        Edge::Discharge(discharge) => {
+            let discharge = load(discharge, folder)?;
+            if let Some(row) = discharge.rows().iter().find(|row| row[1] < 0.0) {
+                return Err(setup(format!(
+                    "a discharge of [flood.edges] is {} m3/s at {} s: it must not be negative; for water that leaves give a rating",
+                    row[1], row[0]
+                )));
+            }
+            Boundary::Discharge(discharge)
+        }
+        Edge::Wave(wave) => Boundary::Wave {
+            level: wave.level_m.as_ref().map(|level| load(level, folder)).transpose()?,
+            velocity: wave.velocity_m_per_s.as_ref().map(|velocity| load(velocity, folder)).transpose()?,
+            rest: wave.rest_level_m,
+        },
+        Edge::NormalDepth(slope) => Boundary::NormalDepth(slope.sqrt()),
+        Edge::Rating(rows) => Boundary::Rating(table(rows)?),
+    })
+}

@@ -1,0 +1,166 @@
+//! The water at a boundary face by the characteristics that reach it (Toro 2001, section 6.3): u + 2c comes from inside unless the flow comes in
+//! faster than waves, u - 2c from beyond unless it goes out faster.
+
+use super::super::reconstruction::AtFace;
+use super::{AtBoundary, Now};
+
+/// Rounds of Newton's method, which doubles its digits in each.
+const ROUNDS: usize = 30;
+
+/// The water at a boundary face before which the water is `at`.
+pub(crate) fn state(now: Now, at: &AtFace, gravity: f64) -> AtBoundary {
+    let own = AtBoundary { depth: at.depth, across: at.across };
+    let celerity = (gravity * at.depth).sqrt();
+    let is_supercritical = at.depth > 0.0 && at.across >= celerity;
+    let outgoing = at.across + 2.0 * celerity;
+    match now {
+        Now::Wall => AtBoundary { across: 0.0, ..own },
+        Now::Discharge(inwards) if inwards > 0.0 => comes_in(inwards, outgoing, gravity),
+        _ if is_supercritical => own,
+        Now::Open(level) => {
+            let beyond = (gravity * (level - (at.level - at.depth)).max(0.0)).sqrt();
+            let found = meets(beyond, 0.0, at.depth > 0.0, outgoing, gravity);
+            if found.across >= 0.0 { found } else { still(outgoing, gravity) }
+        }
+        Now::Discharge(inwards) => goes_out(-inwards, outgoing, gravity),
+        Now::Normal(factor) => normal(factor, outgoing, gravity),
+        Now::Beyond(level, drift) => {
+            let beyond = (gravity * (level - (at.level - at.depth)).max(0.0)).sqrt();
+            meets(beyond, drift, at.depth > 0.0, outgoing, gravity)
+        }
+    }
+}
+
+/// Depth at which waves have a celerity, m.
+fn depth_of(celerity: f64, gravity: f64) -> f64 {
+    celerity * celerity / gravity
+}
+
+/// No water passes: the level rises or falls until what comes from inside is at rest.
+fn still(outgoing: f64, gravity: f64) -> AtBoundary {
+    AtBoundary { depth: depth_of((0.5 * outgoing).max(0.0), gravity), across: 0.0 }
+}
+
+/// Water of celerity `beyond` that moves outwards at `drift`.
+fn meets(beyond: f64, drift: f64, is_wet: bool, outgoing: f64, gravity: f64) -> AtBoundary {
+    if beyond == 0.0 {
+        // It falls over the edge: critical depth.
+        let critical = (outgoing / 3.0).max(0.0);
+        return AtBoundary { depth: depth_of(critical, gravity), across: critical };
+    }
+    if !is_wet {
+        // Onto dry ground: the critical depth of a dam break (Ritter 1892), as fast as the water beyond.
+        let critical = ((2.0 * beyond - drift) / 3.0).max(0.0);
+        return AtBoundary { depth: depth_of(critical, gravity), across: -critical };
+    }
+    let incoming = drift - 2.0 * beyond;
+    let (across, celerity) = (0.5 * (outgoing + incoming), 0.25 * (outgoing - incoming));
+    if across < -celerity {
+        AtBoundary { depth: depth_of(beyond, gravity), across: drift }
+    } else {
+        AtBoundary { depth: depth_of(celerity.max(0.0), gravity), across }
+    }
+}
+
+/// A discharge inwards, m2/s: c^2 (2c - outgoing) = g q where that flow is slower than waves, critical depth where it is not.
+fn comes_in(discharge: f64, outgoing: f64, gravity: f64) -> AtBoundary {
+    let target = gravity * discharge;
+    let critical = target.cbrt();
+    let mut celerity = critical.max(outgoing);
+    for _ in 0..ROUNDS {
+        let value = celerity * celerity * (2.0 * celerity - outgoing) - target;
+        let slope = celerity * (6.0 * celerity - 2.0 * outgoing);
+        celerity -= value / slope;
+    }
+    if celerity >= outgoing {
+        celerity = critical;
+    }
+    AtBoundary { depth: depth_of(celerity, gravity), across: -target / (celerity * celerity) }
+}
+
+/// A discharge outwards, m2/s, and that of critical flow at most: the larger root of c^2 (outgoing - 2c) = g q.
+fn goes_out(discharge: f64, outgoing: f64, gravity: f64) -> AtBoundary {
+    if outgoing <= 0.0 || discharge <= 0.0 {
+        return still(outgoing, gravity);
+    }
+    let critical = outgoing / 3.0;
+    let target = gravity * discharge;
+    if target >= critical.powi(3) {
+        return AtBoundary { depth: depth_of(critical, gravity), across: critical };
+    }
+    let mut celerity = 0.5 * outgoing;
+    for _ in 0..ROUNDS {
+        let value = celerity * celerity * (outgoing - 2.0 * celerity) - target;
+        let slope = celerity * (2.0 * outgoing - 6.0 * celerity);
+        celerity -= value / slope;
+    }
+    AtBoundary { depth: depth_of(celerity, gravity), across: target / (celerity * celerity) }
+}
+
+/// Normal flow with velocity `factor` depth^(2/3) where that is slower than waves, critical flow where it is not.
+fn normal(factor: f64, outgoing: f64, gravity: f64) -> AtBoundary {
+    if outgoing <= 0.0 {
+        return still(outgoing, gravity);
+    }
+    let velocity = |celerity: f64| factor * depth_of(celerity, gravity).powf(2.0 / 3.0);
+    let (mut low, mut high) = (0.0, 0.5 * outgoing);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if velocity(middle) + 2.0 * middle < outgoing { low = middle } else { high = middle }
+    }
+    if velocity(low) > low {
+        low = outgoing / 3.0;
+    }
+    AtBoundary { depth: depth_of(low, gravity), across: outgoing - 2.0 * low }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const G: f64 = 9.81;
+
+    fn at(depth: f64, across: f64) -> AtFace {
+        AtFace { depth, level: depth + 1.0, across, along: 0.4 }
+    }
+
+    #[test]
+    fn a_level_that_rises_over_still_water_is_the_level_there() {
+        let (before, after) = (2.0_f64, 2.1_f64);
+        let drift = -2.0 * ((G * after).sqrt() - (G * before).sqrt());
+        let found = state(Now::Beyond(after + 1.0, drift), &at(before, 0.0), G);
+        assert!((found.depth - after).abs() < 1e-12 && found.across < 0.0);
+    }
+
+    #[test]
+    fn a_wave_leaves_by_a_held_level_as_it_is() {
+        // An outgoing simple wave on water of 2 m: u = 2 (c - c0).
+        let across = 2.0 * ((G * 2.2_f64).sqrt() - (G * 2.0_f64).sqrt());
+        let found = state(Now::Beyond(3.0, 0.0), &at(2.2, across), G);
+        assert!((found.depth - 2.2).abs() < 1e-12 && (found.across - across).abs() < 1e-12);
+    }
+
+    /// The discharge is met, and the outgoing characteristic where the flow is slower than waves.
+    #[test]
+    fn discharges_are_met_in_both_directions() {
+        for (discharge, before) in
+            [(0.3, at(1.0, -0.2)), (0.3, at(0.0, 0.0)), (8.0, at(0.5, 0.0)), (-0.4, at(1.0, 0.1))]
+        {
+            let found = state(Now::Discharge(discharge), &before, G);
+            assert!((found.depth * found.across + discharge).abs() < 1e-9, "{discharge}: {found:?}");
+            let celerity = (G * found.depth).sqrt();
+            let outgoing = before.across + 2.0 * (G * before.depth).sqrt();
+            let is_critical = (found.across.abs() / celerity - 1.0).abs() < 1e-9;
+            assert!(is_critical || (found.across + 2.0 * celerity - outgoing).abs() < 1e-9, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn water_in_normal_flow_leaves_as_it_comes() {
+        let depth: f64 = 0.8;
+        let factor = 0.001_f64.sqrt() / 0.03;
+        let across = factor * depth.powf(2.0 / 3.0);
+        let found = state(Now::Normal(factor), &at(depth, across), G);
+        assert!((found.depth / depth - 1.0).abs() < 1e-9 && (found.across / across - 1.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,148 @@
+//! What the water did in each cell, and the maps of it on the terrain's own grid.
+
+use super::mesh::Mesh;
+use super::sampling::Sampler;
+use super::solver::Solver;
+use super::water::{Column, Water};
+use crate::sampling::Sample;
+use corpuscle_model::Map;
+use corpuscle_terrain::Terrain;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What the water did in a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Record {
+    /// m.
+    pub max_depth: f32,
+    /// m/s, where it was deep enough to be wet.
+    pub max_speed: f32,
+    /// Largest depth x (speed + 0.5), m2/s.
+    pub hazard: f32,
+    /// When the depth first rose above that of wet ground, s; not-a-number before.
+    pub arrival: f32,
+    /// For how long it was above it, s.
+    pub duration: f32,
+}
+
+/// The record of a cell that was never wet.
+pub(crate) const DRY: Record = Record { max_depth: 0.0, max_speed: 0.0, hazard: 0.0, arrival: f32::NAN, duration: 0.0 };
+
+/// Records the water after a step of `step` s that ended at `time` s. The time at which a depth was passed is found on the straight line between
+/// the depths before and after.
+pub(crate) fn record(solver: &Solver, records: &mut [Record], time: f64, step: f64, wet_depth: f64) {
+    solver.for_wet_chunks(records, |cell, record| {
+        let water = &solver.water[cell];
+        let before = solver.before()[cell].volume / solver.mesh.area[cell];
+        record.see(water, before, time, step, wet_depth);
+    });
+}
+
+impl Record {
+    /// The water at the start.
+    pub fn start(water: &Water, wet_depth: f64) -> Self {
+        let mut record = DRY;
+        record.see(water, water.depth, 0.0, 0.0, wet_depth);
+        record
+    }
+
+    #[inline]
+    fn see(&mut self, water: &Water, before: f64, time: f64, step: f64, wet_depth: f64) {
+        let depth = water.depth;
+        if depth <= wet_depth && before <= wet_depth {
+            return;
+        }
+        let risen = if before >= wet_depth { 0.0 } else { (wet_depth - before) / (depth - before) };
+        let fallen = if depth >= wet_depth { 1.0 } else { (before - wet_depth) / (before - depth) };
+        if self.arrival.is_nan() {
+            self.arrival = (time - (1.0 - risen) * step) as f32;
+        }
+        self.duration += ((fallen - risen).max(0.0) * step) as f32;
+        if depth > wet_depth {
+            let (depth, speed) = (depth as f32, water.speed() as f32);
+            self.max_depth = self.max_depth.max(depth);
+            self.max_speed = self.max_speed.max(speed);
+            self.hazard = self.hazard.max(depth * (speed + 0.5));
+        }
+    }
+}
+
+/// The maps as they stand, with the water now given by `water`.
+pub(crate) fn maps(
+    mesh: &Mesh,
+    terrain: &Terrain,
+    records: &[Record],
+    water: &(impl Fn(usize) -> Water + Sync),
+    wet_depth: f64,
+) -> Vec<Map> {
+    let grid = terrain.map_grid();
+    let (columns, rows) = (grid.columns, grid.rows);
+    let highest = |cell: usize| {
+        let depth = f64::from(records[cell].max_depth);
+        Water { depth, level: mesh.bed[cell] + depth, velocity: [0.0; 2] }
+    };
+    let mut values = vec![[f32::NAN; 6]; columns * rows];
+    values.par_chunks_mut(columns.max(1)).enumerate().for_each(|(row, values)| {
+        for (column, values) in values.iter_mut().enumerate().filter(|(column, _)| terrain.is_valid_cell(*column, row))
+        {
+            let [x, y] = grid.centre(column, row);
+            if !mesh.layout.bounds.contains(x, y) {
+                continue;
+            }
+            let Some(cell) = mesh.cell_at([x, y]) else { continue };
+            let record = &records[cell];
+            if record.max_depth <= 0.0 {
+                continue;
+            }
+            let is_wet = |sample: Sample| (sample.depth > wet_depth).then_some(sample.depth as f32);
+            let now = is_wet(Sampler { mesh, terrain, water }.in_cell(cell, x, y));
+            values[0] = now.unwrap_or(f32::NAN);
+            let most = is_wet(Sampler { mesh, terrain, water: highest }.in_cell(cell, x, y));
+            let Some(most) = most.into_iter().chain(now).max_by(f32::total_cmp) else { continue };
+            let hazard = record.hazard * (most / record.max_depth).min(1.0);
+            *values = [values[0], most, record.max_speed, record.arrival, record.duration, hazard];
+        }
+    });
+    let map = |name, title, unit, k: usize| Map {
+        name,
+        title,
+        unit,
+        columns,
+        rows,
+        values: values.iter().map(|values| values[k]).collect(),
+    };
+    vec![
+        map("depth", "Depth", "m", 0),
+        map("max_depth", "Maximum depth", "m", 1),
+        map("max_speed", "Maximum speed", "m/s", 2),
+        map("arrival_s", "Arrival", "s", 3),
+        map("duration_s", "Duration", "s", 4),
+        map("hazard", "Hazard: depth x (speed + 0.5)", "m2/s", 5),
+    ]
+}
+
+/// Water between two columns: `share` of the way from the first to the second.
+pub(crate) fn between(before: &Column, after: &Column, share: f64, area: f64, bed: f64) -> Water {
+    let mix = |a: f64, b: f64| a + share * (b - a);
+    let mut column = Column {
+        volume: mix(before.volume, after.volume),
+        momentum: [0, 1].map(|axis| mix(before.momentum[axis], after.momentum[axis])),
+    };
+    Water::of(&mut column, area, bed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrival_and_duration_are_those_of_the_straight_line() {
+        let water = |depth: f64| Water { depth, level: depth, velocity: [3.0, 4.0] };
+        let mut record = DRY;
+        record.see(&water(0.03), 0.0, 10.0, 3.0, 0.01);
+        assert!((record.arrival - 8.0).abs() < 1e-6 && (record.duration - 2.0).abs() < 1e-6);
+        record.see(&water(0.0), 0.03, 13.0, 3.0, 0.01);
+        assert!((record.duration - 4.0).abs() < 1e-6 && record.max_depth == 0.03 && record.max_speed == 5.0);
+        assert!((record.hazard - 0.03 * 5.5).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,223 @@
+//! Scheme `voronoi`: particles are columns of water over their Voronoi cells, which exchange volume and momentum through the closed faces between
+//! them (a finite-volume method of second order).
+//!
+//! | folder | what |
+//! |---|---|
+//! | `mesh` | cells and faces, made where there is water or may be next |
+//! | `reconstruction` | slopes of cells, values at faces |
+//! | `fluxes` | the Riemann solver and the ground's thrust |
+//! | `walls` | outlines of obstacles and of ground without data, lines |
+//! | `boundaries` | the sides of the terrain |
+//! | `friction` | Manning, Chezy, linear |
+//! | `start`, `rain`, `structures` | where water comes from and goes to |
+//! | `maps` | what happened in each cell, on the terrain's grid |
+//!
+//! `solver.rs` is a step of the water, `step.rs` one of the model.
+
+mod bed;
+mod boundaries;
+mod change;
+mod fluxes;
+mod friction;
+mod maps;
+mod measures;
+mod mesh;
+mod model;
+mod open;
+mod patch;
+mod rain;
+mod reconstruction;
+mod sampling;
+mod solver;
+mod start;
+mod step;
+mod structures;
+#[cfg(test)]
+mod tests;
+mod walls;
+mod water;
+
+pub use start::{Filling, OfPosition, StartWater};
+
+use crate::friction::Roughness;
+use crate::gauges::{LineGauge, PointGauge};
+use crate::sampling::Sample;
+use crate::structures::{Flows, Structures};
+use bed::Bed;
+use boundaries::Boundaries;
+use change::Overrides;
+use corpuscle_model::{Account, ExactSum};
+use corpuscle_scene::{Flood as Settings, Table};
+use corpuscle_terrain::Terrain;
+use maps::Record;
+use patch::Patch;
+use rain::{Soaked, Weather};
+use sampling::Sampler;
+use serde::{Deserialize, Serialize};
+use solver::Solver;
+use std::sync::Arc;
+use structures::Patches;
+use water::{Column, Water};
+
+/// Density of water, kg/m3.
+const DENSITY: f64 = 1000.0;
+
+/// A flood by scheme `voronoi`.
+pub struct VoronoiFlood {
+    settings: Settings,
+    terrain: Arc<Terrain>,
+    bed: Bed,
+    roughness: Roughness,
+    boundaries: Boundaries,
+    /// The obstacle at each border face of the solver; [`mesh::NONE`] at others.
+    obstacle_of: Vec<u32>,
+    /// Area of each obstacle from which rain runs off, m2.
+    roofs: Vec<f64>,
+    solver: Solver,
+    inflows: Vec<Inflow>,
+    weather: Option<Weather>,
+    structures: Structures,
+    patches: Patches,
+    points: Vec<PointGauge>,
+    lines: Vec<LineGauge>,
+    state: State,
+    /// The time shown, s: not after the state's, and not before that of the step before.
+    shown: f64,
+    /// What the scene says of the values over time that were changed since.
+    written: Vec<(change::Over, Table)>,
+}
+
+/// Water that comes in over a part of the ground.
+struct Inflow {
+    patch: Patch,
+    /// m3/s over time.
+    discharge: Table,
+    /// m/s.
+    velocity: [f64; 2],
+}
+
+/// Everything that changes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct State {
+    time: f64,
+    /// Time before the last step, s.
+    before: f64,
+    steps: u64,
+    particle_steps: u64,
+    /// Next time step, s.
+    time_step: f64,
+    /// The tiles that were made, in order.
+    tiles: Vec<u32>,
+    /// Water of the cells now, and before the last step. Kept in the solver while the model runs.
+    columns: [Vec<Column>; 2],
+    records: Vec<Record>,
+    /// What is known of the water beyond each border face: see [`Boundaries::beyond_at_start`].
+    beyond: Vec<f64>,
+    falling: Vec<step::Drop>,
+    soaked: Soaked,
+    flows: Flows,
+    water: Account,
+    momentum: Account,
+    /// Energy of the water on the ground above the level 0, J; what friction, waves that break and the scheme take is not booked.
+    energy: Account,
+    /// Momentum that each obstacle took up so far, over density, m4/s, and a second in the last step, m4/s2.
+    impulses: Vec<[f64; 2]>,
+    forces: Vec<[f64; 2]>,
+    warnings: Vec<String>,
+    overrides: Overrides,
+}
+
+impl VoronoiFlood {
+    /// The `[flood]` of the scene with every default that depends on ground and water filled in.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The water at a position in model coordinates, at the time shown.
+    pub fn sample(&self, x: f64, y: f64) -> Sample {
+        self.sampler().at(x, y)
+    }
+
+    /// The longest stable time step from here (CFL), s.
+    pub fn time_step(&self) -> f64 {
+        self.state.time_step
+    }
+
+    /// Bytes held for the cells and the work on them.
+    pub fn bytes(&self) -> usize {
+        self.solver.bytes() + self.state.records.capacity() * size_of::<Record>()
+    }
+
+    /// Number of cells, dry ones included.
+    pub fn cells(&self) -> usize {
+        self.solver.mesh.len()
+    }
+
+    /// For each wet cell at the end of the last step: centroid, m, area, m2, mean ground, m, depth, m, velocity, m/s.
+    pub fn wet_cells(&self) -> impl Iterator<Item = WetCell> + '_ {
+        let mesh = &self.solver.mesh;
+        let wet = self.solver.water.iter().enumerate().filter(|(_, water)| water.depth > 0.0);
+        wet.map(|(cell, water)| WetCell {
+            centroid: mesh.centroid[cell],
+            area: mesh.area[cell],
+            bed: mesh.bed[cell],
+            depth: water.depth,
+            velocity: water.velocity,
+        })
+    }
+
+    /// Kinetic and potential energy of the water, J, the latter above a level, m.
+    pub fn energy(&self, level: f64) -> [f64; 2] {
+        let mesh = &self.solver.mesh;
+        let gravity = self.solver.gravity;
+        let columns = self.solver.columns.iter().enumerate();
+        let kinetic = columns.clone().map(|(_, column)| column.kinetic()).collect::<ExactSum>();
+        let potential = columns
+            .map(|(cell, column)| column.energy(mesh.area[cell], mesh.bed[cell] - level, gravity) - column.kinetic());
+        [kinetic, potential.collect::<ExactSum>()].map(|sum| DENSITY * sum.value())
+    }
+
+    /// The water of a cell at the time shown.
+    fn water_shown(&self, cell: usize) -> Water {
+        let State { time, before, .. } = &self.state;
+        let share = if time > before { ((self.shown - before) / (time - before)).clamp(0.0, 1.0) } else { 1.0 };
+        if share == 1.0 {
+            return self.solver.water[cell];
+        }
+        let mesh = &self.solver.mesh;
+        let columns = [&self.solver.before()[cell], &self.solver.columns[cell]];
+        maps::between(columns[0], columns[1], share, mesh.area[cell], mesh.bed[cell])
+    }
+
+    fn sampler(&self) -> Sampler<'_, impl Fn(usize) -> Water> {
+        Sampler { mesh: &self.solver.mesh, terrain: &self.terrain, water: |cell| self.water_shown(cell) }
+    }
+
+    /// Water in the model, m3.
+    fn stored(&self) -> f64 {
+        let columns = self.solver.columns.iter().map(|column| column.volume);
+        columns.chain(self.state.falling.iter().map(|drop| drop.volume)).collect::<ExactSum>().value()
+    }
+
+    /// Momentum of the water, sum of its two components, kg m/s.
+    fn momentum(&self) -> f64 {
+        let columns = self.solver.columns.iter().map(|column| column.momentum[0] + column.momentum[1]);
+        let falling = self.state.falling.iter().map(|drop| drop.volume * (drop.velocity[0] + drop.velocity[1]));
+        DENSITY * columns.chain(falling).collect::<ExactSum>().value()
+    }
+}
+
+/// The water of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WetCell {
+    /// Centroid in model coordinates, m.
+    pub centroid: [f64; 2],
+    /// Area, m2.
+    pub area: f64,
+    /// Mean height of the ground, m.
+    pub bed: f64,
+    /// Depth, m.
+    pub depth: f64,
+    /// Velocity `[east, north]`, m/s.
+    pub velocity: [f64; 2],
+}

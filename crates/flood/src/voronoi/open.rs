@@ -1,0 +1,297 @@
+//! How a flood is set up.
+
+use super::bed::Bed;
+use super::boundaries::Boundaries;
+use super::change::Overrides;
+use super::friction::Slowing;
+use super::maps::{DRY, Record};
+use super::mesh::{Layout, Mesh, NONE};
+use super::patch::Patch;
+use super::rain::{Soaked, Weather};
+use super::solver::Solver;
+use super::start::{self, StartWater};
+use super::step::drops;
+use super::structures::Patches;
+use super::{Inflow, State, VoronoiFlood, walls};
+use crate::friction::Roughness;
+use crate::rain::RainFunction;
+use crate::setup::{self, setup};
+use crate::structures::Structures;
+use crate::{limits, obstacles};
+use corpuscle_model::{Account, ModelError};
+use corpuscle_scene::Flood as Settings;
+use corpuscle_terrain::Terrain;
+use rayon::prelude::*;
+use std::path::Path;
+use std::sync::Arc;
+
+/// More cells than this do not fit in the memory of usual machines.
+const MOST_CELLS: f64 = 1e8;
+
+/// The depth whose wave speed sets the time step where there is no water yet, m.
+const DRY_DEPTH: f64 = 0.05;
+
+/// The first step over the longest stable one: water at rest on a slope has another speed after it.
+const FIRST_STEP: f64 = 0.1;
+
+impl VoronoiFlood {
+    /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what
+    /// relative paths refer to.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where something cannot be opened or lies outside the terrain.
+    pub fn new(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+        start::check_polygons(settings, &terrain)?;
+        let ground = Arc::clone(&terrain);
+        let bodies = start::of_scene(settings, &ground, folder)?;
+        Self::with_water(settings, seed, folder, terrain, &bodies)
+    }
+
+    /// As [`VoronoiFlood::new`], but without the water at the start: for a state that is restored.
+    ///
+    /// # Errors
+    /// As [`VoronoiFlood::new`].
+    pub fn to_restore(
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+    ) -> Result<Self, ModelError> {
+        Self::empty(settings, seed, folder, terrain)
+    }
+
+    /// As [`VoronoiFlood::new`], with the water at the start given as functions instead of by the scene.
+    ///
+    /// # Errors
+    /// As [`VoronoiFlood::new`].
+    pub fn with_water(
+        settings: &Settings,
+        seed: u64,
+        folder: &Path,
+        terrain: Arc<Terrain>,
+        bodies: &[StartWater],
+    ) -> Result<Self, ModelError> {
+        let mut model = Self::empty(settings, seed, folder, terrain)?;
+        model.make_first_tiles(bodies)?;
+        model.fill(bodies)?;
+        model.begin(seed);
+        Ok(model)
+    }
+
+    /// Has it rain as a function says, from the start on.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where the cells would not fit in memory.
+    pub fn rain(&mut self, rain: RainFunction) -> Result<(), ModelError> {
+        self.weather = Some(Weather::under(rain));
+        self.make_all_tiles()
+    }
+
+    /// All but cells and water.
+    fn empty(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
+        let settings = settings.clone();
+        let (spacing, gravity) = (settings.spacing_m, settings.gravity_m_per_s2);
+        limits::check_blocks(&settings, &terrain)?;
+        let boundaries = Boundaries::open(&settings, &terrain, folder)?;
+        let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
+        let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, spacing, 4.0 * spacing, spacing)?);
+        let layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
+        let roughness = Roughness::open(&settings, &terrain, folder)?;
+        let slowing = Slowing::of(&roughness, gravity);
+        let longest = 0.5 * spacing / (gravity * DRY_DEPTH).sqrt();
+        let structures = Structures::open(&settings, &terrain, folder, spacing)?;
+        let weather = Weather::open(&settings, &terrain, folder)?;
+        let state = State {
+            time: 0.0,
+            before: 0.0,
+            steps: 0,
+            particle_steps: 0,
+            time_step: 0.0,
+            tiles: Vec::new(),
+            columns: [Vec::new(), Vec::new()],
+            records: Vec::new(),
+            beyond: Vec::new(),
+            falling: Vec::new(),
+            soaked: Soaked::default(),
+            flows: structures.at_rest(),
+            impulses: vec![[0.0; 2]; settings.obstacle.len()],
+            forces: vec![[0.0; 2]; settings.obstacle.len()],
+            water: Account::default(),
+            momentum: Account::default(),
+            energy: Account::default(),
+            warnings: Vec::new(),
+            overrides: Overrides::default(),
+        };
+        let lines = walls::of_lines(&settings, &terrain, spacing)?;
+        let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing);
+        let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
+        let flat = settings.obstacle.iter().map(|obstacle| obstacle.height_m.is_none());
+        roofs.iter_mut().zip(flat).filter(|(_, flat)| *flat).for_each(|(area, _)| *area = 0.0);
+        let mut mesh = Mesh::new(layout);
+        mesh.cut(&bed);
+        let mut model = Self {
+            points: setup::point_gauges(&settings, &terrain)?,
+            lines: setup::line_gauges(&settings, &terrain, spacing)?,
+            solver: Solver::new(mesh, gravity, slowing, longest, brings),
+            inflows: Vec::new(),
+            patches: Patches::default(),
+            obstacle_of: Vec::new(),
+            roofs,
+            written: Vec::new(),
+            shown: 0.0,
+            settings,
+            terrain,
+            bed,
+            roughness,
+            boundaries,
+            weather,
+            structures,
+            state,
+        };
+        model.open_zones(folder)?;
+        Ok(model)
+    }
+
+    /// Makes the tiles of inflows, structures and held sides, and finds their cells.
+    fn open_zones(&mut self, folder: &Path) -> Result<(), ModelError> {
+        let sources = setup::sources(&self.settings, &self.terrain, folder, self.settings.spacing_m)?;
+        let mesh = &self.solver.mesh;
+        let mut tiles = Patches::tiles(&self.structures, mesh);
+        tiles.extend(sources.iter().flat_map(|source| Patch::tiles(&source.zone, mesh)));
+        let [columns, rows] = mesh.layout.tiles;
+        for (side, brings) in self.boundaries.brings().into_iter().take(4).enumerate() {
+            if brings {
+                tiles.extend((0..columns * rows).filter(|tile| match side {
+                    0 => tile % columns == 0,
+                    1 => tile % columns == columns - 1,
+                    2 => tile / columns == 0,
+                    _ => tile / columns == rows - 1,
+                }));
+            }
+        }
+        self.make_tiles(tiles)?;
+        let mesh = &self.solver.mesh;
+        self.patches = Patches::of(&self.structures, mesh);
+        for (source, written) in sources.into_iter().zip(&self.settings.inflow) {
+            let patch = Patch::of(&source.zone, mesh);
+            if patch.is_empty() {
+                let name = &written.name;
+                return Err(setup(format!(
+                    "the inflow '{name}' lies where there is no ground: in an obstacle or where the terrain has no data"
+                )));
+            }
+            self.inflows.push(Inflow { patch, discharge: source.discharge, velocity: source.velocity });
+        }
+        if self.weather.as_ref().is_some_and(Weather::rains) {
+            self.make_all_tiles()?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn make_all_tiles(&mut self) -> Result<(), ModelError> {
+        let [columns, rows] = self.solver.mesh.layout.tiles;
+        self.make_tiles((0..columns * rows).collect())
+    }
+
+    /// Makes tiles that are not made yet.
+    pub(super) fn make_tiles(&mut self, mut tiles: Vec<usize>) -> Result<(), ModelError> {
+        tiles.sort_unstable();
+        tiles.dedup();
+        tiles.retain(|tile| !self.solver.mesh.has(*tile));
+        let cells = self.solver.mesh.len() as f64 + (tiles.len() * self.solver.mesh.layout.points.len()) as f64;
+        if cells > MOST_CELLS {
+            return Err(setup(format!(
+                "the water would need about {cells:.1e} particles, more than the {MOST_CELLS:.0e} that fit in memory; \
+                 take a larger flood.spacing_m"
+            )));
+        }
+        self.solver.mesh.make(&tiles, &self.bed);
+        self.solver.grow();
+        let mesh = &self.solver.mesh;
+        self.solver.slowing.extend(&self.roughness, self.solver.gravity, &mesh.centroid);
+        self.state.records.resize(mesh.len(), DRY);
+        let borders = &self.solver.borders[self.obstacle_of.len()..];
+        let at = |border: &u32| mesh.obstacle_faces.binary_search_by_key(border, |(face, _)| *face).ok();
+        let obstacles = borders.iter().map(|border| at(border).map(|place| mesh.obstacle_faces[place].1));
+        self.obstacle_of.extend(obstacles.map(|obstacle| obstacle.unwrap_or(NONE)));
+        self.solver.crests = mesh.crests().map(|(cells, crest)| (cells, *crest)).collect();
+        self.boundaries.extend(&self.solver);
+        // Water has not come to tiles that are made while the model runs.
+        for border in self.state.beyond.len()..self.solver.borders.len() {
+            self.state.beyond.push(self.boundaries.beyond_at_start(&self.solver, border));
+        }
+        if let Some(weather) = &mut self.weather {
+            weather.extend(&self.solver.mesh, &self.terrain, &mut self.state.soaked)?;
+            weather.roofs = walls::collect(&self.solver.mesh, &self.roofs);
+        }
+        Ok(())
+    }
+
+    /// Makes the tiles in which there is water at the start.
+    fn make_first_tiles(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
+        let layout = &self.solver.mesh.layout;
+        let wet = |tile: &usize| {
+            (0..layout.points.len()).any(|k| {
+                let at = layout.position(*tile, k);
+                let ground = self.terrain.height(at[0], at[1]);
+                bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()))
+            })
+        };
+        let all = 0..layout.tiles[0] * layout.tiles[1];
+        let tiles: Vec<usize> = if bodies.is_empty() { Vec::new() } else { all.into_par_iter().filter(wet).collect() };
+        self.make_tiles(tiles)
+    }
+
+    /// Fills in the water at the start, and makes the tiles beside it.
+    fn fill(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
+        if self.solver.mesh.len() == 0 && bodies.is_empty() {
+            return Ok(());
+        }
+        loop {
+            self.solver.columns.copy_from_slice(&start::columns(&self.solver.mesh, bodies));
+            self.solver.renew();
+            let missing = self.solver.missing_tiles();
+            if missing.is_empty() {
+                break;
+            }
+            self.make_tiles(missing)?;
+        }
+        for (number, body) in bodies.iter().enumerate() {
+            let some = start::columns(&self.solver.mesh, std::slice::from_ref(body)).iter().any(|c| c.volume > 0.0);
+            if !some {
+                self.state.warnings.push(format!(
+                    "Body {number} of the water at the start (from 0, without blocks) holds no water: its level lies below \
+                     the ground, its depth is 0, or it lies where there is no ground."
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, seed: u64) {
+        self.state.falling = drops(&self.settings, &self.terrain, seed);
+        let none = self.solver.columns.iter().all(|column| column.volume <= 0.0) && self.state.falling.is_empty();
+        if none
+            && self.weather.is_none()
+            && self.structures.held.is_empty()
+            && self.inflows.is_empty()
+            && !self.boundaries.bring()
+        {
+            let what = "There is no water: give [[flood.water]], [[flood.inflow]], [flood.rain], [[flood.stage]], or an edge with a stage.";
+            self.state.warnings.push(what.into());
+        }
+        let step = self.solver.renew();
+        self.state.time_step = FIRST_STEP * self.limited(step);
+        let columns = self.solver.columns.clone();
+        *self.solver.before_mut() = columns;
+        for (border, beyond) in self.state.beyond.iter_mut().enumerate() {
+            *beyond = self.boundaries.beyond_at_start(&self.solver, border);
+        }
+        self.state.water.initial = self.stored();
+        self.state.momentum.initial = self.momentum();
+        self.state.energy.initial = self.energy(0.0).iter().sum();
+        let wet_depth = self.settings.wet_depth_m;
+        let starts = self.solver.water.iter().map(|water| Record::start(water, wet_depth));
+        self.state.records = starts.collect();
+    }
+}

@@ -1,0 +1,126 @@
+//! The cells of a part of the plane, in which water is added, taken, or held.
+
+use super::mesh::Mesh;
+use super::solver::Solver;
+use super::water::Column;
+use crate::zone::Zone;
+use corpuscle_terrain::Bounds;
+
+/// Cells that water comes into or goes out of together.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Patch {
+    cells: Vec<u32>,
+    /// Sum of their areas, m2.
+    area: f64,
+}
+
+/// What adding or taking water changed: volume, m3, momentum over density, m4/s, and energy over density above the level 0, m5/s2.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Change {
+    pub volume: f64,
+    pub momentum: [f64; 2],
+    pub energy: f64,
+}
+
+impl Patch {
+    /// The tiles over which a zone extends.
+    pub fn tiles(zone: &Zone, mesh: &Mesh) -> Vec<usize> {
+        let ([x, y], reach) = zone.round();
+        let layout = &mesh.layout;
+        let Bounds { x_min, x_max, y_min, y_max } = layout.bounds;
+        let corner = |dx: f64, dy: f64| {
+            layout.tile_at([(x + dx * reach).clamp(x_min, x_max), (y + dy * reach).clamp(y_min, y_max)])
+        };
+        let (low, high) = (corner(-1.0, -1.0), corner(1.0, 1.0));
+        let columns = layout.tiles[0];
+        let rows = low / columns..=high / columns;
+        rows.flat_map(|row| (low % columns..=high % columns).map(move |column| row * columns + column)).collect()
+    }
+
+    /// The cells whose centroids lie in a zone, or the one at its middle where there is none.
+    pub fn of(zone: &Zone, mesh: &Mesh) -> Self {
+        let inside = |cell: &usize| zone.contains(mesh.centroid[*cell][0], mesh.centroid[*cell][1]);
+        let mut cells: Vec<usize> = (0..mesh.len()).filter(inside).collect();
+        if cells.is_empty() {
+            cells.extend(mesh.cell_at(zone.round().0));
+        }
+        // In the order of their points, whatever the order in which tiles were made.
+        cells.sort_unstable_by_key(|cell| mesh.point[*cell]);
+        let area = cells.iter().map(|cell| mesh.area[*cell]).sum();
+        Self { cells: cells.into_iter().map(|cell| cell as u32).collect(), area }
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// Mean level of its wet cells by area, m; none where all are dry.
+    pub fn level(&self, solver: &Solver) -> Option<f64> {
+        let wet = self.cells.iter().map(|cell| *cell as usize).filter(|cell| solver.water[*cell].depth > 0.0);
+        let (sum, area) = wet.fold((0.0, 0.0), |(sum, area), cell| {
+            (sum + solver.mesh.area[cell] * solver.water[cell].level, area + solver.mesh.area[cell])
+        });
+        (area > 0.0).then(|| sum / area)
+    }
+
+    /// Raises the surface evenly by a volume, m3, that comes with a velocity, m/s.
+    pub fn add(&self, solver: &mut Solver, volume: f64, velocity: [f64; 2]) -> Change {
+        let mut change = Change::default();
+        if volume == 0.0 || self.area <= 0.0 {
+            return change;
+        }
+        for cell in self.cells.iter().map(|cell| *cell as usize) {
+            let part = volume * solver.mesh.area[cell] / self.area;
+            let momentum = velocity.map(|velocity| part * velocity);
+            change.apply(solver, cell, Column { volume: part, momentum });
+        }
+        change
+    }
+
+    /// Takes a volume, m3, from the cells in proportion to what they hold, and all they hold at most, with its velocity; the change is negative.
+    pub fn take(&self, solver: &mut Solver, volume: f64) -> Change {
+        let mut change = Change::default();
+        let held: f64 = self.cells.iter().map(|cell| solver.columns[*cell as usize].volume).sum();
+        if held <= 0.0 || volume <= 0.0 {
+            return change;
+        }
+        let share = (volume / held).min(1.0);
+        for cell in self.cells.iter().map(|cell| *cell as usize) {
+            let Column { volume, momentum } = solver.columns[cell];
+            let taken = Column { volume: -share * volume, momentum: momentum.map(|momentum| -share * momentum) };
+            change.apply(solver, cell, taken);
+        }
+        change
+    }
+
+    /// Brings each cell to a level, m; what is added has the velocity of the water there.
+    pub fn hold(&self, solver: &mut Solver, level: f64) -> Change {
+        let mut change = Change::default();
+        for cell in self.cells.iter().map(|cell| *cell as usize) {
+            let wanted = solver.mesh.area[cell] * (level - solver.mesh.bed[cell]).max(0.0);
+            let volume = wanted - solver.columns[cell].volume;
+            let momentum = solver.water[cell].velocity.map(|velocity| volume * velocity);
+            change.apply(solver, cell, Column { volume, momentum });
+        }
+        change
+    }
+}
+
+impl Change {
+    /// Adds water to a cell.
+    pub fn apply(&mut self, solver: &mut Solver, cell: usize, added: Column) {
+        let (area, bed, gravity) = (solver.mesh.area[cell], solver.mesh.bed[cell], solver.gravity);
+        let column = &mut solver.columns[cell];
+        let before = column.volume;
+        self.energy -= column.energy(area, bed, gravity);
+        column.volume = (before + added.volume).max(0.0);
+        self.volume += column.volume - before;
+        for axis in 0..2 {
+            column.momentum[axis] += added.momentum[axis];
+            self.momentum[axis] += added.momentum[axis];
+        }
+        self.energy += column.energy(area, bed, gravity);
+        solver.touch(cell);
+    }
+}

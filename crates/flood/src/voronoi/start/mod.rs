@@ -1,0 +1,238 @@
+//! The water at the start: how much of it stands in each cell.
+
+use super::mesh::Mesh;
+use super::water::Column;
+use crate::setup::{is_inside, setup};
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Flood as Settings, Water};
+use corpuscle_terrain::{Bounds, RasterField, Terrain};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// A function of the position in model coordinates, m.
+pub type OfPosition<'a, T> = Box<dyn Fn(f64, f64) -> T + Sync + 'a>;
+
+/// How much water there is.
+pub enum Filling<'a> {
+    /// Depth, m; a cell holds its mean times the cell's area.
+    Depth(OfPosition<'a, f64>),
+    /// Level, m; a cell holds its mean less the mean ground, so that a level lake is level.
+    Level(OfPosition<'a, f64>),
+}
+
+/// Water that is there at the start.
+pub struct StartWater<'a> {
+    /// How much.
+    pub filling: Filling<'a>,
+    /// Only inside this polygon of corners in model coordinates, m: a cell that it cuts holds the part inside. None: everywhere.
+    pub polygon: Option<Vec<[f64; 2]>>,
+    /// Velocity `[east, north]`, m/s.
+    pub velocity: OfPosition<'a, [f64; 2]>,
+}
+
+/// The bodies of water that a scene fills at the start (blocks in the air apart).
+pub(crate) fn of_scene<'a>(
+    scene: &Settings,
+    terrain: &'a Terrain,
+    folder: &Path,
+) -> Result<Vec<StartWater<'a>>, ModelError> {
+    let standing = scene.water.iter().enumerate().filter(|(_, water)| water.block.is_none());
+    standing.map(|(number, water)| body(water, number, terrain, folder)).collect()
+}
+
+fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<StartWater<'a>, ModelError> {
+    let filling = if let Some(level) = water.level_m {
+        Filling::Level(Box::new(move |_, _| level))
+    } else if let Some(depth) = water.depth_m {
+        Filling::Depth(Box::new(move |_, _| depth))
+    } else if let Some(path) = &water.depth_raster {
+        let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
+        Filling::Depth(Box::new(move |x, y| raster.bilinear(x, y).filter(|depth| depth.is_finite()).unwrap_or(0.0)))
+    } else {
+        return Err(setup(format!("flood.water.{number} says neither level, depth, raster nor block")));
+    };
+    let corners = |polygon: &Vec<[f64; 2]>| polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
+    let velocity = water.velocity_m_per_s;
+    Ok(StartWater { filling, polygon: water.polygon.as_ref().map(corners), velocity: Box::new(move |_, _| velocity) })
+}
+
+impl StartWater<'_> {
+    /// Whether there may be water near a position: in a cell about `reach` m wide round it.
+    pub(crate) fn may_be_at(&self, [x, y]: [f64; 2], ground: f64, reach: f64) -> bool {
+        if let Some(polygon) = &self.polygon
+            && !is_inside(polygon, x, y)
+            && distance_to(polygon, [x, y]) > reach
+        {
+            return false;
+        }
+        match &self.filling {
+            Filling::Depth(depth) => depth(x, y) > 0.0,
+            Filling::Level(level) => level(x, y) > ground,
+        }
+    }
+
+    /// The water of this body in a cell: its convex parts have corners in model coordinates.
+    pub(crate) fn column(&self, parts: &[Vec<[f64; 2]>], area: f64, bed: f64, scratch: &mut Clip) -> Column {
+        let inside = |outline| parts.iter().map(|part| scratch.area_inside(outline, part)).sum::<f64>();
+        let share = self.polygon.as_deref().map(inside).map_or(1.0, |inside| inside / area);
+        if share <= 0.0 {
+            return Column::default();
+        }
+        let depth = match &self.filling {
+            Filling::Depth(depth) => mean_over(parts, |x, y| depth(x, y).max(0.0)),
+            Filling::Level(level) => (mean_over(parts, level) - bed).max(0.0),
+        };
+        let volume = share * area * depth;
+        if volume <= 0.0 {
+            return Column::default();
+        }
+        let momentum = [0, 1].map(|axis| volume * mean_over(parts, |x, y| (self.velocity)(x, y)[axis]));
+        Column { volume, momentum }
+    }
+}
+
+/// The water at the start of all cells of a mesh.
+pub(crate) fn columns(mesh: &Mesh, bodies: &[StartWater]) -> Vec<Column> {
+    (0..mesh.len())
+        .into_par_iter()
+        .with_min_len(256)
+        .map_init(Default::default, |(parts, clip): &mut (Vec<Vec<[f64; 2]>>, Clip), cell| {
+            mesh.parts(cell, parts);
+            let mut sum = Column::default();
+            for body in bodies {
+                let column = body.column(parts, mesh.area[cell], mesh.bed[cell], clip);
+                sum.volume += column.volume;
+                (0..2).for_each(|axis| sum.momentum[axis] += column.momentum[axis]);
+            }
+            sum
+        })
+        .collect()
+}
+
+/// Mean of a function over convex polygons.
+fn mean_over(parts: &[Vec<[f64; 2]>], function: impl Fn(f64, f64) -> f64) -> f64 {
+    if let [part] = parts {
+        return mean(part, function);
+    }
+    let sum = parts.iter().map(|part| (super::mesh::area(part), part)).filter(|(area, _)| *area > 0.0);
+    let (sum, area) =
+        sum.fold((0.0, 0.0), |(sum, total), (area, part)| (sum + area * mean(part, &function), total + area));
+    if area > 0.0 { sum / area } else { 0.0 }
+}
+
+/// Mean of a function over a convex polygon: over the triangles of its fan, each cut into four, by the rule with a point in the middle of each
+/// side, exact to second degree (Strang & Fix 1973, section 4.3).
+fn mean(polygon: &[[f64; 2]], function: impl Fn(f64, f64) -> f64) -> f64 {
+    let centre = [0, 1].map(|axis| polygon.iter().map(|r| r[axis]).sum::<f64>() / polygon.len() as f64);
+    let (mut sum, mut area) = (0.0, 0.0);
+    let middle = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+    for k in 0..polygon.len() {
+        let [a, b] = [polygon[k], polygon[(k + 1) % polygon.len()]];
+        let part = (a[0] - centre[0]) * (b[1] - centre[1]) - (b[0] - centre[0]) * (a[1] - centre[1]);
+        let [ab, bc, ca] = [middle(a, b), middle(b, centre), middle(centre, a)];
+        let mut values = 0.0;
+        for [p, q, r] in [[a, ab, ca], [ab, b, bc], [ca, bc, centre], [ab, bc, ca]] {
+            values += [middle(p, q), middle(q, r), middle(r, p)].map(|[x, y]| function(x, y)).iter().sum::<f64>();
+        }
+        sum += part * values / 12.0;
+        area += part;
+    }
+    sum / area
+}
+
+/// Working memory for cutting polygons.
+#[derive(Default)]
+pub(crate) struct Clip(Vec<[f64; 2]>, Vec<[f64; 2]>);
+
+impl Clip {
+    /// Area of a polygon inside a convex one with corners in counter-clockwise order (Sutherland & Hodgman 1974), m2.
+    pub fn area_inside(&mut self, polygon: &[[f64; 2]], convex: &[[f64; 2]]) -> f64 {
+        let Self(subject, cut) = self;
+        subject.clear();
+        subject.extend_from_slice(polygon);
+        for k in 0..convex.len() {
+            let [a, b] = [convex[k], convex[(k + 1) % convex.len()]];
+            let left = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+            cut.clear();
+            for n in 0..subject.len() {
+                let [p, q] = [subject[n], subject[(n + 1) % subject.len()]];
+                let [here, there] = [left(p), left(q)];
+                if here >= 0.0 {
+                    cut.push(p);
+                }
+                if (here >= 0.0) != (there >= 0.0) {
+                    let part = here / (here - there);
+                    cut.push([0, 1].map(|axis| p[axis] + part * (q[axis] - p[axis])));
+                }
+            }
+            std::mem::swap(subject, cut);
+        }
+        let origin = convex[0];
+        let corners = (0..subject.len()).map(|n| {
+            let [p, q] = [subject[n], subject[(n + 1) % subject.len()]];
+            let [p, q] = [p, q].map(|r| [r[0] - origin[0], r[1] - origin[1]]);
+            p[0] * q[1] - q[0] * p[1]
+        });
+        (0.5 * corners.sum::<f64>()).abs()
+    }
+}
+
+/// Distance of a position from the outline of a polygon, m.
+fn distance_to(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let from_side = |k: usize| {
+        let [a, b] = [polygon[k], polygon[(k + 1) % polygon.len()]];
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let to = [x - a[0], y - a[1]];
+        let part = (to[0] * along[0] + to[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]).max(1e-300);
+        let part = part.clamp(0.0, 1.0);
+        (to[0] - part * along[0]).hypot(to[1] - part * along[1])
+    };
+    (0..polygon.len()).map(from_side).fold(f64::INFINITY, f64::min)
+}
+
+/// Refuses a polygon that lies wholly outside the terrain.
+pub(crate) fn check_polygons(scene: &Settings, terrain: &Terrain) -> Result<(), ModelError> {
+    let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+    for (number, water) in scene.water.iter().enumerate() {
+        let Some(polygon) = &water.polygon else { continue };
+        let corners: Vec<[f64; 2]> = polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
+        let beyond = |axis: usize, low: f64, high: f64| {
+            corners.iter().all(|corner| corner[axis] < low) || corners.iter().all(|corner| corner[axis] > high)
+        };
+        if beyond(0, x_min, x_max) || beyond(1, y_min, y_max) {
+            return Err(setup(format!(
+                "flood.water.{number}.polygon lies wholly outside the terrain, which spans {}: give its corners in the \
+                 terrain's own coordinates",
+                crate::limits::span(terrain)
+            )));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_part_of_a_bay_inside_a_cell_is_exact() {
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        let bay = [[-1.0, -1.0], [5.0, -1.0], [5.0, 5.0], [2.0, 1.0], [-1.0, 5.0]];
+        // Cut out of the square: what lies above y = 1 + 4/3 |x - 2|, which leaves it at 11/3 on both sides.
+        let mut clip = Clip::default();
+        let expected = 16.0 - (4.0 * (4.0 - 11.0 / 3.0) + 0.5 * 4.0 * (11.0 / 3.0 - 1.0));
+        assert!((clip.area_inside(&bay, &square) - expected).abs() < 1e-12);
+        let turned: Vec<_> = bay.iter().rev().copied().collect();
+        assert!((clip.area_inside(&turned, &square) - expected).abs() < 1e-12);
+        assert_eq!(clip.area_inside(&bay.map(|[x, y]| [x + 20.0, y]), &square), 0.0);
+    }
+
+    #[test]
+    fn means_of_quadratic_functions_are_exact() {
+        let triangle = [[1.0, 0.0], [4.0, 1.0], [2.0, 5.0]];
+        let value = mean(&triangle, |x, y| x * x - 2.0 * x * y + 3.0 * y);
+        let middles = [[2.5, 0.5], [3.0, 3.0], [1.5, 2.5]];
+        let exact = middles.map(|[x, y]: [f64; 2]| x * x - 2.0 * x * y + 3.0 * y).iter().sum::<f64>() / 3.0;
+        assert!((value - exact).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,201 @@
+//! A step of the model: what falls from the air, the water's motion, and what comes and goes.
+
+use super::patch::Change;
+use super::solver::Passed;
+use super::water::Column;
+use super::{DENSITY, State, VoronoiFlood, maps, walls};
+use crate::setup::{lattice, random};
+use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_scene::Flood as Settings;
+use corpuscle_terrain::{Bounds, Terrain};
+use rand::RngExt;
+use serde::{Deserialize, Serialize};
+
+/// Water in the air.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Drop {
+    pub id: u64,
+    pub position: [f64; 3],
+    pub velocity: [f64; 3],
+    /// m3.
+    pub volume: f64,
+}
+
+/// Drops are numbered from here on, cells by their points.
+pub(super) const FIRST_DROP: u64 = 1 << 48;
+
+/// The drops of the blocks of a scene: layers of a lattice, each shifted a little at random so that no two stand one above the other.
+pub(super) fn drops(scene: &Settings, terrain: &Terrain, seed: u64) -> Vec<Drop> {
+    let mut random = random(seed, u64::MAX);
+    let spacing = scene.spacing_m;
+    let volume = spacing * spacing * scene.spacing_depth_m.unwrap_or(1.0);
+    let mut drops = Vec::new();
+    for (block, water) in scene.water.iter().filter_map(|water| Some((water.block.as_ref()?, water))) {
+        let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
+        let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
+        let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
+        let [columns, rows] = lattice(block, terrain, spacing).map(|count| count as usize);
+        for number in 0..block.layers * columns * rows {
+            let place = [number % columns, number / columns % rows];
+            let mut at =
+                |axis: usize| from[axis] + (place[axis] as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
+            let z = bottom + ((number / (columns * rows)) as f64 + 0.5) * spacing;
+            let [u, v] = water.velocity_m_per_s;
+            let id = FIRST_DROP + drops.len() as u64;
+            drops.push(Drop { id, position: [at(0), at(1), z], velocity: [u, v, 0.0], volume });
+        }
+    }
+    drops
+}
+
+impl VoronoiFlood {
+    /// A time step short enough for what is in the air, too: it falls a spacing in some ten steps.
+    pub(super) fn limited(&self, step: f64) -> f64 {
+        let fall = 0.1 * (self.settings.spacing_m / self.settings.gravity_m_per_s2).sqrt();
+        if self.state.falling.is_empty() { step } else { step.min(fall) }
+    }
+
+    pub(super) fn step(&mut self) -> Result<(), ModelError> {
+        let (from, step) = (self.state.time, self.state.time_step);
+        let until = from + step;
+        self.move_water(from, step);
+        if self.solver.is_broken() {
+            return Err(self.breakdown(from));
+        }
+        self.state.particle_steps += self.solver.wet_cells() as u64;
+        self.state.steps += 1;
+        maps::record(&self.solver, &mut self.state.records, until, step, self.settings.wet_depth_m);
+        self.bring_and_take(from, until);
+        let missing = self.solver.missing_tiles();
+        if !missing.is_empty() {
+            self.make_tiles(missing)?;
+        }
+        (self.state.before, self.state.time) = (from, until);
+        let step = self.solver.time_step();
+        self.state.time_step = self.limited(step);
+        Ok(())
+    }
+
+    /// Moves the water for a step and books what passed the sides.
+    fn move_water(&mut self, from: f64, step: f64) {
+        self.boundaries.prepare(&self.solver, from, step, &self.state.beyond);
+        let boundaries = &self.boundaries;
+        let now = |stage: usize, border: usize| boundaries.now(stage, border);
+        let State { water, momentum, energy, forces, .. } = &mut self.state;
+        // Thrusts of ground and walls are far larger than what they come to together: only that is booked.
+        let mut gained = ExactSum::default();
+        let obstacle_of = &self.obstacle_of;
+        forces.fill([0.0; 2]);
+        let mut book = |border: usize, passed: Passed| {
+            water.book(-passed.volume);
+            energy.book(-DENSITY * passed.energy);
+            if let Some(force) = forces.get_mut(obstacle_of[border] as usize) {
+                (0..2).for_each(|axis| force[axis] += passed.momentum[axis] / step);
+            }
+            passed.momentum.into_iter().for_each(|momentum| gained.add(-momentum));
+        };
+        let (_, done) = self.solver.step(step, &now, &mut book);
+        done.slowed.iter().chain(&done.by_ground).for_each(|momentum| gained.add(*momentum));
+        momentum.book(DENSITY * gained.value());
+        for (impulse, force) in self.state.impulses.iter_mut().zip(&self.state.forces) {
+            (0..2).for_each(|axis| impulse[axis] += step * force[axis]);
+        }
+        self.boundaries.follow(&self.solver, from, step, &mut self.state.beyond);
+    }
+
+    /// Lets water come and go beside its motion: inflows, structures, rain, infiltration, what falls.
+    fn bring_and_take(&mut self, from: f64, until: f64) {
+        let step = until - from;
+        walls::overtop(&mut self.solver, step);
+        let Self { solver, inflows, structures, patches, weather, state, .. } = self;
+        let momentum = |change: &Change| DENSITY * (change.momentum[0] + change.momentum[1]);
+        for inflow in inflows.iter() {
+            let change = inflow.patch.add(solver, inflow.discharge.integral(from, until), inflow.velocity);
+            state.water.book(change.volume);
+            state.momentum.book(momentum(&change));
+            state.energy.book(DENSITY * change.energy);
+        }
+        let (water, moments, energy) = (&mut state.water, &mut state.momentum, &mut state.energy);
+        patches.work(structures, &mut state.flows, solver, until, step, &mut |change| {
+            water.book(change.volume);
+            moments.book(momentum(&change));
+            energy.book(DENSITY * change.energy);
+        });
+        if let Some(weather) = weather {
+            let before = [state.soaked.rained.value(), state.soaked.infiltrated.value()];
+            let change = weather.pass(solver, &mut state.soaked, from, until, state.steps);
+            state.water.inflow.add(state.soaked.rained.value() - before[0]);
+            state.water.outflow.add(state.soaked.infiltrated.value() - before[1]);
+            state.momentum.book(momentum(&change));
+            state.energy.book(DENSITY * change.energy);
+        }
+        self.fall(step);
+    }
+
+    /// What is in the air falls; what meets ground or water joins it.
+    fn fall(&mut self, step: f64) {
+        if self.state.falling.is_empty() {
+            return;
+        }
+        let gravity = self.solver.gravity;
+        let mut falling = std::mem::take(&mut self.state.falling);
+        falling.iter_mut().for_each(|drop| drop.fall(gravity, step));
+        let bounds = self.terrain.bounds();
+        let landed = falling.extract_if(.., |drop| {
+            let [x, y] = inside(bounds, drop.position);
+            let cell = self.solver.mesh.cell_at([x, y]);
+            let level = cell.map_or_else(|| self.terrain.height(x, y), |cell| self.solver.water[cell].level);
+            drop.position[2] <= level
+        });
+        let landed: Vec<Drop> = landed.collect();
+        self.state.falling = falling;
+        for drop in landed {
+            self.land(&drop);
+        }
+    }
+
+    fn land(&mut self, drop: &Drop) {
+        let [x, y] = inside(self.terrain.bounds(), drop.position);
+        let tile = self.solver.mesh.layout.tile_at([x, y]);
+        // Too many cells are told by the step that needs the next ones.
+        let _ = self.make_tiles(vec![tile]);
+        let momentum = [0, 1].map(|axis| drop.volume * drop.velocity[axis]);
+        match self.solver.mesh.cell_at([x, y]) {
+            Some(cell) => {
+                let mut change = Change::default();
+                change.apply(&mut self.solver, cell, Column { volume: drop.volume, momentum });
+                self.state.energy.book(DENSITY * change.energy);
+            }
+            None => {
+                self.state.water.outflow.add(drop.volume);
+                self.state.momentum.book(-DENSITY * (momentum[0] + momentum[1]));
+            }
+        }
+    }
+
+    /// Says where the computation came to no number, and goes back to the state before.
+    fn breakdown(&mut self, time: f64) -> ModelError {
+        let cell = self.solver.broken_cell();
+        let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));
+        self.solver.take_back();
+        let place = place.map_or(String::new(), |[x, y]| format!(" at [{x:.6}, {y:.6}]"));
+        ModelError::Breakdown {
+            time,
+            step: self.state.steps,
+            what: format!("a flux{place} is no longer a number; look in the last frame at the water there"),
+        }
+    }
+}
+
+/// The nearest position inside.
+fn inside(bounds: Bounds, [x, y, _]: [f64; 3]) -> [f64; 2] {
+    [x.clamp(bounds.x_min, bounds.x_max), y.clamp(bounds.y_min, bounds.y_max)]
+}
+
+impl Drop {
+    fn fall(&mut self, gravity: f64, step: f64) {
+        self.position[2] += step * (self.velocity[2] - 0.5 * gravity * step);
+        self.velocity[2] -= gravity * step;
+        (0..2).for_each(|axis| self.position[axis] += step * self.velocity[axis]);
+    }
+}

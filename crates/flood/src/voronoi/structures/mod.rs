@@ -1,0 +1,68 @@
+//! Outflows by rating, held levels, culverts and weirs in a step.
+
+use super::mesh::Mesh;
+use super::patch::{Change, Patch};
+use super::solver::Solver;
+use crate::structures::{Flows, Structures};
+
+/// The cells that each structure takes from and gives to.
+#[derive(Default)]
+pub(crate) struct Patches {
+    outflows: Vec<Patch>,
+    held: Vec<Patch>,
+    links: Vec<[Patch; 2]>,
+}
+
+impl Patches {
+    /// The tiles over which structures extend.
+    pub fn tiles(structures: &Structures, mesh: &Mesh) -> Vec<usize> {
+        let zones = structures.outflows.iter().map(|outflow| &outflow.zone);
+        let zones = zones.chain(structures.held.iter().map(|held| &held.zone));
+        let zones = zones.chain(structures.links.iter().flat_map(|link| &link.ends));
+        zones.flat_map(|zone| Patch::tiles(zone, mesh)).collect()
+    }
+
+    pub fn of(structures: &Structures, mesh: &Mesh) -> Self {
+        Self {
+            outflows: structures.outflows.iter().map(|outflow| Patch::of(&outflow.zone, mesh)).collect(),
+            held: structures.held.iter().map(|held| Patch::of(&held.zone, mesh)).collect(),
+            links: structures.links.iter().map(|link| [0, 1].map(|end| Patch::of(&link.ends[end], mesh))).collect(),
+        }
+    }
+
+    /// Lets structures work for `step` s up to `time`: calls `book` with what each took out of the water, or brought.
+    pub fn work(
+        &self,
+        structures: &Structures,
+        flows: &mut Flows,
+        solver: &mut Solver,
+        time: f64,
+        step: f64,
+        book: &mut impl FnMut(Change),
+    ) {
+        let levels = |patch: &Patch, solver: &Solver| patch.level(solver);
+        for ((outflow, patch), flow) in structures.outflows.iter().zip(&self.outflows).zip(&mut flows.outflows) {
+            let wanted = levels(patch, solver).map_or(0.0, |level| outflow.rating.at(level).max(0.0));
+            let change = patch.take(solver, wanted * step);
+            flow.discharge = -change.volume / step;
+            book(change);
+        }
+        for (held, patch) in structures.held.iter().zip(&self.held) {
+            book(patch.hold(solver, held.level.at(time)));
+        }
+        for ((link, ends), flow) in structures.links.iter().zip(&self.links).zip(&mut flows.links) {
+            let levels = [0, 1].map(|end| levels(&ends[end], solver));
+            let wanted = link.discharge_between(levels, solver.gravity);
+            let [from, to] = if wanted >= 0.0 { [0, 1] } else { [1, 0] };
+            let taken = ends[from].take(solver, wanted.abs() * step);
+            // It comes out at rest.
+            let given = ends[to].add(solver, -taken.volume, [0.0; 2]);
+            flow.discharge = (given.volume / step).copysign(wanted);
+            book(Change {
+                volume: taken.volume + given.volume,
+                momentum: taken.momentum,
+                energy: taken.energy + given.energy,
+            });
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Where walls come from: outlines of obstacles, and of ground without data.
+
+use super::Wall;
+use crate::obstacles::{Outline, check_overlap};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Flood as Settings;
+use corpuscle_terrain::Terrain;
+
+/// Most parts of a side of a line.
+const MOST_PARTS: f64 = 1e5;
+
+/// The sides of outlines; no water flows over them.
+pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
+    let walls = |outline: &Outline| {
+        let obstacle = Some(outline.obstacle as u32);
+        outline.sides().map(move |ends| Wall { ends, obstacle, crest: [f64::INFINITY; 2] }).collect::<Vec<_>>()
+    };
+    outlines.iter().flat_map(walls)
+}
+
+/// The lines of obstacles without thickness, in parts about `spacing` m long between which the crest may rise and fall with the ground.
+///
+/// # Errors
+/// [`ModelError::Setup`] for one that lies outside the terrain.
+pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Result<Vec<Wall>, ModelError> {
+    let mut walls = Vec::new();
+    for (number, obstacle) in scene.obstacle.iter().enumerate() {
+        let Some(line) = &obstacle.line else { continue };
+        let line: Vec<[f64; 2]> = line.iter().map(|corner| terrain.to_model(*corner)).collect();
+        check_overlap(&format!("the obstacle '{}'", obstacle.name), &line, terrain)?;
+        let crest = |[x, y]: [f64; 2]| match (obstacle.crest_m, obstacle.height_m) {
+            (Some(level), _) => level,
+            (None, Some(height)) => terrain.height(x, y) + height,
+            (None, None) => f64::INFINITY,
+        };
+        for side in line.windows(2) {
+            let [a, b] = [side[0], side[1]];
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let parts =
+                if obstacle.height_m.is_some() { (length / spacing).ceil().clamp(1.0, MOST_PARTS) } else { 1.0 };
+            let at = |part: usize| {
+                if part as f64 == parts {
+                    return b;
+                }
+                [0, 1].map(|axis| a[axis] + part as f64 / parts * (b[axis] - a[axis]))
+            };
+            walls.extend((0..parts as usize).map(|part| {
+                let ends = [at(part), at(part + 1)];
+                Wall { ends, obstacle: Some(number as u32), crest: ends.map(crest) }
+            }));
+        }
+    }
+    Ok(walls)
+}
+
+/// The outline of ground without data: sides of cells of the terrain's grid with data on one side of them only, joined to straight runs.
+pub(crate) fn no_data(terrain: &Terrain) -> Vec<Wall> {
+    let grid = terrain.map_grid();
+    let (columns, rows) = (grid.columns, grid.rows);
+    let mut walls = Vec::new();
+    let mut add = |from: [usize; 2], to: [usize; 2]| {
+        let corner = |[column, row]: [usize; 2]| grid.place([column as f64 - 0.5, row as f64 - 0.5]);
+        walls.push(Wall { ends: [corner(from), corner(to)], obstacle: None, crest: [f64::INFINITY; 2] });
+    };
+    // Sides between a row and the next, then between a column and the next.
+    for row in 1..rows {
+        let is_side = |column| terrain.is_valid_cell(column, row - 1) != terrain.is_valid_cell(column, row);
+        runs(columns, is_side, |from, to| add([from, row], [to, row]));
+    }
+    for column in 1..columns {
+        let is_side = |row| terrain.is_valid_cell(column - 1, row) != terrain.is_valid_cell(column, row);
+        runs(rows, is_side, |from, to| add([column, from], [column, to]));
+    }
+    walls
+}
+
+/// Calls `found` with the start and the end of each run of numbers below `count` that are wanted.
+fn runs(count: usize, is_wanted: impl Fn(usize) -> bool, mut found: impl FnMut(usize, usize)) {
+    let mut start = None;
+    for number in 0..=count {
+        let wanted = number < count && is_wanted(number);
+        match (start, wanted) {
+            (None, true) => start = Some(number),
+            (Some(from), false) => {
+                found(from, number);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_found_from_end_to_end() {
+        let mut found = Vec::new();
+        runs(6, |n| n != 2 && n != 3, |from, to| found.push([from, to]));
+        assert_eq!(found, [[0, 2], [4, 6]]);
+    }
+}

@@ -1,0 +1,322 @@
+//! What scheme voronoi promises to whoever runs it.
+
+use corpuscle_flood::{ByHand, VoronoiFlood};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{FloodScene, Scene};
+use corpuscle_terrain::{Bounds, Terrain};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+const RIVER: &str = r#"
+run.until_s = 60
+terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
+
+[flood]
+scheme = "voronoi"
+spacing_m = 5
+
+[flood.edges]
+west = "wall"
+south = "wall"
+north = { stage = 7 }
+
+[[flood.water]]
+depth_m = 0.5
+polygon = [[100, 80], [200, 80], [200, 120], [100, 120]]
+
+[[flood.inflow]]
+name = "river"
+at = [40, 100]
+discharge_m3_per_s = [[0, 20], [60, 60]]
+
+[[flood.outflow]]
+name = "drain"
+at = [250, 100]
+rating = [[0, 0], [20, 30]]
+
+[[flood.link]]
+name = "pipe"
+from = [150, 100]
+to = [150, 40]
+law = { culvert = { diameter_m = 0.8 } }
+
+[flood.rain]
+intensity_mm_per_h = 90
+
+[flood.infiltration.horton]
+first_mm_per_h = 40
+last_mm_per_h = 5
+decay_per_h = 3
+
+[[flood.gauge]]
+name = "bridge"
+at = [150, 100]
+
+[[flood.section]]
+name = "bridge line"
+line = [[150, 180], [150, 20]]
+"#;
+
+fn parse(text: &str) -> FloodScene {
+    let mut scene = Scene::parse(text, "test", &[]).unwrap();
+    scene.resolve_defaults();
+    scene.flood().unwrap().clone()
+}
+
+fn open(scene: &FloodScene) -> VoronoiFlood {
+    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+    VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+}
+
+fn river() -> VoronoiFlood {
+    open(&parse(RIVER))
+}
+
+fn go(flood: &mut VoronoiFlood, time: f64) {
+    flood.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+/// A basin of 66 m by 30 m on ground from a function, with walls all round and what `keys` add.
+fn basin(keys: &str, seed: u64, ground: impl Fn(f64, f64) -> f64 + Sync) -> Result<VoronoiFlood, ModelError> {
+    let text = format!(
+        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\n{keys}"
+    );
+    let scene = parse(&text);
+    let bounds = Bounds { x_min: 0.0, x_max: 66.0, y_min: 0.0, y_max: 30.0 };
+    VoronoiFlood::new(&scene.flood, seed, Path::new("."), Arc::new(Terrain::gridded(bounds, 0.5, ground)))
+}
+
+const WALLS: &str = "edges = { west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }\n";
+
+fn rms(flood: &VoronoiFlood) -> f64 {
+    let (sum, volume) = flood.wet_cells().fold((0.0, 0.0), |(sum, volume), cell| {
+        let [u, v] = cell.velocity;
+        (sum + cell.area * cell.depth * (u * u + v * v), volume + cell.area * cell.depth)
+    });
+    f64::sqrt(sum / volume)
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let with = |threads| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
+            let mut flood = river();
+            go(&mut flood, 20.0);
+            flood.save()
+        })
+    };
+    assert!(with(1) == with(3));
+}
+
+#[test]
+fn output_never_changes_the_solution() {
+    let [mut once, mut often] = [(); 2].map(|()| river());
+    go(&mut once, 20.0);
+    for k in 1..=200 {
+        go(&mut often, f64::from(k) * 0.1);
+        let _ = (often.gauge_row(), often.frame());
+    }
+    assert!(once.save() == often.save());
+    assert_eq!(once.gauge_row(), often.gauge_row());
+}
+
+#[test]
+fn a_restored_run_goes_on_to_the_same_bits() {
+    let mut whole = river();
+    let mut saved = Vec::new();
+    for time in [3.3, 12.3, 16.0] {
+        go(&mut whole, time);
+        saved.push(whole.save());
+    }
+    go(&mut whole, 25.0);
+    for state in saved {
+        let scene = parse(RIVER);
+        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+        let mut resumed = VoronoiFlood::to_restore(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
+        resumed.restore(&state).unwrap();
+        go(&mut resumed, 25.0);
+        assert!(resumed.save() == whole.save());
+        assert_eq!(resumed.frame(), whole.frame());
+        assert!(bits(&resumed) == bits(&whole));
+    }
+}
+
+/// The values of all maps, not-a-number among them.
+fn bits(flood: &VoronoiFlood) -> Vec<u32> {
+    flood.maps().iter().flat_map(|map| map.values.iter().map(|value| value.to_bits())).collect()
+}
+
+#[test]
+fn damaged_checkpoints_are_refused() {
+    let mut flood = river();
+    go(&mut flood, 2.0);
+    let saved = flood.save();
+    for cut in [0, 1, saved.len() / 2, saved.len() - 1] {
+        assert!(river().restore(&saved[..cut]).is_err());
+    }
+    let other = basin(&format!("spacing_m = 2\n{WALLS}water = [{{ level_m = 1 }}]"), 1, |_, _| 0.0).unwrap();
+    assert!(river().restore(&other.save()).is_err());
+}
+
+/// With everything on: inflow, outflow, a culvert, a held side, an open side, rain and infiltration.
+#[test]
+fn water_and_momentum_balance_with_everything_on() {
+    let mut flood = river();
+    for k in 1..=6 {
+        go(&mut flood, f64::from(k) * 10.0);
+        let ledger = flood.ledger();
+        let [water, momentum] = [&ledger.balances[0], &ledger.balances[1]];
+        assert!(water.relative_error().abs() < 1e-13, "{water:?}");
+        assert!(momentum.relative_error().abs() < 1e-9, "{momentum:?}");
+    }
+    let columns = flood.gauge_columns();
+    let row = flood.gauge_row();
+    let of = |quantity| row[columns.iter().position(|column| column.quantity == quantity).unwrap()];
+    assert!(of("total_rain") > 80.0 && of("total_infiltration") > 10.0 && of("total_outflow") > 10.0);
+    assert!(row.iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn what_came_in_is_the_hydrograph_to_the_last_drop() {
+    let keys = format!(
+        "spacing_m = 1.5\n{WALLS}inflow = [{{ name = \"a\", at = [20, 15], discharge_m3_per_s = [[0, 1], [7, 3], [9, 0]] }}]"
+    );
+    let mut flood = basin(&keys, 3, |x, _| 0.01 * x).unwrap();
+    go(&mut flood, 20.0);
+    let balance = flood.ledger().balances[0].clone();
+    assert!((balance.inflow - (7.0 * 2.0 + 2.0 * 1.5)).abs() < 1e-11, "{balance:?}");
+    assert!(balance.relative_error().abs() < 1e-13);
+}
+
+/// Rough ground, islands, three seeds: a lake held at its level at one side, open at another, stays as it is.
+#[test]
+fn a_lake_at_rest_stays_at_rest_at_every_kind_of_side() {
+    for (seed, east) in
+        [(1, "{ stage = 1.0 }"), (2, "\"open\""), (3, "{ wave = { rest_level_m = 1.0, level_m = 1.0 } }")]
+    {
+        let keys = format!(
+            "spacing_m = 1.1\nwater = [{{ level_m = 1.0 }}]\nedges = {{ west = \"wall\", east = {east}, south = \"open\", north = \"wall\" }}"
+        );
+        let mut flood = basin(&keys, seed, |x, y| 0.8 * (0.9 * x).sin() * (1.3 * y).cos() + 0.3).unwrap();
+        let before = flood.save();
+        go(&mut flood, 60.0);
+        assert!(rms(&flood) < 1e-13, "{east}: {}", rms(&flood));
+        assert!(flood.wet_cells().all(|cell| (cell.bed + cell.depth - 1.0).abs() < 1e-9));
+        assert!(before != flood.save());
+    }
+}
+
+/// A tank at rest whose east side is held at a level that rises by 5 cm and stays: the wave that comes in is as high as that.
+#[test]
+fn a_held_level_brings_its_wave_in_full() {
+    let keys = "spacing_m = 0.7\nmanning = 0\nwater = [{ level_m = 1.0 }]\n\
+                edges = { west = \"wall\", east = { stage = [[0, 1], [3, 1.05]] }, south = \"wall\", north = \"wall\" }\n\
+                gauge = [{ name = \"mid\", at = [40, 15] }]";
+    let mut flood = basin(keys, 4, |_, _| 0.0).unwrap();
+    go(&mut flood, 14.0);
+    let level = flood.gauge_row()[1];
+    assert!((level - 1.05).abs() < 5e-4, "{level}");
+}
+
+/// A hump in the middle of a tank sends waves out through held and open sides: what comes back is next to nothing.
+#[test]
+fn waves_leave_through_held_and_open_sides() {
+    for side in ["{ stage = 1.0 }", "{ wave = { rest_level_m = 1.0, level_m = 1.0 } }"] {
+        let keys = format!(
+            "spacing_m = 0.8\nmanning = 0\nwater = [{{ level_m = 1.0 }}, {{ depth_m = 0.05, polygon = [[28, -1], [38, -1], [38, 31], [28, 31]] }}]\n\
+             edges = {{ west = {side}, east = {side}, south = \"wall\", north = \"wall\" }}"
+        );
+        let mut flood = basin(&keys, 5, |_, _| 0.0).unwrap();
+        go(&mut flood, 40.0);
+        let worst = flood.wet_cells().map(|cell| (cell.depth - 1.0).abs()).fold(0.0, f64::max);
+        assert!(worst < 1.5e-3, "{side}: {worst}");
+    }
+}
+
+/// Steady flow down a rough slope, in by a discharge and out at normal depth: Manning's depth all along, and exactly the hydrograph's volume.
+#[test]
+fn normal_flow_comes_in_by_a_discharge_and_leaves_at_normal_depth() {
+    let (slope, n, q) = (0.005_f64, 0.03_f64, 0.5_f64);
+    let keys = format!(
+        "spacing_m = 1.5\nmanning = {n}\nedges = {{ west = {{ discharge = {} }}, east = {{ normal_depth = {slope} }}, south = \"wall\", north = \"wall\" }}",
+        q * 30.0
+    );
+    let mut flood = basin(&keys, 6, move |x, _| -slope * x).unwrap();
+    go(&mut flood, 400.0);
+    let depth = (q * n / slope.sqrt()).powf(0.6);
+    for cell in flood.wet_cells().filter(|cell| (8.0..58.0).contains(&cell.centroid[0])) {
+        assert!((cell.depth / depth - 1.0).abs() < 0.01, "{cell:?} {depth}");
+        // Gauges and maps see the same.
+        let sample = flood.sample(cell.centroid[0] + 0.3, cell.centroid[1] - 0.2);
+        assert!((sample.depth / depth - 1.0).abs() < 0.015, "{cell:?} {sample:?}");
+    }
+    let balance = flood.ledger().balances[0].clone();
+    assert!((balance.inflow / (q * 30.0 * 400.0) - 1.0).abs() < 1e-3 && balance.relative_error().abs() < 1e-12);
+}
+
+#[test]
+fn parts_of_a_side_have_rules_of_their_own() {
+    let keys = "spacing_m = 1.5\nedges = { west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }\n\
+                edge_part = [{ side = \"west\", from = 10, to = 20, edge = { discharge = 2 } }, \
+                { side = \"east\", from = 5, to = 12, edge = { rating = [[0, 0], [1, 4]] } }]";
+    let mut flood = basin(keys, 7, |_, _| 0.0).unwrap();
+    go(&mut flood, 1500.0);
+    let balance = flood.ledger().balances[0].clone();
+    assert!((balance.inflow - 3000.0).abs() < 5.0, "{balance:?}");
+    // Steady: the level at which the rating gives what comes in.
+    let level = flood.wet_cells().map(|cell| cell.area * cell.depth).sum::<f64>() / (66.0 * 30.0);
+    assert!((level - 0.5).abs() < 0.02, "{level}");
+}
+
+#[test]
+fn changes_while_it_runs_hold_and_are_restored() {
+    let mut flood = river();
+    go(&mut flood, 5.0);
+    flood.change(ByHand::Discharge { inflow: 0, discharge: 0.0 }).unwrap();
+    flood.change(ByHand::RainTimes(2.0)).unwrap();
+    flood.change(ByHand::EdgeLevel { side: 3, level: 7.5 }).unwrap();
+    flood.change(ByHand::Manning(0.08)).unwrap();
+    flood.place_gauge("here", [100.0, 100.0]).unwrap();
+    assert!(
+        flood.change(ByHand::Manning(-1.0)).is_err() && flood.change(ByHand::Level { stage: 9, level: 1.0 }).is_err()
+    );
+    let before = flood.ledger().balances[0].inflow;
+    go(&mut flood, 8.0);
+    let saved = flood.save();
+    let came = flood.ledger().balances[0].inflow - before;
+    let rain = 2.0 * 0.09 / 3600.0 * 300.0 * 200.0 * 3.0;
+    assert!(came > 0.9 * rain && came < 60.0, "{came} {rain}");
+    go(&mut flood, 12.0);
+    let mut resumed = river();
+    resumed.restore(&saved).unwrap();
+    go(&mut resumed, 12.0);
+    assert!(flood.save() == resumed.save());
+    assert_eq!(flood.gauge_columns().len(), resumed.gauge_columns().len());
+}
+
+#[test]
+fn bad_places_are_refused_in_words() {
+    let outside = basin(
+        &format!("spacing_m = 2\n{WALLS}inflow = [{{ name = \"far\", at = [200, 15], discharge_m3_per_s = 1 }}]"),
+        1,
+        |_, _| 0.0,
+    );
+    assert!(outside.err().unwrap().to_string().contains("'far'"));
+    let absurd = basin(&format!("spacing_m = 0.0001\n{WALLS}water = [{{ depth_m = 1 }}]"), 1, |_, _| 0.0);
+    assert!(absurd.err().unwrap().to_string().contains("spacing_m"));
+}
+
+/// Water stands only where it was put, and only its surroundings have cells.
+#[test]
+fn dry_land_has_no_cells() {
+    let text = "run.until_s = 60\nterrain.plane.extent = { length_m = 20000, width_m = 20000, cell_m = 100 }\n[flood]\n\
+                scheme = \"voronoi\"\nspacing_m = 10\nwater = [{ depth_m = 1, polygon = [[9000, 9000], [9300, 9000], [9300, 9300], [9000, 9300]] }]";
+    let mut flood = open(&parse(text));
+    assert!(flood.cells() < 20_000, "{}", flood.cells());
+    let before = flood.cells();
+    go(&mut flood, 200.0);
+    assert!(flood.cells() > before);
+    assert!(flood.ledger().balances[0].relative_error().abs() < 1e-13);
+    assert!((flood.ledger().balances[0].initial / 90_000.0 - 1.0).abs() < 1e-12);
+}

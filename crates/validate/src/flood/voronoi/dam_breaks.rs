@@ -1,0 +1,92 @@
+//! Dam breaks with exact solutions.
+
+use super::super::dam_break::{DAM, LENGTH, TIME, UPSTREAM, exact_depth};
+use super::super::{rows, strip};
+use super::{Convergence, run, settings};
+use crate::{Case, Options};
+use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
+use corpuscle_model::ModelError;
+use corpuscle_scene::Edge;
+use corpuscle_terrain::{Bounds, Terrain};
+use std::sync::Arc;
+
+pub(in super::super) const STOKER: Case = Case {
+    name: "flood/voronoi/stoker",
+    about: "Dam break onto a wet bed (Stoker 1957) by scheme voronoi: 1000 m, 10 m against 1 m, 20 s, three seeds, spacings of 1, 2 and 4 m. \
+            Peers: GeoClaw 5.14 of second order 1.1e-3 at 1 m and 4.2e-3 at 4 m, LISFLOOD-FP 8.1 FV1 3.2e-3 and 1.0e-2, \
+            ANUGA 4.1 DE1 4.3e-4 on squares of 2 m of four triangles each, scheme balanced 1.84e-3 and 6.5e-3. Bounds at 2 m and 4 m: GeoClaw and FV1 at 4 m.",
+    slow: true,
+    reduced: 1.0,
+    run: stoker,
+};
+
+pub(in super::super) const RITTER: Case = Case {
+    name: "flood/voronoi/ritter",
+    about: "Dam break onto a dry bed (Ritter 1892) by scheme voronoi: 1000 m, 10 m of water, 20 s, three seeds, spacings of 1, 2 and 4 m. \
+            Peers: GeoClaw 5.14 of second order 1.6e-3 at 1 m and 5.7e-3 at 4 m, LISFLOOD-FP 8.1 FV1 4.4e-3 and 1.2e-2, \
+            ANUGA 4.1 DE1 5.8e-4 on squares of 2 m of four triangles each, scheme balanced 1.42e-3 and 3.2e-3. Bounds at 2 m and 4 m: GeoClaw and FV1 at 4 m.",
+    slow: true,
+    reduced: 1.0,
+    run: ritter,
+};
+
+/// Width of the channel in spacings; its long sides are joined.
+const WIDTH: f64 = 8.0;
+
+/// Lines along the channel on which depths are compared.
+const LINES: usize = 8;
+
+fn stoker(_: &Options) -> Vec<crate::Row> {
+    let convergence = Convergence {
+        case: STOKER.name,
+        spacings: [
+            (1.0, "relative_l1_error_1m", 8e-4),
+            (2.0, "relative_l1_error_2m", 4.2e-3),
+            (4.0, "relative_l1_error_4m", 1.0e-2),
+        ],
+        order: ("order", 0.95),
+    };
+    rows(STOKER.name, convergence.rows(|spacing, seed| Ok(error(&broken(spacing, seed, 1.0)?, spacing, 1.0))))
+}
+
+fn ritter(_: &Options) -> Vec<crate::Row> {
+    let convergence = Convergence {
+        case: RITTER.name,
+        spacings: [
+            (1.0, "relative_l1_error_1m", 8e-4),
+            (2.0, "relative_l1_error_2m", 5.7e-3),
+            (4.0, "relative_l1_error_4m", 1.2e-2),
+        ],
+        order: ("order", 0.95),
+    };
+    rows(RITTER.name, convergence.rows(|spacing, seed| Ok(error(&broken(spacing, seed, 0.0)?, spacing, 0.0))))
+}
+
+/// The dam break at its end.
+fn broken(spacing: f64, seed: u64, downstream: f64) -> Result<VoronoiFlood, ModelError> {
+    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH * spacing };
+    let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
+    let pool = |depth: f64, from: f64, to: f64| StartWater {
+        filling: Filling::Depth(Box::new(move |_, _| depth)),
+        polygon: Some(vec![[from, -1.0], [to, -1.0], [to, bounds.y_max + 1.0], [from, bounds.y_max + 1.0]]),
+        velocity: Box::new(|_, _| [0.0; 2]),
+    };
+    let mut water = vec![pool(UPSTREAM, -1.0, DAM)];
+    if downstream > 0.0 {
+        water.push(pool(downstream, DAM, LENGTH + 1.0));
+    }
+    run(&settings(spacing, 0.0, strip(&Edge::Wall)), seed, &terrain, &water, TIME)
+}
+
+/// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
+fn error(flood: &VoronoiFlood, spacing: f64, downstream: f64) -> f64 {
+    let (mut wrong, mut right) = (0.0, 0.0);
+    for metre in 0..LENGTH as usize {
+        let x = metre as f64 + 0.5;
+        let exact = exact_depth((x - DAM) / TIME, downstream);
+        let depth = |line: usize| flood.sample(x, WIDTH * spacing * (line as f64 + 0.5) / LINES as f64).depth;
+        right += exact;
+        wrong += (0..LINES).map(|line| (depth(line) - exact).abs()).sum::<f64>() / LINES as f64;
+    }
+    wrong / right
+}

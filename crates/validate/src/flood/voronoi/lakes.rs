@@ -1,0 +1,193 @@
+//! Lakes at rest, and after waves, on rough ground.
+
+use super::super::{GRAVITY, rows};
+use super::noise::squares;
+use super::{SEEDS, advance, all_sides, set_up, settings};
+use crate::{Case, Options, Row};
+use corpuscle_flood::{Filling, StartWater, VoronoiFlood, WetCell};
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Edge, NoData, Terrain as TerrainScene, TerrainFile};
+use corpuscle_terrain::{Bounds, Terrain};
+use std::path::Path;
+use std::sync::Arc;
+
+pub(in super::super) const BLOCKS: Case = Case {
+    name: "flood/voronoi/lake-blocks",
+    about: "A lake of level 1.5 m on blocks of 6 m at heights of 0 to 3 m, particles 1.5 m apart, n 0.05, 300 s by scheme voronoi, three seeds: \
+            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers: scheme balanced comes to 0.43 m/s, a variational \
+            one to 5e-4 m/s and 4e-3 m/s after waves.",
+    slow: false,
+    reduced: 1.0,
+    run: blocks,
+};
+
+pub(in super::super) const ISLANDS: Case = Case {
+    name: "flood/voronoi/lake-islands",
+    about: "A lake between random hills that stand out of it, on a grid of 5 m, particles 4 m apart, n 0.05, 300 s by scheme voronoi, three seeds: \
+            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m.",
+    slow: false,
+    reduced: 1.0,
+    run: |_: &Options| rows(ISLANDS.name, islands()),
+};
+
+pub(in super::super) const JACKSBORO: Case = Case {
+    name: "flood/voronoi/lake-jacksboro",
+    about: "A lake of level 330 m on the Jacksboro terrain, particles 200 m and 100 m apart, n 0.05, 1800 s by scheme voronoi, three seeds: \
+            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers at 100 m: scheme balanced comes to 1.3 m/s and gains \
+            energy, a variational one to 6e-3 m/s and 1.3e-2 m/s after waves.",
+    slow: true,
+    reduced: 1.0,
+    run: jacksboro,
+};
+
+fn blocks(options: &Options) -> Vec<Row> {
+    let Some(data) = &options.data else { return vec![Row::without_data(BLOCKS.name, options)] };
+    let lake = || {
+        Lake { case: BLOCKS.name, level: 1.5, spacing: 1.5, time: 300.0 }
+            .rows(&file(&data.join("blocks/blocks.asc"))?, "")
+    };
+    rows(BLOCKS.name, lake())
+}
+
+fn jacksboro(options: &Options) -> Vec<Row> {
+    let Some(data) = &options.data else { return vec![Row::without_data(JACKSBORO.name, options)] };
+    let lakes = || {
+        let terrain = file(&data.join("jacksboro/dem.tif"))?;
+        let lake = |spacing| Lake { case: JACKSBORO.name, level: 330.0, spacing, time: 1800.0 };
+        let mut rows = lake(200.0).rows(&terrain, "_200m")?;
+        rows.extend(lake(100.0).rows(&terrain, "_100m")?);
+        Ok(rows)
+    };
+    rows(JACKSBORO.name, lakes())
+}
+
+fn islands() -> Result<Vec<Row>, ModelError> {
+    let bounds = Bounds { x_min: 0.0, x_max: 200.0, y_min: 0.0, y_max: 160.0 };
+    // From the bottom of the lake up to as much above it.
+    let [hills, rough] = [squares(20.0, 11), squares(5.0, 12)];
+    let terrain = Terrain::gridded(bounds, 5.0, |x, y| 4.0 * hills(x, y) + 2.0 * rough(x, y));
+    Lake { case: ISLANDS.name, level: 1.0, spacing: 4.0, time: 300.0 }.rows(&Arc::new(terrain), "")
+}
+
+fn file(path: &Path) -> Result<Arc<Terrain>, ModelError> {
+    let ground = TerrainFile { path: path.into(), crs: None, no_data: NoData::Wall };
+    let terrain = Terrain::open(&TerrainScene::File(ground), 0, Path::new("."));
+    terrain.map(Arc::new).map_err(|error| ModelError::Setup(error.to_string()))
+}
+
+/// Times within a run at which its energy is looked at.
+const LOOKS: usize = 60;
+
+struct Lake {
+    case: &'static str,
+    /// m.
+    level: f64,
+    spacing: f64,
+    /// s.
+    time: f64,
+}
+
+/// What stirs a lake.
+#[derive(Clone, Copy)]
+enum Stir {
+    Nothing,
+    /// Velocities up to so many m/s.
+    Velocity(f64),
+    /// Heights of the surface up to so many m.
+    Surface(f64),
+}
+
+/// A lake at its end.
+struct Settled {
+    /// m/s.
+    rms: f64,
+    /// Farthest level of a cell from the lake's, m.
+    level: f64,
+    /// Most energy beyond that at the start, over the latter, at any look.
+    gained: f64,
+}
+
+impl Lake {
+    fn rows(&self, terrain: &Arc<Terrain>, suffix: &str) -> Result<Vec<Row>, ModelError> {
+        let worst = |stir: Stir| {
+            let mut worst = Settled { rms: 0.0, level: 0.0, gained: f64::NEG_INFINITY };
+            for seed in SEEDS {
+                let settled = self.settle(terrain, seed, stir)?;
+                worst.rms = worst.rms.max(settled.rms);
+                worst.level = worst.level.max(settled.level);
+                worst.gained = worst.gained.max(settled.gained);
+            }
+            Ok::<Settled, ModelError>(worst)
+        };
+        let row = |measure: &str, value, unit, bound| {
+            Row::at_most(self.case, &format!("{measure}{suffix}"), value, unit, bound)
+        };
+        let still = worst(Stir::Nothing)?;
+        let stirred = worst(Stir::Velocity(1e-6))?;
+        let waves = worst(Stir::Surface(0.2))?;
+        Ok(vec![
+            row("level_undisturbed", still.level, "m", 1e-9),
+            row("rms_speed_undisturbed", still.rms, "m/s", 1e-9),
+            row("rms_speed_stirred", stirred.rms, "m/s", 1e-3),
+            row("energy_gained_stirred", stirred.gained, "", 0.0),
+            row("rms_speed_after_waves", waves.rms, "m/s", 1e-3),
+            row("energy_gained_after_waves", waves.gained, "", 0.0),
+        ])
+    }
+
+    fn settle(&self, terrain: &Arc<Terrain>, seed: u64, stir: Stir) -> Result<Settled, ModelError> {
+        let noise = [1, 2, 3].map(|k| squares(self.spacing, 10 * seed + k));
+        let level = self.level;
+        let [surface, velocity] = match stir {
+            Stir::Nothing => [0.0; 2],
+            Stir::Velocity(most) => [0.0, most],
+            Stir::Surface(most) => [most, 0.0],
+        };
+        let settings = settings(self.spacing, 0.05, all_sides(&Edge::Wall));
+        let lake = |surface: f64, velocity: f64| {
+            let water = StartWater {
+                filling: Filling::Level(Box::new(move |x, y| level + surface * noise[0](x, y))),
+                polygon: None,
+                velocity: Box::new(move |x, y| [noise[1], noise[2]].map(|noise| velocity * noise(x, y))),
+            };
+            set_up(&settings, seed, terrain, &[water])
+        };
+        let below = energy_below(&lake(0.0, 0.0)?, level);
+        let mut flood = lake(surface, velocity)?;
+        let energy = |flood: &VoronoiFlood| energy_above(flood, level) + (below - energy_below(flood, level));
+        let start = energy(&flood);
+        let mut most = f64::NEG_INFINITY;
+        for look in 1..=LOOKS {
+            advance(&mut flood, self.time * look as f64 / LOOKS as f64)?;
+            most = most.max(energy(&flood));
+        }
+        let (mut moving, mut volume, mut farthest) = (0.0, 0.0, 0.0_f64);
+        for cell in flood.wet_cells() {
+            let [u, v] = cell.velocity;
+            moving += cell.area * cell.depth * (u * u + v * v);
+            volume += cell.area * cell.depth;
+            farthest = farthest.max((cell.bed + cell.depth - level).abs());
+        }
+        let gained = if start > 0.0 { most / start - 1.0 } else { 0.0 };
+        Ok(Settled { rms: (moving / volume).sqrt(), level: farthest, gained })
+    }
+}
+
+/// Energy that a lake at rest at a level, m, has not, J: kinetic, and potential of the surface above or below the level and of water on ground above it;
+/// without that of dry cells that the lake would cover.
+fn energy_above(flood: &VoronoiFlood, level: f64) -> f64 {
+    let energy = |cell: WetCell| {
+        let [u, v] = cell.velocity;
+        let ground = cell.bed - level;
+        let surface = ground + cell.depth;
+        let raised = if ground > 0.0 { cell.depth * (cell.depth + 2.0 * ground) } else { surface * surface };
+        500.0 * cell.area * (cell.depth * (u * u + v * v) + GRAVITY * raised)
+    };
+    flood.wet_cells().map(energy).sum()
+}
+
+/// Energy that it takes to empty the wet cells below a level, m, with the lake at that level, J.
+fn energy_below(flood: &VoronoiFlood, level: f64) -> f64 {
+    let lake = flood.wet_cells().filter(|cell| cell.bed < level);
+    lake.map(|cell| 500.0 * GRAVITY * cell.area * (level - cell.bed).powi(2)).sum()
+}
