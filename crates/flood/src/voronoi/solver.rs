@@ -1,14 +1,14 @@
-//! A step of the water: two identical stages, averaged (Heun's method). Each stage is four passes: slopes of cells, fluxes through faces, how much each
-//! cell can give, and the new columns.
+//! A step of the water: two identical stages, averaged (Heun's method). Each stage is three passes: slopes of cells, fluxes through faces, and the
+//! new columns. Where a face takes much of a cell's water two more come between: how much each cell can give, and the fluxes once more.
 //!
 //! Cells and faces are gone through in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
 //! faces bring in the order of its links, so that the result does not depend on the number of threads.
 
-use super::boundaries::{Now, through};
-use super::fluxes::{Flux, between};
+use super::boundaries::Now;
+use super::fluxes::{Flux, Inputs, OnFaces, fluxes_of_chunk};
 use super::friction::Slowing;
-use super::mesh::{Crest, Face, Mesh, NONE, SOLID};
-use super::reconstruction::{at_face, at_side, at_wall, slopes};
+use super::mesh::{Crest, Mesh, NONE};
+use super::reconstruction::slopes;
 use super::water::{Column, Slopes, Water};
 use corpuscle_lanes::{Level, Simd, dispatch};
 use corpuscle_model::ExactSum;
@@ -34,6 +34,8 @@ pub(crate) struct Solver {
     before: Vec<Column>,
     fluxes: Vec<Flux>,
     kept: Vec<f32>,
+    /// The largest number of faces of a cell.
+    most_faces: usize,
     /// Walls that water may flow over, and the cells on both sides.
     pub crests: Vec<([u32; 2], Crest)>,
     /// Faces on borders.
@@ -58,8 +60,9 @@ struct Chunks {
     open: Vec<bool>,
     /// What the passes found in each chunk.
     found: Vec<Found>,
-    on_faces: Vec<[f64; 2]>,
-    /// Whether all cells of each chunk have the water for their outflow.
+    on_faces: Vec<OnFaces>,
+    /// Whether some cell of each chunk may lack the water for its outflow; and whether all were found to have it, `kept` being 1 for all.
+    may_drain: Vec<bool>,
     all_kept: Vec<bool>,
 }
 
@@ -109,6 +112,7 @@ impl Solver {
             before: Vec::new(),
             fluxes: Vec::new(),
             kept: Vec::new(),
+            most_faces: 0,
             crests: Vec::new(),
             borders: Vec::new(),
             brings,
@@ -121,6 +125,8 @@ impl Solver {
     /// Has room for the cells and faces that were added to the mesh; new cells are dry.
     pub fn grow(&mut self) {
         let (first_face, faces, cells) = (self.fluxes.len(), self.mesh.faces.len(), self.mesh.len());
+        let counts = (self.columns.len()..cells).map(|cell| self.mesh.links_of(cell).len());
+        self.most_faces = counts.fold(self.most_faces, usize::max);
         let dry = |cell: usize| Water { level: self.mesh.bed[cell], ..Water::default() };
         self.water.extend((self.water.len()..cells).map(dry));
         self.columns.resize(cells, Column::default());
@@ -181,7 +187,7 @@ impl Solver {
     /// A cell whose fluxes are no numbers.
     pub fn broken_cell(&self) -> Option<usize> {
         (0..self.mesh.len()).find(|&cell| {
-            let change = gathered(&self.mesh, &self.fluxes, &self.kept, cell);
+            let change = gathered(&self.mesh, &self.fluxes, cell);
             !(change.volume + change.momentum[0] + change.momentum[1]).is_finite()
         })
     }
@@ -239,8 +245,7 @@ impl Solver {
         for stage in 0..2 {
             self.chunks.activate(stage == 1);
             self.find_slopes();
-            let by_ground = self.find_fluxes(&|border| boundaries(stage, border));
-            self.find_kept(step);
+            let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
             self.pass_borders(step, passed);
             let slowed = self.update(step, stage == 1);
             for axis in 0..2 {
@@ -259,60 +264,55 @@ impl Solver {
         });
     }
 
-    /// Finds the flux through each face; the force of the ground on all the water over density, m4/s2.
-    fn find_fluxes(&mut self, boundaries: &(impl Fn(usize) -> Now + Sync)) -> [f64; 2] {
-        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, .. } = self;
-        let (gravity, active, were_active) = (*gravity, &chunks.active_faces, &chunks.were_active);
-        let find = |(chunk, fluxes): (usize, &mut [Flux])| {
-            let mut ground = [0.0; 2];
-            if !active[chunk] {
+    /// Finds the flux through each face for a step of `step` s; the force of the ground on all the water over density, m4/s2.
+    fn find_fluxes(&mut self, step: f64, boundaries: &(impl Fn(usize) -> Now + Sync)) -> [f64; 2] {
+        self.for_active_faces(step, false, boundaries);
+        if self.chunks.find_draining() {
+            self.find_kept(step);
+            self.for_active_faces(step, true, boundaries);
+        }
+        sum(self.chunks.on_faces.iter().map(|found| &found.by_ground))
+    }
+
+    /// Finds the fluxes of the faces in active chunks; where `draining` holds, only of those beside a cell that lacks the water for its outflow, with
+    /// what it has.
+    fn for_active_faces(&mut self, step: f64, draining: bool, boundaries: &(impl Fn(usize) -> Now + Sync)) {
+        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, .. } = self;
+        let outflow_time = step * (*most_faces as f64);
+        let kept = draining.then_some(&kept[..]);
+        let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time };
+        let Chunks { active_faces, were_active, all_kept, cells_of_faces, on_faces, .. } = chunks;
+        let find = |(chunk, (fluxes, found)): (usize, (&mut [Flux], &mut OnFaces))| {
+            if !active_faces[chunk] {
+                *found = OnFaces::default();
                 if were_active[chunk] {
                     fluxes.fill(Flux::default());
                 }
-                return ground;
+            } else if !draining || cells_of_faces[chunk].iter().any(|cells| !all_kept[*cells as usize]) {
+                *found =
+                    dispatch!(Level::new(), simd => fluxes_of_chunk(simd, &inputs, boundaries, chunk * CHUNK, fluxes));
             }
-            let inputs = Inputs { mesh, water, slopes, borders, gravity };
-            dispatch!(Level::new(), simd => fluxes_of_chunk(simd, &inputs, boundaries, chunk * CHUNK, fluxes, &mut ground));
-            ground
         };
-        fluxes.par_chunks_mut(CHUNK).enumerate().map(find).collect_into_vec(&mut chunks.on_faces);
-        sum(chunks.on_faces.iter())
+        fluxes.par_chunks_mut(CHUNK).zip(on_faces).enumerate().for_each(find);
     }
 
-    /// Finds what part of the outflow of each cell it has the water for.
+    /// Finds what part of the outflow of each cell it has the water for, in chunks where some cell may lack it.
     fn find_kept(&mut self, step: f64) {
         let Self { mesh, columns, fluxes, kept, chunks, .. } = self;
-        let wet = &chunks.wet;
-        let find = |(chunk, kept): (usize, &mut [f32])| {
-            let mut all = true;
-            if !wet[chunk] {
-                return all;
+        let Chunks { may_drain, all_kept, .. } = chunks;
+        let find = |(chunk, (kept, all_kept)): (usize, (&mut [f32], &mut bool))| {
+            if !*all_kept {
+                kept.fill(1.0);
             }
-            for (k, kept) in kept.iter_mut().enumerate() {
-                let cell = chunk * CHUNK + k;
-                let volume = columns[cell].volume;
-                *kept = 1.0;
-                if volume <= 0.0 {
-                    continue;
-                }
-                let out = |link: &super::mesh::Link| {
-                    if link.face == NONE {
-                        return 0.0;
-                    }
-                    let volume = fluxes[link.face as usize].volume;
-                    let is_first = mesh.faces[link.face as usize].cells[0] == cell as u32;
-                    if is_first { volume.max(0.0) } else { (-volume).max(0.0) }
-                };
-                let outflow = step * mesh.links_of(cell).iter().map(out).sum::<f64>();
-                if outflow > volume {
-                    // Rounded down: single precision must not take more than there is.
-                    *kept = ((volume / outflow) as f32).next_down().max(0.0);
-                    all = false;
+            *all_kept = true;
+            if may_drain[chunk] {
+                for (k, kept) in kept.iter_mut().enumerate() {
+                    *kept = kept_of_cell(mesh, fluxes, columns[chunk * CHUNK + k].volume, chunk * CHUNK + k, step);
+                    *all_kept &= *kept == 1.0;
                 }
             }
-            all
         };
-        kept.par_chunks_mut(CHUNK).enumerate().map(find).collect_into_vec(&mut chunks.all_kept);
+        kept.par_chunks_mut(CHUNK).zip(all_kept).enumerate().for_each(find);
     }
 
     /// Tells what passes the faces on borders in half of `step` s.
@@ -324,14 +324,13 @@ impl Solver {
             if self.water[cell].depth <= 0.0 && flux.volume == 0.0 {
                 continue;
             }
-            let kept = if flux.volume > 0.0 { f64::from(self.kept[cell]) } else { 1.0 };
             let depth = self.water[cell].depth;
-            // The cell's own thrust is left out: round the cell it comes to nothing.
-            let thrust = flux.thrust[0] + 0.5 * self.gravity * depth * depth;
             let half = 0.5 * step;
-            let momentum = [0, 1].map(|axis| half * (kept * flux.carried[axis] + thrust * face.normal[axis]));
-            let volume = half * kept * flux.volume;
-            let [p, q] = flux.carried;
+            // The cell's own thrust is left out: round the cell it comes to nothing.
+            let own = 0.5 * self.gravity * depth * depth;
+            let momentum = [0, 1].map(|axis| half * (own * face.normal[axis] - flux.momentum[0][axis]));
+            let volume = half * flux.volume;
+            let [p, q] = flux.momentum[1];
             let speed_squared = if flux.volume == 0.0 { 0.0 } else { (p * p + q * q) / (flux.volume * flux.volume) };
             let energy = volume * (self.gravity * self.water[cell].level + 0.5 * speed_squared);
             passed(number, Passed { volume, momentum, energy });
@@ -341,9 +340,8 @@ impl Solver {
     /// Gives each cell what its faces bring in `step` s and slows it; in the second stage averages with the columns before the step. The change of
     /// momentum by friction, over density, m4/s.
     fn update(&mut self, step: f64, second: bool) -> [f64; 2] {
-        let Self { mesh, columns, before, water, fluxes, kept, chunks, slowing, gravity, .. } = self;
+        let Self { mesh, columns, before, water, fluxes, chunks, slowing, gravity, .. } = self;
         let (gravity, active) = (*gravity, &chunks.active_cells);
-        let kept: &[f32] = if chunks.all_kept.iter().all(|all| *all) { &[] } else { kept };
         let update = |(chunk, ((columns, before), water)): (usize, Cells)| {
             let mut found = NOTHING;
             if !active[chunk] {
@@ -351,7 +349,7 @@ impl Solver {
             }
             for (k, (column, water)) in columns.iter_mut().zip(water).enumerate() {
                 let cell = chunk * CHUNK + k;
-                let change = gathered(mesh, fluxes, kept, cell);
+                let change = gathered(mesh, fluxes, cell);
                 found.broken |= !(change.volume + change.momentum[0] + change.momentum[1]).is_finite();
                 if column.volume > 0.0 || change.volume != 0.0 {
                     column.volume = (column.volume + step * change.volume).max(0.0);
@@ -405,41 +403,33 @@ impl Found {
     }
 }
 
-/// Change of a cell's column, a second. `kept` is empty where all cells have the water for their outflow.
+/// Change of a cell's column, a second.
 #[inline(always)]
-fn gathered(mesh: &Mesh, fluxes: &[Flux], kept: &[f32], cell: usize) -> Column {
+fn gathered(mesh: &Mesh, fluxes: &[Flux], cell: usize) -> Column {
     let mut change = Column::default();
-    for link in mesh.links_of(cell) {
-        if link.face == NONE {
-            continue;
-        }
-        let (face, flux) = (&mesh.faces[link.face as usize], &fluxes[link.face as usize]);
-        let (side, sign) = if face.cells[0] == cell as u32 { (0, -1.0) } else { (1, 1.0) };
-        let kept = if kept.is_empty() {
-            1.0
-        } else {
-            let donor = face.cells[usize::from(flux.volume <= 0.0)];
-            kept.get(donor as usize).map_or(1.0, |kept| f64::from(*kept))
-        };
-        change.volume += sign * kept * flux.volume;
-        for axis in 0..2 {
-            change.momentum[axis] += sign * (kept * flux.carried[axis] + flux.thrust[side] * face.normal[axis]);
-        }
+    for link in mesh.links_of(cell).iter().filter(|link| link.face != NONE) {
+        let (flux, side) = (&fluxes[link.face as usize], link.side(cell));
+        change.volume += if side == 0 { -flux.volume } else { flux.volume };
+        (0..2).for_each(|axis| change.momentum[axis] += flux.momentum[side][axis]);
     }
     change
 }
 
+/// What part of its outflow in `step` s a cell with a volume, m3, has the water for.
+#[inline(always)]
+fn kept_of_cell(mesh: &Mesh, fluxes: &[Flux], volume: f64, cell: usize, step: f64) -> f32 {
+    let links = mesh.links_of(cell).iter().filter(|link| link.face != NONE);
+    let out = links.map(|link| {
+        let volume = fluxes[link.face as usize].volume;
+        if link.side(cell) == 0 { volume.max(0.0) } else { (-volume).max(0.0) }
+    });
+    let outflow = step * out.sum::<f64>();
+    // Rounded down: single precision must not take more than there is.
+    if outflow > volume { ((volume / outflow) as f32).next_down().max(0.0) } else { 1.0 }
+}
+
 /// Columns of a chunk, the same before the step, and their water.
 type Cells<'a> = ((&'a mut [Column], &'a [Column]), &'a mut [Water]);
-
-/// What fluxes are found from.
-struct Inputs<'a> {
-    mesh: &'a Mesh,
-    water: &'a [Water],
-    slopes: &'a [Slopes],
-    borders: &'a [u32],
-    gravity: f64,
-}
 
 /// Slopes of the wet cells from `first` on. Inlined into versions of itself for the vector instructions at hand.
 #[inline(always)]
@@ -449,70 +439,6 @@ fn slopes_of_chunk<S: Simd>(_: S, mesh: &Mesh, water: &[Water], first: usize, of
             *of_cell = slopes(mesh, &|cell: usize| water[cell], first + k);
         }
     }
-}
-
-/// Fluxes through the faces from `first` on; adds the force of the ground to `ground`.
-#[inline(always)]
-fn fluxes_of_chunk<S: Simd>(
-    simd: S,
-    inputs: &Inputs,
-    boundaries: &impl Fn(usize) -> Now,
-    first: usize,
-    fluxes: &mut [Flux],
-    ground: &mut [f64; 2],
-) {
-    let faces = inputs.mesh.faces[first..].iter();
-    for (k, (flux, face)) in fluxes.iter_mut().zip(faces).enumerate() {
-        let number = first + k;
-        if face.border().is_some() {
-            let border = || boundaries(inputs.borders.binary_search(&(number as u32)).unwrap_or(0));
-            border_flux(simd, inputs, face, border, flux);
-        } else {
-            let pushed = inner_flux(simd, inputs, face, inputs.mesh.lift_of(number), flux);
-            ground[0] += pushed * face.normal[0];
-            ground[1] += pushed * face.normal[1];
-        }
-    }
-}
-
-/// The flux between two cells; the ground's thrust over the length of the face.
-#[inline(always)]
-fn inner_flux<S: Simd>(simd: S, inputs: &Inputs, face: &Face, lift: f64, flux: &mut Flux) -> f64 {
-    let Inputs { water, slopes, gravity, .. } = *inputs;
-    let [i, j] = face.cells.map(|cell| cell as usize);
-    let (here, there) = (&water[i], &water[j]);
-    if here.depth <= 0.0 && there.depth <= 0.0 {
-        *flux = Flux::default();
-        return 0.0;
-    }
-    let length = (face.normal[0] * face.normal[0] + face.normal[1] * face.normal[1]).sqrt();
-    let normal = [face.normal[0] / length, face.normal[1] / length];
-    let at = at_face(simd, [here, there], [&slopes[i], &slopes[j]], lift, face, normal);
-    let own = [[here.depth, here.level], [there.depth, there.level + lift]];
-    let found = between(at, own, gravity);
-    *flux = found.through(length, normal);
-    let half = 0.5 * gravity;
-    (found.thrust[1] + half * there.depth * there.depth) - (found.thrust[0] + half * here.depth * here.depth)
-}
-
-/// The flux out of a cell over a border.
-#[inline(always)]
-fn border_flux<S: Simd>(simd: S, inputs: &Inputs, face: &Face, boundary: impl FnOnce() -> Now, flux: &mut Flux) {
-    let cell = face.cells[0] as usize;
-    let here = &inputs.water[cell];
-    let now = if face.border() == Some(SOLID) { Now::Wall } else { boundary() };
-    if here.depth <= 0.0 && !matches!(now, Now::Beyond(..) | Now::Discharge(_)) {
-        *flux = Flux::default();
-        return;
-    }
-    let length = (face.normal[0] * face.normal[0] + face.normal[1] * face.normal[1]).sqrt();
-    let [nx, ny] = [face.normal[0] / length, face.normal[1] / length];
-    let at = if matches!(now, Now::Wall) {
-        at_wall(simd, here, &inputs.slopes[cell], face, [nx, ny])
-    } else {
-        at_side(here, [nx, ny])
-    };
-    *flux = through(now, at, [here.depth, here.level], inputs.gravity).through(length, [nx, ny]);
 }
 
 impl Chunks {
@@ -526,7 +452,9 @@ impl Chunks {
         self.active_faces.resize(faces, false);
         self.were_active.resize(faces, false);
         self.open.resize(faces, false);
-        self.on_faces.resize(faces, [0.0; 2]);
+        self.on_faces.resize(faces, OnFaces::default());
+        self.may_drain.resize(cells, false);
+        self.all_kept.resize(cells, true);
         self.cells_of_faces.resize(faces, Vec::new());
         for (number, face) in mesh.faces.iter().enumerate().skip(first_face) {
             let of_face = number / CHUNK;
@@ -537,6 +465,19 @@ impl Chunks {
                 insert(&mut self.faces_of_cells[of_cell], of_face as u32);
             }
         }
+    }
+
+    /// Marks the chunks of cells beside faces that take much of a cell's water; whether there are any.
+    fn find_draining(&mut self) -> bool {
+        let Self { may_drain, on_faces, cells_of_faces, .. } = self;
+        if !on_faces.iter().any(|found| found.may_drain) {
+            return false;
+        }
+        may_drain.fill(false);
+        for (_, cells) in on_faces.iter().zip(cells_of_faces).filter(|(found, _)| found.may_drain) {
+            cells.iter().for_each(|cell| may_drain[*cell as usize] = true);
+        }
+        true
     }
 
     /// Marks the chunks of faces that touch water, or a border over which some may come, and those of cells that touch them. In the second stage

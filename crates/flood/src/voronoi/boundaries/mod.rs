@@ -6,7 +6,7 @@ mod state;
 pub(crate) use open::Boundaries;
 pub(crate) use state::state;
 
-use super::fluxes::{Crossing, Side, hll, own_thrust};
+use super::fluxes::{Crossing, own_thrust_at_border};
 use super::reconstruction::AtFace;
 use corpuscle_scene::Table;
 
@@ -64,14 +64,12 @@ pub(crate) struct AtBoundary {
     pub across: f64,
 }
 
-/// The flux out of a cell through a boundary face of unit length; `own` are depth and level of the cell.
+/// What passes a border face of unit length; `own` are depth and level of the cell.
 #[inline]
 pub(crate) fn through(now: Now, at: AtFace, own: [f64; 2], gravity: f64) -> Crossing {
-    let pushed = own_thrust(&at, own, at.depth, 0.0, gravity);
+    let pushed = own_thrust_at_border(&at, own, gravity);
     if let Now::Wall = now {
-        let side = Side { depth: at.depth, across: at.across };
-        let [_, momentum] = hll(side, Side { across: -at.across, ..side }, gravity);
-        return Crossing { volume: 0.0, carried: [0.0; 2], thrust: [momentum + pushed, 0.0] };
+        return Crossing { thrust: thrust_on_wall(&at, gravity) + pushed, ..Crossing::default() };
     }
     let AtBoundary { depth, across } = state(now, &at, gravity);
     let along = if across > 0.0 { at.along } else { 0.0 };
@@ -81,7 +79,16 @@ pub(crate) fn through(now: Now, at: AtFace, own: [f64; 2], gravity: f64) -> Cros
         _ => depth * across,
     };
     let carried = [volume * across, volume * along];
-    Crossing { volume, carried, thrust: [0.5 * gravity * depth * depth + pushed, 0.0] }
+    Crossing { volume, carried, thrust: 0.5 * gravity * depth * depth + pushed }
+}
+
+/// Thrust on a wall over density, m3/s2: the flux of Harten, Lax & van Leer between the water and its mirror image, whose wave speeds are
+/// u - c and, from the two-rarefaction state, c + u/2 (Toro 2001, equation 10.18).
+fn thrust_on_wall(at: &AtFace, gravity: f64) -> f64 {
+    let AtFace { depth, across, .. } = *at;
+    let celerity = (gravity * depth).sqrt();
+    let fastest = (celerity - across).max(celerity + 0.5 * across);
+    depth * across * (across + fastest) + 0.5 * gravity * depth * depth
 }
 
 #[cfg(test)]
@@ -94,7 +101,7 @@ mod tests {
         for now in [Now::Wall, Now::Open(3.0), Now::Beyond(3.0, 0.0), Now::Discharge(0.0)] {
             let flux = through(now, at, [2.0, 3.0], 9.81);
             assert!(
-                flux.volume.abs() < 1e-14 && flux.carried[0].abs() < 1e-14 && flux.thrust[0].abs() < 1e-13,
+                flux.volume.abs() < 1e-14 && flux.carried[0].abs() < 1e-14 && flux.thrust.abs() < 1e-13,
                 "{now:?} {flux:?}"
             );
         }

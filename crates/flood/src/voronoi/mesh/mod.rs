@@ -73,6 +73,12 @@ impl Link {
     pub fn cell(&self) -> Option<usize> {
         (self.neighbour < FIRST_BORDER).then_some(self.neighbour as usize)
     }
+
+    /// Which of the face's cells `cell`, whose link it is, is: a face is made with the later of its cells, which is its first.
+    #[inline]
+    pub fn side(&self, cell: usize) -> usize {
+        usize::from(self.cell().is_some_and(|other| other > cell))
+    }
 }
 
 /// What a mesh needs to know of the ground.

@@ -21,8 +21,8 @@ pub(crate) struct AtFace {
 
 /// Differences of depth and level from `here` to a neighbour whose bed and level stand `lift` higher. Films on ground above the level here do not
 /// raise or lower its slope.
-#[inline]
-fn differences(here: &Water, there: &Water, lift: f64) -> [f64; 2] {
+#[inline(always)]
+pub(crate) fn differences(here: &Water, there: &Water, lift: f64) -> [f64; 2] {
     let depth = there.depth - here.depth;
     let level = there.level + lift - here.level;
     if level > there.depth {
@@ -66,7 +66,7 @@ fn lift_seen(mesh: &Mesh, link: &Link, cell: usize) -> f64 {
         return 0.0;
     }
     let lift = mesh.lift[link.face as usize];
-    if mesh.faces[link.face as usize].cells[0] == cell as u32 { lift } else { -lift }
+    if link.side(cell) == 0 { lift } else { -lift }
 }
 
 /// Difference of the velocity to that of the mirror image behind a wall, m/s.
@@ -100,62 +100,73 @@ fn limit<S: Simd>(simd: S, a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
     (a * b).simd_gt(zero).select(signed, zero)
 }
 
-/// Keeps the change of the depth to the depth itself. On rough ground what is too much is taken off the level too: otherwise waves on a lake
-/// grow there.
-#[inline]
-fn bound_depth(here: &Water, lift: f64, face: &mut AtFace) {
-    let change = face.depth - here.depth;
-    if change.abs() > here.depth {
-        let kept = here.depth.copysign(change);
-        let rise = face.level - (here.level + lift);
-        let of_bed = rise - change;
-        let share = rise * rise / (rise * rise + of_bed * of_bed + 1e-300);
-        face.level -= share * (change - kept);
-        face.depth = here.depth + kept;
-    }
-    face.depth = face.depth.max(0.0);
+/// Eight faces between cells, a lane each, and the cells on both sides. The second is as the first sees it.
+pub(crate) struct Faces<S: Simd> {
+    /// Depth and level, m, and velocity east- and northwards, m/s, of the cells.
+    pub water: [[Lanes<S>; 4]; 2],
+    /// Their slopes along x and along y.
+    pub slopes: [[[Lanes<S>; 4]; 2]; 2],
+    /// Difference of depth and level from each cell to the other (see [`differences`]), m.
+    pub differences: [[Lanes<S>; 2]; 2],
+    /// Unit normal from the first cell to the second.
+    pub normal: [Lanes<S>; 2],
+    /// From the first cell's centroid to the second's, m.
+    pub between: [Lanes<S>; 2],
+    /// From the middle between the two centroids to the middle of the face, m.
+    pub offset: [Lanes<S>; 2],
 }
 
-/// The water at a face between two cells as each sees it, at the level of the first cell, with the unit normal `normal`. Both sides and their
-/// four quantities are worked out in eight lanes.
+/// Water at eight faces as one side sees it: see [`AtFace`].
+#[derive(Clone, Copy)]
+pub(crate) struct AtFaces<S: Simd> {
+    pub depth: Lanes<S>,
+    pub level: Lanes<S>,
+    pub across: Lanes<S>,
+    pub along: Lanes<S>,
+}
+
+impl<S: Simd> Faces<S> {
+    /// The water at the faces as each side sees it.
+    #[inline(always)]
+    pub fn at(&self, simd: S) -> [AtFaces<S>; 2] {
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        let wet_a = self.water[0][DEPTH].simd_gt(zero).select(one, zero);
+        let wet_b = self.water[1][DEPTH].simd_gt(zero).select(one, zero);
+        let both = wet_a * wet_b;
+        [self.seen_from(simd, 0, wet_a, both), self.seen_from(simd, 1, wet_b, both)]
+    }
+
+    /// What one side sees; `wet` and `both` are 1 where it, or both, have water, and 0 elsewhere.
+    #[inline(always)]
+    fn seen_from(&self, simd: S, side: usize, wet: Lanes<S>, both: Lanes<S>) -> AtFaces<S> {
+        let (own, other, differences) = (&self.water[side], &self.water[1 - side], &self.differences[side]);
+        let deeper = wet * self.change(simd, side, DEPTH, differences[DEPTH]);
+        let higher = wet * self.change(simd, side, LEVEL, differences[LEVEL]);
+        let [depth, level] = bounded(own, deeper, higher);
+        let u = own[EAST] + both * self.change(simd, side, EAST, both * (other[EAST] - own[EAST]));
+        let v = own[NORTH] + both * self.change(simd, side, NORTH, both * (other[NORTH] - own[NORTH]));
+        let [nx, ny] = self.normal;
+        AtFaces { depth, level, across: u * nx + v * ny, along: v * nx - u * ny }
+    }
+
+    /// Change of a quantity from the centroid of one side to the faces.
+    #[inline(always)]
+    fn change(&self, simd: S, side: usize, quantity: usize, difference: Lanes<S>) -> Lanes<S> {
+        let (x, y) = (self.slopes[side][0][quantity], self.slopes[side][1][quantity]);
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        let whole = (x * self.between[0] + y * self.between[1]) * sign;
+        changes(simd, difference, whole, x * self.offset[0] + y * self.offset[1])
+    }
+}
+
+/// Keeps the change of the depth to the depth itself. On rough ground what is too much is taken off the level too: otherwise waves on a lake
+/// grow there.
 #[inline(always)]
-pub(crate) fn at_face<S: Simd>(
-    simd: S,
-    [here, there]: [&Water; 2],
-    slopes: [&Slopes; 2],
-    lift: f64,
-    face: &Face,
-    [nx, ny]: [f64; 2],
-) -> [AtFace; 2] {
-    let both = if here.depth > 0.0 && there.depth > 0.0 { 1.0 } else { 0.0 };
-    let east = both * (there.velocity[0] - here.velocity[0]);
-    let north = both * (there.velocity[1] - here.velocity[1]);
-    let [depth, level] = if here.depth > 0.0 { differences(here, there, lift) } else { [0.0; 2] };
-    let [depth_back, level_back] = if there.depth > 0.0 { differences(there, here, -lift) } else { [0.0; 2] };
-    let difference = Lanes::simd_from(simd, [depth, level, east, north, depth_back, level_back, -east, -north]);
-    let of_axis = |axis: usize| -> Lanes<S> {
-        let lanes: [f64; 8] = std::array::from_fn(|k| f64::from(slopes[k / 4][4 * axis + k % 4]));
-        Lanes::simd_from(simd, lanes)
-    };
-    let (along_x, along_y) = (of_axis(0), of_axis(1));
-    let sign = Lanes::simd_from(simd, [1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0]);
-    let [between, offset] = [face.between, face.offset].map(|[x, y]| [f64::from(x), f64::from(y)]);
-    let whole = (along_x * between[0] + along_y * between[1]) * sign;
-    let along = along_x * offset[0] + along_y * offset[1];
-    let change: [f64; 8] = changes(simd, difference, whole, along).into();
-    let side = |own: &Water, lift: f64, change: &[f64]| {
-        let mut at = AtFace { depth: own.depth, level: own.level + lift, ..AtFace::default() };
-        if own.depth > 0.0 {
-            at.depth += change[DEPTH];
-            at.level += change[LEVEL];
-            bound_depth(own, lift, &mut at);
-        }
-        let velocity = [own.velocity[0] + both * change[EAST], own.velocity[1] + both * change[NORTH]];
-        at.across = velocity[0] * nx + velocity[1] * ny;
-        at.along = velocity[1] * nx - velocity[0] * ny;
-        at
-    };
-    [side(here, 0.0, &change[..4]), side(there, lift, &change[4..])]
+fn bounded<S: Simd>(own: &[Lanes<S>; 4], deeper: Lanes<S>, higher: Lanes<S>) -> [Lanes<S>; 2] {
+    let kept = deeper.max(-own[DEPTH]).min(own[DEPTH]);
+    let of_bed = higher - deeper;
+    let share = higher * higher / (higher * higher + of_bed * of_bed + 1e-300);
+    [(own[DEPTH] + kept).max(0.0), own[LEVEL] + (higher - share * (deeper - kept))]
 }
 
 /// The water at a wall as its cell sees it: level and depth are the cell's, the velocity goes towards that of its mirror image.
