@@ -66,10 +66,11 @@ fn block_between<S: Simd>(
     fluxes: &mut [Flux],
     by_ground: &mut [Lanes<S>; 2],
 ) -> bool {
-    let Some(block) = Block::gather(inputs, first, faces) else {
+    let mut block = Block::default();
+    if !block.gather(inputs, first, faces) {
         fluxes.fill(Flux::default());
         return false;
-    };
+    }
     let (faces, limits, length) = block.turned(simd);
     let own = [[faces.water[0][DEPTH], faces.water[0][LEVEL]], [faces.water[1][DEPTH], faces.water[1][LEVEL]]];
     let found = between(simd, faces.at(simd), own, inputs.gravity);
@@ -124,11 +125,10 @@ struct Block {
 }
 
 impl Block {
-    /// Reads cells and faces; nothing where all is dry or on borders. The rows of faces on borders, and beyond the last, stay 0.
+    /// Reads cells and faces into an empty block; whether any has water. The rows of faces on borders, and beyond the last, stay 0.
     #[inline(always)]
-    fn gather(inputs: &Inputs, first: usize, faces: &[Face]) -> Option<Self> {
+    fn gather(&mut self, inputs: &Inputs, first: usize, faces: &[Face]) -> bool {
         let Inputs { mesh, water, slopes, kept, .. } = *inputs;
-        let mut block = Self::default();
         let mut any = false;
         for (k, face) in faces.iter().enumerate() {
             if face.border().is_some() {
@@ -142,8 +142,8 @@ impl Block {
             any = true;
             let lift = mesh.lift_of(first + k);
             let ([u, v], [p, q]) = (here.velocity, there.velocity);
-            block.water[k] = [here.depth, here.level, u, v, there.depth, there.level + lift, p, q];
-            for (row, slopes) in block.slopes.iter_mut().zip([&slopes[i], &slopes[j]]) {
+            self.water[k] = [here.depth, here.level, u, v, there.depth, there.level + lift, p, q];
+            for (row, slopes) in self.slopes.iter_mut().zip([&slopes[i], &slopes[j]]) {
                 for (value, slope) in row[k].iter_mut().zip(slopes) {
                     *value = f64::from(*slope);
                 }
@@ -153,13 +153,13 @@ impl Block {
             let [kept_here, kept_there] = if let Some(kept) = kept { [kept[i], kept[j]] } else { [1.0; 2] };
             let [x, y] = face.normal;
             let (kept_here, kept_there) = (f64::from(kept_here), f64::from(kept_there));
-            block.differences[k] = [depth, level, depth_back, level_back, x, y, kept_here, kept_there];
+            self.differences[k] = [depth, level, depth_back, level_back, x, y, kept_here, kept_there];
             let ([bx, by], [ox, oy]) = (face.between, face.offset);
             let volume = [here.depth * mesh.area[i], there.depth * mesh.area[j]];
-            block.places[k] =
+            self.places[k] =
                 [f64::from(bx), f64::from(by), f64::from(ox), f64::from(oy), volume[0], volume[1], 0.0, 0.0];
         }
-        any.then_some(block)
+        any
     }
 
     /// The faces, what they can let out, and their lengths, m: 0 for empty rows.
