@@ -320,3 +320,32 @@ fn dry_land_has_no_cells() {
     assert!(flood.ledger().balances[0].relative_error().abs() < 1e-13);
     assert!((flood.ledger().balances[0].initial / 90_000.0 - 1.0).abs() < 1e-12);
 }
+
+/// A pool that falls apart on a slope: the highest level is the ground and the highest depth on it, velocities at the end are those of the gauges, and
+/// the velocity at the highest speed is as fast as that.
+#[test]
+fn maps_of_levels_and_velocities_agree_with_those_of_depth_and_speed() {
+    let water = "water = [{ depth_m = 1.0, polygon = [[20, 5], [40, 5], [40, 25], [20, 25]] }]";
+    let mut flood = basin(&format!("spacing_m = 1.5\n{WALLS}{water}"), 1, |x, y| 0.05 * x + 0.02 * y).unwrap();
+    go(&mut flood, 6.0);
+    let maps = flood.maps();
+    let of = |name: &str| &maps.iter().find(|map| map.name == name).unwrap().values;
+    let [depth, level, speed] = ["max_depth", "max_level", "max_speed"].map(of);
+    let fastest = ["fastest_east", "fastest_north"].map(of);
+    let at_end = ["velocity_east", "velocity_north"].map(of);
+    let (mut wet, mut uphill) = (0, 0);
+    for cell in (0..depth.len()).filter(|cell| !depth[*cell].is_nan()) {
+        let [x, y] = [0.5 * (cell % 132) as f64 + 0.25, 29.75 - 0.5 * (cell / 132) as f64];
+        assert!((f64::from(level[cell] - depth[cell]) - 0.05 * x - 0.02 * y).abs() < 1e-4);
+        assert!((fastest[0][cell].hypot(fastest[1][cell]) - speed[cell]).abs() < 1e-6);
+        let sample = flood.sample(x, y);
+        if sample.depth > 0.01 {
+            (0..2).for_each(|axis| assert_eq!(at_end[axis][cell], sample.velocity[axis] as f32));
+            wet += 1;
+        } else {
+            assert!(at_end[0][cell].is_nan());
+        }
+        uphill += usize::from(x > 42.0 && fastest[0][cell] > 0.5);
+    }
+    assert!(wet > 1000 && uphill > 50, "{wet} {uphill}");
+}
