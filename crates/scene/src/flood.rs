@@ -24,8 +24,10 @@ pub struct Flood {
     /// What lengths and discharges are written in. A scene that was read is in metres.
     pub units: FloodUnits,
     /// Distance between particles, m, in water of depth `spacing_depth_m`. At the start particles hold
-    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower.
-    pub spacing_m: f64,
+    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower. Left out: the size of the terrain's cells, or
+    /// more, so that not more than about 200,000 particles are wet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing_m: Option<f64>,
     /// The depth at which particles are `spacing_m` apart, m. Left out: the mean depth of the initial water, or 1 m
     /// where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +90,7 @@ impl Default for Flood {
         Self {
             scheme: Scheme::Balanced,
             units: FloodUnits::Si,
-            spacing_m: 10.0,
+            spacing_m: None,
             spacing_depth_m: None,
             gravity_m_per_s2: 9.81,
             manning: Manning::Number(0.03),

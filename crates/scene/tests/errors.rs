@@ -237,7 +237,7 @@ fn overrides_are_named() {
 fn a_scene_made_in_memory_is_checked_too() {
     let mut scene = Scene::parse(GOOD, "test.toml", &[]).unwrap();
     let ModelScene::Flood(flood) = &mut scene.model else { panic!("{scene:?}") };
-    flood.flood.spacing_m = f64::NAN;
+    flood.flood.spacing_m = Some(f64::NAN);
     assert_eq!(scene.check().unwrap_err().to_string(), "flood.spacing_m = nan: must be a finite number");
 }
 

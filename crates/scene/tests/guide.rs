@@ -93,7 +93,7 @@ fn full(terrain: Terrain) -> Scene {
     let flood = Flood {
         scheme: Scheme::Balanced,
         units: FloodUnits::Si,
-        spacing_m: 1.0,
+        spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
         sph_swe: SphSwe { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..SphSwe::default() },
         gravity_m_per_s2: 1.0,

@@ -37,6 +37,7 @@ mod tests;
 mod walls;
 mod water;
 
+pub(crate) use start::of_scene;
 pub use start::{Filling, OfPosition, StartWater};
 
 use crate::friction::Roughness;

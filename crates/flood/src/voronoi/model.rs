@@ -67,7 +67,7 @@ impl Model for VoronoiFlood {
             set.id.push(drop.id);
             set.position.push(drop.position);
             set.velocity.push(drop.velocity);
-            set.radius.push(0.5 * self.settings.spacing_m);
+            set.radius.push(0.5 * mesh.layout.spacing());
             set.mass.push(DENSITY * drop.volume);
             depth.push(0.0);
             ground.push(self.terrain.height(x, y));

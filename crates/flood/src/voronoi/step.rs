@@ -25,9 +25,8 @@ pub(super) struct Drop {
 pub(super) const FIRST_DROP: u64 = 1 << 48;
 
 /// The drops of the blocks of a scene: layers of a lattice, each shifted a little at random so that no two stand one above the other.
-pub(super) fn drops(scene: &Settings, terrain: &Terrain, seed: u64) -> Vec<Drop> {
+pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
     let mut random = random(seed, u64::MAX);
-    let spacing = scene.spacing_m;
     let volume = spacing * spacing * scene.spacing_depth_m.unwrap_or(1.0);
     let mut drops = Vec::new();
     for (block, water) in scene.water.iter().filter_map(|water| Some((water.block.as_ref()?, water))) {
@@ -51,7 +50,7 @@ pub(super) fn drops(scene: &Settings, terrain: &Terrain, seed: u64) -> Vec<Drop>
 impl VoronoiFlood {
     /// A time step short enough for what is in the air, too: it falls a spacing in some ten steps.
     pub(super) fn limited(&self, step: f64) -> f64 {
-        let fall = 0.1 * (self.settings.spacing_m / self.settings.gravity_m_per_s2).sqrt();
+        let fall = 0.1 * (self.solver.mesh.layout.spacing() / self.settings.gravity_m_per_s2).sqrt();
         if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
 

@@ -11,7 +11,9 @@ const LARGEST_MANNING: f64 = 1.0;
 
 impl Check {
     pub(super) fn flood(&self, flood: &Flood) -> Checked {
-        self.above("flood.spacing_m", flood.spacing_m, 0.0)?;
+        if let Some(spacing) = flood.spacing_m {
+            self.above("flood.spacing_m", spacing, 0.0)?;
+        }
         if let Some(depth) = flood.spacing_depth_m {
             self.above("flood.spacing_depth_m", depth, 0.0)?;
         }
