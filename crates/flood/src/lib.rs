@@ -13,6 +13,7 @@ mod card;
 mod density;
 mod edges;
 mod falling;
+mod fields;
 mod flood;
 mod friction;
 mod gauges;

@@ -349,3 +349,49 @@ fn maps_of_levels_and_velocities_agree_with_those_of_depth_and_speed() {
     }
     assert!(wet > 1000 && uphill > 50, "{wet} {uphill}");
 }
+
+/// A surface and a velocity by expressions are those that functions give; a pair of rasters gives the velocity too.
+#[test]
+fn water_starts_by_expressions_and_rasters() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, value) in [("u.asc", "0.25"), ("v.asc", "-0.5")] {
+        let rows = format!("{value} {value} {value}\n").repeat(3);
+        let text = format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 22\n{rows}");
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let terrain =
+        Arc::new(Terrain::gridded(Bounds { x_min: 0.0, x_max: 66.0, y_min: 0.0, y_max: 30.0 }, 0.5, |x, _| 0.01 * x));
+    let open = |keys: &str| {
+        let scene = parse(&format!(
+            "run.until_s = 1\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\nspacing_m = 1.5\n{WALLS}water = [{{ {keys} }}]"
+        ));
+        VoronoiFlood::new(&scene.flood, 1, folder.path(), Arc::clone(&terrain))
+    };
+    let flood =
+        open("level_m = \"2 + 0.01 * x - 1e-3 * y^2\", velocity_m_per_s = [\"0.1 * (y > 15)\", \"-x / 100\"]").unwrap();
+    let wet: Vec<_> = flood.wet_cells().collect();
+    assert!(wet.len() > 500);
+    for cell in wet {
+        let [x, y] = cell.centroid;
+        let level = 2.0 + 0.01 * x - 1e-3 * y * y;
+        assert!((cell.bed + cell.depth - level).abs() < 1e-3, "{cell:?} {level}");
+        assert!((cell.velocity[1] + x / 100.0).abs() < 1e-9, "{cell:?}");
+        if (y - 15.0).abs() > 2.0 {
+            assert!((cell.velocity[0] - if y > 15.0 { 0.1 } else { 0.0 }).abs() < 1e-12, "{cell:?}");
+        }
+    }
+    let flood = open("depth_m = \"max(0, 1 - hypot(x - 30, y - 15) / 10)\", velocity_m_per_s = { east = \"u.asc\", north = \"v.asc\" }").unwrap();
+    let volume: f64 = flood.wet_cells().map(|cell| cell.area * cell.depth).sum();
+    assert!((volume / (std::f64::consts::PI * 100.0 / 3.0) - 1.0).abs() < 0.01, "{volume}");
+    assert!(
+        flood.wet_cells().all(|cell| (cell.velocity[0] - 0.25).abs() < 1e-12 && (cell.velocity[1] + 0.5).abs() < 1e-12)
+    );
+    let refused = open("level_m = \"sqrt(x - 20)\"").map(|_| ()).unwrap_err().to_string();
+    for word in ["flood.water.0.level_m = \"sqrt(x - 20)\"", "not a finite number at [0.25", "max(0, ...)"] {
+        assert!(refused.contains(word), "{refused}");
+    }
+    assert!(open("level_m = \"sqrt(x - 20)\", polygon = [[21, 1], [60, 1], [60, 29]]").is_ok());
+    let missing =
+        open("level_m = 1, velocity_m_per_s = { east = \"u.asc\", north = \"w.asc\" }").map(|_| ()).unwrap_err();
+    assert!(missing.to_string().contains("w.asc"), "{missing}");
+}

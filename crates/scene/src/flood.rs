@@ -4,11 +4,13 @@
 mod obstacle;
 mod rain;
 mod refinement;
+mod start;
 mod structures;
 
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
 pub use refinement::Refinement;
+pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
 use crate::Series;
@@ -324,12 +326,12 @@ pub enum Side {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Water {
-    /// At rest up to this level, m.
+    /// Up to this level, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub level_m: Option<f64>,
-    /// The same depth everywhere, m.
+    pub level_m: Option<Field>,
+    /// This depth, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub depth_m: Option<f64>,
+    pub depth_m: Option<Field>,
     /// A raster of depths, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_raster: Option<PathBuf>,
@@ -339,8 +341,8 @@ pub struct Water {
     /// A block of particles released above the ground, falling freely until it lands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<Block>,
-    /// Velocity at the start `[east, north]`, m/s.
-    pub velocity_m_per_s: [f64; 2],
+    /// Velocity at the start.
+    pub velocity_m_per_s: StartVelocity,
 }
 
 /// A block of particles in the air.

@@ -1,7 +1,9 @@
 //! From a scene to text.
 
 use crate::dew::{Dew, Shape};
-use crate::{Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, Terrain, Wall};
+use crate::{
+    Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, StartVelocity, Terrain, Wall,
+};
 use std::path::{Path, PathBuf};
 
 impl Scene {
@@ -59,7 +61,12 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
             paths.push(csv);
         }
     }
-    paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
+    for water in &mut flood.water {
+        paths.extend(&mut water.depth_raster);
+        if let StartVelocity::Rasters(rasters) = &mut water.velocity_m_per_s {
+            paths.extend([&mut rasters.east, &mut rasters.north]);
+        }
+    }
     for stage in &mut flood.stage {
         if let Series::File { csv, .. } = &mut stage.level_m {
             paths.push(csv);

@@ -334,3 +334,41 @@ fn errors_in_feet_speak_of_feet() {
     }
     assert_refused("spacing_m = 1.0", "spacing_ft = 1.0", &["flood.spacing_ft", "not a key that is known here"]);
 }
+
+#[test]
+fn expressions_and_velocities_at_the_start() {
+    assert_refused(
+        "level_m = 1.0",
+        "level_m = \"2 + sine(x)\"",
+        &[
+            "flood.water.0.level_m",
+            "`2 + sine(x)` cannot be read at character 5",
+            "`sine` is not known here",
+            "sin, cos",
+        ],
+    );
+    assert_refused(
+        "level_m = 1.0",
+        "level_m = [1.0]",
+        &["flood.water.0.level_m", "an expression of x and y in quotes"],
+    );
+    assert_refused("level_m = 1.0", "level_m = nan", &["flood.water.0.level_m = nan", "finite"]);
+    let velocity = |text: &str| format!("level_m = 1.0\nvelocity_m_per_s = {text}");
+    for (text, words) in [
+        ("[1, \"2 *\"]", ["flood.water.0.velocity_m_per_s", "at character 4"]),
+        ("[1]", ["flood.water.0.velocity_m_per_s", "two components"]),
+        ("[1, 2, 3]", ["flood.water.0.velocity_m_per_s", "not used"]),
+        ("{ east = \"u.tif\" }", ["flood.water.0.velocity_m_per_s", "north"]),
+        ("{ east = \"u.tif\", north = \"v.tif\", up = 1 }", ["up", "known: east, north"]),
+    ] {
+        let message = refuse(&GOOD.replace("level_m = 1.0", &velocity(text)), &[]);
+        assert!(
+            words.iter().all(|word| message.contains(word)) && message.contains("test.toml:2"),
+            "{text}: {message}"
+        );
+    }
+    let block =
+        "block = { from = [1, 1], to = [9, 9], height_m = 1 }\nvelocity_m_per_s = { east = \"u\", north = \"v\" }";
+    let message = refuse(&GOOD.replace("level_m = 1.0\npolygon = [[0, 0], [10, 0], [10, 10]]", block), &[]);
+    assert!(message.contains("the velocity of a block is two numbers"), "{message}");
+}

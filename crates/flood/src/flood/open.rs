@@ -4,6 +4,7 @@ use super::by_hand::Hand;
 use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
 use crate::edges::BeforeWalls;
+use crate::fields;
 use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
@@ -235,8 +236,8 @@ impl Flood {
         for water in &flood.water {
             if let Some(block) = &water.block {
                 let terrain = &self.surroundings.terrain;
-                let velocity = water.velocity_m_per_s;
-                let falling = setup::block(block, velocity, terrain, self.spacing, self.volume, self.h, &mut random);
+                let velocity = fields::block_velocity(&water.velocity_m_per_s, terrain);
+                let falling = setup::block(block, &velocity, terrain, self.spacing, self.volume, self.h, &mut random);
                 self.state.falling.extend(falling);
             }
         }

@@ -4,6 +4,7 @@ use super::patch::Change;
 use super::solver::Passed;
 use super::water::Column;
 use super::{DENSITY, State, VoronoiFlood, maps, walls};
+use crate::fields::block_velocity;
 use crate::setup::{lattice, random};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Flood as Settings;
@@ -33,15 +34,17 @@ pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64
         let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
         let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
         let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
+        let velocity = block_velocity(&water.velocity_m_per_s, terrain);
         let [columns, rows] = lattice(block, terrain, spacing).map(|count| count as usize);
         for number in 0..block.layers * columns * rows {
             let place = [number % columns, number / columns % rows];
             let mut at =
                 |axis: usize| from[axis] + (place[axis] as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
             let z = bottom + ((number / (columns * rows)) as f64 + 0.5) * spacing;
-            let [u, v] = water.velocity_m_per_s;
+            let [x, y] = [at(0), at(1)];
+            let [u, v] = velocity(x, y);
             let id = FIRST_DROP + drops.len() as u64;
-            drops.push(Drop { id, position: [at(0), at(1), z], velocity: [u, v, 0.0], volume });
+            drops.push(Drop { id, position: [x, y, z], velocity: [u, v, 0.0], volume });
         }
     }
     drops

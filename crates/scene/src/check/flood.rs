@@ -3,7 +3,10 @@
 mod ground;
 
 use super::{Check, Checked};
-use crate::{Balanced, Block, Edge, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe, Water};
+use crate::{
+    Balanced, Block, Edge, Field, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
+    StartVelocity, Water,
+};
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
@@ -181,7 +184,7 @@ impl Check {
                 ("block", water.block.is_some()),
             ],
         )?;
-        if let Some(depth) = water.depth_m {
+        if let Some(depth) = water.depth_m.as_ref().and_then(Field::number) {
             self.above(&format!("{key}.depth_m"), depth, 0.0)?;
         }
         if let Some(polygon) = &water.polygon {
@@ -190,6 +193,10 @@ impl Check {
         let Some(block) = &water.block else { return Ok(()) };
         self.require(&format!("{key}.polygon"), water.polygon.is_none(), || {
             "a block has its own corners; leave the polygon out".into()
+        })?;
+        let is_raster = matches!(water.velocity_m_per_s, StartVelocity::Rasters(_));
+        self.require(&format!("{key}.velocity_m_per_s"), !is_raster, || {
+            "the velocity of a block is two numbers or expressions, not rasters".into()
         })?;
         self.block(&format!("{key}.block"), block)
     }
