@@ -43,7 +43,7 @@ pub(crate) fn edge_rules(scene: &FloodScene, terrain: &Terrain, folder: &Path) -
             Edge::Wall => EdgeRule::Wall,
             Edge::Periodic => EdgeRule::Periodic,
             Edge::Stage(level) => EdgeRule::Stage(load(level, folder)?),
-            Edge::Discharge(_) | Edge::Wave(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
+            Edge::Discharge(_) | Edge::Wave(_) | Edge::Paddle(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
                 return Err(setup("sides of this kind are for scheme voronoi: see [flood.edges]"));
             }
         })

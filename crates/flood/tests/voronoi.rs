@@ -395,3 +395,50 @@ fn water_starts_by_expressions_and_rasters() {
         open("level_m = 1, velocity_m_per_s = { east = \"u.asc\", north = \"w.asc\" }").map(|_| ()).unwrap_err();
     assert!(missing.to_string().contains("w.asc"), "{missing}");
 }
+
+/// Linear theory of wavemakers in shallow water: the height of the wave is k times depth times stroke (Dean & Dalrymple 1991, section 6.2). What the
+/// wall sweeps in and out again is booked.
+#[test]
+fn a_paddle_makes_the_waves_of_linear_theory() {
+    let (depth, period, stroke) = (1.0_f64, 8.0_f64, 0.02_f64);
+    let rows: Vec<[f64; 2]> = (0..=640)
+        .map(|k| f64::from(k) * 0.05)
+        .map(|time| [time, 0.5 * stroke * (1.0 - (std::f64::consts::TAU * time / period).cos())])
+        .collect();
+    let keys = format!(
+        "spacing_m = 0.5\nmanning = 0\nwater = [{{ level_m = {depth} }}]\nedges = {{ west = {{ paddle = {rows:?} }}, east = \"open\", south = \"wall\", north = \"wall\" }}"
+    );
+    let mut flood = basin(&keys, 2, |_, _| 0.0).unwrap();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    // The front is at the far end after 21 s.
+    for k in 0..=160 {
+        let time = 16.0 + f64::from(k) * 0.1;
+        go(&mut flood, time);
+        let level = flood.sample(15.0, 15.0).depth;
+        (low, high) = (low.min(level), high.max(level));
+        let row = flood.ledger().balances[0].clone();
+        assert!(row.relative_error().abs() < 1e-13, "{row:?}");
+    }
+    let number = std::f64::consts::TAU / period / (9.81 * depth).sqrt();
+    let height = number * depth * stroke;
+    assert!(((high - low) / height - 1.0).abs() < 0.03, "{} {height}", high - low);
+    // At rest again after four periods, the wall is where it was: to second order as much went out as came in.
+    let water = &flood.ledger().balances[0];
+    assert!(water.inflow > 3.0 * 0.02 * 30.0 && flood.gauge_row().iter().all(|value| value.is_finite()));
+}
+
+/// A wall that moves in by 0.3 m in 20 s and stays: the tank holds what it swept, width times depth times displacement, and a little more as the
+/// water rises before it.
+#[test]
+fn what_a_paddle_sweeps_is_booked() {
+    let keys = "spacing_m = 1\nwater = [{ level_m = 1 }]\nedges = { west = { paddle = [[0, 0], [20, 0.3]] }, east = \"wall\", south = \"wall\", north = \"wall\" }";
+    let mut flood = basin(keys, 1, |_, _| 0.0).unwrap();
+    go(&mut flood, 60.0);
+    let water = flood.ledger().balances[0].clone();
+    assert!(
+        (water.inflow - water.outflow) / (0.3 * 30.0) > 1.0 && (water.inflow - water.outflow) / (0.3 * 30.0) < 1.02,
+        "{water:?}"
+    );
+    let jumps = "spacing_m = 1\nedges.west.paddle = { csv = \"missing.csv\" }";
+    assert!(basin(jumps, 1, |_, _| 0.0).map(|_| ()).unwrap_err().to_string().contains("missing.csv"));
+}

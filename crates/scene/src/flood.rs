@@ -276,6 +276,8 @@ pub enum Edge {
     Wave(Wave),
     /// Water leaves at the depth of normal flow on this slope, and none comes in (scheme voronoi).
     NormalDepth(f64),
+    /// A wall that moves: how far it stands inwards of the side over time, m (scheme voronoi). Its displacement is taken as small beside waves: it acts at the side.
+    Paddle(Series),
     /// Water leaves by the level before the side: rows of `[level, discharge]`, m and m3/s, linear between them (scheme voronoi).
     Rating(Vec<[f64; 2]>),
 }

@@ -123,7 +123,7 @@ fn convert_below(value: &mut Value, given: &Spanned<DeValue<'_>>) {
 /// By what the numbers of a key are multiplied; in rows of two numbers, those of the first and of the second column.
 fn factors(key: &str) -> Option<[f64; 2]> {
     match key {
-        "stage" => Some([1.0, FOOT]),
+        "stage" | "paddle" => Some([1.0, FOOT]),
         "rating" => Some([FOOT, FOOT * FOOT * FOOT]),
         // m^(1/2)/s, and s/m.
         "coefficient" | "chezy" => Some([1.0, FOOT.sqrt()]),

@@ -46,7 +46,7 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
     let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
     for edge in edges.into_iter().chain(flood.edge_part.iter_mut().map(|part| &mut part.edge)) {
         let series = match edge {
-            Edge::Stage(series) | Edge::Discharge(series) => [Some(series), None],
+            Edge::Stage(series) | Edge::Discharge(series) | Edge::Paddle(series) => [Some(series), None],
             Edge::Wave(wave) => [wave.level_m.as_mut(), wave.velocity_m_per_s.as_mut()],
             Edge::Open | Edge::Wall | Edge::Periodic | Edge::NormalDepth(_) | Edge::Rating(_) => [None, None],
         };

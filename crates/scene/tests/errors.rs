@@ -372,3 +372,14 @@ fn expressions_and_velocities_at_the_start() {
     let message = refuse(&GOOD.replace("level_m = 1.0\npolygon = [[0, 0], [10, 0], [10, 10]]", block), &[]);
     assert!(message.contains("the velocity of a block is two numbers"), "{message}");
 }
+
+#[test]
+fn paddles() {
+    let good = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"");
+    let with = |edge: &str| good.replace("west = \"wall\"", &format!("west = {edge}"));
+    Scene::parse(&with("{ paddle = [[0, 0], [1, 0.1]] }"), "test", &[]).unwrap();
+    let jump = refuse(&with("{ paddle = [[0, 0], [1, 0.1], [1, 0.2]] }"), &[]);
+    assert!(jump.contains("flood.edges.west.paddle.2") && jump.contains("cannot jump"), "{jump}");
+    let other = refuse(&GOOD.replace("west = \"wall\"", "west = { paddle = 0 }"), &[]);
+    assert!(other.contains("is for scheme = \"voronoi\""), "{other}");
+}

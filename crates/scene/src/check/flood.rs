@@ -146,6 +146,7 @@ impl Check {
             Edge::Stage(level) => self.series(&format!("{key}.stage"), level),
             Edge::Discharge(discharge) => self.series(&format!("{key}.discharge"), discharge),
             Edge::NormalDepth(slope) => self.above(&format!("{key}.normal_depth"), *slope, 0.0),
+            Edge::Paddle(motion) => self.paddle(&format!("{key}.paddle"), motion),
             Edge::Rating(rows) => self.rating(&format!("{key}.rating"), "level, discharge", rows),
             Edge::Wave(wave) => {
                 let key = format!("{key}.wave");
@@ -161,6 +162,16 @@ impl Check {
                 Ok(())
             }
         }
+    }
+
+    fn paddle(&self, key: &str, motion: &Series) -> Checked {
+        self.series(key, motion)?;
+        let Series::Table(rows) = motion else { return Ok(()) };
+        let jump = rows.windows(2).position(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1]);
+        jump.map_or(Ok(()), |row| {
+            Err(self
+                .problem(&format!("{key}.{}", row + 1), "a wall cannot jump: give it a later time than the row before"))
+        })
     }
 
     /// What leaves at one side comes in at the other, so both are periodic or neither.
