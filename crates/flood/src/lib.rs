@@ -38,7 +38,7 @@ mod voronoi;
 mod zone;
 
 pub use flood::{ByHand, Flood};
-pub use obstacles::obstacle_shapes;
+pub use obstacles::{LineWall, line_walls, obstacle_shapes};
 pub use particle::Particle;
 pub use rain::RainFunction;
 pub use sampling::Sample;

@@ -39,6 +39,7 @@ mod water;
 
 pub(crate) use start::of_scene;
 pub use start::{Filling, OfPosition, StartWater};
+pub(crate) use walls::of_lines;
 
 use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
