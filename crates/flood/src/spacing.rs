@@ -60,9 +60,10 @@ impl std::fmt::Display for DefaultSpacing {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { spacing, cell, wet_area } = self;
         let particles = (wet_area / (spacing * spacing)).round();
+        let cell = (cell * 1e3).round() / 1e3;
         write!(
             f,
-            "flood.spacing_m is not given: particles stand {spacing} m apart. The terrain's cells are {cell:.3} m wide, and about {wet_area:.0} m2 are \
+            "flood.spacing_m is not given: particles stand {spacing} m apart. The terrain's cells are {cell} m wide, and about {wet_area:.0} m2 are \
              or get wet: some {particles} particles."
         )
     }

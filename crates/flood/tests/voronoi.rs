@@ -175,6 +175,11 @@ fn water_and_momentum_balance_with_everything_on() {
     let of = |quantity| row[columns.iter().position(|column| column.quantity == quantity).unwrap()];
     assert!(of("total_rain") > 80.0 && of("total_infiltration") > 10.0 && of("total_outflow") > 10.0);
     assert!(row.iter().all(|value| value.is_finite()));
+    // The map of it, on cells of 5 m by 5 m, holds as much.
+    let maps = flood.maps();
+    let map = maps.iter().find(|map| map.name == "infiltration").unwrap();
+    let soaked = map.values.iter().map(|depth| 25.0 * f64::from(*depth)).sum::<f64>();
+    assert!((soaked / of("total_infiltration") - 1.0).abs() < 0.02, "{soaked} {}", of("total_infiltration"));
 }
 
 #[test]

@@ -91,7 +91,10 @@ impl Model for VoronoiFlood {
 
     fn maps(&self) -> Vec<Map> {
         let water = |cell: usize| self.water_shown(cell);
-        maps::maps(&self.solver.mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m)
+        let mesh = &self.solver.mesh;
+        let mut maps = maps::maps(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m);
+        maps.extend(self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, &self.state.soaked)));
+        maps
     }
 
     fn ledger(&self) -> Ledger {
