@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(scene.run.until_s, 800.0);
         let water = 30.0 * 800.0;
         let corpuscle::scene::Series::Constant(discharge) = flood.flood.inflow[0].discharge_m3_per_s else { panic!() };
-        assert_eq!((discharge * 800.0, flood.flood.spacing_m), (water, 5.0));
+        assert_eq!((discharge * 800.0, flood.flood.spacing_m), (water, Some(5.0)));
         assert!(corpuscle::Simulation::open(scene, Path::new("")).is_ok());
     }
 

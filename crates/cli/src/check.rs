@@ -60,6 +60,7 @@ struct Report {
     frames: u64,
     gauge_rows: u64,
     gauges: Vec<String>,
+    notes: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -139,6 +140,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         frames: rows(run.frame_period_s()),
         gauge_rows: rows(run.gauge_period_s()),
         gauges: simulation.model().gauge_columns().iter().map(|column| column.header()).collect(),
+        notes: simulation.notes().to_vec(),
         warnings: simulation.warnings(),
     })
 }
@@ -262,6 +264,7 @@ fn text(report: &Report) -> String {
     if let Some(wall_time) = report.estimated_wall_time_s {
         lines.push(format!("will take  about {} here", duration(wall_time)));
     }
+    lines.extend(report.notes.iter().map(|note| format!("note: {note}")));
     lines.extend(report.warnings.iter().map(|warning| format!("warning: {warning}")));
     lines.join("\n") + "\n"
 }

@@ -23,6 +23,9 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
         Some(folder) => resume(folder, options.backend)?,
         None => start(options, &stop)?,
     };
+    for note in simulation.notes() {
+        eprintln!("note: {note}");
+    }
     for warning in simulation.warnings() {
         eprintln!("warning: {warning}");
     }

@@ -180,3 +180,20 @@ fn validation_makes_a_page() {
     let ended = place.run(&["validate", "gas/figure-11", "--report", "nowhere/page.html"]).expect_status(1);
     assert!(ended.stderr.contains("nowhere/page.html"), "{}", ended.stderr);
 }
+
+#[test]
+fn a_spacing_that_is_left_out_is_chosen_from_the_terrain_and_told() {
+    let place = Place::new();
+    place.write("lake.toml", &LAKE.replace("spacing_m = 2.0\n", "scheme = \"voronoi\"\n"));
+    let report = place.run(&["check", "lake.toml", "--json"]).expect_status(0).json();
+    assert_eq!(report["particles_at_start"], 400);
+    let told = place.run(&["run", "lake.toml", "-o", "first"]).expect_status(0).stderr;
+    assert!(told.contains("note: flood.spacing_m is not given: particles stand 1 m apart"), "{told}");
+    let [log, scene, report] = ["log.txt", "scene.toml", "report.html"]
+        .map(|name| String::from_utf8(place.read(&format!("first/{name}"))).unwrap());
+    assert!(log.contains("flood.spacing_m is not given") && scene.contains("spacing_m = 1.0"), "{log}\n{scene}");
+    assert!(report.contains("Spacing"));
+    let again = place.run(&["run", "first/scene.toml", "-o", "second"]).expect_status(0).stderr;
+    assert!(!again.contains("is not given"), "{again}");
+    assert_eq!(place.read("first/gauges.csv"), place.read("second/gauges.csv"));
+}

@@ -6,7 +6,7 @@ use crate::{Error, Simulation};
 use corpuscle_dew::Dew;
 #[cfg(feature = "gpu")]
 use corpuscle_flood::Flood;
-use corpuscle_flood::FloodModel;
+use corpuscle_flood::{FloodModel, default_spacing};
 use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
@@ -80,10 +80,16 @@ impl Simulation {
             ModelScene::Flood(written) => {
                 let terrain = Arc::new(ground(&written.terrain, scene.seed, folder)?);
                 check_observed_extent(&written.flood, &terrain)?;
+                let mut notes = Vec::new();
+                if written.flood.spacing_m.is_none() {
+                    let chosen = default_spacing(&written.flood, &terrain, folder, scene.run.until_s)?;
+                    written.flood.spacing_m = Some(chosen.spacing);
+                    notes.push(chosen.to_string());
+                }
                 let flood = new_flood(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();
                 check_inflow(&scene, folder)?;
-                Ok(Self::new(scene, Some(terrain), flood))
+                Ok(Self::new(scene, Some(terrain), flood).with_notes(notes))
             }
             ModelScene::Gas(gas) => {
                 let model = corpuscle_gas::open(gas, scene.seed, scene.run.until_s, folder)?;
@@ -107,12 +113,12 @@ const MOST_TO_COME: f64 = 2e8;
 /// from `folder`.
 fn particles_of_inflows(scene: &Scene, folder: &Path) -> Result<f64, Error> {
     let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0.0) };
-    let Some(depth) = flood.spacing_depth_m else { return Ok(0.0) };
+    let (Some(spacing), Some(depth)) = (flood.spacing_m, flood.spacing_depth_m) else { return Ok(0.0) };
     let mut volume = 0.0;
     for inflow in &flood.inflow {
         volume += inflow.load_discharge(folder)?.integral(0.0, scene.run.until_s);
     }
-    Ok((volume / (flood.spacing_m * flood.spacing_m * depth)).floor())
+    Ok((volume / (spacing * spacing * depth)).floor())
 }
 
 /// Refuses discharges that no machine could follow, most likely a slip of the unit.

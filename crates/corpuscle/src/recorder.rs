@@ -23,7 +23,9 @@ impl Recorder {
     pub fn create(path: &Path, simulation: &Simulation, frames: FrameFormat) -> Result<Self, Error> {
         let scene_text = simulation.scene().to_toml()?;
         let folder = RunFolder::create(path, &scene_text, &simulation.model().gauge_columns(), frames)?;
-        Ok(Self::new(folder, simulation))
+        let mut recorder = Self::new(folder, simulation);
+        simulation.notes().iter().try_for_each(|note| recorder.folder.log(&format!("note: {note}")))?;
+        Ok(recorder)
     }
 
     /// Takes up the folder of an interrupted run: opens its scene, and goes on from its checkpoint.

@@ -26,12 +26,22 @@ pub struct Simulation {
     wall_before: f64,
     /// True where the run goes on from a checkpoint: what is due at its time is taken already.
     resumed: bool,
+    notes: Vec<String>,
 }
 
 impl Simulation {
     /// Puts together a scene with all defaults filled in, its ground, if it has one, and its model.
     pub fn new(scene: Scene, terrain: Option<Arc<Terrain>>, model: Box<dyn Model>) -> Self {
-        Self { scene, terrain, model, wall_before: 0.0, resumed: false }
+        Self { scene, terrain, model, wall_before: 0.0, resumed: false, notes: Vec::new() }
+    }
+
+    pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
+    /// What was chosen from the terrain where the scene leaves it open, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// The scene as run, with all defaults filled in and paths absolute.

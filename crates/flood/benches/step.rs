@@ -19,7 +19,7 @@ fn basin(scheme: Scheme) -> Flood {
     let terrain = Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()));
     let settings = Settings {
         scheme,
-        spacing_m: 1.0,
+        spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
         manning: Manning::Number(0.03),
         edges: Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall },

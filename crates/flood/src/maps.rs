@@ -91,6 +91,7 @@ impl Maps {
         let rows = self.cells.len() / self.columns.max(1);
         let columns = self.columns;
         let mut depth = vec![f32::NAN; self.cells.len()];
+        let level = self.levels(water.terrain);
         depth.par_chunks_mut(columns).enumerate().for_each(|(row, cells)| {
             for (column, cell) in cells.iter_mut().enumerate() {
                 if let Some(sample) = wet(water, column, row, self.wet_depth) {
@@ -109,7 +110,18 @@ impl Maps {
             map("arrival_s", "Arrival", "s", of(|cell| cell.arrival)),
             map("duration_s", "Duration", "s", of(|cell| cell.duration)),
             map("hazard", "Hazard: depth x (speed + 0.5)", "m2/s", of(|cell| cell.hazard)),
+            map("max_level", "Highest level", "m", level),
         ]
+    }
+
+    /// The highest level at each cell, m; not-a-number where it was never wet.
+    fn levels(&self, terrain: &Terrain) -> Vec<f32> {
+        let grid = terrain.map_grid();
+        let level = |(place, cell): (usize, &Record)| {
+            let [x, y] = grid.centre(place % self.columns, place / self.columns);
+            if cell.max_depth > 0.0 { (terrain.height(x, y) + f64::from(cell.max_depth)) as f32 } else { f32::NAN }
+        };
+        self.cells.par_iter().enumerate().map(level).collect()
     }
 }
 

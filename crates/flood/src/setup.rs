@@ -2,6 +2,7 @@
 
 use crate::edges::{EdgeRule, EdgeRules};
 use crate::falling::Falling;
+use crate::fields;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::inflow::Source;
 use crate::limits::{check_inside, span};
@@ -42,7 +43,7 @@ pub(crate) fn edge_rules(scene: &FloodScene, terrain: &Terrain, folder: &Path) -
             Edge::Wall => EdgeRule::Wall,
             Edge::Periodic => EdgeRule::Periodic,
             Edge::Stage(level) => EdgeRule::Stage(load(level, folder)?),
-            Edge::Discharge(_) | Edge::Wave(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
+            Edge::Discharge(_) | Edge::Wave(_) | Edge::Paddle(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
                 return Err(setup("sides of this kind are for scheme voronoi: see [flood.edges]"));
             }
         })
@@ -58,15 +59,17 @@ pub(crate) fn initial_water<'a>(
     terrain: &'a Terrain,
     folder: &Path,
 ) -> Result<Vec<InitialWater<'a>>, ModelError> {
+    fields::check(scene, terrain)?;
     let standing = scene.water.iter().enumerate().filter(|(_, water)| water.block.is_none());
     standing.map(|(number, water)| body(water, number, terrain, folder)).collect()
 }
 
 fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<InitialWater<'a>, ModelError> {
-    let depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a> = if let Some(level) = water.level_m {
-        Box::new(move |x, y| level - terrain.height(x, y))
-    } else if let Some(depth) = water.depth_m {
-        Box::new(move |_, _| depth)
+    let depth: Box<dyn Fn(f64, f64) -> f64 + Sync + 'a> = if let Some(level) = &water.level_m {
+        let level = fields::of_position(level, terrain);
+        Box::new(move |x, y| level(x, y) - terrain.height(x, y))
+    } else if let Some(depth) = &water.depth_m {
+        fields::of_position(depth, terrain)
     } else if let Some(path) = &water.depth_raster {
         let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
         Box::new(move |x, y| raster.bilinear(x, y).unwrap_or(0.0))
@@ -74,8 +77,7 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
         return Err(setup(format!("flood.water.{number} says neither level, depth, raster nor block")));
     };
     let bounds = terrain.bounds();
-    let velocity = water.velocity_m_per_s;
-    let velocity: Box<dyn Fn(f64, f64) -> [f64; 2] + Sync> = Box::new(move |_, _| velocity);
+    let velocity = fields::velocity(&water.velocity_m_per_s, terrain, folder)?;
     let Some(polygon) = &water.polygon else {
         return Ok(InitialWater { depth, inside: Box::new(|_, _| true), within: bounds, velocity });
     };
@@ -160,7 +162,7 @@ pub(crate) fn lattice(block: &Block, terrain: &Terrain, spacing: f64) -> [f64; 2
 /// above the other.
 pub(crate) fn block(
     block: &Block,
-    velocity: [f64; 2],
+    velocity: &dyn Fn(f64, f64) -> [f64; 2],
     terrain: &Terrain,
     spacing: f64,
     volume: f64,
@@ -178,7 +180,7 @@ pub(crate) fn block(
                 let mut at = |from: f64, k: usize| from + (k as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
                 let (x, y) = (at(from[0], column), at(from[1], row));
                 let mut particle = Particle::new(0, x, y, volume, h);
-                [particle.u, particle.v] = velocity;
+                [particle.u, particle.v] = velocity(x, y);
                 falling.push(Falling { particle, z: bottom + (layer as f64 + 0.5) * spacing, w: 0.0 });
             }
         }

@@ -134,7 +134,7 @@ fn an_edge_held_at_a_level_fills_and_empties_a_pool() {
         let text = "run.until_s = 200\nterrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 2 } }\n\
                     flood = { spacing_m = 2, spacing_depth_m = 1, manning = 0.1, water = [{ depth_m = 1 }] }\n";
         let mut scene = parse(text, &[]);
-        scene.flood.water[0].depth_m = Some(depth);
+        scene.flood.water[0].depth_m = Some(depth.into());
         let edges = &mut scene.flood.edges;
         (edges.west, edges.south, edges.north) = (Edge::Wall, Edge::Wall, Edge::Wall);
         edges.east = Edge::Stage(Series::Constant(level));

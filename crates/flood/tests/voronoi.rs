@@ -175,6 +175,11 @@ fn water_and_momentum_balance_with_everything_on() {
     let of = |quantity| row[columns.iter().position(|column| column.quantity == quantity).unwrap()];
     assert!(of("total_rain") > 80.0 && of("total_infiltration") > 10.0 && of("total_outflow") > 10.0);
     assert!(row.iter().all(|value| value.is_finite()));
+    // The map of it, on cells of 5 m by 5 m, holds as much.
+    let maps = flood.maps();
+    let map = maps.iter().find(|map| map.name == "infiltration").unwrap();
+    let soaked = map.values.iter().map(|depth| 25.0 * f64::from(*depth)).sum::<f64>();
+    assert!((soaked / of("total_infiltration") - 1.0).abs() < 0.02, "{soaked} {}", of("total_infiltration"));
 }
 
 #[test]
@@ -319,4 +324,126 @@ fn dry_land_has_no_cells() {
     assert!(flood.cells() > before);
     assert!(flood.ledger().balances[0].relative_error().abs() < 1e-13);
     assert!((flood.ledger().balances[0].initial / 90_000.0 - 1.0).abs() < 1e-12);
+}
+
+/// A pool that falls apart on a slope: the highest level is the ground and the highest depth on it, velocities at the end are those of the gauges, and
+/// the velocity at the highest speed is as fast as that.
+#[test]
+fn maps_of_levels_and_velocities_agree_with_those_of_depth_and_speed() {
+    let water = "water = [{ depth_m = 1.0, polygon = [[20, 5], [40, 5], [40, 25], [20, 25]] }]";
+    let mut flood = basin(&format!("spacing_m = 1.5\n{WALLS}{water}"), 1, |x, y| 0.05 * x + 0.02 * y).unwrap();
+    go(&mut flood, 6.0);
+    let maps = flood.maps();
+    let of = |name: &str| &maps.iter().find(|map| map.name == name).unwrap().values;
+    let [depth, level, speed] = ["max_depth", "max_level", "max_speed"].map(of);
+    let fastest = ["fastest_east", "fastest_north"].map(of);
+    let at_end = ["velocity_east", "velocity_north"].map(of);
+    let (mut wet, mut uphill) = (0, 0);
+    for cell in (0..depth.len()).filter(|cell| !depth[*cell].is_nan()) {
+        let [x, y] = [0.5 * (cell % 132) as f64 + 0.25, 29.75 - 0.5 * (cell / 132) as f64];
+        assert!((f64::from(level[cell] - depth[cell]) - 0.05 * x - 0.02 * y).abs() < 1e-4);
+        assert!((fastest[0][cell].hypot(fastest[1][cell]) - speed[cell]).abs() < 1e-6);
+        let sample = flood.sample(x, y);
+        if sample.depth > 0.01 {
+            (0..2).for_each(|axis| assert_eq!(at_end[axis][cell], sample.velocity[axis] as f32));
+            wet += 1;
+        } else {
+            assert!(at_end[0][cell].is_nan());
+        }
+        uphill += usize::from(x > 42.0 && fastest[0][cell] > 0.5);
+    }
+    assert!(wet > 1000 && uphill > 50, "{wet} {uphill}");
+}
+
+/// A surface and a velocity by expressions are those that functions give; a pair of rasters gives the velocity too.
+#[test]
+fn water_starts_by_expressions_and_rasters() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, value) in [("u.asc", "0.25"), ("v.asc", "-0.5")] {
+        let rows = format!("{value} {value} {value}\n").repeat(3);
+        let text = format!("ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 22\n{rows}");
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let terrain =
+        Arc::new(Terrain::gridded(Bounds { x_min: 0.0, x_max: 66.0, y_min: 0.0, y_max: 30.0 }, 0.5, |x, _| 0.01 * x));
+    let open = |keys: &str| {
+        let scene = parse(&format!(
+            "run.until_s = 1\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\nspacing_m = 1.5\n{WALLS}water = [{{ {keys} }}]"
+        ));
+        VoronoiFlood::new(&scene.flood, 1, folder.path(), Arc::clone(&terrain))
+    };
+    let flood =
+        open("level_m = \"2 + 0.01 * x - 1e-3 * y^2\", velocity_m_per_s = [\"0.1 * (y > 15)\", \"-x / 100\"]").unwrap();
+    let wet: Vec<_> = flood.wet_cells().collect();
+    assert!(wet.len() > 500);
+    for cell in wet {
+        let [x, y] = cell.centroid;
+        let level = 2.0 + 0.01 * x - 1e-3 * y * y;
+        assert!((cell.bed + cell.depth - level).abs() < 1e-3, "{cell:?} {level}");
+        assert!((cell.velocity[1] + x / 100.0).abs() < 1e-9, "{cell:?}");
+        if (y - 15.0).abs() > 2.0 {
+            assert!((cell.velocity[0] - if y > 15.0 { 0.1 } else { 0.0 }).abs() < 1e-12, "{cell:?}");
+        }
+    }
+    let flood = open("depth_m = \"max(0, 1 - hypot(x - 30, y - 15) / 10)\", velocity_m_per_s = { east = \"u.asc\", north = \"v.asc\" }").unwrap();
+    let volume: f64 = flood.wet_cells().map(|cell| cell.area * cell.depth).sum();
+    assert!((volume / (std::f64::consts::PI * 100.0 / 3.0) - 1.0).abs() < 0.01, "{volume}");
+    assert!(
+        flood.wet_cells().all(|cell| (cell.velocity[0] - 0.25).abs() < 1e-12 && (cell.velocity[1] + 0.5).abs() < 1e-12)
+    );
+    let refused = open("level_m = \"sqrt(x - 20)\"").map(|_| ()).unwrap_err().to_string();
+    for word in ["flood.water.0.level_m = \"sqrt(x - 20)\"", "not a finite number at [0.25", "max(0, ...)"] {
+        assert!(refused.contains(word), "{refused}");
+    }
+    assert!(open("level_m = \"sqrt(x - 20)\", polygon = [[21, 1], [60, 1], [60, 29]]").is_ok());
+    let missing =
+        open("level_m = 1, velocity_m_per_s = { east = \"u.asc\", north = \"w.asc\" }").map(|_| ()).unwrap_err();
+    assert!(missing.to_string().contains("w.asc"), "{missing}");
+}
+
+/// Linear theory of wavemakers in shallow water: the height of the wave is k times depth times stroke (Dean & Dalrymple 1991, section 6.2). What the
+/// wall sweeps in and out again is booked.
+#[test]
+fn a_paddle_makes_the_waves_of_linear_theory() {
+    let (depth, period, stroke) = (1.0_f64, 8.0_f64, 0.02_f64);
+    let rows: Vec<[f64; 2]> = (0..=640)
+        .map(|k| f64::from(k) * 0.05)
+        .map(|time| [time, 0.5 * stroke * (1.0 - (std::f64::consts::TAU * time / period).cos())])
+        .collect();
+    let keys = format!(
+        "spacing_m = 0.5\nmanning = 0\nwater = [{{ level_m = {depth} }}]\nedges = {{ west = {{ paddle = {rows:?} }}, east = \"open\", south = \"wall\", north = \"wall\" }}"
+    );
+    let mut flood = basin(&keys, 2, |_, _| 0.0).unwrap();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    // The front is at the far end after 21 s.
+    for k in 0..=160 {
+        let time = 16.0 + f64::from(k) * 0.1;
+        go(&mut flood, time);
+        let level = flood.sample(15.0, 15.0).depth;
+        (low, high) = (low.min(level), high.max(level));
+        let row = flood.ledger().balances[0].clone();
+        assert!(row.relative_error().abs() < 1e-13, "{row:?}");
+    }
+    let number = std::f64::consts::TAU / period / (9.81 * depth).sqrt();
+    let height = number * depth * stroke;
+    assert!(((high - low) / height - 1.0).abs() < 0.03, "{} {height}", high - low);
+    // At rest again after four periods, the wall is where it was: to second order as much went out as came in.
+    let water = &flood.ledger().balances[0];
+    assert!(water.inflow > 3.0 * 0.02 * 30.0 && flood.gauge_row().iter().all(|value| value.is_finite()));
+}
+
+/// A wall that moves in by 0.3 m in 20 s and stays: the tank holds what it swept, width times depth times displacement, and a little more as the
+/// water rises before it.
+#[test]
+fn what_a_paddle_sweeps_is_booked() {
+    let keys = "spacing_m = 1\nwater = [{ level_m = 1 }]\nedges = { west = { paddle = [[0, 0], [20, 0.3]] }, east = \"wall\", south = \"wall\", north = \"wall\" }";
+    let mut flood = basin(keys, 1, |_, _| 0.0).unwrap();
+    go(&mut flood, 60.0);
+    let water = flood.ledger().balances[0].clone();
+    assert!(
+        (water.inflow - water.outflow) / (0.3 * 30.0) > 1.0 && (water.inflow - water.outflow) / (0.3 * 30.0) < 1.02,
+        "{water:?}"
+    );
+    let jumps = "spacing_m = 1\nedges.west.paddle = { csv = \"missing.csv\" }";
+    assert!(basin(jumps, 1, |_, _| 0.0).map(|_| ()).unwrap_err().to_string().contains("missing.csv"));
 }

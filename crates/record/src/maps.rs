@@ -9,7 +9,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What stands in cells without data; depths, speeds, times and hazards are never negative.
+/// What stands in cells without data: less than any depth, level, velocity or time.
 const NO_DATA: f32 = -9999.0;
 
 /// The map that is kept for each frame; of the others the last one stands for the whole run.

@@ -6,7 +6,7 @@ use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
 use crate::maps::{self, SNAPSHOT};
 use crate::whole::{write_bytes, write_whole};
-use crate::{Clock, RecordError, Summary, write_extent};
+use crate::{Clock, RecordError, Summary, write_extent, write_run_up};
 use corpuscle_model::{Chart, Frame, GaugeColumn, Map, Surface};
 use corpuscle_terrain::Terrain;
 use corpuscle_whole::clear_unfinished;
@@ -173,7 +173,7 @@ impl RunFolder {
     }
 
     /// Writes the maps that stand for the whole run (all but `depth`), `maps/max_depth.tif` and so on, and the flooded
-    /// extent `maps/extent.geojson`.
+    /// extent `maps/extent.geojson` and its run-up line `maps/run_up.geojson`.
     ///
     /// # Errors
     /// [`RecordError::Write`].
@@ -183,7 +183,10 @@ impl RunFolder {
             maps::write_map(&folder.join(format!("{}.tif", map.name)), terrain.map_grid(), &map.values)?;
         }
         match maps.iter().find(|map| map.name == "max_depth") {
-            Some(depth) => write_extent(&folder.join("extent.geojson"), terrain, &depth.values),
+            Some(depth) => {
+                write_extent(&folder.join("extent.geojson"), terrain, &depth.values)?;
+                write_run_up(&folder.join("run_up.geojson"), terrain, &depth.values)
+            }
             None => Ok(()),
         }
     }

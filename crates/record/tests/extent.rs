@@ -1,6 +1,6 @@
 //! The flooded extent as GeoJSON.
 
-use corpuscle_record::{compare_extent, write_extent};
+use corpuscle_record::{compare_extent, write_extent, write_run_up};
 use corpuscle_scene::{NoData, TerrainFile};
 use corpuscle_terrain::Terrain;
 use serde_json::Value;
@@ -107,4 +107,27 @@ fn nothing_wet_is_an_empty_extent() {
     let geojson: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
     assert_eq!(areas(&geojson).len(), 0);
     assert_eq!(geojson["features"][0]["properties"]["area_m2"], 0.0);
+}
+
+/// Water over the western half of a slope that rises by 1 m a cell eastwards: the line runs along its eastern border and the border of an island only.
+#[test]
+fn the_run_up_line_leaves_out_where_the_terrain_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let terrain = terrain(folder.path(), None, [1000.0, 2000.0], 10.0);
+    let is_wet = |cell: usize| cell % 40 < 20 && cell != 15 * 40 + 4;
+    let depths: Vec<f32> = (0..1200).map(|cell| if is_wet(cell) { 1.0 } else { f32::NAN }).collect();
+    let path = folder.path().join("run_up.geojson");
+    write_run_up(&path, &terrain, &depths).unwrap();
+    let geojson: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let feature = &geojson["features"][0];
+    assert_eq!(feature["geometry"]["type"], "MultiLineString");
+    let lines: Vec<Vec<[f64; 2]>> = serde_json::from_value(feature["geometry"]["coordinates"].clone()).unwrap();
+    assert_eq!(lines[0], [[1200.0, 2000.0], [1200.0, 2300.0]]);
+    assert!(lines.len() == 2 && lines[1].len() == 5 && lines[1].contains(&[1040.0, 2150.0]), "{lines:?}");
+    // The wet cell farthest to the south-east, column 19 of row 29: the ground is column + row.
+    let highest = feature["properties"]["highest_m"].as_f64().unwrap();
+    assert!((highest - 48.0).abs() < 0.3, "{highest}");
+    write_run_up(&path, &terrain, &[f32::NAN; 1200]).unwrap();
+    let none: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert!(none["features"][0]["properties"]["highest_m"].is_null());
 }

@@ -43,6 +43,7 @@ fn a_run_has_the_files_that_scripts_depend_on() {
         "maps/depth_000018.tif",
         "maps/duration_s.tif",
         "maps/extent.geojson",
+        "maps/run_up.geojson",
         "maps/hazard.tif",
         "maps/max_depth.tif",
         "maps/max_speed.tif",

@@ -4,11 +4,13 @@
 mod obstacle;
 mod rain;
 mod refinement;
+mod start;
 mod structures;
 
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
 pub use refinement::Refinement;
+pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
 use crate::Series;
@@ -24,8 +26,10 @@ pub struct Flood {
     /// What lengths and discharges are written in. A scene that was read is in metres.
     pub units: FloodUnits,
     /// Distance between particles, m, in water of depth `spacing_depth_m`. At the start particles hold
-    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower.
-    pub spacing_m: f64,
+    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower. Left out: the size of the terrain's cells, or
+    /// more, so that not more than about 200,000 particles are wet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing_m: Option<f64>,
     /// The depth at which particles are `spacing_m` apart, m. Left out: the mean depth of the initial water, or 1 m
     /// where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +92,7 @@ impl Default for Flood {
         Self {
             scheme: Scheme::Balanced,
             units: FloodUnits::Si,
-            spacing_m: 10.0,
+            spacing_m: None,
             spacing_depth_m: None,
             gravity_m_per_s2: 9.81,
             manning: Manning::Number(0.03),
@@ -272,6 +276,8 @@ pub enum Edge {
     Wave(Wave),
     /// Water leaves at the depth of normal flow on this slope, and none comes in (scheme voronoi).
     NormalDepth(f64),
+    /// A wall that moves: how far it stands inwards of the side over time, m (scheme voronoi). Its displacement is taken as small beside waves: it acts at the side.
+    Paddle(Series),
     /// Water leaves by the level before the side: rows of `[level, discharge]`, m and m3/s, linear between them (scheme voronoi).
     Rating(Vec<[f64; 2]>),
 }
@@ -322,12 +328,12 @@ pub enum Side {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Water {
-    /// At rest up to this level, m.
+    /// Up to this level, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub level_m: Option<f64>,
-    /// The same depth everywhere, m.
+    pub level_m: Option<Field>,
+    /// This depth, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub depth_m: Option<f64>,
+    pub depth_m: Option<Field>,
     /// A raster of depths, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_raster: Option<PathBuf>,
@@ -337,8 +343,8 @@ pub struct Water {
     /// A block of particles released above the ground, falling freely until it lands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<Block>,
-    /// Velocity at the start `[east, north]`, m/s.
-    pub velocity_m_per_s: [f64; 2],
+    /// Velocity at the start.
+    pub velocity_m_per_s: StartVelocity,
 }
 
 /// A block of particles in the air.

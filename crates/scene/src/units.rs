@@ -123,7 +123,7 @@ fn convert_below(value: &mut Value, given: &Spanned<DeValue<'_>>) {
 /// By what the numbers of a key are multiplied; in rows of two numbers, those of the first and of the second column.
 fn factors(key: &str) -> Option<[f64; 2]> {
     match key {
-        "stage" => Some([1.0, FOOT]),
+        "stage" | "paddle" => Some([1.0, FOOT]),
         "rating" => Some([FOOT, FOOT * FOOT * FOOT]),
         // m^(1/2)/s, and s/m.
         "coefficient" | "chezy" => Some([1.0, FOOT.sqrt()]),
@@ -145,6 +145,9 @@ fn scale(value: &mut Value, factors: [f64; 2]) {
             }
         }
         Value::Array(items) => items.iter_mut().for_each(|item| scale(item, factors)),
+        // An expression; a path is not below a key with a unit, but for those of rasters, which are in metres.
+        Value::String(expression) => *expression = format!("({expression}) * {:?}", factors[1]),
+        Value::Table(rasters) if !rasters.contains_key("csv") => {}
         // A file of values over time.
         Value::Table(file) => {
             let before = file.get("factor").and_then(Value::as_float).unwrap_or(1.0);

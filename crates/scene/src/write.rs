@@ -1,7 +1,9 @@
 //! From a scene to text.
 
 use crate::dew::{Dew, Shape};
-use crate::{Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, Terrain, Wall};
+use crate::{
+    Edge, FloodScene, Gas, Manning, ModelScene, Motion, Scene, SceneError, Series, StartVelocity, Terrain, Wall,
+};
 use std::path::{Path, PathBuf};
 
 impl Scene {
@@ -44,7 +46,7 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
     let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
     for edge in edges.into_iter().chain(flood.edge_part.iter_mut().map(|part| &mut part.edge)) {
         let series = match edge {
-            Edge::Stage(series) | Edge::Discharge(series) => [Some(series), None],
+            Edge::Stage(series) | Edge::Discharge(series) | Edge::Paddle(series) => [Some(series), None],
             Edge::Wave(wave) => [wave.level_m.as_mut(), wave.velocity_m_per_s.as_mut()],
             Edge::Open | Edge::Wall | Edge::Periodic | Edge::NormalDepth(_) | Edge::Rating(_) => [None, None],
         };
@@ -59,7 +61,12 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
             paths.push(csv);
         }
     }
-    paths.extend(flood.water.iter_mut().filter_map(|water| water.depth_raster.as_mut()));
+    for water in &mut flood.water {
+        paths.extend(&mut water.depth_raster);
+        if let StartVelocity::Rasters(rasters) = &mut water.velocity_m_per_s {
+            paths.extend([&mut rasters.east, &mut rasters.north]);
+        }
+    }
     for stage in &mut flood.stage {
         if let Series::File { csv, .. } = &mut stage.level_m {
             paths.push(csv);

@@ -237,7 +237,7 @@ fn overrides_are_named() {
 fn a_scene_made_in_memory_is_checked_too() {
     let mut scene = Scene::parse(GOOD, "test.toml", &[]).unwrap();
     let ModelScene::Flood(flood) = &mut scene.model else { panic!("{scene:?}") };
-    flood.flood.spacing_m = f64::NAN;
+    flood.flood.spacing_m = Some(f64::NAN);
     assert_eq!(scene.check().unwrap_err().to_string(), "flood.spacing_m = nan: must be a finite number");
 }
 
@@ -333,4 +333,53 @@ fn errors_in_feet_speak_of_feet() {
         assert!(words.iter().all(|word| message.contains(word)), "{words:?} are not in {message}");
     }
     assert_refused("spacing_m = 1.0", "spacing_ft = 1.0", &["flood.spacing_ft", "not a key that is known here"]);
+}
+
+#[test]
+fn expressions_and_velocities_at_the_start() {
+    assert_refused(
+        "level_m = 1.0",
+        "level_m = \"2 + sine(x)\"",
+        &[
+            "flood.water.0.level_m",
+            "`2 + sine(x)` cannot be read at character 5",
+            "`sine` is not known here",
+            "sin, cos",
+        ],
+    );
+    assert_refused(
+        "level_m = 1.0",
+        "level_m = [1.0]",
+        &["flood.water.0.level_m", "an expression of x and y in quotes"],
+    );
+    assert_refused("level_m = 1.0", "level_m = nan", &["flood.water.0.level_m = nan", "finite"]);
+    let velocity = |text: &str| format!("level_m = 1.0\nvelocity_m_per_s = {text}");
+    for (text, words) in [
+        ("[1, \"2 *\"]", ["flood.water.0.velocity_m_per_s", "at character 4"]),
+        ("[1]", ["flood.water.0.velocity_m_per_s", "two components"]),
+        ("[1, 2, 3]", ["flood.water.0.velocity_m_per_s", "not used"]),
+        ("{ east = \"u.tif\" }", ["flood.water.0.velocity_m_per_s", "north"]),
+        ("{ east = \"u.tif\", north = \"v.tif\", up = 1 }", ["up", "known: east, north"]),
+    ] {
+        let message = refuse(&GOOD.replace("level_m = 1.0", &velocity(text)), &[]);
+        assert!(
+            words.iter().all(|word| message.contains(word)) && message.contains("test.toml:2"),
+            "{text}: {message}"
+        );
+    }
+    let block =
+        "block = { from = [1, 1], to = [9, 9], height_m = 1 }\nvelocity_m_per_s = { east = \"u\", north = \"v\" }";
+    let message = refuse(&GOOD.replace("level_m = 1.0\npolygon = [[0, 0], [10, 0], [10, 10]]", block), &[]);
+    assert!(message.contains("the velocity of a block is two numbers"), "{message}");
+}
+
+#[test]
+fn paddles() {
+    let good = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"");
+    let with = |edge: &str| good.replace("west = \"wall\"", &format!("west = {edge}"));
+    Scene::parse(&with("{ paddle = [[0, 0], [1, 0.1]] }"), "test", &[]).unwrap();
+    let jump = refuse(&with("{ paddle = [[0, 0], [1, 0.1], [1, 0.2]] }"), &[]);
+    assert!(jump.contains("flood.edges.west.paddle.2") && jump.contains("cannot jump"), "{jump}");
+    let other = refuse(&GOOD.replace("west = \"wall\"", "west = { paddle = 0 }"), &[]);
+    assert!(other.contains("is for scheme = \"voronoi\""), "{other}");
 }

@@ -81,19 +81,20 @@ fn full_wave() -> Edge {
 fn full(terrain: Terrain) -> Scene {
     let block = Block { from: [0.0; 2], to: [1.0; 2], height_m: 1.0, layers: 1 };
     let water = Water {
-        level_m: Some(1.0),
-        depth_m: Some(1.0),
+        level_m: Some(Field::Number(1.0)),
+        depth_m: Some(Field::Number(1.0)),
         depth_raster: Some("a".into()),
         polygon: Some(vec![[0.0; 2]]),
         block: None,
-        velocity_m_per_s: [0.0; 2],
+        velocity_m_per_s: [0.0; 2].into(),
     };
-    let in_the_air = Water { block: Some(block), ..water.clone() };
+    let rasters = StartVelocity::Rasters(VelocityRasters { east: "a".into(), north: "a".into() });
+    let in_the_air = Water { block: Some(block), velocity_m_per_s: rasters, ..water.clone() };
     let place = Some([0.0; 2]);
     let flood = Flood {
         scheme: Scheme::Balanced,
         units: FloodUnits::Si,
-        spacing_m: 1.0,
+        spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
         sph_swe: SphSwe { smoothing_length_m: Some(1.0), radius_m: Some(1.0), ..SphSwe::default() },
         gravity_m_per_s2: 1.0,

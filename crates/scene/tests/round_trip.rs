@@ -1,7 +1,8 @@
 //! A scene written and read again is the same scene, and no text makes the parser panic.
 
 use corpuscle_scene::{
-    BUILTIN, Edge, FloodScene, Infiltration, LinkLaw, Manning, Scene, Scheme, Series, Terrain, builtin,
+    BUILTIN, Edge, Field, FloodScene, Infiltration, LinkLaw, Manning, Scene, Scheme, Series, StartVelocity, Terrain,
+    VelocityRasters, builtin,
 };
 use proptest::prelude::*;
 use std::path::Path;
@@ -209,7 +210,7 @@ proptest! {
     fn any_override_of_a_number_is_read_or_refused(value in any::<f64>()) {
         let overrides = [("flood.spacing_m".to_owned(), format!("{value:?}"))];
         match Scene::parse(BUILTIN[0].text, "valley", &overrides) {
-            Ok(scene) => prop_assert_eq!(scene.flood().unwrap().flood.spacing_m.to_bits(), value.to_bits()),
+            Ok(scene) => prop_assert_eq!(scene.flood().unwrap().flood.spacing_m.map(f64::to_bits), Some(value.to_bits())),
             Err(error) => prop_assert!(error.to_string().contains("flood.spacing_m"), "{}", error),
         }
     }
@@ -227,7 +228,8 @@ fn feet_become_metres_and_defaults_stay() {
         rain = { intensity_in_per_h = [[0, 1], [9, 2]] }
         infiltration.green-ampt = { conductivity_in_per_h = 1, suction_ft = 2, deficit = 0.5 }
         edges.west = { stage = [[5, 10]] }
-        water = [{ depth_ft = 2, polygon = [[0, 0], [1, 0], [1, 1]], velocity_ft_per_s = [1, 2] }]
+        water = [{ depth_ft = 2, polygon = [[0, 0], [1, 0], [1, 1]], velocity_ft_per_s = [1, "x * y"] },
+            { level_ft = 1, velocity_ft_per_s = { east = "u.tif", north = "v.tif" } }]
         inflow = [{ name = "a", at = [7, 7], discharge_ft3_per_s = { csv = "q.csv" } }]
         outflow = [{ name = "b", at = [7, 7], rating = [[1, 100]] }]
         stage = [{ name = "c", line = [[7, 7], [8, 8]], level_ft = 3 }]
@@ -245,7 +247,7 @@ fn feet_become_metres_and_defaults_stay() {
     let scene = Scene::parse(text, "test", &[]).unwrap();
     let flood = &scene.flood().unwrap().flood;
     let near = |found: f64, exact: f64| assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
-    near(flood.spacing_m, 3.048);
+    near(flood.spacing_m.unwrap(), 3.048);
     near(flood.gravity_m_per_s2, 32.0 * 0.3048);
     let rain = flood.rain.as_ref().unwrap();
     assert_eq!(rain.intensity_mm_per_h, Series::Table(vec![[0.0, 25.4], [9.0, 50.8]]));
@@ -254,7 +256,12 @@ fn feet_become_metres_and_defaults_stay() {
     near(ground.suction_m, 0.6096);
     assert_eq!((ground.conductivity_mm_per_h, ground.deficit), (25.4, 0.5));
     assert_eq!(flood.edges.west, Edge::Stage(Series::Table(vec![[5.0, 3.048]])));
-    assert_eq!((flood.water[0].depth_m, flood.water[0].velocity_m_per_s), (Some(0.6096), [0.3048, 0.6096]));
+    assert_eq!(flood.water[0].depth_m, Some(Field::Number(0.6096)));
+    let StartVelocity::Components([east, north]) = &flood.water[0].velocity_m_per_s else { panic!() };
+    assert_eq!(east.number(), Some(0.3048));
+    near(north.at(5.0, 7.0), 0.3048 * 35.0);
+    let rasters = VelocityRasters { east: "u.tif".into(), north: "v.tif".into() };
+    assert_eq!(flood.water[1].velocity_m_per_s, StartVelocity::Rasters(rasters));
     assert_eq!(flood.water[0].polygon.as_ref().unwrap()[1], [1.0, 0.0]);
     let Series::File { factor, .. } = flood.inflow[0].discharge_m3_per_s else { panic!() };
     near(factor, 0.028316846592);

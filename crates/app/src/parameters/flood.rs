@@ -74,7 +74,7 @@ pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
 
 /// Some metres below and above a level.
 fn around(flood: &Flood, number: usize) -> [f64; 2] {
-    let level = flood.water.get(number).and_then(|water| water.level_m).unwrap_or_default();
+    let level = flood.water.get(number).and_then(|water| water.level_m.as_ref()?.number()).unwrap_or_default();
     [level - 5.0, level + 5.0]
 }
 

@@ -1,12 +1,13 @@
 //! Pictures of a flood: water on the block of ground.
 
+use super::lines::plates;
 use super::look::{self, DepthClasses};
 use super::times::Times;
 use super::{GroundLook, Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
-use corpuscle_flood::obstacle_shapes;
+use corpuscle_flood::{line_walls, obstacle_shapes};
 use corpuscle_gpu::DeviceParticles;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
@@ -36,6 +37,8 @@ const CLEAR: f64 = 1.5;
 const TURBID: [f64; 2] = [0.4, 20.0];
 /// Colours of shallow to deep water in the simple look.
 const BLUES: [u32; 4] = [0x00bfe3f7, 0x006fb5e8, 0x001d6fbd, 0x000a2d63];
+/// Walls of no thickness are drawn so thick, as a part of the longer side of the terrain.
+const LINE_WIDTH: f64 = 0.003;
 /// Colour of buildings.
 const WALLS: [u8; 3] = [206, 196, 184];
 
@@ -84,11 +87,18 @@ impl FloodPicture {
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
         // The paths of a scene that was opened are absolute.
         let shapes = obstacle_shapes(settings, ground, Path::new(""), HIGH_ENOUGH)?;
-        let roof = shapes.iter().map(|shape| shape.bounds[1][2]).fold(high, f64::max);
+        let lines = line_walls(settings, ground, HIGH_ENOUGH)?;
+        let tops = lines.iter().flat_map(|line| line.crest.map(|crest| heights * crest));
+        let roof = shapes.iter().map(|shape| shape.bounds[1][2]).chain(tops).fold(high, f64::max);
         let stage = Stage::new([from[0], from[1], base], [to[0], to[1], roof]);
         let colours = natural_colours(&field);
         let walls = |shape| Solid::new(&studio.renderer, &stage, shape, SolidStyle::Opaque(WALLS, 0.1));
-        let buildings = shapes.iter().map(walls).collect();
+        let mut buildings: Vec<Solid> = shapes.iter().map(walls).collect();
+        if !lines.is_empty() {
+            let thickness = LINE_WIDTH * (to[0] - from[0]).max(to[1] - from[1]);
+            let corners = plates(&lines, thickness, heights);
+            buildings.push(Solid::of_corners(&studio.renderer, &stage, &corners, SolidStyle::Opaque(WALLS, 0.1)));
+        }
         let mut mesh = Terrain::new(&studio.renderer, &stage, field.clone(), &colours, base)?;
         if let GroundLook::Picture(path) = &look {
             mesh.drape(studio.renderer.gpu(), &look::picture(path)?)?;

@@ -5,6 +5,7 @@ mod dew;
 mod flood;
 mod gas;
 mod hand;
+mod lines;
 mod look;
 mod scenery;
 mod show;

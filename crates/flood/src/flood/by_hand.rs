@@ -211,7 +211,7 @@ impl Flood {
     }
 
     fn new_ground(&self) -> Ground {
-        let widest = widest(&self.settings, self.refinement.as_ref());
+        let widest = widest(&self.settings, self.spacing, self.refinement.as_ref());
         Ground::without_rain(&self.surroundings.terrain, self.volume, widest)
     }
 

@@ -4,6 +4,7 @@ use super::by_hand::Hand;
 use super::{Flood, State, weather};
 use crate::balanced::{self, Balanced};
 use crate::edges::BeforeWalls;
+use crate::fields;
 use crate::friction::Roughness;
 use crate::limits;
 use crate::maps::Maps;
@@ -13,6 +14,7 @@ use crate::refinement::Refinement;
 use crate::scheme::{Scheme, Sizes, Surroundings};
 use crate::seeding::Body;
 use crate::setup::{self, InitialWater};
+use crate::spacing;
 use crate::sph_swe::{SphSwe, h_of_density};
 use crate::structures::Structures;
 use corpuscle_model::{Account, ExactSum, ModelError};
@@ -100,7 +102,7 @@ impl Flood {
         let map_period = flood
             .map_every_s
             .ok_or_else(|| ModelError::Setup("flood.map_every_s is open; resolve the scene's defaults first".into()))?;
-        let spacing = flood.spacing_m;
+        let spacing = spacing::resolve(flood, &terrain, folder)?;
         let depth = *flood.spacing_depth_m.get_or_insert_with(|| setup::mean_depth(bodies, &terrain).unwrap_or(1.0));
         let volume = spacing * spacing * depth;
         let (scheme, h): (Box<dyn Scheme>, f64) = match flood.scheme {
@@ -127,7 +129,7 @@ impl Flood {
             obstacles::open(flood, &terrain, folder, setup::closest(bodies, &terrain, spacing, volume), reach, h)?;
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
         let refinement = flood.refinement.as_ref().map(|refinement| Refinement::new(refinement, volume, spacing));
-        let widest = weather::widest(flood, refinement.as_ref());
+        let widest = weather::widest(flood, spacing, refinement.as_ref());
         let ground = Ground::open(flood, &terrain, folder, volume, widest)?;
         let structures = Structures::open(flood, &terrain, folder, spacing)?;
         let state = State {
@@ -234,8 +236,8 @@ impl Flood {
         for water in &flood.water {
             if let Some(block) = &water.block {
                 let terrain = &self.surroundings.terrain;
-                let velocity = water.velocity_m_per_s;
-                let falling = setup::block(block, velocity, terrain, self.spacing, self.volume, self.h, &mut random);
+                let velocity = fields::block_velocity(&water.velocity_m_per_s, terrain);
+                let falling = setup::block(block, &velocity, terrain, self.spacing, self.volume, self.h, &mut random);
                 self.state.falling.extend(falling);
             }
         }

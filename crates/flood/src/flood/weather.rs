@@ -15,15 +15,15 @@ const STEPS: u64 = 8;
 const SCATTER: f64 = 0.7;
 
 /// The widest distance at which particles of a film stand, m: as far as they are not split, or see each other.
-pub(super) fn widest(settings: &Settings, refinement: Option<&Refinement>) -> f64 {
-    refinement.map_or(settings.balanced.largest_smoothing * settings.spacing_m, Refinement::widest)
+pub(super) fn widest(settings: &Settings, spacing: f64, refinement: Option<&Refinement>) -> f64 {
+    refinement.map_or(settings.balanced.largest_smoothing * spacing, Refinement::widest)
 }
 
 impl Flood {
     /// Lets it rain as `rain` says, m/s over x, y, m, and time, s, instead of as the scene does. A graphics card is told of it ahead, at
     /// some times; one with too little memory for that takes no more steps.
     pub fn rain(&mut self, rain: RainFunction) {
-        let widest = widest(&self.settings, self.refinement.as_ref());
+        let widest = widest(&self.settings, self.spacing, self.refinement.as_ref());
         let ground = Ground::under(rain, &self.surroundings.terrain, self.volume, widest);
         self.state.wetness = ground.dry();
         self.ground = Some(ground);

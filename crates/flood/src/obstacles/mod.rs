@@ -13,7 +13,7 @@ pub(crate) use open::{check_overlap, open};
 #[cfg(feature = "gpu")]
 pub(crate) use outline::OutlineCells;
 pub(crate) use outline::{Outline, Outlines};
-pub use shapes::obstacle_shapes;
+pub use shapes::{LineWall, line_walls, obstacle_shapes};
 pub(crate) use sites::{Site, Sites};
 
 use crate::particle::Particle;

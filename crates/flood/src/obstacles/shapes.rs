@@ -2,11 +2,15 @@
 
 use super::Outline;
 use super::open::polygons;
+use crate::voronoi::of_lines;
 use corpuscle_model::{ModelError, SolidShape};
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Most parts of a wall of no thickness, to be drawn.
+const MOST_PARTS: f64 = 1e4;
 
 /// The obstacles of a scene, those from files included, upright from the lowest ground at their walls to a level roof: `height_m` above
 /// the highest ground there, `high_enough` m where a scene says no height. Relative paths are taken from `folder`.
@@ -41,6 +45,52 @@ fn upright(outline: Outline, terrain: &Terrain, height: f64) -> Option<SolidShap
     })
 }
 
+/// A straight part of a wall of no thickness, to be drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineWall {
+    /// Its ends in model coordinates, m.
+    pub ends: [[f64; 2]; 2],
+    /// A height below the ground along it, m.
+    pub base: f64,
+    /// Levels of its crest at both ends, m.
+    pub crest: [f64; 2],
+}
+
+/// The obstacles of a scene that are lines, in parts as long as the terrain's cells, between which the ground beneath them rises and falls: up to their crest, or
+/// `high_enough` m above the ground where no water flows over them.
+///
+/// # Errors
+/// [`ModelError::Setup`] for one that lies outside the terrain.
+pub fn line_walls(flood: &Settings, terrain: &Terrain, high_enough: f64) -> Result<Vec<LineWall>, ModelError> {
+    let cell = terrain.map_grid().cell_size().into_iter().fold(f64::INFINITY, f64::min);
+    let walls = of_lines(flood, terrain, cell)?;
+    Ok(walls.into_iter().flat_map(|wall| line_parts(wall.ends, wall.crest, terrain, cell, high_enough)).collect())
+}
+
+fn line_parts(
+    [a, b]: [[f64; 2]; 2],
+    crest: [f64; 2],
+    terrain: &Terrain,
+    cell: f64,
+    high_enough: f64,
+) -> impl Iterator<Item = LineWall> {
+    let parts = ((b[0] - a[0]).hypot(b[1] - a[1]) / cell).ceil().clamp(1.0, MOST_PARTS);
+    let at = move |part: f64| [0, 1].map(|axis| a[axis] + part / parts * (b[axis] - a[axis]));
+    (0..parts as usize).map(move |part| {
+        let part = part as f64;
+        let grounds = [part, part + 0.5, part + 1.0].map(|part| terrain.height(at(part)[0], at(part)[1]));
+        let [low, high] = [
+            grounds.iter().copied().fold(f64::INFINITY, f64::min),
+            grounds.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        let top = |share: f64, ground: f64| {
+            if crest[0].is_finite() { crest[0] + share / parts * (crest[1] - crest[0]) } else { ground + high_enough }
+        };
+        let crest = [top(part, grounds[0]), top(part + 1.0, grounds[2])];
+        LineWall { ends: [at(part), at(part + 1.0)], base: low - (high - low), crest }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,5 +113,16 @@ mod tests {
         for (place, distance) in places {
             assert!(((shape.distance)(place) - distance).abs() < 1e-12, "{place:?}");
         }
+    }
+
+    #[test]
+    fn lines_stand_on_the_ground_up_to_their_crest() {
+        let bounds = Bounds { x_min: 0.0, x_max: 10.0, y_min: 0.0, y_max: 10.0 };
+        let terrain = Terrain::analytic(bounds, 1.0, |x, _| (0.5 * x, [0.5, 0.0]));
+        let walls = |crest| line_parts([[2.0, 3.0], [4.0, 3.0]], crest, &terrain, 1.0, 7.0).collect::<Vec<_>>();
+        let levee = walls([3.0, 4.0]);
+        assert_eq!(levee[0], LineWall { ends: [[2.0, 3.0], [3.0, 3.0]], base: 0.5, crest: [3.0, 3.5] });
+        assert_eq!((levee.len(), levee[1].crest), (2, [3.5, 4.0]));
+        assert_eq!(walls([f64::INFINITY; 2])[1].crest, [8.5, 9.0]);
     }
 }

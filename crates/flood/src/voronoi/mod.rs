@@ -37,7 +37,9 @@ mod tests;
 mod walls;
 mod water;
 
+pub(crate) use start::of_scene;
 pub use start::{Filling, OfPosition, StartWater};
+pub(crate) use walls::of_lines;
 
 use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};

@@ -67,7 +67,7 @@ impl Model for VoronoiFlood {
             set.id.push(drop.id);
             set.position.push(drop.position);
             set.velocity.push(drop.velocity);
-            set.radius.push(0.5 * self.settings.spacing_m);
+            set.radius.push(0.5 * mesh.layout.spacing());
             set.mass.push(DENSITY * drop.volume);
             depth.push(0.0);
             ground.push(self.terrain.height(x, y));
@@ -91,7 +91,10 @@ impl Model for VoronoiFlood {
 
     fn maps(&self) -> Vec<Map> {
         let water = |cell: usize| self.water_shown(cell);
-        maps::maps(&self.solver.mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m)
+        let mesh = &self.solver.mesh;
+        let mut maps = maps::maps(mesh, &self.terrain, &self.state.records, &water, self.settings.wet_depth_m);
+        maps.extend(self.weather.as_ref().and_then(|weather| weather.map(mesh, &self.terrain, &self.state.soaked)));
+        maps
     }
 
     fn ledger(&self) -> Ledger {

@@ -17,7 +17,7 @@ use crate::friction::Roughness;
 use crate::rain::RainFunction;
 use crate::setup::{self, setup};
 use crate::structures::Structures;
-use crate::{limits, obstacles};
+use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ModelError};
 use corpuscle_scene::Flood as Settings;
 use corpuscle_terrain::Terrain;
@@ -89,8 +89,9 @@ impl VoronoiFlood {
 
     /// All but cells and water.
     fn empty(settings: &Settings, seed: u64, folder: &Path, terrain: Arc<Terrain>) -> Result<Self, ModelError> {
-        let settings = settings.clone();
-        let (spacing, gravity) = (settings.spacing_m, settings.gravity_m_per_s2);
+        let mut settings = settings.clone();
+        let spacing = spacing::resolve(&mut settings, &terrain, folder)?;
+        let gravity = settings.gravity_m_per_s2;
         limits::check_blocks(&settings, &terrain)?;
         let boundaries = Boundaries::open(&settings, &terrain, folder)?;
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
@@ -154,7 +155,7 @@ impl VoronoiFlood {
 
     /// Makes the tiles of inflows, structures and held sides, and finds their cells.
     fn open_zones(&mut self, folder: &Path) -> Result<(), ModelError> {
-        let sources = setup::sources(&self.settings, &self.terrain, folder, self.settings.spacing_m)?;
+        let sources = setup::sources(&self.settings, &self.terrain, folder, self.solver.mesh.layout.spacing())?;
         let mesh = &self.solver.mesh;
         let mut tiles = Patches::tiles(&self.structures, mesh);
         tiles.extend(sources.iter().flat_map(|source| Patch::tiles(&source.zone, mesh)));
@@ -269,7 +270,7 @@ impl VoronoiFlood {
     }
 
     fn begin(&mut self, seed: u64) {
-        self.state.falling = drops(&self.settings, &self.terrain, seed);
+        self.state.falling = drops(&self.settings, self.solver.mesh.layout.spacing(), &self.terrain, seed);
         let none = self.solver.columns.iter().all(|column| column.volume <= 0.0) && self.state.falling.is_empty();
         if none
             && self.weather.is_none()

@@ -4,6 +4,7 @@ use super::patch::Change;
 use super::solver::Passed;
 use super::water::Column;
 use super::{DENSITY, State, VoronoiFlood, maps, walls};
+use crate::fields::block_velocity;
 use crate::setup::{lattice, random};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_scene::Flood as Settings;
@@ -25,24 +26,25 @@ pub(super) struct Drop {
 pub(super) const FIRST_DROP: u64 = 1 << 48;
 
 /// The drops of the blocks of a scene: layers of a lattice, each shifted a little at random so that no two stand one above the other.
-pub(super) fn drops(scene: &Settings, terrain: &Terrain, seed: u64) -> Vec<Drop> {
+pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64) -> Vec<Drop> {
     let mut random = random(seed, u64::MAX);
-    let spacing = scene.spacing_m;
     let volume = spacing * spacing * scene.spacing_depth_m.unwrap_or(1.0);
     let mut drops = Vec::new();
     for (block, water) in scene.water.iter().filter_map(|water| Some((water.block.as_ref()?, water))) {
         let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
         let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
         let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
+        let velocity = block_velocity(&water.velocity_m_per_s, terrain);
         let [columns, rows] = lattice(block, terrain, spacing).map(|count| count as usize);
         for number in 0..block.layers * columns * rows {
             let place = [number % columns, number / columns % rows];
             let mut at =
                 |axis: usize| from[axis] + (place[axis] as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
             let z = bottom + ((number / (columns * rows)) as f64 + 0.5) * spacing;
-            let [u, v] = water.velocity_m_per_s;
+            let [x, y] = [at(0), at(1)];
+            let [u, v] = velocity(x, y);
             let id = FIRST_DROP + drops.len() as u64;
-            drops.push(Drop { id, position: [at(0), at(1), z], velocity: [u, v, 0.0], volume });
+            drops.push(Drop { id, position: [x, y, z], velocity: [u, v, 0.0], volume });
         }
     }
     drops
@@ -51,7 +53,7 @@ pub(super) fn drops(scene: &Settings, terrain: &Terrain, seed: u64) -> Vec<Drop>
 impl VoronoiFlood {
     /// A time step short enough for what is in the air, too: it falls a spacing in some ten steps.
     pub(super) fn limited(&self, step: f64) -> f64 {
-        let fall = 0.1 * (self.settings.spacing_m / self.settings.gravity_m_per_s2).sqrt();
+        let fall = 0.1 * (self.solver.mesh.layout.spacing() / self.settings.gravity_m_per_s2).sqrt();
         if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
 

@@ -2,8 +2,10 @@
 
 mod observed;
 mod outline;
+mod run_up;
 
 pub use observed::{ExtentScores, compare_extent};
+pub use run_up::write_run_up;
 
 use crate::RecordError;
 use crate::whole::write_whole;
@@ -23,25 +25,35 @@ pub fn write_extent(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result
     let grid = terrain.map_grid();
     let wet: Vec<bool> = max_depth.iter().map(|depth| !depth.is_nan()).collect();
     let outlines = outlines(&wet, grid.columns, grid.rows);
-    let corner = grid.georeference.corner;
-    let has_system = terrain.to_lon_lat(terrain.to_model(corner)).is_ok();
-    let place = |vertex: [usize; 2]| place_of(terrain, vertex, has_system);
+    let with_system = has_system(terrain);
+    let place = |vertex: [usize; 2]| place_of(terrain, vertex, with_system);
     let polygons: Vec<Value> = outlines.iter().map(|outline| polygon(outline, place)).collect();
     let mut properties = json!({
         "name": "flooded extent",
         "area_m2": wet_area(terrain, &wet),
     });
-    if !has_system {
+    note_of_system(&mut properties, with_system);
+    let collection = feature_collection(&properties, &json!({ "type": "MultiPolygon", "coordinates": polygons }));
+    write_whole(path, |file| writeln!(file, "{collection}"))
+}
+
+/// A GeoJSON collection of one feature.
+fn feature_collection(properties: &Value, geometry: &Value) -> Value {
+    let feature = json!({ "type": "Feature", "properties": properties, "geometry": geometry });
+    json!({ "type": "FeatureCollection", "features": [feature] })
+}
+
+/// Whether positions on the terrain have a longitude and latitude.
+fn has_system(terrain: &Terrain) -> bool {
+    let corner = terrain.map_grid().georeference.corner;
+    terrain.to_lon_lat(terrain.to_model(corner)).is_ok()
+}
+
+fn note_of_system(properties: &mut Value, with_system: bool) {
+    if !with_system {
         properties["note"] =
             "The terrain has no reference system: coordinates are its own, not longitude and latitude.".into();
     }
-    let feature = json!({
-        "type": "Feature",
-        "properties": properties,
-        "geometry": { "type": "MultiPolygon", "coordinates": polygons },
-    });
-    let collection = json!({ "type": "FeatureCollection", "features": [feature] });
-    write_whole(path, |file| writeln!(file, "{collection}"))
 }
 
 /// Area of the wet cells, m2.

@@ -101,6 +101,10 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
         ("Maps show", shown_words(report)),
         ("Reference system", ground.system.clone().unwrap_or_else(|| "none (metres)".into())),
         ("Simulated time", format!("{} ({})", time(summary.simulated_time_s), how_it_ended(summary))),
+        (
+            "Spacing",
+            scene.flood.spacing_m.map_or_else(|| "by the terrain".into(), |spacing| format!("{} m", number(spacing))),
+        ),
         ("Particles", number(summary.particles as f64).replace(".0", "")),
         ("Steps", number(summary.steps as f64).replace(".0", "")),
         ("Computed in", format!("{} on the {}", time(summary.wall_time_s), summary.backend.to_uppercase())),

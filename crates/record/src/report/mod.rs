@@ -15,7 +15,7 @@ use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
 use crate::{GaugeTable, RecordError, Summary};
-use corpuscle_scene::{Circle, Flood, FloodScene, Scene};
+use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
@@ -215,11 +215,18 @@ fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
     let obstacles = flood.obstacle.iter().map(|obstacle| Place {
         kind: PlaceKind::Obstacle,
         name: obstacle.name.clone(),
-        points: obstacle.polygon.clone().or(obstacle.circle.map(|circle| round(circle, terrain))).unwrap_or_default(),
+        points: corners(obstacle, terrain),
     });
     // An obstacle from a file has no corners here: it shows as ground that stays dry.
     let drawn = obstacles.filter(|obstacle| !obstacle.points.is_empty());
     sections.chain(inflows).chain(gauges).chain(drawn).collect()
+}
+
+/// The corners of an obstacle in the terrain's own coordinates; of a line there and back.
+fn corners(obstacle: &Obstacle, terrain: &Terrain) -> Vec<[f64; 2]> {
+    let line = obstacle.line.as_ref().map(|line| line.iter().chain(line.iter().rev().skip(1)).copied().collect());
+    let circle = obstacle.circle.map(|circle| round(circle, terrain));
+    obstacle.polygon.clone().or(circle).or(line).unwrap_or_default()
 }
 
 /// A circle as a polygon in the terrain's own coordinates.

@@ -87,13 +87,18 @@ impl Behind {
 impl Solid {
     /// A solid from its shape.
     pub fn new(renderer: &Renderer, stage: &Stage, shape: &SolidShape, style: SolidStyle) -> Self {
+        Self::of_corners(renderer, stage, &mesh::mesh(shape), style)
+    }
+
+    /// A solid from the corners of its triangles, three by three: position, m, and unit vector outwards.
+    pub fn of_corners(renderer: &Renderer, stage: &Stage, corners: &[([f64; 3], [f64; 3])], style: SolidStyle) -> Self {
         let gpu = renderer.gpu();
-        let vertex = |(place, normal): ([f64; 3], [f64; 3])| {
-            let [x, y, z] = stage.place(place).into();
+        let vertex = |(place, normal): &([f64; 3], [f64; 3])| {
+            let [x, y, z] = stage.place(*place).into();
             let [nx, ny, nz] = normal.map(|part| part as f32);
             Vertex { place: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
         };
-        let vertices: Vec<Vertex> = mesh::mesh(shape).into_iter().map(vertex).collect();
+        let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("solid"),
             entries: &[wgpu::BindGroupLayoutEntry {

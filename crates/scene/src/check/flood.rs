@@ -3,7 +3,10 @@
 mod ground;
 
 use super::{Check, Checked};
-use crate::{Balanced, Block, Edge, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe, Water};
+use crate::{
+    Balanced, Block, Edge, Field, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
+    StartVelocity, Water,
+};
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
@@ -11,7 +14,9 @@ const LARGEST_MANNING: f64 = 1.0;
 
 impl Check {
     pub(super) fn flood(&self, flood: &Flood) -> Checked {
-        self.above("flood.spacing_m", flood.spacing_m, 0.0)?;
+        if let Some(spacing) = flood.spacing_m {
+            self.above("flood.spacing_m", spacing, 0.0)?;
+        }
         if let Some(depth) = flood.spacing_depth_m {
             self.above("flood.spacing_depth_m", depth, 0.0)?;
         }
@@ -141,6 +146,7 @@ impl Check {
             Edge::Stage(level) => self.series(&format!("{key}.stage"), level),
             Edge::Discharge(discharge) => self.series(&format!("{key}.discharge"), discharge),
             Edge::NormalDepth(slope) => self.above(&format!("{key}.normal_depth"), *slope, 0.0),
+            Edge::Paddle(motion) => self.paddle(&format!("{key}.paddle"), motion),
             Edge::Rating(rows) => self.rating(&format!("{key}.rating"), "level, discharge", rows),
             Edge::Wave(wave) => {
                 let key = format!("{key}.wave");
@@ -156,6 +162,16 @@ impl Check {
                 Ok(())
             }
         }
+    }
+
+    fn paddle(&self, key: &str, motion: &Series) -> Checked {
+        self.series(key, motion)?;
+        let Series::Table(rows) = motion else { return Ok(()) };
+        let jump = rows.windows(2).position(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1]);
+        jump.map_or(Ok(()), |row| {
+            Err(self
+                .problem(&format!("{key}.{}", row + 1), "a wall cannot jump: give it a later time than the row before"))
+        })
     }
 
     /// What leaves at one side comes in at the other, so both are periodic or neither.
@@ -179,7 +195,7 @@ impl Check {
                 ("block", water.block.is_some()),
             ],
         )?;
-        if let Some(depth) = water.depth_m {
+        if let Some(depth) = water.depth_m.as_ref().and_then(Field::number) {
             self.above(&format!("{key}.depth_m"), depth, 0.0)?;
         }
         if let Some(polygon) = &water.polygon {
@@ -188,6 +204,10 @@ impl Check {
         let Some(block) = &water.block else { return Ok(()) };
         self.require(&format!("{key}.polygon"), water.polygon.is_none(), || {
             "a block has its own corners; leave the polygon out".into()
+        })?;
+        let is_raster = matches!(water.velocity_m_per_s, StartVelocity::Rasters(_));
+        self.require(&format!("{key}.velocity_m_per_s"), !is_raster, || {
+            "the velocity of a block is two numbers or expressions, not rasters".into()
         })?;
         self.block(&format!("{key}.block"), block)
     }

@@ -1,6 +1,6 @@
 //! Steady flow along channels.
 
-use super::{GRAVITY, order, rows, run, settings, strip, water_everywhere};
+use super::{GRAVITY, order, rows, run, settings, spacing_of, strip, water_everywhere};
 use crate::{Case, Options, Row};
 use corpuscle_flood::Flood;
 use corpuscle_model::ModelError;
@@ -80,9 +80,10 @@ struct Errors {
 impl Channel {
     /// Runs the channel to `time` s from its exact depth and the given velocity, and compares.
     fn run(&self, settings: &Settings, time: f64, velocity: impl Fn(f64) -> f64 + Sync) -> Result<Errors, ModelError> {
-        let width = 14.0 * settings.spacing_m;
+        let spacing = spacing_of(settings);
+        let width = 14.0 * spacing;
         let bounds = Bounds { x_min: 0.0, x_max: self.length, y_min: 0.0, y_max: width };
-        let terrain = Arc::new((self.terrain)(bounds, settings.spacing_m));
+        let terrain = Arc::new((self.terrain)(bounds, spacing));
         let water = water_everywhere(bounds, |x, _| (self.depth)(x), move |x, _| [velocity(x), 0.0]);
         let flood = run(settings, &terrain, &[water], time)?;
         Ok(self.compare(&flood, width))

@@ -78,7 +78,7 @@ const SEED: u64 = 1;
 /// Water without friction with the given particle distance, at full size, in the given depth; its maps look two hundred times.
 fn settings(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Settings {
     Settings {
-        spacing_m: sized(spacing_m),
+        spacing_m: Some(sized(spacing_m)),
         spacing_depth_m: Some(depth),
         gravity_m_per_s2: GRAVITY,
         manning: Manning::Number(0.0),
@@ -86,6 +86,11 @@ fn settings(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Settings 
         edges,
         ..Settings::default()
     }
+}
+
+/// The spacing of settings, m, which every case gives.
+fn spacing_of(settings: &Settings) -> f64 {
+    settings.spacing_m.unwrap_or(1.0)
 }
 
 /// Edges of a strip: `ends` in the west and east, periodic across.

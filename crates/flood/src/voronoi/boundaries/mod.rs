@@ -25,6 +25,8 @@ pub(crate) enum Boundary {
     Discharge(Table),
     /// A wave comes in: level over time, m, velocity inwards over time, m/s, at least one of them; and the level at rest, m.
     Wave { level: Option<Table>, velocity: Option<Table>, rest: f64 },
+    /// A moving wall: its displacement inwards over time, m.
+    Paddle(Table),
     /// Water leaves at the depth of normal flow: the root of the slope.
     NormalDepth(f64),
     /// Discharge outwards, m3/s, by the level before the side, m.
@@ -53,6 +55,8 @@ pub(crate) enum Now {
     Beyond(f64, f64),
     /// Discharge inwards, m2/s; negative outwards.
     Discharge(f64),
+    /// A wall with this velocity inwards, m/s.
+    Moving(f64),
     /// Velocity of normal flow over the depth to 2/3, m^(1/3)/s.
     Normal(f64),
 }
@@ -98,7 +102,7 @@ mod tests {
     #[test]
     fn still_water_stays_still_at_every_boundary() {
         let at = AtFace { depth: 2.0, level: 3.0, across: 0.0, along: 0.4 };
-        for now in [Now::Wall, Now::Open(3.0), Now::Beyond(3.0, 0.0), Now::Discharge(0.0)] {
+        for now in [Now::Wall, Now::Open(3.0), Now::Beyond(3.0, 0.0), Now::Discharge(0.0), Now::Moving(0.0)] {
             let flux = through(now, at, [2.0, 3.0], 9.81);
             assert!(
                 flux.volume.abs() < 1e-14 && flux.carried[0].abs() < 1e-14 && flux.thrust.abs() < 1e-13,

@@ -153,6 +153,8 @@ impl Boundaries {
                             .conveyance(cell, solver.gravity)
                             .map_or(Now::Open(f64::NEG_INFINITY), |conveyance| Now::Normal(root * conveyance))
                     }
+                    // The mean velocity over the step, so that all of the displacement counts.
+                    Boundary::Paddle(motion) => Now::Moving((motion.at(time + step) - motion.at(time)) / step),
                     Boundary::Discharge(_) | Boundary::Rating(_) => continue,
                 };
                 self.now[stage][border] = now;
@@ -260,6 +262,18 @@ fn boundary(edge: &Edge, folder: &Path) -> Result<Boundary, ModelError> {
             velocity: wave.velocity_m_per_s.as_ref().map(|velocity| load(velocity, folder)).transpose()?,
             rest: wave.rest_level_m,
         },
+        Edge::Paddle(motion) => {
+            let motion = load(motion, folder)?;
+            if let Some(pair) =
+                motion.rows().windows(2).find(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1])
+            {
+                return Err(setup(format!(
+                    "a paddle of [flood.edges] jumps from {} m to {} m at {} s: a wall cannot; give it time to move",
+                    pair[0][1], pair[1][1], pair[0][0]
+                )));
+            }
+            Boundary::Paddle(motion)
+        }
         Edge::NormalDepth(slope) => Boundary::NormalDepth(slope.sqrt()),
         Edge::Rating(rows) => Boundary::Rating(table(rows)?),
     })

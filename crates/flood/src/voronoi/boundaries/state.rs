@@ -15,6 +15,7 @@ pub(crate) fn state(now: Now, at: &AtFace, gravity: f64) -> AtBoundary {
     let outgoing = at.across + 2.0 * celerity;
     match now {
         Now::Wall => AtBoundary { across: 0.0, ..own },
+        Now::Moving(inwards) => moves(inwards, at.depth, outgoing, gravity),
         Now::Discharge(inwards) if inwards > 0.0 => comes_in(inwards, outgoing, gravity),
         _ if is_supercritical => own,
         Now::Open(level) => {
@@ -39,6 +40,16 @@ fn depth_of(celerity: f64, gravity: f64) -> f64 {
 /// No water passes: the level rises or falls until what comes from inside is at rest.
 fn still(outgoing: f64, gravity: f64) -> AtBoundary {
     AtBoundary { depth: depth_of((0.5 * outgoing).max(0.0), gravity), across: 0.0 }
+}
+
+/// Water before a wall that moves inwards as fast: as fast as the wall, at the level that the wave from inside gives it. A wall that recedes faster than
+/// the water can follow leaves it behind.
+fn moves(inwards: f64, depth: f64, outgoing: f64, gravity: f64) -> AtBoundary {
+    let celerity = 0.5 * (outgoing + inwards);
+    if depth <= 0.0 || celerity <= 0.0 {
+        return AtBoundary { depth: 0.0, across: 0.0 };
+    }
+    AtBoundary { depth: depth_of(celerity, gravity), across: -inwards }
 }
 
 /// Water of celerity `beyond` that moves outwards at `drift`.
@@ -153,6 +164,20 @@ mod tests {
             let is_critical = (found.across.abs() / celerity - 1.0).abs() < 1e-9;
             assert!(is_critical || (found.across + 2.0 * celerity - outgoing).abs() < 1e-9, "{found:?}");
         }
+    }
+
+    #[test]
+    fn water_before_a_moving_wall_is_as_fast_as_the_wall() {
+        let still = at(2.0, 0.0);
+        let celerity = (G * 2.0_f64).sqrt();
+        for inwards in [-0.3, 0.0, 0.2] {
+            let found = state(Now::Moving(inwards), &still, G);
+            let exact = (celerity + 0.5 * inwards).powi(2) / G;
+            assert!((found.depth - exact).abs() < 1e-12 && found.across == -inwards, "{found:?}");
+        }
+        let left = AtBoundary { depth: 0.0, across: 0.0 };
+        assert_eq!(state(Now::Moving(-20.0), &still, G), left);
+        assert_eq!(state(Now::Moving(1.0), &at(0.0, 0.0), G), left);
     }
 
     #[test]

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Record {
     /// m.
     pub max_depth: f32,
-    /// m/s, where it was deep enough to be wet.
-    pub max_speed: f32,
+    /// Velocity `[east, north]` at the highest speed, m/s, where it was deep enough to be wet.
+    pub fastest: [f32; 2],
     /// Largest depth x (speed + 0.5), m2/s.
     pub hazard: f32,
     /// When the depth first rose above that of wet ground, s; not-a-number before.
@@ -26,7 +26,8 @@ pub(crate) struct Record {
 }
 
 /// The record of a cell that was never wet.
-pub(crate) const DRY: Record = Record { max_depth: 0.0, max_speed: 0.0, hazard: 0.0, arrival: f32::NAN, duration: 0.0 };
+pub(crate) const DRY: Record =
+    Record { max_depth: 0.0, fastest: [0.0; 2], hazard: 0.0, arrival: f32::NAN, duration: 0.0 };
 
 /// Records the water after a step of `step` s that ended at `time` s. The time at which a depth was passed is found on the straight line between
 /// the depths before and after.
@@ -46,6 +47,11 @@ impl Record {
         record
     }
 
+    /// m/s.
+    pub fn max_speed(&self) -> f32 {
+        self.fastest[0].hypot(self.fastest[1])
+    }
+
     #[inline]
     fn see(&mut self, water: &Water, before: f64, time: f64, step: f64, wet_depth: f64) {
         let depth = water.depth;
@@ -61,7 +67,10 @@ impl Record {
         if depth > wet_depth {
             let (depth, speed) = (depth as f32, water.speed() as f32);
             self.max_depth = self.max_depth.max(depth);
-            self.max_speed = self.max_speed.max(speed);
+            let velocity = water.velocity.map(|component| component as f32);
+            if velocity[0].hypot(velocity[1]) > self.max_speed() {
+                self.fastest = velocity;
+            }
             self.hazard = self.hazard.max(depth * (speed + 0.5));
         }
     }
@@ -81,7 +90,7 @@ pub(crate) fn maps(
         let depth = f64::from(records[cell].max_depth);
         Water { depth, level: mesh.bed[cell] + depth, velocity: [0.0; 2] }
     };
-    let mut values = vec![[f32::NAN; 6]; columns * rows];
+    let mut values = vec![[f32::NAN; NAMES.len()]; columns * rows];
     values.par_chunks_mut(columns.max(1)).enumerate().for_each(|(row, values)| {
         for (column, values) in values.iter_mut().enumerate().filter(|(column, _)| terrain.is_valid_cell(*column, row))
         {
@@ -94,32 +103,44 @@ pub(crate) fn maps(
             if record.max_depth <= 0.0 {
                 continue;
             }
-            let is_wet = |sample: Sample| (sample.depth > wet_depth).then_some(sample.depth as f32);
+            let is_wet = |sample: Sample| (sample.depth > wet_depth).then_some(sample);
             let now = is_wet(Sampler { mesh, terrain, water }.in_cell(cell, x, y));
-            values[0] = now.unwrap_or(f32::NAN);
             let most = is_wet(Sampler { mesh, terrain, water: highest }.in_cell(cell, x, y));
-            let Some(most) = most.into_iter().chain(now).max_by(f32::total_cmp) else { continue };
+            let depths = [now, most].map(|sample| sample.map_or(f32::NAN, |sample| sample.depth as f32));
+            let velocity = now.map_or([f32::NAN; 2], |now| now.velocity.map(|component| component as f32));
+            values[0] = depths[0];
+            [values[7], values[8]] = velocity;
+            let most = depths[0].max(depths[1]);
+            if most.is_nan() {
+                continue;
+            }
+            let level = (terrain.height(x, y) + f64::from(most)) as f32;
             let hazard = record.hazard * (most / record.max_depth).min(1.0);
-            *values = [values[0], most, record.max_speed, record.arrival, record.duration, hazard];
+            let history = [most, record.max_speed(), record.arrival, record.duration, hazard, level];
+            values[1..7].copy_from_slice(&history);
+            [values[9], values[10]] = record.fastest;
         }
     });
-    let map = |name, title, unit, k: usize| Map {
-        name,
-        title,
-        unit,
-        columns,
-        rows,
-        values: values.iter().map(|values| values[k]).collect(),
-    };
-    vec![
-        map("depth", "Depth", "m", 0),
-        map("max_depth", "Maximum depth", "m", 1),
-        map("max_speed", "Maximum speed", "m/s", 2),
-        map("arrival_s", "Arrival", "s", 3),
-        map("duration_s", "Duration", "s", 4),
-        map("hazard", "Hazard: depth x (speed + 0.5)", "m2/s", 5),
-    ]
+    let of = |k: usize| values.iter().map(|values| values[k]).collect();
+    let map =
+        |(k, [name, title, unit]): (usize, &[&'static str; 3])| Map { name, title, unit, columns, rows, values: of(k) };
+    NAMES.iter().enumerate().map(map).collect()
 }
+
+/// Name, title and unit of the maps.
+const NAMES: [[&str; 3]; 11] = [
+    ["depth", "Depth", "m"],
+    ["max_depth", "Maximum depth", "m"],
+    ["max_speed", "Maximum speed", "m/s"],
+    ["arrival_s", "Arrival", "s"],
+    ["duration_s", "Duration", "s"],
+    ["hazard", "Hazard: depth x (speed + 0.5)", "m2/s"],
+    ["max_level", "Highest level", "m"],
+    ["velocity_east", "Velocity at the end, eastwards", "m/s"],
+    ["velocity_north", "Velocity at the end, northwards", "m/s"],
+    ["fastest_east", "Velocity at the highest speed, eastwards", "m/s"],
+    ["fastest_north", "Velocity at the highest speed, northwards", "m/s"],
+];
 
 /// Water between two columns: `share` of the way from the first to the second.
 pub(crate) fn between(before: &Column, after: &Column, share: f64, area: f64, bed: f64) -> Water {
@@ -142,7 +163,12 @@ mod tests {
         record.see(&water(0.03), 0.0, 10.0, 3.0, 0.01);
         assert!((record.arrival - 8.0).abs() < 1e-6 && (record.duration - 2.0).abs() < 1e-6);
         record.see(&water(0.0), 0.03, 13.0, 3.0, 0.01);
-        assert!((record.duration - 4.0).abs() < 1e-6 && record.max_depth == 0.03 && record.max_speed == 5.0);
+        assert!(
+            (record.duration - 4.0).abs() < 1e-6
+                && record.max_depth == 0.03
+                && record.fastest == [3.0, 4.0]
+                && record.max_speed() == 5.0
+        );
         assert!((record.hazard - 0.03 * 5.5).abs() < 1e-6);
     }
 }

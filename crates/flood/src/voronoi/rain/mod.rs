@@ -7,9 +7,10 @@ use super::water::Column;
 use crate::infiltration::{Law, MM_PER_H, of_class};
 use crate::rain::{Intensity, RainFunction};
 use crate::setup::{load, setup};
-use corpuscle_model::{ExactSum, ModelError};
+use corpuscle_model::{ExactSum, Map, ModelError};
 use corpuscle_scene::{Flood as Settings, Table};
 use corpuscle_terrain::{RasterField, Terrain};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -136,6 +137,22 @@ impl Weather {
             soaked.depth.resize(mesh.len(), 0.0);
         }
         Ok(())
+    }
+
+    /// What has soaked in at each cell of the terrain's grid, 0 where no water has come near; none where nothing soaks in.
+    pub fn map(&self, mesh: &Mesh, terrain: &Terrain, soaked: &Soaked) -> Option<Map> {
+        self.soaks().then_some(())?;
+        let grid = terrain.map_grid();
+        let depth = |place: usize| {
+            let (column, row) = (place % grid.columns, place / grid.columns);
+            if !terrain.is_valid_cell(column, row) {
+                return f32::NAN;
+            }
+            mesh.cell_at(grid.centre(column, row)).and_then(|cell| soaked.depth.get(cell)).copied().unwrap_or(0.0)
+        };
+        let values = (0..grid.columns * grid.rows).into_par_iter().map(depth).collect();
+        let (name, title) = ("infiltration", "Infiltration");
+        Some(Map { name, title, unit: "m", columns: grid.columns, rows: grid.rows, values })
     }
 
     fn soaks(&self) -> bool {

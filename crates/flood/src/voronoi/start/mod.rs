@@ -2,6 +2,7 @@
 
 use super::mesh::Mesh;
 use super::water::Column;
+use crate::fields;
 use crate::setup::{is_inside, setup};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Flood as Settings, Water};
@@ -36,15 +37,16 @@ pub(crate) fn of_scene<'a>(
     terrain: &'a Terrain,
     folder: &Path,
 ) -> Result<Vec<StartWater<'a>>, ModelError> {
+    fields::check(scene, terrain)?;
     let standing = scene.water.iter().enumerate().filter(|(_, water)| water.block.is_none());
     standing.map(|(number, water)| body(water, number, terrain, folder)).collect()
 }
 
 fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -> Result<StartWater<'a>, ModelError> {
-    let filling = if let Some(level) = water.level_m {
-        Filling::Level(Box::new(move |_, _| level))
-    } else if let Some(depth) = water.depth_m {
-        Filling::Depth(Box::new(move |_, _| depth))
+    let filling = if let Some(level) = &water.level_m {
+        Filling::Level(fields::of_position(level, terrain))
+    } else if let Some(depth) = &water.depth_m {
+        Filling::Depth(fields::of_position(depth, terrain))
     } else if let Some(path) = &water.depth_raster {
         let raster = RasterField::open(folder.join(path), terrain).map_err(setup)?;
         Filling::Depth(Box::new(move |x, y| raster.bilinear(x, y).filter(|depth| depth.is_finite()).unwrap_or(0.0)))
@@ -52,8 +54,8 @@ fn body<'a>(water: &Water, number: usize, terrain: &'a Terrain, folder: &Path) -
         return Err(setup(format!("flood.water.{number} says neither level, depth, raster nor block")));
     };
     let corners = |polygon: &Vec<[f64; 2]>| polygon.iter().map(|&corner| terrain.to_model(corner)).collect();
-    let velocity = water.velocity_m_per_s;
-    Ok(StartWater { filling, polygon: water.polygon.as_ref().map(corners), velocity: Box::new(move |_, _| velocity) })
+    let velocity = fields::velocity(&water.velocity_m_per_s, terrain, folder)?;
+    Ok(StartWater { filling, polygon: water.polygon.as_ref().map(corners), velocity })
 }
 
 impl StartWater<'_> {

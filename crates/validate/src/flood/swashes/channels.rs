@@ -1,6 +1,6 @@
 //! Steady flow along channels, rain included.
 
-use super::super::{GRAVITY, run, settings, strip, water_everywhere};
+use super::super::{GRAVITY, run, settings, spacing_of, strip, water_everywhere};
 use super::profile::Profile;
 use corpuscle_flood::Flood;
 use corpuscle_model::{Model, ModelError};
@@ -147,8 +147,9 @@ fn joined(
     slopes: [f64; 2],
     change: impl Fn(&mut Flood),
 ) -> Result<Flood, ModelError> {
-    let bounds = Bounds { x_min: 0.0, x_max: profile.length(), y_min: 0.0, y_max: width(settings.spacing_m) };
-    let terrain = Arc::new(profile.terrain(bounds, settings.spacing_m, slopes));
+    let spacing = spacing_of(settings);
+    let bounds = Bounds { x_min: 0.0, x_max: profile.length(), y_min: 0.0, y_max: width(spacing) };
+    let terrain = Arc::new(profile.terrain(bounds, spacing, slopes));
     let (depth, velocity) = (|x, _| profile.depth_at(x), |x, _| [profile.velocity_at(x), 0.0]);
     let mut flood = run(settings, &terrain, &[water_everywhere(bounds, depth, velocity)], 0.0)?;
     change(&mut flood);

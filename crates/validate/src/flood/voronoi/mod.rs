@@ -38,7 +38,7 @@ const SEEDS: [u64; 3] = [1, 2, 3];
 /// Settings with a spacing, m, Manning's n and edges.
 fn settings(spacing_m: f64, manning: f64, edges: Edges) -> Settings {
     Settings {
-        spacing_m,
+        spacing_m: Some(spacing_m),
         gravity_m_per_s2: GRAVITY,
         manning: Manning::Number(manning),
         // Maps are not looked at; frames show whatever moves.
