@@ -1,6 +1,6 @@
 //! Expressions of the position: `2 + 0.1 * exp(-((x - 50)^2 + (y - 50)^2) / 200)`.
 //!
-//! A grammar of its own, not a library's: of the small ones exmex reads -x^2 as (-x)^2, and fasteval and meval have not been kept up since 2020.
+//! Reading and computing are our own, so that an error tells its character and what to write, and -x^2 is -(x^2) as in mathematics.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
