@@ -70,6 +70,9 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::ENERGY,
     voronoi::INVARIANCE,
     voronoi::MALPASSET,
+    voronoi::BEACH,
+    voronoi::RUN_UP,
+    voronoi::SENT_WAVE,
 ];
 
 /// Seed of where particles stand at the start.

@@ -1,6 +1,7 @@
 //! Cases of scheme `voronoi`. Particles lie on no lattice; each measure is the worst of three seeds of their positions.
 
 mod balances;
+mod beach;
 mod dam_breaks;
 mod invariance;
 mod lakes;
@@ -12,6 +13,7 @@ mod thacker;
 mod waves;
 
 pub(super) use balances::{ENERGY, LEDGER, MOMENTUM};
+pub(super) use beach::{BEACH, RUN_UP, SENT_WAVE};
 pub(super) use dam_breaks::{RITTER, STOKER};
 pub(super) use invariance::INVARIANCE;
 pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO};
