@@ -19,6 +19,8 @@ const MISSED: &[(&str, &str, f64)] = &[
     ("flood/voronoi/run-up", "run_up_error_height_009", 0.09),
     ("flood/voronoi/run-up", "run_up_error_height_019", 0.09),
     ("flood/voronoi/run-up", "run_up_error_height_030", 0.14),
+    // What is left at the finest spacing has not been explained.
+    ("flood/voronoi/swashes", "macdonald_undulating_manning_order", 0.8),
 ];
 
 /// Marks the rows whose target is known to be missed, and that are no worse than that.

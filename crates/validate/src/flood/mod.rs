@@ -73,6 +73,7 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::BEACH,
     voronoi::RUN_UP,
     voronoi::SENT_WAVE,
+    voronoi::SWASHES,
 ];
 
 /// Seed of where particles stand at the start.

@@ -9,6 +9,7 @@ mod malpasset;
 mod noise;
 mod rain;
 mod sheets;
+mod swashes;
 mod thacker;
 mod waves;
 
@@ -20,6 +21,7 @@ pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO};
 pub(super) use malpasset::MALPASSET;
 pub(super) use rain::RAIN;
 pub(super) use sheets::SHEETS;
+pub(super) use swashes::SWASHES;
 pub(super) use thacker::{PLANAR, RADIAL};
 pub(super) use waves::WAVES;
 
