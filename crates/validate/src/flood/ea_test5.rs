@@ -50,12 +50,25 @@ fn ea_test5(options: &Options) -> Vec<Row> {
 }
 
 fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
-    let peers = table(&folder.join("peers-50m-first-5h.csv"), 1)?;
+    let mut flood = ready(Flood::with_water(&valley(folder)?, SEED, folder, ground(folder)?, &[])?)?;
+    compare(EA_TEST5.name, &mut flood, folder, options)
+}
+
+/// The ground of the valley.
+pub(super) fn ground(folder: &Path) -> Result<Arc<Terrain>, ModelError> {
     let ground = TerrainFile { path: folder.join("dem-10m.tif"), crs: None, no_data: NoData::Wall };
-    let terrain =
-        Terrain::open(&TerrainScene::File(ground), SEED, folder).map_err(|e| ModelError::Setup(e.to_string()))?;
-    let mut flood = ready(Flood::with_water(&valley(folder)?, SEED, folder, Arc::new(terrain), &[])?)?;
-    let seen = Watched::run(&mut flood, TIME, LOOK)?;
+    Terrain::open(&TerrainScene::File(ground), SEED, folder).map(Arc::new).map_err(|e| ModelError::Setup(e.to_string()))
+}
+
+/// Runs a flood whose gauges are those of [`valley`] and compares it with the peer.
+pub(super) fn compare(
+    case: &str,
+    flood: &mut impl Model,
+    folder: &Path,
+    options: &Options,
+) -> Result<Vec<Row>, ModelError> {
+    let peers = table(&folder.join("peers-50m-first-5h.csv"), 1)?;
+    let seen = Watched::run(flood, TIME, LOOK)?;
     let mut out = Vec::new();
     for (gauge, (peer, [depth, arrival])) in peers.iter().zip(MEASURES).enumerate() {
         let fv1 = |column: usize| peer.get(column).copied().flatten().unwrap_or(f64::NAN);
@@ -71,16 +84,17 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
         });
         options.draw(chart);
         let error = (seen.largest(4 * gauge) - fv1(2)).abs();
-        out.push(Row::at_most(EA_TEST5.name, depth, error, "m", 0.3));
+        out.push(Row::at_most(case, depth, error, "m", 0.3));
         let error = (seen.first(4 * gauge, 0.05) / fv1(4) - 1.0).abs();
-        out.push(Row::at_most(EA_TEST5.name, arrival, error, "", 0.15));
+        out.push(Row::at_most(case, arrival, error, "", 0.15));
     }
     let water = flood.ledger().balances[0].relative_error().abs();
-    out.push(Row::at_most(EA_TEST5.name, "water_relative_error", water, "", water_rounding()));
+    out.push(Row::at_most(case, "water_relative_error", water, "", water_rounding()));
     Ok(out)
 }
 
-fn valley(folder: &Path) -> Result<Settings, ModelError> {
+/// The flood of the benchmark: inflow and gauges.
+pub(super) fn valley(folder: &Path) -> Result<Settings, ModelError> {
     let mut settings = settings(TIME, SPACING, 2.0, Edges::default());
     settings.manning = Manning::Number(0.04);
     settings.map_every_s = Some(TIME);

@@ -21,8 +21,8 @@ pub(super) const ISOLATED_BUILDING: Case = Case {
     run: isolated_building,
 };
 
-const LENGTH: f64 = 35.8;
-const WIDTH: f64 = 3.6;
+pub(super) const LENGTH: f64 = 35.8;
+pub(super) const WIDTH: f64 = 3.6;
 const TIME: f64 = 30.0;
 
 /// Distance of particles in water 0.1 m deep, as it stands round the building, m.
@@ -45,16 +45,9 @@ fn bed(_: f64, y: f64) -> f64 {
 }
 
 fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
-    let places = table(&folder.join("point_gauges.csv"), 1)?;
-    let depths = table(&folder.join("building_gauges_h.txt"), 2)?;
-    let velocities = table(&folder.join("building_gauges_uv.txt"), 2)?;
-    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH };
-    let terrain = Arc::new(Terrain::gridded(bounds, 0.02, bed));
-    let mut settings = flume(folder);
-    settings.gauge = (1..=6).map(|k| Gauge { name: format!("G{k}"), at: None, lon_lat: None }).collect();
-    for (gauge, place) in settings.gauge.iter_mut().zip(&places) {
-        gauge.at = Some([place[0].unwrap_or(0.0), place[1].unwrap_or(0.0)]);
-    }
+    let settings = flume(folder)?;
+    let terrain = ground();
+    let bounds = terrain.bounds();
     let water = |level: f64, from: f64, to: f64| InitialWater {
         depth: Box::new(move |x, y| level - bed(x, y)),
         inside: Box::new(move |x, _| (from..to).contains(&x)),
@@ -63,7 +56,19 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     };
     let bodies = [water(0.4, 0.0, 6.75), water(0.02, 6.75, LENGTH)];
     let mut flood = ready(Flood::with_water(&settings, SEED, folder, terrain, &bodies)?)?;
-    let seen = Watched::run(&mut flood, TIME, LOOK)?;
+    compare(ISOLATED_BUILDING.name, &mut flood, folder, options)
+}
+
+/// Runs a flood whose gauges are those of [`flume`] and compares it with what was measured.
+pub(super) fn compare(
+    case: &str,
+    flood: &mut impl Model,
+    folder: &Path,
+    options: &Options,
+) -> Result<Vec<Row>, ModelError> {
+    let depths = table(&folder.join("building_gauges_h.txt"), 2)?;
+    let velocities = table(&folder.join("building_gauges_uv.txt"), 2)?;
+    let seen = Watched::run(flood, TIME, LOOK)?;
     let at = |time: f64, column: usize| seen.at(time, column);
     let mut out = Vec::new();
     for gauge in 0..6 {
@@ -72,7 +77,7 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
         let pairs = depths.iter().filter_map(|row| Some([at(row[0]?, 4 * gauge), row[gauge + 1]?]));
         let name =
             ["depth_rmse_G1", "depth_rmse_G2", "depth_rmse_G3", "depth_rmse_G4", "depth_rmse_G5", "depth_rmse_G6"];
-        out.push(Row::at_most(ISOLATED_BUILDING.name, name[gauge], root_mean_square(pairs), "m", 0.04));
+        out.push(Row::at_most(case, name[gauge], root_mean_square(pairs), "m", 0.04));
     }
     for gauge in 0..5 {
         let of = |axis: usize| {
@@ -89,22 +94,21 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
         let fast = measured(0).hypot(measured(1));
         let name =
             ["velocity_rmse_G1", "velocity_rmse_G2", "velocity_rmse_G3", "velocity_rmse_G4", "velocity_rmse_G5"][gauge];
-        out.push(Row::beside(
-            ISOLATED_BUILDING.name,
-            name,
-            both,
-            "m/s",
-            fast,
-            "beside it the measured velocity's own root mean square",
-        ));
+        out.push(Row::beside(case, name, both, "m/s", fast, "beside it the measured velocity's own root mean square"));
     }
     let water = flood.ledger().balances[0].relative_error().abs();
-    out.push(Row::at_most(ISOLATED_BUILDING.name, "water_relative_error", water, "", water_rounding()));
+    out.push(Row::at_most(case, "water_relative_error", water, "", water_rounding()));
     Ok(out)
 }
 
-/// The flume with its gate's walls and the building.
-fn flume(folder: &Path) -> Settings {
+/// The bed of the flume.
+pub(super) fn ground() -> Arc<Terrain> {
+    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH };
+    Arc::new(Terrain::gridded(bounds, 0.02, bed))
+}
+
+/// The flume with its gate's walls, the building and its gauges.
+pub(super) fn flume(folder: &Path) -> Result<Settings, ModelError> {
     let edges = Edges { west: Edge::Wall, east: Edge::Open, south: Edge::Wall, north: Edge::Wall };
     let mut settings = settings(TIME, SPACING, 0.1, edges);
     settings.manning = Manning::Number(0.01);
@@ -116,5 +120,11 @@ fn flume(folder: &Path) -> Settings {
         ..Obstacle::default()
     };
     settings.obstacle = ["dam_1", "dam_2", "building"].map(obstacle).into();
-    settings
+    let places = table(&folder.join("point_gauges.csv"), 1)?;
+    let gauge = |(number, place): (usize, &Vec<Option<f64>>)| {
+        let at = Some([place[0].unwrap_or(0.0), place[1].unwrap_or(0.0)]);
+        Gauge { name: format!("G{}", number + 1), at, lon_lat: None }
+    };
+    settings.gauge = places.iter().take(6).enumerate().map(gauge).collect();
+    Ok(settings)
 }

@@ -70,6 +70,13 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::ENERGY,
     voronoi::INVARIANCE,
     voronoi::MALPASSET,
+    voronoi::BEACH,
+    voronoi::RUN_UP,
+    voronoi::SENT_WAVE,
+    voronoi::SWASHES,
+    voronoi::TRIANGULAR_OBSTACLE,
+    voronoi::ISOLATED_BUILDING,
+    voronoi::EA_TEST5,
 ];
 
 /// Seed of where particles stand at the start.

@@ -21,10 +21,10 @@ pub(super) const TRIANGULAR_OBSTACLE: Case = Case {
     run: triangular_obstacle,
 };
 
-const LENGTH: f64 = 38.0;
-const WIDTH: f64 = 0.75;
-const DAM: f64 = 15.5;
-const CREST: f64 = 28.5;
+pub(super) const LENGTH: f64 = 38.0;
+pub(super) const WIDTH: f64 = 0.75;
+pub(super) const DAM: f64 = 15.5;
+pub(super) const CREST: f64 = 28.5;
 const TIME: f64 = 40.0;
 
 /// Distance of particles in the reservoir, m.
@@ -56,12 +56,12 @@ const PLACES: [Place; 4] = [
 const MISSED: [&str; 3] = ["depth_rmse_G10", "arrival_error_G10", "arrival_error_G13"];
 
 impl Place {
-    fn row(&self, measure: &'static str, value: f64, unit: &'static str, bound: f64) -> Row {
+    fn row(case: &str, measure: &'static str, value: f64, unit: &'static str, bound: f64) -> Row {
         if MISSED.contains(&measure) {
             let why = "known to miss: a second-order finite-volume solution misses it as well";
-            return Row::beside(TRIANGULAR_OBSTACLE.name, measure, value, unit, bound, why);
+            return Row::beside(case, measure, value, unit, bound, why);
         }
-        Row::at_most(TRIANGULAR_OBSTACLE.name, measure, value, unit, bound)
+        Row::at_most(case, measure, value, unit, bound)
     }
 }
 
@@ -73,7 +73,7 @@ fn triangular_obstacle(options: &Options) -> Vec<Row> {
 }
 
 /// Height of the bed and its slope: flat but for the sill, 3 m up and 3 m down.
-fn bed(x: f64) -> (f64, [f64; 2]) {
+pub(super) fn bed(x: f64) -> (f64, [f64; 2]) {
     let height = 0.4 * (1.0 - (x - CREST).abs() / 3.0);
     if height > 0.0 { (height, [0.4 / 3.0 * (CREST - x).signum(), 0.0]) } else { (0.0, [0.0; 2]) }
 }
@@ -89,25 +89,35 @@ fn measure(folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     };
     let bodies = [water(0.75, 0.0, DAM), water(0.15, CREST, LENGTH)];
     let mut flood = ready(Flood::with_water(&channel(), SEED, folder, terrain, &bodies)?)?;
-    let seen = Watched::run(&mut flood, TIME, LOOK)?;
+    compare(TRIANGULAR_OBSTACLE.name, &mut flood, folder, options)
+}
+
+/// Runs a flood whose gauges are those of [`channel`] and compares it with what was measured.
+pub(super) fn compare(
+    case: &str,
+    flood: &mut impl Model,
+    folder: &Path,
+    options: &Options,
+) -> Result<Vec<Row>, ModelError> {
+    let seen = Watched::run(flood, TIME, LOOK)?;
     let mut out = Vec::new();
     for (gauge, place) in PLACES.iter().enumerate() {
         let measured = depths(&folder.join(format!("{}_Experimental.csv", place.file)))?;
         options.draw(seen.chart(4 * gauge, place.file, "Depth", "m", measured.clone()));
         let even = evenly(&measured).into_iter().map(|[time, depth]| [seen.at(time, 4 * gauge), depth]);
-        out.push(place.row(place.depth, root_mean_square(even), "m", 0.05));
+        out.push(Place::row(case, place.depth, root_mean_square(even), "m", 0.05));
         if let Some(name) = place.arrival {
             let error = (seen.first(4 * gauge, ARRIVED) - measured[0][0]).abs();
-            out.push(place.row(name, error, "s", 0.3));
+            out.push(Place::row(case, name, error, "s", 0.3));
         }
     }
     let water = flood.ledger().balances[0].relative_error().abs();
-    out.push(Row::at_most(TRIANGULAR_OBSTACLE.name, "water_relative_error", water, "", water_rounding()));
+    out.push(Row::at_most(case, "water_relative_error", water, "", water_rounding()));
     Ok(out)
 }
 
 /// The channel, closed at both ends: behind the sill the measured water stays as high as its crest.
-fn channel() -> Settings {
+pub(super) fn channel() -> Settings {
     let edges = Edges { west: Edge::Wall, east: Edge::Wall, south: Edge::Wall, north: Edge::Wall };
     let mut settings = settings(TIME, SPACING, 0.75, edges);
     settings.manning = Manning::Number(0.0125);

@@ -51,8 +51,8 @@ pub(crate) enum Now {
     Wall,
     /// Water leaves, and none comes in. The level beyond, m, where there was water at the start; the bed or less elsewhere.
     Open(f64),
-    /// Level, m, and velocity outwards, m/s, of the water beyond.
-    Beyond(f64, f64),
+    /// Level, m, and velocity outwards, m/s, of the water beyond, and the ground under the face, m, over which it comes in where it is faster than waves.
+    Beyond(f64, f64, f64),
     /// Discharge inwards, m2/s; negative outwards.
     Discharge(f64),
     /// A wall with this velocity inwards, m/s.
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn still_water_stays_still_at_every_boundary() {
         let at = AtFace { depth: 2.0, level: 3.0, across: 0.0, along: 0.4 };
-        for now in [Now::Wall, Now::Open(3.0), Now::Beyond(3.0, 0.0), Now::Discharge(0.0), Now::Moving(0.0)] {
+        for now in [Now::Wall, Now::Open(3.0), Now::Beyond(3.0, 0.0, 0.9), Now::Discharge(0.0), Now::Moving(0.0)] {
             let flux = through(now, at, [2.0, 3.0], 9.81);
             assert!(
                 flux.volume.abs() < 1e-14 && flux.carried[0].abs() < 1e-14 && flux.thrust.abs() < 1e-13,

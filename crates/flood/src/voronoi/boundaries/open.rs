@@ -7,7 +7,7 @@ use super::{Boundary, Now, state};
 use crate::setup::{load, setup};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Flood as Settings, Side};
-use corpuscle_terrain::Terrain;
+use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
 /// How long a held level takes to be met exactly, in crossings of the terrain by waves: shorter waves leave.
@@ -30,6 +30,8 @@ pub(crate) struct Boundaries {
     parts: Vec<Part>,
     /// The rule of each border face of the solver; none at solids.
     of_faces: Vec<Option<u16>>,
+    /// Height of the ground in the middle of each border face, m.
+    ground: Vec<f64>,
     /// What each border face does in the two stages of the step.
     now: [Vec<Now>; 2],
 }
@@ -56,7 +58,7 @@ impl Boundaries {
             Part { side, from: along(part.from), to: along(part.to) }
         };
         let parts = scene.edge_part.iter().map(part).collect();
-        Ok(Self { rules, parts, of_faces: Vec::new(), now: [Vec::new(), Vec::new()] })
+        Ok(Self { rules, parts, of_faces: Vec::new(), ground: Vec::new(), now: [Vec::new(), Vec::new()] })
     }
 
     /// Whether the west and east, and the south and north sides are joined.
@@ -87,14 +89,20 @@ impl Boundaries {
     }
 
     /// Finds the rules of border faces that were added.
-    pub fn extend(&mut self, solver: &Solver) {
+    pub fn extend(&mut self, solver: &Solver, terrain: &Terrain) {
         let mesh = &solver.mesh;
         for &border in &solver.borders[self.of_faces.len()..] {
             let face = &mesh.faces[border as usize];
+            let cell = mesh.centroid[face.cells[0] as usize];
+            let mut middle = [0, 1].map(|axis| cell[axis] + f64::from(face.offset[axis]));
+            if let Some(side) = face.border().filter(|side| *side != SOLID) {
+                let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
+                middle[usize::from(side >= 2)] = [x_min, x_max, y_min, y_max][usize::from(side)];
+            }
+            self.ground.push(terrain.height(middle[0], middle[1]));
             let rule = face.border().filter(|side| *side != SOLID).map(|side| {
                 let side = usize::from(side);
-                let along = mesh.centroid[face.cells[0] as usize][usize::from(side < 2)]
-                    + f64::from(face.offset[usize::from(side < 2)]);
+                let along = middle[usize::from(side < 2)];
                 let here = |part: &Part| part.side == side && (part.from..part.to).contains(&along);
                 self.parts.iter().position(here).map_or(side as u16, |part| part as u16 + 4)
             });
@@ -139,12 +147,12 @@ impl Boundaries {
                 let now = match rule {
                     Boundary::Wall | Boundary::Periodic => Now::Wall,
                     Boundary::Open => Now::Open(beyond[border]),
-                    Boundary::Level(level) => Now::Beyond(level.at(at), beyond[border]),
+                    Boundary::Level(level) => Now::Beyond(level.at(at), beyond[border], self.ground[border]),
                     Boundary::Wave { level, velocity, rest } => {
                         let water = &solver.water[solver.mesh.faces[solver.borders[border] as usize].cells[0] as usize];
                         let level = level.as_ref().map(|level| level.at(at));
                         let velocity = velocity.as_ref().map(|velocity| velocity.at(at));
-                        wave(level, velocity, *rest, water.level - water.depth, solver.gravity)
+                        wave(level, velocity, *rest, [water.level - water.depth, self.ground[border]], solver.gravity)
                     }
                     Boundary::NormalDepth(root) => {
                         let cell = solver.mesh.faces[solver.borders[border] as usize].cells[0] as usize;
@@ -180,10 +188,26 @@ impl Boundaries {
         (length > 0.0).then(|| sum / length)
     }
 
-    /// Shares a discharge inwards, m3/s, out over the faces of a rule by conveyance: length times depth to 5/3. Where all are dry it comes in at the
+    /// Level of the water along the faces of a rule, m; films count as little as they are deep.
+    fn level_of_depth(&self, solver: &Solver, rule: u16) -> f64 {
+        let weighted = self.faces_of(solver, rule).map(|(_, cell, length)| {
+            let water = &solver.water[cell];
+            (length * water.depth, length * water.depth * water.level)
+        });
+        let (weight, sum) = weighted.fold((0.0, 0.0), |(weight, sum), (w, s)| (weight + w, sum + s));
+        if weight > 0.0 { sum / weight } else { f64::NEG_INFINITY }
+    }
+
+    /// Shares a discharge inwards, m3/s, out over the faces of a rule by conveyance: length times depth to 5/3. The depths of what comes in are those below one
+    /// level: by its own depth a face that has more water than others would get more of it, and a jet would stay one. Where all are dry it comes in at the
     /// lowest ones.
     fn share(&mut self, solver: &Solver, rule: u16, discharge: f64) {
-        let conveyance = |cell: usize| solver.water[cell].depth.powf(5.0 / 3.0);
+        let level = self.level_of_depth(solver, rule);
+        let depth = |cell: usize| match solver.water[cell].depth {
+            depth if discharge < 0.0 => depth,
+            _ => (level - solver.mesh.bed[cell]).max(0.0),
+        };
+        let conveyance = |cell: usize| depth(cell).powf(5.0 / 3.0);
         let total: f64 = self.faces_of(solver, rule).map(|(_, cell, length)| length * conveyance(cell)).sum();
         let lowest =
             self.faces_of(solver, rule).map(|(_, cell, _)| solver.mesh.bed[cell]).fold(f64::INFINITY, f64::min);
@@ -220,7 +244,8 @@ impl Boundaries {
             let length = face.normal[0].hypot(face.normal[1]);
             let across = (water.velocity[0] * face.normal[0] + water.velocity[1] * face.normal[1]) / length;
             let at = AtFace { depth: water.depth, level: water.level, across, along: 0.0 };
-            let found = state(Now::Beyond(level.at(time + step), beyond[border]), &at, solver.gravity);
+            let beyond_now = Now::Beyond(level.at(time + step), beyond[border], self.ground[border]);
+            let found = state(beyond_now, &at, solver.gravity);
             let axis = usize::from(face.normal[1].abs() > face.normal[0].abs());
             let relaxation = CROSSINGS * size[axis] / is;
             beyond[border] += (step / relaxation).min(1.0) * (found.across - beyond[border]);
@@ -228,8 +253,8 @@ impl Boundaries {
     }
 }
 
-/// The water of an incoming simple wave over a bed: what is not given of level and velocity inwards follows from u = 2 (c - c0).
-fn wave(level: Option<f64>, velocity: Option<f64>, rest: f64, bed: f64, gravity: f64) -> Now {
+/// The water of an incoming simple wave over the bed of a cell, and the ground under its face: what is not given of level and velocity inwards follows from u = 2 (c - c0).
+fn wave(level: Option<f64>, velocity: Option<f64>, rest: f64, [bed, ground]: [f64; 2], gravity: f64) -> Now {
     let celerity = |level: f64| (gravity * (level - bed).max(0.0)).sqrt();
     let at_rest = celerity(rest);
     let level = level.unwrap_or_else(|| {
@@ -237,7 +262,7 @@ fn wave(level: Option<f64>, velocity: Option<f64>, rest: f64, bed: f64, gravity:
         bed + celerity * celerity / gravity
     });
     let velocity = velocity.unwrap_or_else(|| 2.0 * (celerity(level) - at_rest));
-    Now::Beyond(level, -velocity)
+    Now::Beyond(level, -velocity, ground)
 }
 
 fn boundary(edge: &Edge, folder: &Path) -> Result<Boundary, ModelError> {

@@ -25,9 +25,13 @@ pub(crate) fn state(now: Now, at: &AtFace, gravity: f64) -> AtBoundary {
         }
         Now::Discharge(inwards) => goes_out(-inwards, outgoing, gravity),
         Now::Normal(factor) => normal(factor, outgoing, gravity),
-        Now::Beyond(level, drift) => {
+        Now::Beyond(level, drift, ground) => {
             let beyond = (gravity * (level - (at.level - at.depth)).max(0.0)).sqrt();
-            meets(beyond, drift, at.depth > 0.0, outgoing, gravity)
+            let found = meets(beyond, drift, at.depth > 0.0, outgoing, gravity);
+            // Nothing from inside meets it: neither does the ground of the cell.
+            let depth = (level - ground).max(0.0);
+            let is_fast = -drift >= (gravity * depth).sqrt() && found.across <= -(gravity * found.depth).sqrt();
+            if is_fast { AtBoundary { depth, across: drift } } else { found }
         }
     }
 }
@@ -139,7 +143,7 @@ mod tests {
     fn a_level_that_rises_over_still_water_is_the_level_there() {
         let (before, after) = (2.0_f64, 2.1_f64);
         let drift = -2.0 * ((G * after).sqrt() - (G * before).sqrt());
-        let found = state(Now::Beyond(after + 1.0, drift), &at(before, 0.0), G);
+        let found = state(Now::Beyond(after + 1.0, drift, 1.0), &at(before, 0.0), G);
         assert!((found.depth - after).abs() < 1e-12 && found.across < 0.0);
     }
 
@@ -147,8 +151,17 @@ mod tests {
     fn a_wave_leaves_by_a_held_level_as_it_is() {
         // An outgoing simple wave on water of 2 m: u = 2 (c - c0).
         let across = 2.0 * ((G * 2.2_f64).sqrt() - (G * 2.0_f64).sqrt());
-        let found = state(Now::Beyond(3.0, 0.0), &at(2.2, across), G);
+        let found = state(Now::Beyond(3.0, 0.0, 1.0), &at(2.2, across), G);
         assert!((found.depth - 2.2).abs() < 1e-12 && (found.across - across).abs() < 1e-12);
+    }
+
+    /// What comes in faster than waves comes over the ground of the face, whatever that of the cell is.
+    #[test]
+    fn water_that_is_faster_than_waves_comes_in_as_it_is() {
+        for inside in [at(0.5, -3.5), at(0.0, 0.0)] {
+            let found = state(Now::Beyond(1.7, -4.0, 1.2), &inside, G);
+            assert!((found.depth - 0.5).abs() < 1e-12 && found.across == -4.0, "{found:?}");
+        }
     }
 
     /// The discharge is met, and the outgoing characteristic where the flow is slower than waves.

@@ -108,12 +108,7 @@ const ROUND: f64 = 5000.0;
 /// Rain that moves along with water 0.25 m deep at 8 m/s: the friction slope is 0.01125 s/m times the velocity, the ground falls by
 /// 0.09. The rain swells and fades as sin(pi t / 1000 s).
 pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> {
-    let both = Profile::read(path, [0, 1, 1, 2])?;
-    // The file has two times, 500 s and 1000 s; at the former the rain is between 6250 m and 9850 m.
-    let half = both.x.len() / 2;
-    let here = (0..half).filter(|&k| (5100.0..5000.0 + ROUND).contains(&both.x[k]));
-    let (x, depth): (Vec<f64>, Vec<f64>) = here.map(|k| (both.x[k].rem_euclid(ROUND), both.depth[k])).unzip();
-    let exact = Profile { velocity: vec![8.0; x.len()], ground: vec![0.0; x.len()], x, depth };
+    let exact = Profile::of_mobile_rain(path, ROUND)?;
     let places = 500;
     let step = ROUND / f64::from(places);
     let x: Vec<f64> = (0..places).map(|k| (f64::from(k) + 0.5) * step).collect();
@@ -124,15 +119,18 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64) -> Result<f64, ModelError> 
         ..settings(500.0, spacing, 0.25, strip(&Edge::Periodic))
     };
     let rain = |flood: &mut Flood| {
-        flood.rain(Box::new(|x, _, t| {
-            let along = (x - 8.0 * t - 2250.0).rem_euclid(ROUND);
-            let shape = ((along - 900.0) * std::f64::consts::TAU / 3600.0).sin() + 1.0;
-            let swell = (std::f64::consts::PI * t / 1000.0).sin();
-            if along <= 3600.0 { 0.5 * 5e-5 * shape * swell } else { 0.0 }
-        }));
+        flood.rain(Box::new(mobile_rain_at));
     };
     let flood = joined(&settings, &start, 500.0, [-0.09; 2], rain)?;
     Ok(exact.error(&flood, width(spacing)))
+}
+
+/// The rain of [`mobile_rain`], m/s, at a position, m, and a time, s.
+pub(in crate::flood) fn mobile_rain_at(x: f64, _: f64, time: f64) -> f64 {
+    let along = (x - 8.0 * time - 2250.0).rem_euclid(ROUND);
+    let shape = ((along - 900.0) * std::f64::consts::TAU / 3600.0).sin() + 1.0;
+    let swell = (std::f64::consts::PI * time / 1000.0).sin();
+    if along <= 3600.0 { 0.5 * 5e-5 * shape * swell } else { 0.0 }
 }
 
 fn width(spacing: f64) -> f64 {

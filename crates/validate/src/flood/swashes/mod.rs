@@ -6,6 +6,9 @@ mod breaks;
 mod channels;
 mod profile;
 
+pub(super) use channels::mobile_rain_at as mobile_rain;
+pub(super) use profile::{Profile, numbers};
+
 use super::rows;
 use crate::device::is_reduced;
 use crate::{Case, Options, Row};

@@ -10,7 +10,7 @@ const LINES: usize = 7;
 
 /// Depth, velocity and ground at places along a channel, evenly apart; cubic between them.
 #[derive(Debug, Clone)]
-pub(super) struct Profile {
+pub(in crate::flood) struct Profile {
     pub x: Vec<f64>,
     pub depth: Vec<f64>,
     pub velocity: Vec<f64>,
@@ -24,6 +24,16 @@ impl Profile {
         let column = |k: usize| rows.iter().map(|row| row.get(k).copied().unwrap_or(f64::NAN)).collect();
         let [x, depth, velocity, ground] = columns.map(column);
         Ok(Self { x, depth, velocity, ground })
+    }
+
+    /// The water after 500 s of rain that moves along, in a channel of `round` m in which it comes round.
+    pub fn of_mobile_rain(path: &Path, round: f64) -> Result<Self, ModelError> {
+        let both = Self::read(path, [0, 1, 1, 2])?;
+        // The file has two times, 500 s and 1000 s; at the former the rain is between 6250 m and 9850 m.
+        let half = both.x.len() / 2;
+        let here = (0..half).filter(|&k| (5100.0..5000.0 + round).contains(&both.x[k]));
+        let (x, depth): (Vec<f64>, Vec<f64>) = here.map(|k| (both.x[k].rem_euclid(round), both.depth[k])).unzip();
+        Ok(Self { velocity: vec![8.0; x.len()], ground: vec![0.0; x.len()], x, depth })
     }
 
     /// Distance between places, m.
@@ -71,12 +81,24 @@ impl Profile {
         })
     }
 
-    /// mean |h - h_exact| / mean h_exact over all places, and lines across a strip `width` m wide.
+    /// Slope of the ground at a place; beyond the ends that at them.
+    pub fn slope_at(&self, x: f64) -> f64 {
+        let last = self.x.len() - 1;
+        let (first, last) = (self.x[0] + self.step(), self.x[last] - self.step());
+        self.between(&self.ground, x.clamp(first, last)).1
+    }
+
+    /// The error of a flood, see [`Profile::error_of`].
     pub fn error(&self, flood: &Flood, width: f64) -> f64 {
+        self.error_of(|x, y| flood.sample(x, y).depth, width)
+    }
+
+    /// mean |h - h_exact| / mean h_exact over all places, and lines across a strip `width` m wide.
+    pub fn error_of(&self, depth: impl Fn(f64, f64) -> f64, width: f64) -> f64 {
         let (mut wrong, mut right) = (0.0, 0.0);
         for (&x, &exact) in self.x.iter().zip(&self.depth) {
             for line in 0..LINES {
-                let found = flood.sample(x, width * (line as f64 + 0.5) / LINES as f64).depth;
+                let found = depth(x, width * (line as f64 + 0.5) / LINES as f64);
                 wrong += (found - exact).abs();
                 right += exact;
             }
@@ -86,7 +108,7 @@ impl Profile {
 }
 
 /// The rows of numbers of a file; lines that begin with `#` are passed over.
-pub(super) fn numbers(path: &Path) -> Result<Vec<Vec<f64>>, ModelError> {
+pub(in crate::flood) fn numbers(path: &Path) -> Result<Vec<Vec<f64>>, ModelError> {
     let refused = |what: String| ModelError::Setup(format!("{}: {what}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|error| refused(error.to_string()))?;
     let lines = text.lines().filter(|line| !line.starts_with('#') && !line.trim().is_empty());

@@ -1,23 +1,29 @@
 //! Cases of scheme `voronoi`. Particles lie on no lattice; each measure is the worst of three seeds of their positions.
 
 mod balances;
+mod beach;
 mod dam_breaks;
 mod invariance;
 mod lakes;
 mod malpasset;
+mod measured;
 mod noise;
 mod rain;
 mod sheets;
+mod swashes;
 mod thacker;
 mod waves;
 
 pub(super) use balances::{ENERGY, LEDGER, MOMENTUM};
+pub(super) use beach::{BEACH, RUN_UP, SENT_WAVE};
 pub(super) use dam_breaks::{RITTER, STOKER};
 pub(super) use invariance::INVARIANCE;
 pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO};
 pub(super) use malpasset::MALPASSET;
+pub(super) use measured::{EA_TEST5, ISOLATED_BUILDING, TRIANGULAR_OBSTACLE};
 pub(super) use rain::RAIN;
 pub(super) use sheets::SHEETS;
+pub(super) use swashes::SWASHES;
 pub(super) use thacker::{PLANAR, RADIAL};
 pub(super) use waves::WAVES;
 

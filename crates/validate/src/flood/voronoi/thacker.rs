@@ -50,7 +50,7 @@ fn measure(case: &'static str, exact: Exact, period: f64) -> Result<Vec<Row>, Mo
 }
 
 /// The water at `time` s, started as an exact solution has it.
-fn swing(exact: Exact, time: f64, spacing: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
+pub(super) fn swing(exact: Exact, time: f64, spacing: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
     let terrain = bowl();
     let depth = |x: f64, y: f64| exact(x, y, 0.0).0 - terrain.height(x, y);
     let water = StartWater {
