@@ -42,6 +42,8 @@ pub(crate) struct Solver {
     pub borders: Vec<u32>,
     /// Over which borders water may come onto dry ground.
     brings: [bool; 5],
+    /// Whether something came to no number in the last stage: the step ends there.
+    broken: bool,
     chunks: Chunks,
 }
 
@@ -116,6 +118,7 @@ impl Solver {
             crests: Vec::new(),
             borders: Vec::new(),
             brings,
+            broken: false,
             chunks: Chunks::default(),
         };
         solver.grow();
@@ -181,7 +184,7 @@ impl Solver {
 
     /// Whether something came to no number in the last step.
     pub fn is_broken(&self) -> bool {
-        self.chunks.found.iter().any(|found| found.broken)
+        self.broken
     }
 
     /// A cell whose fluxes are no numbers.
@@ -194,6 +197,7 @@ impl Solver {
 
     /// Puts the columns back to before the last step.
     pub fn take_back(&mut self) {
+        self.broken = false;
         self.columns.copy_from_slice(&self.before);
         self.renew();
     }
@@ -242,12 +246,17 @@ impl Solver {
     ) -> (f64, Done) {
         let mut done = Done::default();
         self.before.copy_from_slice(&self.columns);
+        self.broken = false;
         for stage in 0..2 {
             self.chunks.activate(stage == 1);
             self.find_slopes();
             let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
             self.pass_borders(step, passed);
             let slowed = self.update(step, stage == 1);
+            self.broken = self.chunks.found.iter().any(|found| found.broken);
+            if self.broken {
+                break;
+            }
             for axis in 0..2 {
                 done.by_ground[axis] += 0.5 * step * by_ground[axis];
                 done.slowed[axis] += 0.5 * slowed[axis];

@@ -2,6 +2,9 @@
 
 use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFloat};
 
+/// Waves slower than this carry nothing, m/s: without it the inverse of their speed may be no number.
+const SLOWEST: f64 = 1e-100;
+
 /// Depth, m, and velocity across the face, m/s, on one side of eight faces.
 #[derive(Clone, Copy)]
 pub(crate) struct Sides<S: Simd> {
@@ -19,9 +22,7 @@ pub(crate) fn hll<S: Simd>(simd: S, a: Sides<S>, b: Sides<S>, gravity: f64) -> [
     let (volume_a, volume_b) = (a.depth * a.across, b.depth * b.across);
     let momentum_a = volume_a * a.across + a.depth * a.depth * (0.5 * gravity);
     let momentum_b = volume_b * b.across + b.depth * b.depth * (0.5 * gravity);
-    let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
-    let width = fastest - slowest;
-    let inverse = one / width.simd_gt(zero).select(width, one);
+    let inverse = Lanes::splat(simd, 1.0) / (fastest - slowest).max(SLOWEST);
     let both = slowest * fastest;
     let volume = (fastest * volume_a - slowest * volume_b + both * (b.depth - a.depth)) * inverse;
     let momentum = (fastest * momentum_a - slowest * momentum_b + both * (volume_b - volume_a)) * inverse;
@@ -79,5 +80,16 @@ mod tests {
         // From u - c and u + 2c: 2/3 g^(1/2) h^(3/2). Exact is 8/27 (Ritter 1892).
         assert!((volume / (2.0 / 3.0 * G.sqrt()) - 1.0).abs() < 1e-12, "{volume}");
         assert_eq!(flux([0.0, 0.0], [0.0, 3.0]), [0.0; 2]);
+    }
+
+    #[test]
+    fn next_to_no_velocity_passes_next_to_nothing() {
+        for across in [1e-320, -1e-320, 1e-200, 0.0] {
+            for depth in [0.0, 1e-320, 1e-200] {
+                for [volume, momentum] in [flux([depth, across], [0.0, across]), flux([0.0, across], [depth, across])] {
+                    assert!(volume.abs() < 1e-90 && momentum.abs() < 1e-90, "{depth} {across}: {volume} {momentum}");
+                }
+            }
+        }
     }
 }
