@@ -143,3 +143,16 @@ fn sheets_run_at_the_velocity_of_normal_flow() {
         assert!(solver.water.iter().all(|water| water.depth > 0.005));
     }
 }
+
+/// The second stage may be sound again: a lost number would empty its cell unseen.
+#[test]
+fn a_first_stage_that_comes_to_no_number_is_told() {
+    let mut solver = solver([20.0, 10.0], [false; 2], 1.0, 1, 0.0, &Function(|_, _| 0.0, [0.0; 2]));
+    solver.fill(|area, _, _, _| Column { volume: area, momentum: [0.0; 2] });
+    let step = 0.1 * solver.renew();
+    let now = |stage: usize, _| if stage == 0 { Now::Discharge(f64::NAN) } else { Now::Wall };
+    solver.step(step, &now, &mut |_, _: Passed| ());
+    assert!(solver.is_broken() && solver.broken_cell().is_some());
+    solver.take_back();
+    assert!(!solver.is_broken() && solver.columns.iter().all(|column| column.volume > 0.0));
+}

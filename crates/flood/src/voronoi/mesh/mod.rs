@@ -599,6 +599,16 @@ mod tests {
         mesh
     }
 
+    #[test]
+    fn a_link_knows_which_of_the_cells_of_its_face_is_its_own() {
+        let mesh = mesh(&[5, 0, 3, 1, 4, 2]);
+        for cell in 0..mesh.len() {
+            for link in mesh.links_of(cell) {
+                assert_eq!(mesh.faces[link.face as usize].cells[link.side(cell)], cell as u32);
+            }
+        }
+    }
+
     /// Sum of length times normal round each cell.
     #[test]
     fn faces_of_every_cell_close_whatever_the_order_of_the_tiles() {
