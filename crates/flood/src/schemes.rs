@@ -17,10 +17,8 @@ pub trait FloodModel: Model {
     /// The water at a position in model coordinates, m, at the time shown.
     fn sample(&self, x: f64, y: f64) -> Sample;
 
-    /// About how many particles inflows, rain and held levels bring from `from` to `until`, s; 0 where particles do not come with the water.
-    fn particles_to_come(&self, _from: f64, _until: f64) -> f64 {
-        0.0
-    }
+    /// About how many particles inflows, rain and held levels bring, or wet, from `from` to `until`, s.
+    fn particles_to_come(&self, from: f64, until: f64) -> f64;
 
     /// Places a gauge at a point in model coordinates, m: depth, level and velocity are measured there from now on, in columns after all
     /// others.
@@ -112,6 +110,10 @@ impl FloodModel for VoronoiFlood {
 
     fn sample(&self, x: f64, y: f64) -> Sample {
         Self::sample(self, x, y)
+    }
+
+    fn particles_to_come(&self, from: f64, until: f64) -> f64 {
+        Self::particles_to_come(self, from, until)
     }
 
     fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), ModelError> {

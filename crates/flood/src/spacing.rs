@@ -14,7 +14,7 @@ const MOST_PARTICLES: f64 = 2e5;
 const MOST_SAMPLES: usize = 1_000_000;
 
 /// Water that comes in is thought of as this deep, m.
-const DEPTH_OF_INFLOW: f64 = 1.0;
+pub(crate) const DEPTH_OF_INFLOW: f64 = 1.0;
 
 /// A spacing for a scene that gives none.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +76,7 @@ fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -
         return Ok(east * north);
     }
     let bodies = voronoi::of_scene(settings, terrain, folder)?;
-    let highest = highest_level(settings, folder, until)?;
+    let highest = highest_level(settings, folder, 0.0, until)?;
     let grid = terrain.map_grid();
     let stride = ((grid.columns * grid.rows) as f64 / MOST_SAMPLES as f64).sqrt().ceil().max(1.0) as usize;
     let (mut wet, mut all) = (0_usize, 0_usize);
@@ -94,17 +94,17 @@ fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -
         let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
         (to[0] - from[0]) * (to[1] - from[1]) * block.layers as f64
     });
-    let coming = inflow_volume(settings, folder, until)? / DEPTH_OF_INFLOW;
+    let coming = inflow_volume(settings, folder, 0.0, until)? / DEPTH_OF_INFLOW;
     Ok((standing + blocks.sum::<f64>() + coming).min(east * north))
 }
 
-/// The highest level that is held at a side or within the ground until a time, m; minus infinity where none is.
-fn highest_level(settings: &Settings, folder: &Path, until: f64) -> Result<f64, ModelError> {
+/// The highest level that is held at a side or within the ground from a time until another, m; minus infinity where none is.
+pub(crate) fn highest_level(settings: &Settings, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
     let mut highest = f64::NEG_INFINITY;
     let mut see = |level: &Series| -> Result<(), ModelError> {
         let table = load(level, folder)?;
-        let rows = table.rows().iter().filter(|row| row[0] <= until).map(|row| row[1]);
-        highest = rows.chain([table.at(0.0), table.at(until)]).fold(highest, f64::max);
+        let rows = table.rows().iter().filter(|row| (from..=until).contains(&row[0])).map(|row| row[1]);
+        highest = rows.chain([table.at(from), table.at(until)]).fold(highest, f64::max);
         Ok(())
     };
     for edge in edges(settings) {
@@ -121,15 +121,15 @@ fn highest_level(settings: &Settings, folder: &Path, until: f64) -> Result<f64, 
     Ok(highest)
 }
 
-/// Water that inflows and sides bring until a time, m3.
-fn inflow_volume(settings: &Settings, folder: &Path, until: f64) -> Result<f64, ModelError> {
+/// Water that inflows and sides bring from a time until another, m3.
+pub(crate) fn inflow_volume(settings: &Settings, folder: &Path, from: f64, until: f64) -> Result<f64, ModelError> {
     let mut volume = 0.0;
     for inflow in &settings.inflow {
-        volume += inflow.load_discharge(folder).map_err(setup)?.integral(0.0, until);
+        volume += inflow.load_discharge(folder).map_err(setup)?.integral(from, until);
     }
     for edge in edges(settings) {
         if let Edge::Discharge(discharge) = edge {
-            volume += load(discharge, folder)?.integral(0.0, until);
+            volume += load(discharge, folder)?.integral(from, until);
         }
     }
     Ok(volume.max(0.0))

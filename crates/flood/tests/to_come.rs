@@ -1,6 +1,6 @@
 //! Estimates of the water that is to come, beside what comes.
 
-use corpuscle_flood::Flood;
+use corpuscle_flood::{Flood, VoronoiFlood};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -59,4 +59,36 @@ fn rain_makes_few_particles_for_each_cell() {
     assert!((rain(10.0) / (2.0 * cells) - 1.0).abs() < 0.3, "{}", rain(10.0));
     let soaked = "rain = { intensity_mm_per_h = 10 }\ninfiltration.constant.rate_mm_per_h = 20\n";
     assert_eq!(tank(soaked).particles_to_come(0.0, 36_000.0), 0.0);
+}
+
+/// Scheme voronoi counts cells of 4 m2 that are to get wet: by an inflow, a held level, rain, and not those that are wet already.
+#[test]
+fn cells_to_get_wet_are_counted() {
+    let to_come = |rest: &str| {
+        let mut scene = Scene::parse(
+            &format!(
+                "run.until_s = 600\nterrain.plane = {{ slope_east = 0.02, extent = {{ length_m = 100, width_m = 40, cell_m = 2 }} }}\n[flood]\n\
+                 scheme = \"voronoi\"\nspacing_m = 2\n{rest}"
+            ),
+            "test",
+            &[],
+        )
+        .unwrap();
+        scene.resolve_defaults();
+        let scene = scene.flood().unwrap();
+        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+        let flood = VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
+        [100.0, 600.0].map(|until| flood.particles_to_come(0.0, until) / 1000.0)
+    };
+    let near = |found: [f64; 2], expected: [f64; 2]| (0..2).all(|k| (found[k] - expected[k]).abs() < 0.02);
+    let inflow =
+        to_come("inflow = [{ name = \"river\", at = [20, 20], discharge_m3_per_s = [[0, 0], [100, 8], [200, 8]] }]");
+    assert!(near(inflow, [0.1, 1.0]), "{inflow:?}");
+    // The ground falls by 2 m to the east, from 1 m to -1 m.
+    let held = to_come("edges.east = { stage = [[0, -1], [100, -0.5], [500, 0]] }");
+    assert!(near(held, [0.25, 0.5]), "{held:?}");
+    let more = to_come("edges.east = { stage = [[0, -0.5], [100, -0.5], [500, 0]] }\nwater = [{ level_m = -0.5 }]");
+    assert!(near(more, [0.0, 0.25]), "{more:?}");
+    assert!(near(to_come("rain = { intensity_mm_per_h = 10 }"), [1.0; 2]));
+    assert_eq!(to_come("water = [{ level_m = 0 }]"), [0.0; 2]);
 }

@@ -41,6 +41,11 @@ from = [150, 100]
 to = [150, 40]
 law = { culvert = { diameter_m = 0.8 } }
 
+[[flood.finer]]
+line = [[150, 100], [150, 40]]
+within_m = 6
+spacing_m = 2.5
+
 [flood.rain]
 intensity_mm_per_h = 90
 

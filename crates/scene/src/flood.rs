@@ -1,12 +1,14 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
+mod finer;
 mod obstacle;
 mod rain;
 mod refinement;
 mod start;
 mod structures;
 
+pub use finer::Finer;
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
 pub use refinement::Refinement;
@@ -53,6 +55,8 @@ pub struct Flood {
     /// Particles are split where the water is thin and merged where it is deep (scheme balanced).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refinement: Option<Refinement>,
+    /// Parts of the terrain with finer cells (scheme `voronoi`).
+    pub finer: Vec<Finer>,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
@@ -101,6 +105,7 @@ impl Default for Flood {
             infiltration: None,
             rain: None,
             refinement: None,
+            finer: Vec::new(),
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),

@@ -9,7 +9,7 @@ mod outline;
 mod shapes;
 mod sites;
 
-pub(crate) use open::{check_overlap, open};
+pub(crate) use open::{check_overlap, open, polygons};
 #[cfg(feature = "gpu")]
 pub(crate) use outline::OutlineCells;
 pub(crate) use outline::{Outline, Outlines};

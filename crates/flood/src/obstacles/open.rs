@@ -43,7 +43,7 @@ pub(crate) fn open(
 }
 
 /// The polygons of an obstacle, in model coordinates.
-pub(super) fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Polygon>, ModelError> {
+pub(crate) fn polygons(obstacle: &Obstacle, terrain: &Terrain, folder: &Path) -> Result<Vec<Polygon>, ModelError> {
     let to_model = |ring: Vec<[f64; 2]>| ring.into_iter().map(|place| terrain.to_model(place)).collect();
     if let Some(polygon) = &obstacle.polygon {
         return Ok(vec![vec![to_model(polygon.clone())]]);

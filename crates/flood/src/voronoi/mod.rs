@@ -17,6 +17,7 @@
 mod bed;
 mod boundaries;
 mod change;
+mod finer;
 mod fluxes;
 mod friction;
 mod maps;
@@ -34,6 +35,7 @@ mod step;
 mod structures;
 #[cfg(test)]
 mod tests;
+mod to_come;
 mod walls;
 mod water;
 
@@ -57,6 +59,7 @@ use rain::{Soaked, Weather};
 use sampling::Sampler;
 use serde::{Deserialize, Serialize};
 use solver::Solver;
+use std::path::PathBuf;
 use std::sync::Arc;
 use structures::Patches;
 use water::{Column, Water};
@@ -67,6 +70,8 @@ const DENSITY: f64 = 1000.0;
 /// A flood by scheme `voronoi`.
 pub struct VoronoiFlood {
     settings: Settings,
+    /// What relative paths refer to.
+    folder: PathBuf,
     terrain: Arc<Terrain>,
     bed: Bed,
     roughness: Roughness,

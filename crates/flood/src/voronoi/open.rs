@@ -12,7 +12,7 @@ use super::solver::Solver;
 use super::start::{self, StartWater};
 use super::step::drops;
 use super::structures::Patches;
-use super::{Inflow, State, VoronoiFlood, walls};
+use super::{Inflow, State, VoronoiFlood, finer, walls};
 use crate::friction::Roughness;
 use crate::rain::RainFunction;
 use crate::setup::{self, setup};
@@ -96,10 +96,9 @@ impl VoronoiFlood {
         let boundaries = Boundaries::open(&settings, &terrain, folder)?;
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
         let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, spacing, 4.0 * spacing, spacing)?);
-        let layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
+        let mut layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
         let roughness = Roughness::open(&settings, &terrain, folder)?;
         let slowing = Slowing::of(&roughness, gravity);
-        let longest = 0.5 * spacing / (gravity * DRY_DEPTH).sqrt();
         let structures = Structures::open(&settings, &terrain, folder, spacing)?;
         let weather = Weather::open(&settings, &terrain, folder)?;
         let state = State {
@@ -124,6 +123,11 @@ impl VoronoiFlood {
             overrides: Overrides::default(),
         };
         let lines = walls::of_lines(&settings, &terrain, spacing)?;
+        let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), obstacles.outlines(), &lines))?;
+        if !grading.is_even() {
+            layout.refine(grading);
+        }
+        let longest = 0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt();
         let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing);
         let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
         let flat = settings.obstacle.iter().map(|obstacle| obstacle.height_m.is_none());
@@ -141,6 +145,7 @@ impl VoronoiFlood {
             written: Vec::new(),
             shown: 0.0,
             settings,
+            folder: folder.to_path_buf(),
             terrain,
             bed,
             roughness,
@@ -199,7 +204,9 @@ impl VoronoiFlood {
         tiles.sort_unstable();
         tiles.dedup();
         tiles.retain(|tile| !self.solver.mesh.has(*tile));
-        let cells = self.solver.mesh.len() as f64 + (tiles.len() * self.solver.mesh.layout.points.len()) as f64;
+        let layout = &self.solver.mesh.layout;
+        let cells = self.solver.mesh.len() + tiles.iter().map(|tile| layout.count(*tile)).sum::<usize>();
+        let cells = cells as f64;
         if cells > MOST_CELLS {
             return Err(setup(format!(
                 "the water would need about {cells:.1e} particles, more than the {MOST_CELLS:.0e} that fit in memory; \
@@ -232,7 +239,7 @@ impl VoronoiFlood {
     fn make_first_tiles(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
         let layout = &self.solver.mesh.layout;
         let wet = |tile: &usize| {
-            (0..layout.points.len()).any(|k| {
+            (0..layout.count(*tile)).any(|k| {
                 let at = layout.position(*tile, k);
                 let ground = self.terrain.height(at[0], at[1]);
                 bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()))

@@ -4,13 +4,16 @@ mod ground;
 
 use super::{Check, Checked};
 use crate::{
-    Balanced, Block, Edge, Field, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
+    Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
     StartVelocity, Water,
 };
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
 const LARGEST_MANNING: f64 = 1.0;
+
+/// Cells may be so many times finer than elsewhere.
+const FINEST: f64 = 64.0;
 
 impl Check {
     pub(super) fn flood(&self, flood: &Flood) -> Checked {
@@ -36,6 +39,9 @@ impl Check {
         }
         for (index, inflow) in flood.inflow.iter().enumerate() {
             self.inflow(&format!("flood.inflow.{index}"), inflow)?;
+        }
+        for (index, finer) in flood.finer.iter().enumerate() {
+            self.finer(&format!("flood.finer.{index}"), finer, flood)?;
         }
         for (index, outflow) in flood.outflow.iter().enumerate() {
             self.outflow(&format!("flood.outflow.{index}"), outflow)?;
@@ -69,6 +75,46 @@ impl Check {
         let smallest = refinement.smallest;
         self.require("flood.refinement.smallest", smallest > 0.0 && smallest <= 1.0, || {
             "must be larger than 0 and at most 1".into()
+        })
+    }
+
+    fn finer(&self, key: &str, finer: &Finer, flood: &Flood) -> Checked {
+        self.require(key, flood.scheme == Scheme::Voronoi, || {
+            "is for scheme = \"voronoi\": particles of the other schemes move with the water".into()
+        })?;
+        self.exactly_one(
+            key,
+            &[
+                ("polygon", finer.polygon.is_some()),
+                ("circle", finer.circle.is_some()),
+                ("file", finer.file.is_some()),
+                ("line", finer.line.is_some()),
+                ("walls", finer.walls),
+            ],
+        )?;
+        if let Some(polygon) = &finer.polygon {
+            self.polygon(&format!("{key}.polygon"), polygon)?;
+        }
+        if let Some(circle) = finer.circle {
+            self.above(&format!("{key}.circle.radius_m"), circle.radius_m, 0.0)?;
+        }
+        if let Some(line) = &finer.line {
+            self.line(&format!("{key}.line"), line)?;
+        }
+        self.at_least(&format!("{key}.within_m"), finer.within_m, 0.0)?;
+        self.require(
+            &format!("{key}.within_m"),
+            finer.within_m > 0.0 || (finer.line.is_none() && !finer.walls),
+            || "must be larger than 0: how far from the line, or from obstacles, cells are finer".into(),
+        )?;
+        self.require(&format!("{key}.walls"), !finer.walls || !flood.obstacle.is_empty(), || {
+            "there is no [[flood.obstacle]] to be finer at".into()
+        })?;
+        let key = format!("{key}.spacing_m");
+        self.above(&key, finer.spacing_m, 0.0)?;
+        let Some(coarse) = flood.spacing_m else { return Ok(()) };
+        self.require(&key, finer.spacing_m < coarse && finer.spacing_m >= coarse / FINEST, || {
+            format!("must be smaller than flood.spacing_m = {coarse}, and not more than {FINEST} times")
         })
     }
 

@@ -9,7 +9,7 @@ use crate::voronoi::walls::Walls;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Pieces with less than this part of the mean area are joined to the neighbour behind their longest open faces: they would set the time step (cell
+/// Pieces with less than this part of the area of a whole cell are joined to the neighbour behind their longest open faces: they would set the time step (cell
 /// merging: Quirk 1994, "An alternative to unstructured grids", section 3).
 const SMALL: f64 = 0.3;
 
@@ -118,9 +118,7 @@ impl Cuts {
 fn entries(layout: &Layout, walls: &Walls, ground: &impl Ground) -> Vec<Entry> {
     let reach = REACH * layout.spacing();
     let boxes = walls.boxes().into_par_iter();
-    let near = boxes.flat_map_iter(|[low, high]| {
-        layout.points_within(low.map(|x| x - reach), high.map(|x| x + reach)).collect::<Vec<_>>()
-    });
+    let near = boxes.flat_map_iter(|[low, high]| layout.points_within(low.map(|x| x - reach), high.map(|x| x + reach)));
     let mut near: Vec<u64> = near.collect();
     near.par_sort_unstable();
     near.dedup();
@@ -141,13 +139,12 @@ fn entries(layout: &Layout, walls: &Walls, ground: &impl Ground) -> Vec<Entry> {
 
 /// The Voronoi cell of a point cut by walls, none if they do not; or whole, without walls.
 fn entry(layout: &Layout, point: u64, walls: Option<&Walls>, ground: &impl Ground) -> Option<Entry> {
-    let count = layout.points.len() as u64;
-    let (tile, k) = ((point / count) as usize, (point % count) as usize);
+    let (tile, k) = layout.place(point);
     let position = layout.position(tile, k);
     let (mut polygon, mut candidates) = (Polygon::default(), Vec::new());
     layout.cell(tile, k, &mut polygon, &mut candidates);
     let (pieces, is_cut) = match walls {
-        Some(walls) => (cut(layout, position, &polygon, walls, ground)?, true),
+        Some(walls) => (cut(layout, (position, layout.spacing_at(tile, k)), &polygon, walls, ground)?, true),
         None if ground.is_there(position) => (vec![Piece::whole(&polygon)], false),
         None => (Vec::new(), false),
     };
@@ -163,8 +160,15 @@ fn entry(layout: &Layout, point: u64, walls: Option<&Walls>, ground: &impl Groun
     Some(Entry { point, position, beyond: polygon.beyond.iter().map(next).collect(), pieces, is_cut })
 }
 
-/// The pieces of a Voronoi cell; none where no wall reaches into it. Beyond joined sides there are the walls of the opposite side.
-fn cut(layout: &Layout, at: [f64; 2], polygon: &Polygon, walls: &Walls, ground: &impl Ground) -> Option<Vec<Piece>> {
+/// The pieces of the Voronoi cell of a point where points are `spacing` m apart; none where no wall reaches into it. Beyond joined sides there are the
+/// walls of the opposite side.
+fn cut(
+    layout: &Layout,
+    (at, spacing): ([f64; 2], f64),
+    polygon: &Polygon,
+    walls: &Walls,
+    ground: &impl Ground,
+) -> Option<Vec<Piece>> {
     let size = layout.bounds.size();
     let low = [layout.bounds.x_min, layout.bounds.y_min];
     let along = |axis: usize| polygon.corners.iter().map(move |r| r[axis]);
@@ -190,7 +194,7 @@ fn cut(layout: &Layout, at: [f64; 2], polygon: &Polygon, walls: &Walls, ground: 
             if layout.periodic[axis] { low[axis] + (x - low[axis]).rem_euclid(size[axis]) } else { x }
         }))
     };
-    split(polygon, near.into_iter(), layout.spacing(), is_open)
+    split(polygon, near.into_iter(), spacing, is_open)
 }
 
 /// The work on all pieces, numbered entry by entry.
@@ -338,19 +342,24 @@ impl<'a> Build<'a> {
         stretches
     }
 
+    /// The area below which a piece is small, m2.
+    fn small(&self, piece: usize) -> f64 {
+        let (tile, k) = self.layout.place(self.entries[self.entry_of[piece]].point);
+        SMALL * self.layout.spacing_at(tile, k).powi(2)
+    }
+
     /// Joins small pieces to neighbours, the smallest first, until they are no longer small or have none.
     fn join_small(&self) -> Groups {
-        let small = SMALL * self.layout.spacing().powi(2);
         let count = self.entry_of.len();
         let mut groups = Groups::new(count);
         let mut area: Vec<f64> = (0..count).map(|piece| self.piece(piece).area).collect();
         let mut members: Vec<Vec<usize>> = (0..count).map(|piece| vec![piece]).collect();
-        let mut queue: Vec<usize> = (0..count).filter(|piece| area[*piece] < small).collect();
+        let mut queue: Vec<usize> = (0..count).filter(|piece| area[*piece] < self.small(*piece)).collect();
         queue.sort_by(|a, b| area[*a].total_cmp(&area[*b]).then(a.cmp(b)));
         for piece in queue {
             loop {
                 let group = groups.root(piece);
-                if area[group] >= small {
+                if area[group] >= self.small(piece) {
                     break;
                 }
                 let Some(other) = self.longest(&mut groups, group, &members[group]) else { break };
@@ -474,21 +483,21 @@ impl<'a> Build<'a> {
         }
         let mut width = 2.0 * area / perimeter;
         let is_open = |edge: &NewEdge| !matches!(edge.beyond, NewBeyond::Wall(_) | NewBeyond::Border(_));
-        if area < SMALL * self.layout.spacing().powi(2) && !edges.iter().any(is_open) {
+        if area < self.small(own) && !edges.iter().any(is_open) {
             // Enclosed by walls: its water does not move.
             edges.clear();
             width = f64::INFINITY;
         }
         let whole = area.max(f64::MIN_POSITIVE);
         let point = self.entries[self.entry_of[own]].point;
-        let count = self.layout.points.len() as u64;
+        let (tile, k) = self.layout.place(point);
         let cell = NewCell {
             point: self.id(own),
             centroid: [0, 1].map(|axis| base[axis] + moment[axis] / whole),
             area,
             width,
             bed: heights / whole,
-            rim: rim(self.layout, (point / count) as usize, (point % count) as usize, RIM),
+            rim: rim(self.layout, tile, k, RIM),
             edges,
         };
         (cell, parts)

@@ -1,11 +1,13 @@
 //! The cells of the particles and the faces between them, made where there is water or where it may come next.
 
 mod cuts;
+mod grading;
 mod layout;
 mod polygon;
 mod split;
 
 pub(crate) use cuts::Crest;
+pub(crate) use grading::Grading;
 pub(crate) use layout::Layout;
 pub(crate) use polygon::area;
 
@@ -237,7 +239,7 @@ impl Mesh {
     /// Adds the tiles round a cell that must be made before it gets wet and are not, and takes them for made from here on.
     pub fn take_rim(&mut self, cell: usize, missing: &mut Vec<usize>) {
         let mask = std::mem::take(&mut self.rim[cell]);
-        let tile = (self.point[cell] % self.layout.total()) as usize / self.layout.points.len();
+        let (tile, _) = self.layout.place(self.point[cell]);
         let beside = AROUND.iter().enumerate().filter(|(bit, _)| mask & 1 << bit != 0);
         let tiles = beside.filter_map(|(_, away)| self.layout.beside(tile, *away));
         missing.extend(tiles.filter(|tile| self.first_of_tile[*tile] == NONE));
@@ -252,7 +254,7 @@ impl Mesh {
     /// The cell that holds a position; none where it is not made or there is no ground.
     pub fn cell_at(&self, at: [f64; 2]) -> Option<usize> {
         let (tile, k) = self.layout.nearest(at);
-        let point = (tile * self.layout.points.len() + k) as u64;
+        let point = self.layout.number(tile, k);
         if !self.cuts.cut(point) {
             return self.cell_of(point);
         }
@@ -275,12 +277,12 @@ impl Mesh {
         if point >= self.layout.total() {
             return None;
         }
-        let count = self.layout.points.len() as u64;
-        let first = self.first_of_tile[(point / count) as usize];
+        let (tile, k) = self.layout.place(point);
+        let first = self.first_of_tile[tile];
         if first == NONE {
             return None;
         }
-        let cell = self.cell_of_point[first as usize + (point % count) as usize];
+        let cell = self.cell_of_point[first as usize + k];
         (cell != NONE).then_some(cell as usize)
     }
 
@@ -292,9 +294,8 @@ impl Mesh {
             parts.extend_from_slice(of_cell);
             return;
         }
-        let count = self.layout.points.len() as u64;
         let (mut polygon, mut candidates) = (Polygon::default(), Vec::new());
-        let (tile, k) = ((number / count) as usize, (number % count) as usize);
+        let (tile, k) = self.layout.place(number);
         self.layout.cell(tile, k, &mut polygon, &mut candidates);
         let position = self.layout.position(tile, k);
         parts.push(polygon.corners.iter().map(|r| [position[0] + r[0], position[1] + r[1]]).collect());
@@ -319,7 +320,7 @@ impl Mesh {
     }
 
     fn add_cells(&mut self, tile: usize, cells: &[NewCell]) {
-        let count = self.layout.points.len();
+        let count = self.layout.count(tile);
         self.made.push(tile as u32);
         self.first_of_tile[tile] = self.cell_of_point.len() as u32;
         let first = self.cell_of_point.len();
@@ -330,7 +331,7 @@ impl Mesh {
             if self.cuts.cut(point) {
                 self.cut_cells.insert(cell.point, number);
             } else {
-                self.cell_of_point[first + (point % count as u64) as usize] = number;
+                self.cell_of_point[first + self.layout.place(point).1] = number;
             }
             self.point.push(cell.point);
             self.centroid.push(cell.centroid);
@@ -407,8 +408,8 @@ impl Mesh {
     }
 
     fn position_of(&self, point: u64) -> [f64; 2] {
-        let count = self.layout.points.len() as u64;
-        self.layout.position((point / count) as usize, (point % count) as usize)
+        let (tile, k) = self.layout.place(point);
+        self.layout.position(tile, k)
     }
 
     fn add_face(&mut self, face: Face, lift: f64, ground: &impl Ground) {
@@ -491,9 +492,10 @@ fn border_face(cell: usize, border: u32, new: &NewCell, edge: &NewEdge) -> Face 
 fn new_cells(layout: &Layout, cuts: &Cuts, tile: usize, ground: &impl Ground) -> Vec<NewCell> {
     let (mut polygon, mut candidates) = (Polygon::default(), Vec::new());
     let mut corners = Vec::new();
-    let mut cells = Vec::with_capacity(layout.points.len());
-    for k in 0..layout.points.len() {
-        if let Some(made) = cuts.at_point((tile * layout.points.len() + k) as u64) {
+    let count = layout.count(tile);
+    let mut cells = Vec::with_capacity(count);
+    for k in 0..count {
+        if let Some(made) = cuts.at_point(layout.number(tile, k)) {
             cells.extend_from_slice(made);
         } else if ground.is_there(layout.position(tile, k)) {
             cells.push(new_cell(layout, tile, k, ground, (&mut polygon, &mut candidates, &mut corners)));
@@ -512,7 +514,7 @@ fn new_cell(
     layout.cell(tile, k, polygon, candidates);
     let position = layout.position(tile, k);
     let on_ground = |r: [f64; 2]| [position[0] + r[0], position[1] + r[1]];
-    let shortest = SHORTEST * layout.spacing();
+    let shortest = SHORTEST * layout.spacing_at(tile, k);
     let edges = (0..polygon.corners.len()).filter_map(|edge| {
         let [a, b] = polygon.edge(edge);
         let normal = [b[1] - a[1], a[0] - b[0]];
@@ -531,7 +533,7 @@ fn new_cell(
     corners.clear();
     corners.extend(polygon.corners.iter().map(|r| on_ground(*r)));
     NewCell {
-        point: (tile * layout.points.len() + k) as u64,
+        point: layout.number(tile, k),
         centroid: on_ground(measures.centroid),
         area: measures.area,
         width: 2.0 * measures.area / measures.perimeter,
@@ -543,8 +545,8 @@ fn new_cell(
 
 /// What is behind an edge to the point `to` away: its cell, or a solid where there is no ground.
 fn neighbour(layout: &Layout, position: [f64; 2], to: [f64; 2], point: u64, ground: &impl Ground) -> NewBeyond {
-    let count = layout.points.len() as u64;
-    let home = layout.position((point / count) as usize, (point % count) as usize);
+    let (tile, k) = layout.place(point);
+    let home = layout.position(tile, k);
     if !ground.is_there(home) {
         return NewBeyond::Border(SOLID);
     }
@@ -555,7 +557,7 @@ fn neighbour(layout: &Layout, position: [f64; 2], to: [f64; 2], point: u64, grou
 
 /// The tiles round its own, `margin` spacings away at most, that must be made before the cell of a point gets wet.
 fn rim(layout: &Layout, tile: usize, k: usize, margin: f64) -> u8 {
-    let within = layout.points[k];
+    let within = layout.within(tile, k);
     let margin = margin * layout.spacing();
     let near = [0, 1].map(|axis| [within[axis] < margin, true, within[axis] > layout.tile[axis] - margin]);
     let needed = |away: &[i64; 2]| {

@@ -83,6 +83,15 @@ impl Walls {
         found.dedup();
     }
 
+    /// Distance of the nearest wall from a position, m; infinite where it is more than `farthest`.
+    pub fn distance(&self, at: [f64; 2], farthest: f64) -> f64 {
+        let mut near = Vec::new();
+        self.near(at.map(|x| x - farthest), at.map(|x| x + farthest), &mut near);
+        let distances = near.iter().map(|wall| self.all[*wall as usize].distance(at));
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        if nearest <= farthest { nearest } else { f64::INFINITY }
+    }
+
     /// Rectangles, as their south-west and north-east corners, that hold all walls together.
     pub fn boxes(&self) -> Vec<[[f64; 2]; 2]> {
         let corner = |bin: &[i64; 2]| [0, 1].map(|axis| self.low[axis] + bin[axis] as f64 * self.size);
@@ -95,11 +104,22 @@ impl Walls {
 impl Wall {
     /// Level of the crest at a position beside it, m.
     pub fn crest_at(&self, at: [f64; 2]) -> f64 {
+        self.crest[0] + self.nearest(at) * (self.crest[1] - self.crest[0])
+    }
+
+    /// Distance from a position, m.
+    fn distance(&self, at: [f64; 2]) -> f64 {
+        let ([a, b], part) = (self.ends, self.nearest(at));
+        let [dx, dy] = [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]) - at[axis]);
+        dx.hypot(dy)
+    }
+
+    /// How far along it the place nearest to a position is: 0 at the first end, 1 at the second.
+    fn nearest(&self, at: [f64; 2]) -> f64 {
         let [a, b] = self.ends;
         let along = [b[0] - a[0], b[1] - a[1]];
         let squared = along[0] * along[0] + along[1] * along[1];
-        let part = ((at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1]) / squared;
-        self.crest[0] + part.clamp(0.0, 1.0) * (self.crest[1] - self.crest[0])
+        (((at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1]) / squared).clamp(0.0, 1.0)
     }
 }
 

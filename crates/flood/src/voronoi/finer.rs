@@ -1,0 +1,44 @@
+//! Parts of the terrain with finer cells, as a scene tells them.
+
+use super::mesh::Grading;
+use super::walls::{Wall, of_outlines};
+use crate::obstacles::{Outline, polygons};
+use crate::setup::setup;
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Flood as Settings, Obstacle};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+
+/// Where a scene asks for finer cells than those `spacing` m wide. `outlines` are those of its obstacles, `lines` its walls of no thickness.
+pub(super) fn grading(
+    scene: &Settings,
+    terrain: &Terrain,
+    folder: &Path,
+    (spacing, outlines, lines): (f64, &[Outline], &[Wall]),
+) -> Result<Grading, ModelError> {
+    let mut grading = Grading::new(spacing);
+    for (number, finer) in scene.finer.iter().enumerate() {
+        let key = format!("flood.finer.{number}");
+        if finer.spacing_m >= spacing {
+            let what = format!(
+                "{key}.spacing_m is {}: must be smaller than {spacing:.4}, the spacing elsewhere",
+                finer.spacing_m
+            );
+            return Err(setup(what));
+        }
+        let area = Obstacle {
+            name: key,
+            polygon: finer.polygon.clone(),
+            circle: finer.circle,
+            file: finer.file.clone(),
+            ..Obstacle::default()
+        };
+        let polygons = polygons(&area, terrain, folder)?;
+        let line: Vec<_> = finer.line.iter().flatten().map(|place| terrain.to_model(*place)).collect();
+        let along = line.windows(2).map(|pair| [pair[0], pair[1]]);
+        let walls = of_outlines(outlines).chain(lines.iter().copied()).map(|wall| wall.ends);
+        let walls = walls.filter(|_| finer.walls);
+        grading.add(finer.spacing_m, finer.within_m, polygons, along.chain(walls), terrain.bounds());
+    }
+    Ok(grading)
+}
