@@ -88,7 +88,16 @@ impl Model for Counter {
             .into()
     }
     fn ledger(&self) -> Ledger {
-        Ledger { balances: vec![Balance { quantity: "water_m3", initial: 1.0, inflow: 0.0, outflow: 0.0, now: 1.0 }] }
+        Ledger {
+            balances: vec![Balance {
+                quantity: "water_m3",
+                initial: 1.0,
+                inflow: 0.0,
+                outflow: 0.0,
+                now: 1.0,
+                least: 0.0,
+            }],
+        }
     }
     fn warnings(&self) -> Vec<String> {
         vec!["a model made for tests".into()]

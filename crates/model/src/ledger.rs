@@ -22,13 +22,15 @@ pub struct Balance {
     pub outflow: f64,
     /// Amount now.
     pub now: f64,
+    /// Amount below which nothing but rounding is seen; 0 where there is none.
+    pub least: f64,
 }
 
 impl Balance {
-    /// (now - initial - inflow + outflow) / max(initial + inflow, now + outflow), in magnitudes; 0 where there
+    /// (now - initial - inflow + outflow) / max(initial + inflow, now + outflow, least), in magnitudes; 0 where there
     /// never was anything.
     pub fn relative_error(&self) -> f64 {
-        let scale = (self.initial.abs() + self.inflow.abs()).max(self.now.abs() + self.outflow.abs());
+        let scale = (self.initial.abs() + self.inflow.abs()).max(self.now.abs() + self.outflow.abs()).max(self.least);
         if scale == 0.0 { 0.0 } else { (self.now - self.initial - self.inflow + self.outflow) / scale }
     }
 }
@@ -53,7 +55,7 @@ impl Account {
     /// The balance, with so much there now.
     pub fn balance(&self, quantity: &'static str, now: f64) -> Balance {
         let (inflow, outflow) = (self.inflow.value(), self.outflow.value());
-        Balance { quantity, initial: self.initial, inflow, outflow, now }
+        Balance { quantity, initial: self.initial, inflow, outflow, now, least: 0.0 }
     }
 }
 
@@ -98,12 +100,15 @@ mod tests {
 
     #[test]
     fn relative_error_counts_what_came_in_and_went_out() {
-        let mut water = Balance { quantity: "water_m3", initial: 10.0, inflow: 5.0, outflow: 3.0, now: 12.0 };
+        let mut water =
+            Balance { quantity: "water_m3", initial: 10.0, inflow: 5.0, outflow: 3.0, now: 12.0, least: 0.0 };
         assert_eq!(water.relative_error(), 0.0);
         water.now = 13.5;
         assert!((water.relative_error() - 1.5 / 16.5).abs() < 1e-15);
-        let none = Balance { quantity: "water_m3", initial: 0.0, inflow: 0.0, outflow: 0.0, now: 0.0 };
+        let none = Balance { quantity: "water_m3", initial: 0.0, inflow: 0.0, outflow: 0.0, now: 0.0, least: 0.0 };
         assert_eq!(none.relative_error(), 0.0);
+        let rounding = Balance { now: 1e-9, least: 1e-3, ..none };
+        assert_eq!(rounding.relative_error(), 1e-6);
     }
 
     #[test]

@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn reads_back_and_has_the_names_that_scripts_depend_on() {
-        let water = Balance { quantity: "water_m3", initial: 0.1, inflow: 5.0, outflow: 3.0, now: 2.1 };
+        let water = Balance { quantity: "water_m3", initial: 0.1, inflow: 5.0, outflow: 3.0, now: 2.1, least: 0.0 };
         let summary = Summary {
             model: "flood".into(),
             backend: "cpu".into(),

@@ -132,7 +132,16 @@ impl Model for Balls {
         vec![Path { name: "ball 0".into(), times: (0..60).map(f64::from).collect(), points }]
     }
     fn ledger(&self) -> Ledger {
-        Ledger { balances: vec![Balance { quantity: "energy", initial: 800.0, inflow: 0.0, outflow: 0.0, now: 800.0 }] }
+        Ledger {
+            balances: vec![Balance {
+                quantity: "energy",
+                initial: 800.0,
+                inflow: 0.0,
+                outflow: 0.0,
+                now: 800.0,
+                least: 0.0,
+            }],
+        }
     }
     fn warnings(&self) -> Vec<String> {
         Vec::new()

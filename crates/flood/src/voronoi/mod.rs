@@ -206,6 +206,12 @@ impl VoronoiFlood {
         columns.chain(self.state.falling.iter().map(|drop| drop.volume)).collect::<ExactSum>().value()
     }
 
+    /// Momentum of all water if it were as fast as waves on it, kg m/s.
+    fn momentum_of_waves(&self) -> f64 {
+        let waves = self.wet_cells().map(|cell| cell.area * cell.depth * (self.solver.gravity * cell.depth).sqrt());
+        DENSITY * waves.sum::<f64>()
+    }
+
     /// Momentum of the water, sum of its two components, kg m/s.
     fn momentum(&self) -> f64 {
         let columns = self.solver.columns.iter().map(|column| column.momentum[0] + column.momentum[1]);

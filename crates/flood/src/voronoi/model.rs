@@ -2,11 +2,14 @@
 
 use super::change::Overrides;
 use super::{DENSITY, State, VoronoiFlood, maps};
-use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_model::{Balance, Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water less deep than this part of the depth of wet ground is not shown as a particle.
 const SHOWN: f64 = 0.1;
+
+/// Momentum that is a smaller part of that of all water, if it were as fast as waves, is what rounding leaves of the thrusts in a lake at rest.
+const ROUNDING: f64 = 1e-9;
 
 impl Model for VoronoiFlood {
     fn name(&self) -> &'static str {
@@ -99,7 +102,10 @@ impl Model for VoronoiFlood {
 
     fn ledger(&self) -> Ledger {
         let water = self.state.water.balance("water_m3", self.stored());
-        let momentum = self.state.momentum.balance("momentum", self.momentum());
+        let momentum = Balance {
+            least: ROUNDING * self.momentum_of_waves(),
+            ..self.state.momentum.balance("momentum", self.momentum())
+        };
         Ledger { balances: vec![water, momentum] }
     }
 

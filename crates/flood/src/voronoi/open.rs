@@ -298,6 +298,7 @@ impl VoronoiFlood {
         self.state.water.initial = self.stored();
         self.state.momentum.initial = self.momentum();
         self.state.energy.initial = self.energy(0.0).iter().sum();
+        self.solver.shrink();
         let wet_depth = self.settings.wet_depth_m;
         let starts = self.solver.water.iter().map(|water| Record::start(water, wet_depth));
         self.state.records = starts.collect();

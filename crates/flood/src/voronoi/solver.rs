@@ -392,6 +392,15 @@ impl Solver {
         sum(chunks.found.iter().map(|found| &found.slowed))
     }
 
+    /// Gives back the room that no cell needs.
+    pub fn shrink(&mut self) {
+        let Self { mesh, columns, water, slopes, before, fluxes, kept, borders, .. } = self;
+        mesh.shrink();
+        [columns, before].into_iter().for_each(Vec::shrink_to_fit);
+        (water.shrink_to_fit(), slopes.shrink_to_fit(), fluxes.shrink_to_fit());
+        (kept.shrink_to_fit(), borders.shrink_to_fit());
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.mesh.bytes()

@@ -115,7 +115,7 @@ impl<const D: usize> Gas<D> {
         let gained = gained + self.hand.gained.value();
         let outflow = lost + world.tally.dissipated.value() + self.hand.lost.value();
         let quantity = if self.si { "energy_J" } else { "energy" };
-        Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy() }
+        Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy(), least: 0.0 }
     }
 
     fn momentum_balance(&self) -> Balance {
@@ -135,7 +135,7 @@ impl<const D: usize> Gas<D> {
             .map(|ball| world.mass(ball) * crate::world::speed(&world.balls[ball].velocity))
             .sum();
         let now = if (now - expected).abs() <= ROUNDING * all { expected } else { now };
-        Balance { quantity: "momentum", initial: self.initial[1], inflow, outflow, now }
+        Balance { quantity: "momentum", initial: self.initial[1], inflow, outflow, now, least: 0.0 }
     }
 }
 
@@ -236,7 +236,7 @@ impl<const D: usize> Model for Gas<D> {
         if added + removed > 0.0 {
             let now = self.len() as f64;
             let initial = now - added + removed;
-            balances.push(Balance { quantity: "balls", initial, inflow: added, outflow: removed, now });
+            balances.push(Balance { quantity: "balls", initial, inflow: added, outflow: removed, now, least: 0.0 });
         }
         Ledger { balances }
     }

@@ -193,8 +193,10 @@ pub fn gauge_columns(scene: &Scene) -> Vec<GaugeColumn> {
 }
 
 pub fn summary() -> Summary {
-    let water = Balance { quantity: "water_m3", initial: 0.0, inflow: 2.31e6, outflow: 1.87e6, now: 440_000.0 };
-    let momentum = Balance { quantity: "momentum", initial: 0.0, inflow: 2.5e9, outflow: 1.5e9, now: 1.0e9 };
+    let water =
+        Balance { quantity: "water_m3", initial: 0.0, inflow: 2.31e6, outflow: 1.87e6, now: 440_000.0, least: 0.0 };
+    let momentum =
+        Balance { quantity: "momentum", initial: 0.0, inflow: 2.5e9, outflow: 1.5e9, now: 1.0e9, least: 0.0 };
     Summary {
         model: "flood".into(),
         backend: "cpu".into(),

@@ -170,18 +170,9 @@ impl Boundaries {
         }
     }
 
-    /// The border faces of a rule: their number among all border faces, cell, length, m.
-    fn faces_of<'a>(&'a self, solver: &'a Solver, rule: u16) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
-        let here = self.of_faces.iter().enumerate().filter(move |(_, of_face)| **of_face == Some(rule));
-        here.map(|(border, _)| {
-            let face = &solver.mesh.faces[solver.borders[border] as usize];
-            (border, face.cells[0] as usize, face.normal[0].hypot(face.normal[1]))
-        })
-    }
-
     /// Mean level along the wet faces of a rule, m.
     fn mean_level(&self, solver: &Solver, rule: u16) -> Option<f64> {
-        let wet = self.faces_of(solver, rule).filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
+        let wet = faces_of(&self.of_faces, solver, rule).filter(|(_, cell, _)| solver.water[*cell].depth > 0.0);
         let (sum, length) = wet.fold((0.0, 0.0), |(sum, total), (_, cell, length)| {
             (sum + length * solver.water[cell].level, total + length)
         });
@@ -190,7 +181,7 @@ impl Boundaries {
 
     /// Level of the water along the faces of a rule, m; films count as little as they are deep.
     fn level_of_depth(&self, solver: &Solver, rule: u16) -> f64 {
-        let weighted = self.faces_of(solver, rule).map(|(_, cell, length)| {
+        let weighted = faces_of(&self.of_faces, solver, rule).map(|(_, cell, length)| {
             let water = &solver.water[cell];
             (length * water.depth, length * water.depth * water.level)
         });
@@ -208,21 +199,16 @@ impl Boundaries {
             _ => (level - solver.mesh.bed[cell]).max(0.0),
         };
         let conveyance = |cell: usize| depth(cell).powf(5.0 / 3.0);
-        let total: f64 = self.faces_of(solver, rule).map(|(_, cell, length)| length * conveyance(cell)).sum();
-        let lowest =
-            self.faces_of(solver, rule).map(|(_, cell, _)| solver.mesh.bed[cell]).fold(f64::INFINITY, f64::min);
+        let Self { of_faces, now, .. } = self;
+        let faces = || faces_of(of_faces, solver, rule);
+        let total: f64 = faces().map(|(_, cell, length)| length * conveyance(cell)).sum();
+        let lowest = faces().map(|(_, cell, _)| solver.mesh.bed[cell]).fold(f64::INFINITY, f64::min);
         let is_lowest = |cell: usize| solver.mesh.bed[cell] <= lowest + 1e-6 * (1.0 + lowest.abs());
-        let lowest_length: f64 =
-            self.faces_of(solver, rule).filter(|(_, cell, _)| is_lowest(*cell)).map(|(_, _, length)| length).sum();
-        let shares: Vec<(usize, f64)> = self
-            .faces_of(solver, rule)
-            .map(|(border, cell, _)| {
-                let dry = if is_lowest(cell) { 1.0 / lowest_length } else { 0.0 };
-                (border, if total > 0.0 { conveyance(cell) / total } else { dry })
-            })
-            .collect();
-        for (border, share) in shares {
-            self.now.iter_mut().for_each(|now| now[border] = Now::Discharge(discharge * share));
+        let lowest_length: f64 = faces().filter(|(_, cell, _)| is_lowest(*cell)).map(|(_, _, length)| length).sum();
+        for (border, cell, _) in faces() {
+            let dry = if is_lowest(cell) { 1.0 / lowest_length } else { 0.0 };
+            let share = if total > 0.0 { conveyance(cell) / total } else { dry };
+            now.iter_mut().for_each(|now| now[border] = Now::Discharge(discharge * share));
         }
     }
 
@@ -251,6 +237,19 @@ impl Boundaries {
             beyond[border] += (step / relaxation).min(1.0) * (found.across - beyond[border]);
         }
     }
+}
+
+/// The border faces of a rule: their number among all border faces, cell, length, m. `of_faces` is the rule of each.
+fn faces_of<'a>(
+    of_faces: &'a [Option<u16>],
+    solver: &'a Solver,
+    rule: u16,
+) -> impl Iterator<Item = (usize, usize, f64)> + 'a {
+    let here = of_faces.iter().enumerate().filter(move |(_, of_face)| **of_face == Some(rule));
+    here.map(|(border, _)| {
+        let face = &solver.mesh.faces[solver.borders[border] as usize];
+        (border, face.cells[0] as usize, face.normal[0].hypot(face.normal[1]))
+    })
 }
 
 /// The water of an incoming simple wave over the bed of a cell, and the ground under its face: what is not given of level and velocity inwards follows from u = 2 (c - c0).

@@ -460,6 +460,15 @@ impl Mesh {
         }
     }
 
+    /// Gives back the room that no cell needs.
+    pub fn shrink(&mut self) {
+        let Self { cell_of_point, point, centroid, area, width, bed, first_link, links, faces, lift, rim, .. } = self;
+        [area, width, bed, lift].into_iter().for_each(Vec::shrink_to_fit);
+        [cell_of_point, first_link].into_iter().for_each(Vec::shrink_to_fit);
+        (point.shrink_to_fit(), centroid.shrink_to_fit(), rim.shrink_to_fit());
+        (links.shrink_to_fit(), faces.shrink_to_fit());
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.links.capacity() * size_of::<Link>()
