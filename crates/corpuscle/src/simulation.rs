@@ -3,13 +3,14 @@
 use crate::along::{Along, Glances, Going, Keeping, Meter};
 use crate::schedule::Schedule;
 use crate::{ByHand, Error, Progress, Sink};
-use corpuscle_flood::{Sample, as_flood, as_flood_mut};
+use corpuscle_flood::{Sample, VoronoiFlood, as_flood, as_flood_mut, wet_area};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_record::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::any::Any;
 use std::cell::RefCell;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -78,8 +79,8 @@ impl Simulation {
         as_flood(model).map(|flood| flood.sample(x, y))
     }
 
-    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run. What
-    /// leaves meanwhile is not taken off. 0 for models that no water comes into.
+    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run; in scheme voronoi, how many
+    /// more get wet. What leaves meanwhile is not taken off. 0 for models that no water comes into.
     pub fn particles_to_come(&self) -> f64 {
         self.particles_to_come_until(self.scene.run.until_s)
     }
@@ -87,7 +88,18 @@ impl Simulation {
     /// [`Simulation::particles_to_come`] up to a time, s.
     pub fn particles_to_come_until(&self, time: f64) -> f64 {
         let model: &dyn Any = &*self.model;
+        if model.is::<VoronoiFlood>() {
+            return (self.particles_wet_until(time) - self.model.particles() as f64).max(0.0);
+        }
         as_flood(model).map_or(0.0, |flood| flood.particles_to_come(self.model.time(), time))
+    }
+
+    /// About how many particles of scheme voronoi are wet until a time, s.
+    fn particles_wet_until(&self, time: f64) -> f64 {
+        let (Some(scene), Some(terrain)) = (self.scene.flood(), &self.terrain) else { return 0.0 };
+        let spacing = scene.flood.spacing_m.unwrap_or(f64::INFINITY);
+        // Paths of a scene that was opened are absolute, and what cannot be read was refused there.
+        wet_area(&scene.flood, terrain, Path::new(""), time).map_or(0.0, |area| area / spacing.powi(2))
     }
 
     /// Places a gauge in a flood while it runs, at a place in model coordinates. Its columns come after all others.

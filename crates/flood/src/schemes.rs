@@ -1,7 +1,7 @@
 //! Floods of any scheme.
 
 use crate::sampling::Sample;
-use crate::{ByHand, Flood, VoronoiFlood};
+use crate::{ByHand, Flood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Flood as Settings, Scheme};
 use corpuscle_terrain::Terrain;
@@ -48,7 +48,10 @@ pub fn open(
     terrain: Arc<Terrain>,
 ) -> Result<Box<dyn FloodModel>, ModelError> {
     Ok(match settings.scheme {
-        Scheme::Voronoi => Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?),
+        Scheme::Voronoi => {
+            limits::check_depths(settings, &terrain, folder)?;
+            Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?)
+        }
         Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::new(settings, seed, folder, terrain)?),
     })
 }
