@@ -146,7 +146,7 @@ fn more_water_than_a_machine_holds_is_refused_before_any_memory_is_taken() {
     }
     // Particles of scheme voronoi are as many however deep the water is.
     for (rest, words) in [
-        ("water = [{ level_m = 1e9 }]", ["e8 m deep", "[[flood.water]]"]),
+        ("water = [{ level_m = 1e9 }]", ["1.0e9 m deep", "[[flood.water]]"]),
         ("water = [{ level_m = 1e300 }]", ["m deep", "[[flood.water]]"]),
         (
             "water = [{ block = { from = [10, 10], to = [90, 90], height_m = 5, layers = 100000000000 } }]",

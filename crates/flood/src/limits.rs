@@ -9,6 +9,9 @@ use std::path::Path;
 /// More particles than this do not fit in the memory of usual machines.
 const MOST_PARTICLES: f64 = 2e8;
 
+/// Particles of scheme voronoi were all the terrain wet: there is a list of tiles, about 1000 particles each.
+const MOST_CELLS_OF_TERRAIN: f64 = 1e11;
+
 /// Water is not deeper than this on average, m: nine times the deepest sea.
 const MOST_DEPTH: f64 = 1e5;
 
@@ -45,6 +48,19 @@ fn falling(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> f64 {
         columns * rows * block.layers as f64
     });
     particles.sum()
+}
+
+/// Refuses particles of scheme voronoi so close that not even the list of where they might come to be fits in memory.
+pub(crate) fn check_cells(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
+    let [east, north] = terrain.bounds().size();
+    let count = scene.spacing_m.map_or(0.0, |spacing| east * north / spacing.powi(2));
+    if count <= MOST_CELLS_OF_TERRAIN {
+        return Ok(());
+    }
+    Err(setup(format!(
+        "all of the terrain under water would be {count:.1e} particles, and at most {MOST_CELLS_OF_TERRAIN:.0e} are possible; take a larger \
+         flood.spacing_m"
+    )))
 }
 
 /// Refuses water at the start that is deeper than any on Earth: where particles do not hold a volume each, no count of them does.

@@ -49,6 +49,7 @@ pub fn open(
 ) -> Result<Box<dyn FloodModel>, ModelError> {
     Ok(match settings.scheme {
         Scheme::Voronoi => {
+            limits::check_cells(settings, &terrain)?;
             limits::check_depths(settings, &terrain, folder)?;
             Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?)
         }
@@ -67,7 +68,10 @@ pub fn open_to_restore(
     terrain: Arc<Terrain>,
 ) -> Result<Box<dyn FloodModel>, ModelError> {
     Ok(match settings.scheme {
-        Scheme::Voronoi => Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?),
+        Scheme::Voronoi => {
+            limits::check_cells(settings, &terrain)?;
+            Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?)
+        }
         Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::to_restore(settings, seed, folder, terrain)?),
     })
 }
