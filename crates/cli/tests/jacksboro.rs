@@ -52,11 +52,11 @@ fn a_terrain_file_alone_leads_to_a_flood_on_its_own_grid() {
         let system = |raster: &corpuscle::terrain::Raster| raster.georeference.system.as_ref().unwrap().name.clone();
         assert_eq!(system(&map), system(&ground), "{name}");
     }
-    // The water in the last map is the water let in.
+    // The water in the last map is the water let in, as well as cells twice as wide as the particles' distance show it.
     let depth = read_raster(place.path("run/maps/depth_000020.tif")).unwrap();
     let on_map: f64 = depth.values.iter().filter(|depth| !depth.is_nan()).sum::<f64>() * 74.573 * 92.475;
     let stored = water["final"].as_f64().unwrap();
-    assert!((on_map / stored - 1.0).abs() < 0.1, "{on_map} m3 on the map, {stored} m3 let in");
+    assert!((on_map / stored - 1.0).abs() < 0.3, "{on_map} m3 on the map, {stored} m3 let in");
     let extent: Value = serde_json::from_slice(&place.read("run/maps/extent.geojson")).unwrap();
     let corner = &extent["features"][0]["geometry"]["coordinates"][0][0][0];
     let [longitude, latitude] = [0, 1].map(|axis| corner[axis].as_f64().unwrap());
