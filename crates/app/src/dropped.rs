@@ -61,7 +61,7 @@ fn text(terrain: &Terrain, path: &Path, name: &str) -> String {
     let _ = write!(
         scene,
         "title = {}\ndescription = {}\n\n[run]\nuntil_s = {until:?}\nframe_every_s = {:?}\ngauge_every_s = {:?}\n\n\
-         [terrain.file]\npath = {}\n\n[flood]\nspacing_m = {spacing:?}\nspacing_depth_m = 1.0\n\n\
+         [terrain.file]\npath = {}\n\n[flood]\nspacing_m = {spacing:?}\n\n\
          [[flood.inflow]]\nname = \"head\"\nat = [{x:?}, {y:?}]\ndischarge_m3_per_s = {discharge:?}\n",
         quoted(&format!("A flood over {name}")),
         quoted("Water comes in at the lowest point of the highest side, and leaves over the edges."),

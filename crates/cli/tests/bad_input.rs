@@ -142,7 +142,22 @@ fn more_water_than_a_machine_holds_is_refused_before_any_memory_is_taken() {
         "water = [{ depth_m = 1 }]\nbalanced = { smoothing = 1.5 }\n[flood.sph_swe]\n[[flood.inflow]]\nname = \"river\"\n\
          at = [300, 200]\ndischarge_m3_per_s = 1e30",
     ] {
-        refused(&place, rest, &["particles", "flood.spacing_m"]);
+        refused(&place, &format!("scheme = \"balanced\"\n{rest}"), &["particles", "flood.spacing_m"]);
+    }
+    // Particles of scheme voronoi are as many however deep the water is.
+    for (rest, words) in [
+        ("water = [{ level_m = 1e9 }]", ["1.0e9 m deep", "[[flood.water]]"]),
+        ("water = [{ level_m = 1e300 }]", ["m deep", "[[flood.water]]"]),
+        (
+            "water = [{ block = { from = [10, 10], to = [90, 90], height_m = 5, layers = 100000000000 } }]",
+            ["particles", "flood.spacing_m"],
+        ),
+        (
+            "inflow = [{ name = \"river\", at = [300, 200], discharge_m3_per_s = 1e30 }]",
+            ["[[flood.inflow]]", "in m3/s"],
+        ),
+    ] {
+        refused(&place, rest, &words);
     }
     let base = BASE.replace("spacing_m = 20", "spacing_m = 1e-4");
     place.write("fine.toml", &format!("{base}water = [{{ depth_m = 1 }}]\n"));

@@ -143,12 +143,15 @@ fn check_says_what_would_be_run_and_writes_nothing() {
     let text = place.run(&["check", "lake.toml"]).expect_status(0).stdout;
     assert!(text.contains("20 x 20 m") && text.contains("time step"), "{text}");
     let inflow = "flood.inflow.0={ name = \"river\", at = [5, 5], discharge_m3_per_s = 100 }";
-    let report = place.run(&["check", "lake.toml", "--json", "--set", inflow]).expect_status(0).json();
+    let balanced = ["check", "lake.toml", "--json", "--set", inflow, "--set", "flood.scheme=balanced"];
+    let report = place.run(&balanced).expect_status(0).json();
     assert_eq!(report["particles_to_come"], 25, "200 m3 in particles of 2 x 2 x 2 m3");
     assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 0.0);
-    // Nothing is there at the start.
+    let report = place.run(&["check", "lake.toml", "--json", "--set", inflow]).expect_status(0).json();
+    assert_eq!(report["particles_to_come"], 0, "all the ground is wet at the start");
+    // Nothing is there at the start; 820,000 m3 come in, thought of as 1 m deep, over particles of 4 x 4 m.
     let report = place.run(&["check", "flood/valley", "--json"]).expect_status(0).json();
-    assert_eq!((&report["particles_at_start"], &report["particles_to_come"]), (&0.into(), &34_167.into()));
+    assert_eq!((&report["particles_at_start"], &report["particles_to_come"]), (&0.into(), &51_250.into()));
     assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 1.0);
     assert!(!place.path("runs").exists());
 }
@@ -164,7 +167,7 @@ fn a_terrain_is_refused_with_a_scene_that_runs() {
     place.write("flood.toml", &lines.join("\n"));
     let report = place.run(&["check", "flood.toml", "--json"]).expect_status(0).json();
     assert_eq!(report["terrain"]["columns"], 5);
-    assert!(report["particles_to_come"].as_u64().unwrap() > 100);
+    assert_eq!(report["particles_to_come"], 80, "all of 50 x 40 m gets wet, particles 5 m apart");
     place.write("data/broken.asc", "ncols 5\n");
     let refused = place.run(&["run", "data/broken.asc"]).expect_status(2);
     assert!(refused.stderr.contains("broken.asc"), "{}", refused.stderr);
@@ -184,7 +187,7 @@ fn validation_makes_a_page() {
 #[test]
 fn a_spacing_that_is_left_out_is_chosen_from_the_terrain_and_told() {
     let place = Place::new();
-    place.write("lake.toml", &LAKE.replace("spacing_m = 2.0\n", "scheme = \"voronoi\"\n"));
+    place.write("lake.toml", &LAKE.replace("spacing_m = 2.0\n", ""));
     let report = place.run(&["check", "lake.toml", "--json"]).expect_status(0).json();
     assert_eq!(report["particles_at_start"], 400);
     let told = place.run(&["run", "lake.toml", "-o", "first"]).expect_status(0).stderr;

@@ -16,12 +16,25 @@ fn a_flood_runs_on_the_card() {
     }
     let place = Place::new();
     place.write("lake.toml", LAKE);
-    let on_card = place.run(&["run", "lake.toml", "--backend", "gpu", "-o", "card", "--json"]).expect_status(0).json();
-    let on_processor = place.run(&["run", "lake.toml", "-o", "processor", "--json"]).expect_status(0).json();
+    let balanced = ["run", "lake.toml", "--set", "flood.scheme=balanced", "--json"];
+    let run = |rest: &[&str]| place.run(&[&balanced[..], rest].concat()).expect_status(0).json();
+    let on_card = run(&["--backend", "gpu", "-o", "card"]);
+    let on_processor = run(&["-o", "processor"]);
     assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
     assert_eq!((&on_card["particles"], &on_card["steps"]), (&on_processor["particles"], &on_processor["steps"]));
     let error = on_card["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
     assert!(error.abs() < 1e-6, "{error}");
+}
+
+#[test]
+fn the_card_refuses_the_default_scheme_and_says_what_to_do() {
+    let place = Place::new();
+    place.write("lake.toml", LAKE);
+    let refused = place.run(&["run", "lake.toml", "--backend", "gpu", "-o", "card"]).expect_status(2);
+    for words in ["scheme voronoi of floods runs on the CPU only", "`--backend gpu`", "--set flood.scheme=balanced"] {
+        assert!(refused.stderr.contains(words), "{}", refused.stderr);
+    }
+    assert!(!place.path("card").exists());
 }
 
 #[test]
@@ -52,6 +65,14 @@ fn a_flood_whose_particles_are_split_runs_on_the_card() {
             "run",
             "flood/cloudburst",
             "--set",
+            "flood.scheme=balanced",
+            "--set",
+            "flood.spacing_m=3",
+            "--set",
+            "flood.spacing_depth_m=0.02",
+            "--set",
+            "flood.rain.film_m=0.002",
+            "--set",
             "flood.refinement={}",
             "--until",
             "300",
@@ -71,12 +92,16 @@ fn a_flood_whose_particles_are_split_runs_on_the_card() {
 fn a_backend_is_chosen_and_said() {
     let place = Place::new();
     place.write("lake.toml", LAKE);
-    let few = place.run(&["run", "lake.toml", "-o", "few"]).expect_status(0);
+    let voronoi = place.run(&["run", "lake.toml", "-o", "voronoi"]).expect_status(0);
+    assert!(voronoi.stderr.contains("computing on the CPU: scheme voronoi"), "{}", voronoi.stderr);
+    assert!(!voronoi.stderr.contains("is small"), "{}", voronoi.stderr);
+    let few = place.run(&["run", "lake.toml", "--set", "flood.scheme=balanced", "-o", "few"]).expect_status(0);
     assert!(few.stderr.contains("computing on the CPU: the scene is small"), "{}", few.stderr);
     let gas = place.run(&["run", "gas/mixing", "--until", "0.01", "-o", "gas"]).expect_status(0);
     assert!(gas.stderr.contains("computing on the CPU: the gas model"), "{}", gas.stderr);
-    let finer = ["run", "flood/dam-break", "--until", "0.1", "--backend", "auto", "--json", "-o", "many"];
-    let many = place.run(&finer).expect_status(0);
+    let many = ["run", "flood/dam-break", "--until", "0.1", "--backend", "auto", "--json", "-o", "many"];
+    let balanced = ["--set", "flood.scheme=balanced", "--set", "flood.spacing_depth_m=10"];
+    let many = place.run(&[&many[..], &balanced].concat()).expect_status(0);
     let why = match corpuscle::gpu::Gpu::open().map(|gpu| gpu.kind) {
         Ok(corpuscle::gpu::GpuKind::Card) => "computing on the graphics card",
         // Where there is no card, none is spoken of.

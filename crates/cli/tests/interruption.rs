@@ -104,13 +104,21 @@ fn interrupted_and_resumed(scene: &str, long: &[&str]) {
     assert!(place.path("stopped/report.html").is_file());
 }
 
-/// Killed ten times, each time a little after some more rows, and checkpoints all the while: some kills meet one being written.
 #[test]
 fn killed_at_ten_moments_and_resumed_a_flood_gives_the_same_bytes() {
+    killed_and_resumed(&[]);
+}
+
+#[test]
+fn killed_at_ten_moments_and_resumed_a_flood_by_scheme_balanced_gives_the_same_bytes() {
+    killed_and_resumed(&["--set=flood.scheme=balanced", "--set=flood.refinement={ spacing_m = 0.4 }"]);
+}
+
+/// Killed ten times, each time a little after some more rows, and checkpoints all the while: some kills meet one being written.
+fn killed_and_resumed(changes: &[&str]) {
     let place = Place::new();
     place.write("scene.toml", LAKE);
-    let long = [&LONG[..], &["--set=run.checkpoint_every_wall_s=0.005", "--set=flood.refinement={ spacing_m = 0.4 }"]]
-        .concat();
+    let long = [&LONG[..], &["--set=run.checkpoint_every_wall_s=0.005"], changes].concat();
     place.run(&[&["run", "scene.toml", "-o", "whole"], &long[..]].concat()).expect_status(0);
     let gauges = place.path("killed/gauges.csv");
     let mut rows = 0;

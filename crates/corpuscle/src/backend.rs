@@ -40,8 +40,8 @@ impl Simulation {
 
     /// The name of the card that takes the steps now, or why none does.
     fn try_card(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Result<String, String> {
-        if self.model().name() == "gas" {
-            return Err("the gas model runs on the CPU only".into());
+        if let Some((what, _)) = self.on_processor_only() {
+            return Err(what.into());
         }
         let particles = self.model().particles() as f64 + self.particles_to_come();
         if particles < FEWEST_ON_CARD as f64 {
@@ -70,9 +70,11 @@ mod tests {
     use corpuscle_scene::{Scene, builtin};
     use std::path::Path;
 
-    fn open(name: &str, spacing_m: &str) -> Simulation {
-        let finer = [("flood.spacing_m".to_owned(), spacing_m.to_owned())];
-        let scene = Scene::parse(builtin(name).unwrap().text, name, &finer).unwrap();
+    /// A flood by scheme balanced with particles so far apart in water so deep, m.
+    fn open(name: &str, [spacing, depth]: [&str; 2]) -> Simulation {
+        let set = [("flood.scheme", "balanced"), ("flood.spacing_m", spacing), ("flood.spacing_depth_m", depth)];
+        let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
+        let scene = Scene::parse(builtin(name).unwrap().text, name, &set).unwrap();
         Simulation::open(scene, Path::new("")).unwrap()
     }
 
@@ -84,7 +86,7 @@ mod tests {
             gpu.kind = kind;
             gpu
         };
-        let mut flood = open("flood/dam-break", "1");
+        let mut flood = open("flood/dam-break", ["1", "10"]);
         let count = flood.model().particles();
         assert!(count >= FEWEST_ON_CARD, "{count} particles");
         let choice = flood.use_best_of(|| Ok(with_kind(GpuKind::Software)));
@@ -117,10 +119,14 @@ mod tests {
     }
 
     #[test]
-    fn small_floods_and_gases_do_not_ask_for_a_card() {
+    fn small_floods_those_by_voronoi_and_gases_do_not_ask_for_a_card() {
         let gas = Scene::parse(builtin("gas/maxwell").unwrap().text, "gas/maxwell", &[]).unwrap();
         let gas = Simulation::open(gas, Path::new("")).unwrap();
-        for (mut simulation, word) in [(open("flood/dam-break", "2"), "is small"), (gas, "the gas model")] {
+        let voronoi = Scene::parse(builtin("flood/dam-break").unwrap().text, "flood/dam-break", &[]).unwrap();
+        let voronoi = Simulation::open(voronoi, Path::new("")).unwrap();
+        assert!(voronoi.model().particles() >= FEWEST_ON_CARD);
+        let small = open("flood/dam-break", ["2", "10"]);
+        for (mut simulation, word) in [(small, "is small"), (gas, "the gas model"), (voronoi, "scheme voronoi")] {
             let choice = simulation.use_best_of(|| panic!("a card is asked for"));
             assert!(!choice.is_gpu && choice.why.contains(word), "{choice:?}");
             assert_eq!(simulation.model().backend(), "cpu");
@@ -131,7 +137,7 @@ mod tests {
     /// Nothing is there at the start; 34,166 particles come in over the run.
     #[test]
     fn water_that_is_to_come_counts() {
-        let mut valley = open("flood/valley", "4");
+        let mut valley = open("flood/valley", ["4", "1.5"]);
         let to_come = valley.particles_to_come();
         assert!(valley.model().particles() == 0 && to_come > FEWEST_ON_CARD as f64, "{to_come}");
         let mut is_asked = false;

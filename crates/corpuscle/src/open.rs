@@ -5,16 +5,22 @@ use crate::{Error, Simulation};
 #[cfg(feature = "gpu")]
 use corpuscle_dew::Dew;
 #[cfg(feature = "gpu")]
-use corpuscle_flood::Flood;
+use corpuscle_flood::{Flood, VoronoiFlood};
 use corpuscle_flood::{FloodModel, default_spacing};
 use corpuscle_model::ModelError;
 use corpuscle_record::compare_extent;
-use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene};
+use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene, Scheme};
 use corpuscle_terrain::Terrain;
 #[cfg(feature = "gpu")]
 use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
+
+#[cfg(feature = "gpu")]
+const NO_GPU: &str = "leave `--backend gpu` out";
+#[cfg(feature = "gpu")]
+const NO_GPU_OR_BALANCED: &str = "leave `--backend gpu` out, or take scheme balanced, which a graphics card computes \
+                                  (`--set flood.scheme=balanced`, or flood.scheme = \"balanced\" in the scene)";
 
 impl Simulation {
     /// Makes a scene ready to run: reads its ground and sets up its model. Relative paths are taken from `folder`.
@@ -40,10 +46,10 @@ impl Simulation {
     /// Where there is no card, or it cannot compute this scene: nothing has changed then.
     #[cfg(feature = "gpu")]
     pub fn use_gpu(&mut self) -> Result<(), Error> {
-        if self.model().name() == "gas" {
-            return Err(self.on_processor_only());
+        match self.on_processor_only() {
+            Some((what, remedy)) => Err(ModelError::Setup(format!("{what}: {remedy}")).into()),
+            None => self.use_this_gpu(corpuscle_gpu::Gpu::open()?),
         }
-        self.use_this_gpu(corpuscle_gpu::Gpu::open()?)
     }
 
     /// [`Simulation::use_gpu`] with a card that is open.
@@ -59,17 +65,18 @@ impl Simulation {
         if let Some(dew) = model.downcast_mut::<Dew>() {
             return Ok(dew.use_card(gpu)?);
         }
-        Err(self.on_processor_only())
+        let (what, remedy) = self.on_processor_only().unwrap_or(("this model runs on the CPU only", NO_GPU));
+        Err(ModelError::Setup(format!("{what}: {remedy}")).into())
     }
 
+    /// That the model runs on the processor only, and what to do where a card was asked for; none where a card may compute it.
     #[cfg(feature = "gpu")]
-    fn on_processor_only(&self) -> Error {
-        let name = self.model().name();
-        let what = match self.scene().flood() {
-            Some(_) => "scheme voronoi of floods runs on the CPU only: leave `--backend gpu` out".into(),
-            None => format!("the {name} model runs on the CPU only: leave `--backend gpu` out"),
-        };
-        ModelError::Setup(what).into()
+    pub(crate) fn on_processor_only(&self) -> Option<(&'static str, &'static str)> {
+        let model: &dyn Any = self.model();
+        if model.is::<VoronoiFlood>() {
+            return Some(("scheme voronoi of floods runs on the CPU only", NO_GPU_OR_BALANCED));
+        }
+        (self.model().name() == "gas").then_some(("the gas model runs on the CPU only", NO_GPU))
     }
 
     fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {
@@ -88,7 +95,7 @@ impl Simulation {
                 }
                 let flood = new_flood(&written.flood, scene.seed, folder, terrain.clone())?;
                 written.flood = flood.settings().clone();
-                check_inflow(&scene, folder)?;
+                check_inflow(&scene, &terrain, folder)?;
                 Ok(Self::new(scene, Some(terrain), flood).with_notes(notes))
             }
             ModelScene::Gas(gas) => {
@@ -109,21 +116,36 @@ type NewFlood = fn(&corpuscle_scene::Flood, u64, &Path, Arc<Terrain>) -> Result<
 /// More particles than this over a run are days of computation.
 const MOST_TO_COME: f64 = 2e8;
 
-/// Particles that the inflows of a scene with its defaults filled in bring in over the run; relative paths are taken
-/// from `folder`.
-fn particles_of_inflows(scene: &Scene, folder: &Path) -> Result<f64, Error> {
-    let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(0.0) };
-    let (Some(spacing), Some(depth)) = (flood.spacing_m, flood.spacing_depth_m) else { return Ok(0.0) };
+/// A deeper layer over all the terrain, m, is more than any flood brings.
+const MOST_LAYER: f64 = 1e5;
+
+/// Water that the inflows of a scene bring in over the run, m3; relative paths are taken from `folder`.
+fn volume_of_inflows(scene: &Scene, folder: &Path) -> Result<f64, Error> {
     let mut volume = 0.0;
-    for inflow in &flood.inflow {
+    for inflow in scene.flood().iter().flat_map(|scene| &scene.flood.inflow) {
         volume += inflow.load_discharge(folder)?.integral(0.0, scene.run.until_s);
     }
-    Ok((volume / (spacing * spacing * depth)).floor())
+    Ok(volume)
 }
 
 /// Refuses discharges that no machine could follow, most likely a slip of the unit.
-fn check_inflow(scene: &Scene, folder: &Path) -> Result<(), Error> {
-    let count = particles_of_inflows(scene, folder)?;
+fn check_inflow(scene: &Scene, terrain: &Terrain, folder: &Path) -> Result<(), Error> {
+    let Some(flood) = scene.flood().map(|scene| &scene.flood) else { return Ok(()) };
+    let volume = volume_of_inflows(scene, folder)?;
+    if flood.scheme == Scheme::Voronoi {
+        let [east, north] = terrain.bounds().size();
+        let layer = volume / (east * north);
+        if layer <= MOST_LAYER {
+            return Ok(());
+        }
+        let what = format!(
+            "the inflows ([[flood.inflow]]) would bring a layer of {layer:.1e} m over all the terrain, and at most {MOST_LAYER:.0e} m are \
+             possible; check their discharges, which are in m3/s"
+        );
+        return Err(ModelError::Setup(what).into());
+    }
+    let (Some(spacing), Some(depth)) = (flood.spacing_m, flood.spacing_depth_m) else { return Ok(()) };
+    let count = (volume / (spacing * spacing * depth)).floor();
     if count <= MOST_TO_COME {
         return Ok(());
     }

@@ -78,8 +78,8 @@ impl Simulation {
         as_flood(model).map(|flood| flood.sample(x, y))
     }
 
-    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run. What
-    /// leaves meanwhile is not taken off. 0 for models that no water comes into.
+    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run; in scheme voronoi, how many
+    /// more get wet. What leaves meanwhile is not taken off. 0 for models that no water comes into.
     pub fn particles_to_come(&self) -> f64 {
         self.particles_to_come_until(self.scene.run.until_s)
     }

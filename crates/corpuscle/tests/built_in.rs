@@ -36,7 +36,7 @@ fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
         let default = match simulation.model().name() {
             "gas" => "pair_distance",
             "dew" => "colour_threshold",
-            _ => "spacing_depth_m",
+            _ => "map_every_s",
         };
         assert!(written.contains(default), "{written}");
     }

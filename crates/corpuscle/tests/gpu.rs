@@ -13,7 +13,8 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 /// Scenes, the time from which they are compared (the water moves by then, has come in, or has just landed), and how far gauges may be apart after
-/// hundred steps: more where few particles run thinly and one decides, or where water has just landed from 50 m.
+/// hundred steps: more where few particles run thinly and one decides, or where water has just landed from 50 m. Those that name no scheme run by
+/// scheme balanced, with the particles that [`AS_FOR_BALANCED`] gives.
 const FLOODS: [(&str, f64, f64); 8] = [
     ("flood/valley", 20.0, 1e-2),
     ("flood/dam-break", 1.0, 1e-3),
@@ -36,9 +37,30 @@ const DEW: [(&str, f64, &str); 4] = [
 /// Looks and gauges are then due amid steps of scheme sph-swe: a step that ends just then may end a little later in single precision.
 const UNEVEN: (&str, &str) = ("flood.sph_swe.time_step_s", "0.0199");
 
+/// Distance of particles, m, and the depth for it, of the scenes that name no scheme: scheme voronoi, their default, is not for the card.
+const AS_FOR_BALANCED: [(&str, &str, &str); 5] = [
+    ("flood/valley", "4", "1.5"),
+    ("flood/dam-break", "1", "10"),
+    ("flood/lake-at-rest", "1", "6"),
+    ("flood/city", "2.5", "1"),
+    ("flood/cloudburst", "3", "0.02"),
+];
+
+/// What else the scenes of [`AS_FOR_BALANCED`] say: in scheme voronoi rain leaves no film.
+const FILM: (&str, &str) = ("flood.rain.film_m", "0.002");
+
 fn open(name: &str, overrides: &[(&str, &str)]) -> Simulation {
-    let overrides: Vec<_> = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let scene = Scene::parse(builtin(name).unwrap().text, name, &overrides).unwrap();
+    let for_balanced = AS_FOR_BALANCED.iter().find(|(of, ..)| *of == name).map(|(_, spacing, depth)| {
+        [("flood.scheme", "balanced"), ("flood.spacing_m", *spacing), ("flood.spacing_depth_m", *depth)]
+    });
+    let film = (name == "flood/cloudburst").then_some(&FILM);
+    let overrides = for_balanced.iter().flatten().chain(film).chain(overrides);
+    let overrides: Vec<_> = overrides.map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    open_as_changed(name, &overrides)
+}
+
+fn open_as_changed(name: &str, overrides: &[(String, String)]) -> Simulation {
+    let scene = Scene::parse(builtin(name).unwrap().text, name, overrides).unwrap();
     Simulation::open(scene, Path::new("")).unwrap()
 }
 
@@ -200,7 +222,7 @@ fn built_in_dew_goes_as_on_the_processor() {
     }
 }
 
-/// What the card cannot compute says so by name, and those that it can are in the lists above.
+/// What the card cannot compute says so by name, and those that it can, floods by scheme balanced, are in the lists above.
 #[test]
 fn the_other_built_in_scenes_are_refused() {
     if require_gpu("refusals by the card").is_none() {
@@ -212,5 +234,11 @@ fn the_other_built_in_scenes_are_refused() {
     for scene in others.filter(|scene| scene.name != "gas/million") {
         let error = open(scene.name, &[]).use_gpu().unwrap_err();
         assert!(error.is_refusal() && error.to_string().contains("--backend"), "{}: {error}", scene.name);
+    }
+    for (name, ..) in AS_FOR_BALANCED {
+        let error = open_as_changed(name, &[]).use_gpu().unwrap_err();
+        let told = error.to_string();
+        let words = ["scheme voronoi", "`--backend gpu`", "flood.scheme = \"balanced\""];
+        assert!(error.is_refusal() && words.iter().all(|word| told.contains(word)), "{name}: {error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Shallow water as particles over terrain.
 //!
-//! Three schemes move the water, chosen in the scene ([`open`]): `voronoi` ([`VoronoiFlood`]: finite volumes over Voronoi cells, right on any
-//! ground), and two of smoothed-particle hydrodynamics, [`Flood`]: `balanced` (the default) and `sph-swe` (the published one), which move
+//! Three schemes move the water, chosen in the scene ([`open`]): `voronoi` (the default, [`VoronoiFlood`]: finite volumes over Voronoi cells, right on any
+//! ground), and two of smoothed-particle hydrodynamics, [`Flood`]: `balanced` and `sph-swe` (the published one), which move
 //! [`Particle`]s, columns of water.
 
 #![warn(missing_docs)]
@@ -44,5 +44,5 @@ pub use rain::RainFunction;
 pub use sampling::Sample;
 pub use schemes::{FloodModel, as_flood, as_flood_mut, open, open_to_restore};
 pub use setup::InitialWater;
-pub use spacing::{DefaultSpacing, default_spacing};
+pub use spacing::{DefaultSpacing, default_spacing, usual_depth};
 pub use voronoi::{Filling, OfPosition, StartWater, VoronoiFlood, WetCell};

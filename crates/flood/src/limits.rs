@@ -1,12 +1,19 @@
 //! What a scene may ask for: places on the terrain, and no more particles than a machine holds.
 
-use crate::setup::{InitialWater, lattice, setup};
+use crate::setup::{InitialWater, initial_water, lattice, setup};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Flood as FloodScene;
 use corpuscle_terrain::{Bounds, Terrain};
+use std::path::Path;
 
 /// More particles than this do not fit in the memory of usual machines.
 const MOST_PARTICLES: f64 = 2e8;
+
+/// Particles of scheme voronoi were all the terrain wet: there is a list of tiles, about 1000 particles each.
+const MOST_CELLS_OF_TERRAIN: f64 = 1e11;
+
+/// Water is not deeper than this on average, m: nine times the deepest sea.
+const MOST_DEPTH: f64 = 1e5;
 
 /// A body of water is looked at in so many places along each side to see how much it holds.
 const LOOKS: usize = 200;
@@ -20,24 +27,66 @@ pub(crate) fn check_count(
     volume: f64,
 ) -> Result<(), ModelError> {
     let standing: f64 = bodies.iter().map(|body| body.volume(terrain.bounds()) / volume).sum();
-    let blocks = scene.water.iter().filter_map(|water| water.block.as_ref());
-    let falling: f64 = blocks
-        .map(|block| {
-            let [columns, rows] = lattice(block, terrain, spacing);
-            columns * rows * block.layers as f64
-        })
-        .sum();
-    if standing + falling <= MOST_PARTICLES {
+    check_particles(standing + falling(scene, terrain, spacing))
+}
+
+fn check_particles(count: f64) -> Result<(), ModelError> {
+    if count <= MOST_PARTICLES {
         return Ok(());
     }
     Err(setup(format!(
-        "the water at the start would take about {:.1e} particles, more than the {MOST_PARTICLES:.0e} that fit in memory; \
+        "the water at the start would take about {count:.1e} particles, more than the {MOST_PARTICLES:.0e} that fit in memory; \
          take a larger flood.spacing_m, or less water ([[flood.water]])",
-        standing + falling
     )))
 }
 
+/// Particles of the blocks in the air.
+fn falling(scene: &FloodScene, terrain: &Terrain, spacing: f64) -> f64 {
+    let blocks = scene.water.iter().filter_map(|water| water.block.as_ref());
+    let particles = blocks.map(|block| {
+        let [columns, rows] = lattice(block, terrain, spacing);
+        columns * rows * block.layers as f64
+    });
+    particles.sum()
+}
+
+/// Refuses particles of scheme voronoi so close that not even the list of where they might come to be fits in memory.
+pub(crate) fn check_cells(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
+    let [east, north] = terrain.bounds().size();
+    let count = scene.spacing_m.map_or(0.0, |spacing| east * north / spacing.powi(2));
+    if count <= MOST_CELLS_OF_TERRAIN {
+        return Ok(());
+    }
+    Err(setup(format!(
+        "all of the terrain under water would be {count:.1e} particles, and at most {MOST_CELLS_OF_TERRAIN:.0e} are possible; take a larger \
+         flood.spacing_m"
+    )))
+}
+
+/// Refuses water at the start that is deeper than any on Earth: where particles do not hold a volume each, no count of them does.
+pub(crate) fn check_depths(scene: &FloodScene, terrain: &Terrain, folder: &Path) -> Result<(), ModelError> {
+    // Rasters are data, and reading them takes its time.
+    let mut written = scene.clone();
+    written.water.retain(|water| water.depth_raster.is_none());
+    for body in initial_water(&written, terrain, folder)? {
+        let mean = body.volume(terrain.bounds()) / body.area(terrain.bounds());
+        if mean > MOST_DEPTH {
+            return Err(setup(format!(
+                "the water at the start would be {mean:.1e} m deep, and at most {MOST_DEPTH:.0e} m are possible; check level_m and depth_m of \
+                 [[flood.water]], which are in m"
+            )));
+        }
+    }
+    Ok(())
+}
+
 impl InitialWater<'_> {
+    /// Area of the rectangle round it within bounds, m2.
+    fn area(&self, bounds: Bounds) -> f64 {
+        let east = self.within.x_max.min(bounds.x_max) - self.within.x_min.max(bounds.x_min);
+        east * (self.within.y_max.min(bounds.y_max) - self.within.y_min.max(bounds.y_min))
+    }
+
     /// About how much water it holds, m3.
     fn volume(&self, bounds: Bounds) -> f64 {
         let low = [self.within.x_min.max(bounds.x_min), self.within.y_min.max(bounds.y_min)];
@@ -50,13 +99,13 @@ impl InitialWater<'_> {
     }
 }
 
-/// Refuses blocks that reach beyond the terrain: there is no ground for them to fall onto.
+/// Refuses blocks that reach beyond the terrain, where there is no ground for them to fall onto, and those of too many particles.
 pub(crate) fn check_blocks(scene: &FloodScene, terrain: &Terrain) -> Result<(), ModelError> {
     for (number, water) in scene.water.iter().enumerate() {
         let Some(block) = &water.block else { continue };
         check_inside(&format!("flood.water.{number}.block"), &[block.from, block.to], terrain)?;
     }
-    Ok(())
+    scene.spacing_m.map_or(Ok(()), |spacing| check_particles(falling(scene, terrain, spacing)))
 }
 
 /// Refuses places in the terrain's own coordinates that lie outside it.

@@ -1,7 +1,7 @@
 //! Floods of any scheme.
 
 use crate::sampling::Sample;
-use crate::{ByHand, Flood, VoronoiFlood};
+use crate::{ByHand, Flood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Flood as Settings, Scheme};
 use corpuscle_terrain::Terrain;
@@ -46,7 +46,11 @@ pub fn open(
     terrain: Arc<Terrain>,
 ) -> Result<Box<dyn FloodModel>, ModelError> {
     Ok(match settings.scheme {
-        Scheme::Voronoi => Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?),
+        Scheme::Voronoi => {
+            limits::check_cells(settings, &terrain)?;
+            limits::check_depths(settings, &terrain, folder)?;
+            Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?)
+        }
         Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::new(settings, seed, folder, terrain)?),
     })
 }
@@ -62,7 +66,10 @@ pub fn open_to_restore(
     terrain: Arc<Terrain>,
 ) -> Result<Box<dyn FloodModel>, ModelError> {
     Ok(match settings.scheme {
-        Scheme::Voronoi => Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?),
+        Scheme::Voronoi => {
+            limits::check_cells(settings, &terrain)?;
+            Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?)
+        }
         Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::to_restore(settings, seed, folder, terrain)?),
     })
 }

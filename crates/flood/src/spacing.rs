@@ -1,6 +1,6 @@
 //! The spacing of particles that is taken where a scene gives none.
 
-use crate::setup::{load, setup};
+use crate::setup::{initial_water, load, setup};
 use crate::voronoi;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Flood as Settings, Series};
@@ -69,7 +69,7 @@ impl std::fmt::Display for DefaultSpacing {
     }
 }
 
-/// Ground that is under water at the start or is to be, m2.
+/// Ground that is under water at the start or is to be until a time, m2, by an estimate: see [`default_spacing`].
 fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -> Result<f64, ModelError> {
     let [east, north] = terrain.bounds().size();
     if settings.rain.is_some() {
@@ -96,6 +96,41 @@ fn wet_area(settings: &Settings, terrain: &Terrain, folder: &Path, until: f64) -
     });
     let coming = inflow_volume(settings, folder, 0.0, until)? / DEPTH_OF_INFLOW;
     Ok((standing + blocks.sum::<f64>() + coming).min(east * north))
+}
+
+/// Water as deep as this is usual where only rain brings some, m.
+const DEPTH_OF_RAIN: f64 = 0.02;
+
+/// A depth about which the water of a scene mostly is, m, for colours and classes: `spacing_depth_m` where it is given; else between the mean
+/// depth at the start and that of the same water over all the terrain; where there is none at the start 1 m, or 2 cm where only rain brings some.
+/// `folder` is what relative paths refer to.
+///
+/// # Errors
+/// [`ModelError::Setup`] where a file of the scene cannot be used.
+pub fn usual_depth(settings: &Settings, terrain: &Terrain, folder: &Path) -> Result<f64, ModelError> {
+    if let Some(depth) = settings.spacing_depth_m {
+        return Ok(depth);
+    }
+    let grid = terrain.map_grid();
+    let bodies = initial_water(settings, terrain, folder)?;
+    let stride = ((grid.columns * grid.rows) as f64 / MOST_SAMPLES as f64).sqrt().ceil().max(1.0) as usize;
+    let (mut sum, mut wet, mut all) = (0.0, 0_u32, 0_u32);
+    for row in (stride / 2..grid.rows).step_by(stride) {
+        for column in (stride / 2..grid.columns).step_by(stride) {
+            let [x, y] = grid.centre(column, row);
+            let here = bodies.iter().filter(|body| (body.inside)(x, y)).map(|body| (body.depth)(x, y));
+            let depth = here.filter(|depth| depth.is_finite()).fold(0.0, f64::max);
+            all += 1;
+            wet += u32::from(depth > 0.0);
+            sum += depth;
+        }
+    }
+    let only_rain = settings.inflow.is_empty() && settings.stage.is_empty() && settings.water.is_empty();
+    Ok(match wet {
+        0 if only_rain && settings.rain.is_some() => DEPTH_OF_RAIN,
+        0 => DEPTH_OF_INFLOW,
+        _ => sum / (f64::from(wet) * f64::from(all)).sqrt(),
+    })
 }
 
 /// The highest level that is held at a side or within the ground from a time until another, m; minus infinity where none is.
@@ -192,6 +227,25 @@ mod tests {
         assert!((half.wet_area / 4e6 - 1.0).abs() < 0.01, "{half:?}");
         let inflow = chosen("inflow = [{ name = \"a\", at = [9, 9], discharge_m3_per_s = [[0, 0], [100, 200]] }]");
         assert!((inflow.wet_area - 1e4).abs() < 1e-6, "{inflow:?}");
+    }
+
+    #[test]
+    fn the_usual_depth_lies_between_that_at_the_start_and_that_over_all_the_ground() {
+        let usual = |keys: &str| {
+            let text = format!(
+                "run.until_s = 1\nterrain.plane.extent = {{ length_m = 400, width_m = 200, cell_m = 5 }}\n[flood]\n{keys}"
+            );
+            let scene = Scene::parse(&text, "test", &[]).unwrap();
+            let scene = scene.flood().unwrap();
+            let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+            usual_depth(&scene.flood, &terrain, Path::new(".")).unwrap()
+        };
+        assert!((usual("water = [{ depth_m = 3 }]") - 3.0).abs() < 1e-9);
+        let quarter = usual("water = [{ depth_m = 4, polygon = [[0, 0], [100, 0], [100, 200], [0, 200]] }]");
+        assert!((quarter - 2.0).abs() < 1e-9, "{quarter}");
+        assert_eq!(usual("inflow = [{ name = \"a\", at = [9, 9], discharge_m3_per_s = 1 }]"), 1.0);
+        assert_eq!(usual("rain.intensity_mm_per_h = 20"), 0.02);
+        assert_eq!(usual("spacing_depth_m = 7\nwater = [{ depth_m = 3 }]"), 7.0);
     }
 
     #[test]

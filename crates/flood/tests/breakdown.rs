@@ -13,6 +13,7 @@ const BASIN: &str = r#"
 run.until_s = 20
 terrain.plane.extent = { length_m = 120, width_m = 80, cell_m = 2 }
 [flood]
+scheme = "balanced"
 spacing_m = 2
 spacing_depth_m = 10
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }

@@ -13,6 +13,7 @@ run.until_s = 60
 terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 6
 spacing_depth_m = 1
 edges = { west = "wall", south = "wall", north = "wall" }
@@ -37,6 +38,7 @@ const POOL: &str = r#"
 run.until_s = 200
 terrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 2 } }
 [flood]
+scheme = "balanced"
 spacing_m = 2
 spacing_depth_m = 1
 manning = 0.1

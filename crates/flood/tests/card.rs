@@ -14,6 +14,7 @@ const DAM: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 120, width_m = 20, cell_m = 2 }, slope_east = 0.01 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 4
 manning = 0.02
@@ -31,6 +32,7 @@ const SLOPE: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 30, width_m = 20, cell_m = 2 }, slope_east = -0.05, slope_north = 0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 1
 manning = 0.03
@@ -43,6 +45,7 @@ const VALLEY: &str = r#"
 run.until_s = 60
 terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
 [flood]
+scheme = "balanced"
 spacing_m = 3
 spacing_depth_m = 1
 friction.chezy = 40
@@ -56,6 +59,7 @@ const LAKE: &str = r#"
 run.until_s = 60
 terrain.bump = { extent = { length_m = 100, width_m = 100, cell_m = 1 }, height_m = 8, width_m = 10 }
 [flood]
+scheme = "balanced"
 spacing_m = 2
 spacing_depth_m = 6
 manning = 0
@@ -69,6 +73,7 @@ const RIVER: &str = r#"
 run.until_s = 60
 terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
 [flood]
+scheme = "balanced"
 spacing_m = 3
 spacing_depth_m = 1
 manning = 0.03
@@ -86,6 +91,7 @@ const HOUSES: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 80, width_m = 30, cell_m = 2 }, slope_east = -0.01 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 2
 manning = 0.02
@@ -111,6 +117,7 @@ const POOLS: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 1 }, slope_east = -0.03, slope_north = 0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 1
 manning = 0.03
@@ -146,6 +153,7 @@ const RAIN: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 60, width_m = 40, cell_m = 2 }, slope_east = -0.02, slope_north = 0.01 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 0.05
 edges = { west = "wall", south = "wall", north = "wall" }
@@ -163,6 +171,7 @@ const POND: &str = r#"
 run.until_s = 60
 terrain.bump = { extent = { length_m = 40, width_m = 30, cell_m = 1 }, height_m = 0.6, width_m = 6 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 0.3
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -198,6 +207,7 @@ const FALL: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 40, width_m = 30, cell_m = 1 }, slope_east = -0.03 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 1
 manning = 0.03
@@ -215,6 +225,7 @@ const TIDE: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 50, width_m = 30, cell_m = 1 }, slope_east = -0.01 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 1.5
 manning = 0.05
@@ -464,7 +475,7 @@ fn no_particle_and_one_particle_go_too() {
     {
         let text = format!(
             "run.until_s = 9\nterrain.plane = {{ extent = {{ length_m = 40, width_m = 30, cell_m = 1 }}, slope_east = -0.1 }}\n\
-             [flood]\nspacing_m = 1\nspacing_depth_m = 1\nwater = [{{ depth_m = {depth}, polygon = {polygon} }}]"
+             [flood]\nscheme = \"balanced\"\nspacing_m = 1\nspacing_depth_m = 1\nwater = [{{ depth_m = {depth}, polygon = {polygon} }}]"
         );
         let (mut host, mut card) = (open(&text), on_card(&text, &gpu));
         assert_eq!(host.particles().len(), count, "{text}");

@@ -14,6 +14,7 @@ const HOUSES: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 80, width_m = 30, cell_m = 2 }, slope_east = -0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 2
 map_every_s = 60
@@ -53,6 +54,7 @@ const POOLS: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 1 }, slope_east = -0.03, slope_north = 0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 1
 map_every_s = 60
@@ -82,6 +84,7 @@ const RAIN: &str = r#"
 run.until_s = 60
 terrain.bump = { extent = { length_m = 40, width_m = 30, cell_m = 1 }, height_m = 0.6, width_m = 6 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 0.3
 map_every_s = 60

@@ -14,6 +14,7 @@ const SLOPE: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 60, width_m = 40, cell_m = 2 }, slope_east = -0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 0.05
 manning = 0.03

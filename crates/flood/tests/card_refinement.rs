@@ -14,6 +14,7 @@ const TROUGH: &str = r#"
 run.until_s = 150
 terrain.plane = { extent = { length_m = 80, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.5
 refinement = {}
@@ -29,6 +30,7 @@ const RAIN: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 40, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.02
 manning = 0.03

@@ -14,6 +14,7 @@ const FALL: &str = r#"
 run.until_s = 60
 terrain.rough-hills = { extent = { length_m = 60, width_m = 40, cell_m = 1 }, relief_m = 2, hill_size_m = 30 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 1
 map_every_s = 60

@@ -13,6 +13,7 @@ run.until_s = 60
 terrain.valley = { extent = { length_m = 300, width_m = 200, cell_m = 5 }, slope = 0.02, plain_width_m = 60, meander_m = 10 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 6
 spacing_depth_m = 1
 
@@ -169,6 +170,7 @@ run.until_s = 20
 terrain.rough-hills = { extent = { length_m = 100, width_m = 100, cell_m = 2 }, relief_m = 6, hill_size_m = 30 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 1.5
 spacing_depth_m = 1
 manning = 0.03

@@ -34,6 +34,7 @@ const LAKE: &str = r#"
 run.until_s = 20
 terrain.bump = { extent = { length_m = 40, width_m = 30, cell_m = 0.5 }, height_m = 0.6 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 water = [{ level_m = 2 }]
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -122,6 +123,7 @@ fn obstacles_at_an_edge_reach_beyond_it() {
         run.until_s = 20
         terrain.plane.extent = { length_m = 40, width_m = 20, cell_m = 0.5 }
         [flood]
+        scheme = "balanced"
         spacing_m = 1
         water = [{ level_m = 1 }]
         edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -150,6 +152,7 @@ fn water_at_rest_presses_on_a_wall_with_its_weight() {
         run.until_s = 1
         terrain.plane.extent = { length_m = 30, width_m = 20, cell_m = 0.5 }
         [flood]
+        scheme = "balanced"
         spacing_m = 0.5
         water = [{ level_m = 1 }]
         edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -177,7 +180,7 @@ fn obstacles_come_from_files_and_bad_ones_are_named() {
     write("words.csv", "x,y\n1,2\none,3\n");
     let with = |file: &str| {
         let text = format!(
-            "run.until_s = 1\nterrain.plane.extent = {{ length_m = 40, width_m = 20, cell_m = 1 }}\n[flood]\nspacing_m = 1\nwater = [{{ \
+            "run.until_s = 1\nterrain.plane.extent = {{ length_m = 40, width_m = 20, cell_m = 1 }}\n[flood]\nscheme = \"balanced\"\nspacing_m = 1\nwater = [{{ \
              depth_m = 1 }}]\nobstacle = [{{ name = \"houses\", file = \"{file}\" }}]"
         );
         let scene = parse(&text, &[]);

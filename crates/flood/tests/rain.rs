@@ -35,6 +35,7 @@ run.until_s = 600
 terrain.plane = { extent = { length_m = 60, width_m = 40, cell_m = 2 }, slope_east = -0.05 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.02
 edges = { west = "wall", south = "wall", north = "wall" }
@@ -67,6 +68,7 @@ fn rain_on_a_pool_raises_its_level() {
         run.until_s = 60
         terrain.plane.extent = { length_m = 30, width_m = 20, cell_m = 1 }
         [flood]
+        scheme = "balanced"
         spacing_m = 1
         water = [{ depth_m = 0.5 }]
         edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -87,6 +89,7 @@ run.until_s = 120
 terrain.plane = { extent = { length_m = 60, width_m = 40, cell_m = 2 }, slope_east = -0.02 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.05
 edges = { west = "wall", south = "wall", north = "wall" }
@@ -136,7 +139,7 @@ fn ponds_soak_away_as_the_laws_say() {
     let pond = |law: &str| {
         let mut flood = open(&format!(
             "run.until_s = 900\nterrain.plane.extent = {{ length_m = 30, width_m = 20, cell_m = 2 }}\n\
-             [flood]\nspacing_m = 1\nwater = [{{ depth_m = 0.2 }}]\n\
+             [flood]\nscheme = \"balanced\"\nspacing_m = 1\nwater = [{{ depth_m = 0.2 }}]\n\
              edges = {{ west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }}\n\
              infiltration.{law}\n"
         ));
@@ -168,6 +171,7 @@ fn rasters_say_where_it_rains_and_what_the_ground_is() {
         run.until_s = 80
         terrain.plane = { extent = { length_m = 96, width_m = 96, cell_m = 2 }, slope_east = -0.01 }
         [flood]
+        scheme = "balanced"
         spacing_m = 2
         wet_depth_m = 0.001
         water = [{ depth_m = 0.1 }]

@@ -26,6 +26,7 @@ run.until_s = 150
 terrain.plane = { extent = { length_m = 80, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.5
 refinement = {}
@@ -82,6 +83,7 @@ run.until_s = 20
 terrain.plane = { extent = { length_m = 40, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
 
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.5
 refinement = {}

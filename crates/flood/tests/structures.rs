@@ -19,8 +19,8 @@ fn pools(depths: [f64; 2], spacing: f64, keys: &str) -> Flood {
         .map(|(x, depth)| water(x, depth))
         .collect();
     let text = format!(
-        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nspacing_m = {spacing}\n\
-         spacing_depth_m = 1\nwater = [{}]\nedges = {{ west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }}\n{keys}",
+        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"balanced\"\n\
+         spacing_m = {spacing}\nspacing_depth_m = 1\nwater = [{}]\nedges = {{ west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }}\n{keys}",
         standing.join(", ")
     );
     let mut scene = Scene::parse(&text, "test", &[]).unwrap();
@@ -122,7 +122,7 @@ fn a_held_polygon_keeps_a_pool_at_its_level() {
 
 #[test]
 fn links_too_close_for_the_particles_are_refused() {
-    let text = "run.until_s = 1\nterrain.plane = {}\n[flood]\nspacing_m = 10\n\
+    let text = "run.until_s = 1\nterrain.plane = {}\n[flood]\nscheme = \"balanced\"\nspacing_m = 10\n\
                 link = [{ name = \"pipe\", from = [500, 500], to = [510, 500], law = { culvert = { diameter_m = 1 } } }]";
     let mut scene = Scene::parse(text, "test", &[]).unwrap();
     scene.resolve_defaults();

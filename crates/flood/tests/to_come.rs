@@ -21,7 +21,7 @@ fn tank(rest: &str) -> Flood {
     let walls: String = walls.map(|(_, wall)| format!("edges.{wall}\n")).collect();
     open(&format!(
         "run.until_s = 600\nterrain.plane.extent = {{ length_m = 100, width_m = 40, cell_m = 2 }}\n[flood]\n\
-         spacing_m = 2\nspacing_depth_m = 1\n{walls}{rest}"
+         scheme = \"balanced\"\nspacing_m = 2\nspacing_depth_m = 1\n{walls}{rest}"
     ))
 }
 

@@ -27,13 +27,14 @@ pub struct Flood {
     pub scheme: Scheme,
     /// What lengths and discharges are written in. A scene that was read is in metres.
     pub units: FloodUnits,
-    /// Distance between particles, m, in water of depth `spacing_depth_m`. At the start particles hold
-    /// `spacing_m^2 * spacing_depth_m` each, so they stand closer in deeper water and wider in shallower. Left out: the size of the terrain's cells, or
-    /// more, so that not more than about 200,000 particles are wet.
+    /// Distance between particles, m: in scheme voronoi in all water, in the others in water of depth `spacing_depth_m`, where particles hold
+    /// `spacing_m^2 * spacing_depth_m` each at the start, so that they stand closer in deeper water and wider in shallower. Left out: the size of
+    /// the terrain's cells, or more, so that not more than about 200,000 particles are wet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing_m: Option<f64>,
-    /// The depth at which particles are `spacing_m` apart, m. Left out: the mean depth of the initial water, or 1 m
-    /// where there is none.
+    /// The depth at which particles are `spacing_m` apart, m, in schemes balanced and sph-swe; particles that fall from the air hold
+    /// `spacing_m^2 * spacing_depth_m` each in every scheme. Left out: the mean depth of the initial water, or 1 m where there is none; in
+    /// scheme voronoi 1 m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing_depth_m: Option<f64>,
     /// Acceleration of gravity, m/s2.
@@ -94,7 +95,7 @@ pub struct Flood {
 impl Default for Flood {
     fn default() -> Self {
         Self {
-            scheme: Scheme::Balanced,
+            scheme: Scheme::Voronoi,
             units: FloodUnits::Si,
             spacing_m: None,
             spacing_depth_m: None,
@@ -129,10 +130,10 @@ impl Default for Flood {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
-    /// Well-balanced, conservative, with Riemann pair forces: right as well as stable.
-    Balanced,
     /// Columns of water over Voronoi cells, with fluxes through their closed faces: right on any ground.
     Voronoi,
+    /// Particles that move with the water, with Riemann pair forces: for graphics cards, and ground without steps.
+    Balanced,
     /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
     SphSwe,
 }

@@ -220,7 +220,7 @@ fn overrides_are_named() {
     let others = ("flood.wet_depth_m", "0.5");
     for ((path, value), words) in [
         (("flood.scheme", "sph-sw"), "did you mean `sph-swe`"),
-        (("flood.scheme", ""), "known: balanced, voronoi, sph-swe"),
+        (("flood.scheme", ""), "known: voronoi, balanced, sph-swe"),
         (("flood.spacing_m", "-1"), "must be larger than 0"),
         (("flood.spcing_m", "1"), "did you mean `spacing_m`"),
         (("flood.gauge.5.name", "b"), "the number of a row, 0 to 1"),
@@ -371,6 +371,26 @@ fn expressions_and_velocities_at_the_start() {
         "block = { from = [1, 1], to = [9, 9], height_m = 1 }\nvelocity_m_per_s = { east = \"u\", north = \"v\" }";
     let message = refuse(&GOOD.replace("level_m = 1.0\npolygon = [[0, 0], [10, 0], [10, 10]]", block), &[]);
     assert!(message.contains("the velocity of a block is two numbers"), "{message}");
+}
+
+/// They were right where balanced was the default.
+#[test]
+fn tables_of_scheme_balanced_without_a_scheme_are_refused_with_what_to_write() {
+    let unnamed = GOOD.replace("scheme = \"balanced\"\n", "");
+    Scene::parse(&unnamed, "test", &[]).unwrap();
+    for (table, key) in [("balanced = { cfl = 0.3 }", "flood.balanced"), ("refinement = {}", "flood.refinement")] {
+        let with = |text: &str| text.replace("manning = 0.03", &format!("manning = 0.03\n{table}"));
+        let message = refuse(&with(&unnamed), &[]);
+        let words =
+            ["test.toml:1", key, "where none is written is voronoi now", "write scheme = \"balanced\" into [flood]"];
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+        Scene::parse(&with(GOOD), "test", &[]).unwrap();
+        let message = refuse(&unnamed, &[(key, table.split_once(" = ").unwrap().1)]);
+        assert!(message.starts_with(&format!("--set {key}=")) && message.contains(words[2]), "{message}");
+    }
+    // As the scene that a run writes has it: all defaults, of both schemes.
+    let voronoi = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"\nbalanced = { cfl = 0.3 }");
+    Scene::parse(&voronoi, "test", &[]).unwrap();
 }
 
 #[test]

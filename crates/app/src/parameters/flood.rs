@@ -6,7 +6,8 @@ use crate::physics::Change;
 use corpuscle::FloodByHand as ByHand;
 use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
 
-const SCHEMES: &[(&str, &str)] = &[("balanced", "\"balanced\""), ("sph-swe (published)", "\"sph-swe\"")];
+const SCHEMES: &[(&str, &str)] =
+    &[("voronoi", "\"voronoi\""), ("balanced", "\"balanced\""), ("sph-swe (published)", "\"sph-swe\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];
 
 /// How many times more water a slider lets in at most.
@@ -63,13 +64,16 @@ pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
     if now.scheme == Scheme::SphSwe {
         builder.live("flood.sph_swe.control_force", control);
     }
-    builder.scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles").number(
-        "flood.balanced.viscosity",
-        "Viscosity",
-        "",
-        [0.0, 1.0],
-        "Share of the dissipation of an unreconstructed Riemann problem",
-    );
+    builder.scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles");
+    if now.scheme == Scheme::Balanced {
+        builder.number(
+            "flood.balanced.viscosity",
+            "Viscosity (balanced)",
+            "",
+            [0.0, 1.0],
+            "Share of the dissipation of an unreconstructed Riemann problem",
+        );
+    }
 }
 
 /// Some metres below and above a level.

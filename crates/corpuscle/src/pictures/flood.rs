@@ -7,7 +7,7 @@ use super::{GroundLook, Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
-use corpuscle_flood::{line_walls, obstacle_shapes};
+use corpuscle_flood::{line_walls, obstacle_shapes, usual_depth};
 use corpuscle_gpu::DeviceParticles;
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
@@ -103,7 +103,7 @@ impl FloodPicture {
         if let GroundLook::Picture(path) = &look {
             mesh.drape(studio.renderer.gpu(), &look::picture(path)?)?;
         }
-        let depth = settings.spacing_depth_m.unwrap_or(1.0);
+        let depth = usual_depth(settings, ground, Path::new(""))?;
         Ok(Self {
             stage,
             ground: mesh,

@@ -89,8 +89,8 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let cell = if cell[0] == cell[1] { format!("{} m", cell[0]) } else { format!("{} m × {} m", cell[0], cell[1]) };
     let [low, high] = whole.heights.map(short_number);
     let scheme = match scene.flood.scheme {
-        Scheme::Balanced => "balanced",
         Scheme::Voronoi => "voronoi",
+        Scheme::Balanced => "balanced",
         Scheme::SphSwe if scene.flood.sph_swe.control_force => "sph-swe, control force on",
         Scheme::SphSwe => "sph-swe, control force off",
     };

@@ -168,7 +168,7 @@ impl Check {
         }
         for (index, part) in flood.edge_part.iter().enumerate() {
             let key = format!("flood.edge_part.{index}");
-            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\"".into())?;
+            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\", the default".into())?;
             self.require(&format!("{key}.to"), part.from.is_finite() && part.to > part.from, || {
                 format!("must be larger than from = {}", part.from)
             })?;
@@ -185,7 +185,7 @@ impl Check {
     fn edge(&self, key: &str, edge: &Edge, scheme: Scheme) -> Checked {
         let is_common = matches!(edge, Edge::Open | Edge::Wall | Edge::Periodic | Edge::Stage(_));
         self.require(key, is_common || scheme == Scheme::Voronoi, || {
-            "is for scheme = \"voronoi\"; other schemes know open, wall, periodic and stage".into()
+            "is for scheme = \"voronoi\", the default; other schemes know open, wall, periodic and stage".into()
         })?;
         match edge {
             Edge::Open | Edge::Wall | Edge::Periodic => Ok(()),
@@ -324,7 +324,7 @@ impl Check {
         if let Some(line) = &obstacle.line {
             let key = format!("{key}.line");
             self.require(&key, scheme == Scheme::Voronoi, || {
-                "walls of no thickness are for scheme = \"voronoi\"; give a polygon".into()
+                "walls of no thickness are for scheme = \"voronoi\", the default; give a polygon".into()
             })?;
             self.line(&key, line)?;
         }

@@ -23,7 +23,7 @@ use crate::Case;
 use crate::device::{is_reduced, rows, sized};
 use corpuscle_flood::{Flood, InitialWater};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scene, builtin};
+use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scene, Scheme, builtin};
 use corpuscle_terrain::{Bounds, Terrain};
 use device::ready;
 use std::path::Path;
@@ -82,9 +82,11 @@ pub(crate) const CASES: &[Case] = &[
 /// Seed of where particles stand at the start.
 const SEED: u64 = 1;
 
-/// Water without friction with the given particle distance, at full size, in the given depth; its maps look two hundred times.
+/// Water without friction with the given particle distance, at full size, in the given depth; its maps look two hundred times. Scheme balanced,
+/// unless a case says otherwise.
 fn settings(until_s: f64, spacing_m: f64, depth: f64, edges: Edges) -> Settings {
     Settings {
+        scheme: Scheme::Balanced,
         spacing_m: Some(sized(spacing_m)),
         spacing_depth_m: Some(depth),
         gravity_m_per_s2: GRAVITY,

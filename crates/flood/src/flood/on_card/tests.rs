@@ -13,6 +13,7 @@ const SHEET: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 80, width_m = 20, cell_m = 1 }, slope_east = -0.05 }
 [flood]
+scheme = "balanced"
 spacing_m = 1
 spacing_depth_m = 0.5
 refinement = {}
@@ -25,6 +26,7 @@ const POOL: &str = r#"
 run.until_s = 60
 terrain.plane = { extent = { length_m = 24, width_m = 12, cell_m = 1 }, slope_east = -0.02 }
 [flood]
+scheme = "balanced"
 spacing_m = 0.5
 spacing_depth_m = 0.5
 edges = { west = "wall", east = "open", south = "periodic", north = "periodic" }
