@@ -173,7 +173,8 @@ pub(crate) fn inflow_volume(settings: &Settings, folder: &Path, from: f64, until
 fn edges(settings: &Settings) -> impl Iterator<Item = &Edge> {
     let edges = &settings.edges;
     let parts = settings.edge_part.iter().map(|part| &part.edge);
-    [&edges.west, &edges.east, &edges.south, &edges.north].into_iter().chain(parts)
+    let lines = settings.edge_line.iter().map(|line| &line.edge);
+    [&edges.west, &edges.east, &edges.south, &edges.north].into_iter().chain(parts).chain(lines)
 }
 
 /// A number rounded up to two figures.

@@ -71,6 +71,8 @@ pub struct Flood {
     pub edges: Edges,
     /// What happens at parts of the sides.
     pub edge_part: Vec<EdgePart>,
+    /// Lines inside the terrain at which water comes or goes as at a side.
+    pub edge_line: Vec<EdgeLine>,
     /// Water that is there at the start.
     pub water: Vec<Water>,
     /// Water that comes in.
@@ -113,6 +115,7 @@ impl Default for Flood {
             sph_swe: SphSwe::default(),
             edges: Edges::default(),
             edge_part: Vec::new(),
+            edge_line: Vec::new(),
             water: Vec::new(),
             inflow: Vec::new(),
             outflow: Vec::new(),
@@ -312,6 +315,17 @@ pub struct EdgePart {
     pub from: f64,
     /// Where it ends.
     pub to: f64,
+    /// What happens there.
+    pub edge: Edge,
+}
+
+/// A line inside the terrain that is a side to the water on its right, seen from its first position towards its last, and a wall to the water on its left
+/// (scheme voronoi).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EdgeLine {
+    /// Positions along it.
+    pub line: Vec<[f64; 2]>,
     /// What happens there.
     pub edge: Edge,
 }

@@ -44,7 +44,9 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
         paths.push(raster);
     }
     let edges = [&mut flood.edges.west, &mut flood.edges.east, &mut flood.edges.south, &mut flood.edges.north];
-    for edge in edges.into_iter().chain(flood.edge_part.iter_mut().map(|part| &mut part.edge)) {
+    let parts = flood.edge_part.iter_mut().map(|part| &mut part.edge);
+    let lines = flood.edge_line.iter_mut().map(|line| &mut line.edge);
+    for edge in edges.into_iter().chain(parts).chain(lines) {
         let series = match edge {
             Edge::Stage(series) | Edge::Discharge(series) | Edge::Paddle(series) => [Some(series), None],
             Edge::Wave(wave) => [wave.level_m.as_mut(), wave.velocity_m_per_s.as_mut()],
@@ -56,6 +58,7 @@ fn flood_paths(scene: &mut FloodScene) -> Vec<&mut PathBuf> {
             }
         }
     }
+    paths.extend(flood.finer.iter_mut().filter_map(|finer| finer.file.as_mut()));
     for inflow in &mut flood.inflow {
         if let Series::File { csv, .. } = &mut inflow.discharge_m3_per_s {
             paths.push(csv);

@@ -116,6 +116,7 @@ fn full(terrain: Terrain) -> Scene {
             EdgePart { side: Side::West, from: 0.0, to: 1.0, edge: Edge::Wall },
             EdgePart { side: Side::West, from: 1.0, to: 2.0, edge: full_wave() },
         ],
+        edge_line: vec![EdgeLine { line: vec![[0.0; 2]], edge: Edge::Wall }],
         water: vec![water, in_the_air],
         inflow: vec![Inflow {
             name: "a".into(),
@@ -390,6 +391,7 @@ fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
         "gauge",
         "section",
         "edge_part",
+        "edge_line",
         "finer",
         "polygon",
         "scheme",

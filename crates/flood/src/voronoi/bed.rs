@@ -104,7 +104,7 @@ impl Ground for Bed {
     }
 
     fn mirrors(&self, border: u8) -> bool {
-        border == SOLID || self.mirrors[usize::from(border)]
+        border == SOLID || self.mirrors.get(usize::from(border)).is_some_and(|mirrors| *mirrors)
     }
 
     fn lift(&self) -> [f64; 2] {

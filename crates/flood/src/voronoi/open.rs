@@ -5,7 +5,7 @@ use super::boundaries::Boundaries;
 use super::change::Overrides;
 use super::friction::Slowing;
 use super::maps::{DRY, Record};
-use super::mesh::{Layout, Mesh, NONE};
+use super::mesh::{LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
 use super::rain::{Soaked, Weather};
 use super::solver::Solver;
@@ -17,6 +17,7 @@ use crate::friction::Roughness;
 use crate::rain::RainFunction;
 use crate::setup::{self, setup};
 use crate::structures::Structures;
+use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ModelError};
 use corpuscle_scene::Flood as Settings;
@@ -122,12 +123,13 @@ impl VoronoiFlood {
             warnings: Vec::new(),
             overrides: Overrides::default(),
         };
-        let lines = walls::of_lines(&settings, &terrain, spacing)?;
+        let mut lines = walls::of_lines(&settings, &terrain, spacing)?;
         let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), obstacles.outlines(), &lines))?;
         if !grading.is_even() {
             layout.refine(grading);
         }
         let longest = 0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt();
+        lines.extend(walls::of_sides(&settings, &terrain)?);
         let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing);
         let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
         let flat = settings.obstacle.iter().map(|obstacle| obstacle.height_m.is_none());
@@ -164,6 +166,7 @@ impl VoronoiFlood {
         let mesh = &self.solver.mesh;
         let mut tiles = Patches::tiles(&self.structures, mesh);
         tiles.extend(sources.iter().flat_map(|source| Patch::tiles(&source.zone, mesh)));
+        tiles.extend(self.boundaries.brings()[usize::from(LINE)].then(|| self.tiles_of_lines()).into_iter().flatten());
         let [columns, rows] = mesh.layout.tiles;
         for (side, brings) in self.boundaries.brings().into_iter().take(4).enumerate() {
             if brings {
@@ -177,6 +180,15 @@ impl VoronoiFlood {
         }
         self.make_tiles(tiles)?;
         let mesh = &self.solver.mesh;
+        for (number, line) in self.settings.edge_line.iter().enumerate() {
+            let has_face = mesh.line_faces.iter().any(|(_, of_face)| *of_face as usize == number);
+            if !has_face && self.boundaries.brings()[usize::from(LINE)] {
+                return Err(setup(format!(
+                    "flood.edge_line.{number} from {:?} cuts no cell: it is shorter than the cells are wide, or lies where there is no ground",
+                    line.line[0]
+                )));
+            }
+        }
         self.patches = Patches::of(&self.structures, mesh);
         for (source, written) in sources.into_iter().zip(&self.settings.inflow) {
             let patch = Patch::of(&source.zone, mesh);
@@ -192,6 +204,17 @@ impl VoronoiFlood {
             self.make_all_tiles()?;
         }
         Ok(())
+    }
+
+    /// The tiles beside the lines inside at which water comes or goes.
+    fn tiles_of_lines(&self) -> Vec<usize> {
+        let half_width = 2.0 * self.solver.mesh.layout.spacing();
+        let lines = self.settings.edge_line.iter().flat_map(|line| line.line.windows(2));
+        let band = |ends: &[[f64; 2]]| Zone::Band {
+            line: ends.iter().map(|place| self.terrain.to_model(*place)).collect(),
+            half_width,
+        };
+        lines.flat_map(|ends| Patch::tiles(&band(ends), &self.solver.mesh)).collect()
     }
 
     pub(super) fn make_all_tiles(&mut self) -> Result<(), ModelError> {

@@ -41,7 +41,7 @@ pub(crate) struct Solver {
     /// Faces on borders.
     pub borders: Vec<u32>,
     /// Over which borders water may come onto dry ground.
-    brings: [bool; 5],
+    brings: [bool; 6],
     /// Whether something came to no number in the last stage: the step ends there.
     broken: bool,
     chunks: Chunks,
@@ -102,7 +102,7 @@ pub(crate) struct Passed {
 }
 
 impl Solver {
-    pub fn new(mesh: Mesh, gravity: f64, slowing: Slowing, longest: f64, brings: [bool; 5]) -> Self {
+    pub fn new(mesh: Mesh, gravity: f64, slowing: Slowing, longest: f64, brings: [bool; 6]) -> Self {
         let mut solver = Self {
             mesh,
             gravity,
@@ -461,7 +461,7 @@ fn slopes_of_chunk<S: Simd>(_: S, mesh: &Mesh, water: &[Water], first: usize, of
 
 impl Chunks {
     /// Takes in the faces from `first_face` on.
-    fn grow(&mut self, mesh: &Mesh, first_face: usize, brings: [bool; 5]) {
+    fn grow(&mut self, mesh: &Mesh, first_face: usize, brings: [bool; 6]) {
         let [cells, faces] = [mesh.len(), mesh.faces.len()].map(|count| count.div_ceil(CHUNK));
         self.wet.resize(cells, false);
         self.active_cells.resize(cells, false);

@@ -47,7 +47,7 @@ fn solver(size: [f64; 2], periodic: [bool; 2], spacing: f64, seed: u64, manning:
     let mut mesh = Mesh::new(Layout::new(bounds, periodic, spacing, seed));
     let tiles: Vec<usize> = (0..mesh.layout.tiles[0] * mesh.layout.tiles[1]).collect();
     mesh.make(&tiles, ground);
-    Solver::new(mesh, G, Slowing::Manning(G * manning * manning), 10.0, [false; 5])
+    Solver::new(mesh, G, Slowing::Manning(G * manning * manning), 10.0, [false; 6])
 }
 
 impl Solver {

@@ -177,6 +177,15 @@ impl Check {
             })?;
             self.edge(&format!("{key}.edge"), &part.edge, flood.scheme)?;
         }
+        for (index, line) in flood.edge_line.iter().enumerate() {
+            let key = format!("flood.edge_line.{index}");
+            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\"".into())?;
+            self.line(&format!("{key}.line"), &line.line)?;
+            self.require(&format!("{key}.edge"), line.edge != Edge::Periodic, || {
+                "a line is joined to nothing: periodic sides are in [flood.edges]".into()
+            })?;
+            self.edge(&format!("{key}.edge"), &line.edge, flood.scheme)?;
+        }
         self.periodic(("west", &edges.west), ("east", &edges.east))?;
         self.periodic(("south", &edges.south), ("north", &edges.north))
     }

@@ -1,6 +1,6 @@
 //! Boundaries from a scene, and what they do at each face from step to step.
 
-use super::super::mesh::SOLID;
+use super::super::mesh::{LINE, SOLID};
 use super::super::reconstruction::AtFace;
 use super::super::solver::Solver;
 use super::{Boundary, Now, state};
@@ -25,7 +25,7 @@ struct Part {
 /// What the sides of the terrain do, and parts of them.
 #[derive(Debug)]
 pub(crate) struct Boundaries {
-    /// West, east, south, north, then the parts.
+    /// West, east, south, north, then the parts, then the lines inside.
     pub rules: Vec<Boundary>,
     parts: Vec<Part>,
     /// The rule of each border face of the solver; none at solids.
@@ -41,7 +41,13 @@ impl Boundaries {
         let edges = &scene.edges;
         let sides = [&edges.west, &edges.east, &edges.south, &edges.north];
         let of_parts = scene.edge_part.iter().map(|part| &part.edge);
-        let rules = sides.into_iter().chain(of_parts).map(|edge| boundary(edge, folder)).collect::<Result<_, _>>()?;
+        let of_lines = scene.edge_line.iter().map(|line| &line.edge);
+        let rules = sides
+            .into_iter()
+            .chain(of_parts)
+            .chain(of_lines)
+            .map(|edge| boundary(edge, folder))
+            .collect::<Result<_, _>>()?;
         let part = |part: &corpuscle_scene::EdgePart| {
             let side = match part.side {
                 Side::West => 0,
@@ -74,9 +80,13 @@ impl Boundaries {
         })
     }
 
-    /// Whether water may come in over each side, and over solids.
-    pub fn brings(&self) -> [bool; 5] {
-        [0, 1, 2, 3, 4].map(|side| {
+    /// Whether water may come in over each side, over solids, and over lines inside.
+    pub fn brings(&self) -> [bool; 6] {
+        let lines = &self.rules[4 + self.parts.len()..];
+        [0, 1, 2, 3, 4, 5].map(|side| {
+            if side == usize::from(LINE) {
+                return lines.iter().any(Boundary::brings);
+            }
             let parts = self.parts.iter().zip(&self.rules[4..]).filter(|(part, _)| part.side == side);
             self.rules.get(side).is_some_and(|rule| side < 4 && rule.brings())
                 || parts.clone().any(|(_, rule)| rule.brings())
@@ -94,13 +104,19 @@ impl Boundaries {
         for &border in &solver.borders[self.of_faces.len()..] {
             let face = &mesh.faces[border as usize];
             let cell = mesh.centroid[face.cells[0] as usize];
-            let mut middle = [0, 1].map(|axis| cell[axis] + f64::from(face.offset[axis]));
-            if let Some(side) = face.border().filter(|side| *side != SOLID) {
+            let away = |axis: usize| 0.5 * f64::from(face.between[axis]) + f64::from(face.offset[axis]);
+            let mut middle = [0, 1].map(|axis| cell[axis] + away(axis));
+            if let Some(side) = face.border().filter(|side| *side < SOLID) {
                 let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
                 middle[usize::from(side >= 2)] = [x_min, x_max, y_min, y_max][usize::from(side)];
             }
             self.ground.push(terrain.height(middle[0], middle[1]));
             let rule = face.border().filter(|side| *side != SOLID).map(|side| {
+                if side == LINE {
+                    let of_line = mesh.line_faces.binary_search_by_key(&border, |(face, _)| *face);
+                    let line = of_line.map_or(0, |place| mesh.line_faces[place].1);
+                    return (4 + self.parts.len()) as u16 + line as u16;
+                }
                 let side = usize::from(side);
                 let along = middle[usize::from(side < 2)];
                 let here = |part: &Part| part.side == side && (part.from..part.to).contains(&along);

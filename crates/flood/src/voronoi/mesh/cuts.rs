@@ -5,7 +5,7 @@
 use super::polygon::{Beyond, Polygon};
 use super::split::{Behind, Groups, Piece, holds, split};
 use super::{Ground, Layout, NewBeyond, NewCell, NewEdge, rim};
-use crate::voronoi::walls::Walls;
+use crate::voronoi::walls::{Wall, WallKind, Walls};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -75,6 +75,8 @@ struct Rim {
 enum Outside {
     Border(u8),
     Wall(Option<u32>),
+    /// A line at which water comes or goes.
+    Line(u32),
     /// Behind an edge that no wall reaches.
     Point(u64, [f64; 2]),
     /// Another piece, the number of the face, and the vector from this piece's point to the other's.
@@ -257,8 +259,8 @@ impl<'a> Build<'a> {
         for (k, piece) in self.entries[number].pieces.iter().enumerate() {
             for edge in &piece.edges {
                 if let Behind::Wall(wall, _) = edge.behind {
-                    let wall = Outside::Wall(self.walls.all[wall as usize].obstacle);
-                    self.edges[first + k].push(Rim::of(edge.ends, wall));
+                    let outside = Outside::of_wall(&self.walls.all[wall as usize], edge.ends);
+                    self.edges[first + k].push(Rim::of(edge.ends, outside));
                 }
             }
         }
@@ -516,6 +518,7 @@ impl<'a> Build<'a> {
         Some(match edge.beyond {
             Outside::Border(side) => NewBeyond::Border(side),
             Outside::Wall(obstacle) => NewBeyond::Wall(obstacle),
+            Outside::Line(number) => NewBeyond::Line(number),
             Outside::Point(point, to) => super::neighbour(self.layout, seen, to, point, ground),
             Outside::Piece(other, face, to) => {
                 let theirs = root[other];
@@ -567,6 +570,19 @@ impl<'a> Build<'a> {
 struct Placed {
     piece: usize,
     offset: [f64; 2],
+}
+
+impl Outside {
+    /// What a wall is to a piece with an edge on it. The piece lies on the left of its edge.
+    fn of_wall(wall: &Wall, [a, b]: [[f64; 2]; 2]) -> Self {
+        let [from, to] = wall.ends;
+        let along = (b[0] - a[0]) * (to[0] - from[0]) + (b[1] - a[1]) * (to[1] - from[1]);
+        match wall.kind {
+            WallKind::Obstacle(obstacle) => Self::Wall(Some(obstacle)),
+            WallKind::Side(number) if along < 0.0 => Self::Line(number),
+            WallKind::Side(_) | WallKind::Plain => Self::Wall(None),
+        }
+    }
 }
 
 impl Rim {

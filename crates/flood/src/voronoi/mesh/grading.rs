@@ -5,7 +5,7 @@
 
 use super::layout::Points;
 use crate::setup::is_inside;
-use crate::voronoi::walls::{Wall, Walls};
+use crate::voronoi::walls::{Wall, WallKind, Walls};
 use corpuscle_terrain::{Bounds, Polygon};
 
 /// The spacing is halved so often at most.
@@ -66,7 +66,7 @@ impl Grading {
             let next = ring.iter().cycle().skip(1);
             ring.iter().zip(next).map(|(from, to)| [*from, *to])
         });
-        let lines = sides.chain(lines).map(|ends| Wall { ends, obstacle: None, crest: [f64::INFINITY; 2] });
+        let lines = sides.chain(lines).map(|ends| Wall { ends, kind: WallKind::Plain, crest: [f64::INFINITY; 2] });
         // Positions are seen beyond joined sides too.
         let [width, length] = bounds.size();
         let Bounds { x_min, x_max, y_min, y_max } = bounds;

@@ -22,11 +22,14 @@ use std::collections::HashMap;
 /// Stands for no cell.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Neighbours numbered from here on are sides of the terrain (0 west, 1 east, 2 south, 3 north) or walls.
+/// Neighbours numbered from here on are sides of the terrain (0 west, 1 east, 2 south, 3 north), walls or lines.
 const FIRST_BORDER: u32 = u32::MAX - 8;
 
 /// A face to a place without data or a solid is like one to a side with this number.
 pub(crate) const SOLID: u8 = 4;
+
+/// A face to a line inside the terrain, at which water comes or goes, is like one to a side with this number.
+pub(crate) const LINE: u8 = 5;
 
 /// Edges shorter than this part of the spacing are no faces.
 const SHORTEST: f64 = 1e-9;
@@ -51,7 +54,7 @@ pub(crate) struct Face {
 }
 
 impl Face {
-    /// The side of the terrain (or [`SOLID`]) behind it, if it is on a border.
+    /// The side of the terrain (or [`SOLID`], or [`LINE`]) behind it, if it is on a border.
     #[inline]
     pub fn border(&self) -> Option<u8> {
         (self.cells[1] >= FIRST_BORDER && self.cells[1] != NONE).then(|| (self.cells[1] - FIRST_BORDER) as u8)
@@ -136,6 +139,8 @@ pub(crate) struct Mesh {
     cut_cells: HashMap<u64, u32>,
     /// Faces at obstacles, in order, and the obstacle.
     pub obstacle_faces: Vec<(u32, u32)>,
+    /// Faces at lines at which water comes or goes, in order, and the line.
+    pub line_faces: Vec<(u32, u32)>,
 }
 
 /// A link that waits for the cell on the other side: link, cell, and number of the face between cells near walls (0 elsewhere).
@@ -184,6 +189,8 @@ enum NewBeyond {
     Border(u8),
     /// A wall, and the obstacle that it belongs to.
     Wall(Option<u32>),
+    /// A line at which water comes or goes, by its number.
+    Line(u32),
 }
 
 impl Mesh {
@@ -209,6 +216,7 @@ impl Mesh {
             cuts: Cuts::default(),
             cut_cells: HashMap::new(),
             obstacle_faces: Vec::new(),
+            line_faces: Vec::new(),
         }
     }
 
@@ -358,6 +366,13 @@ impl Mesh {
                     made.neighbour = FIRST_BORDER + u32::from(SOLID);
                     made.face = self.faces.len() as u32;
                     self.obstacle_faces.extend(obstacle.map(|obstacle| (made.face, obstacle)));
+                    let face = border_face(cell, made.neighbour, new, edge);
+                    self.add_face(face, 0.0, ground);
+                }
+                NewBeyond::Line(number) => {
+                    made.neighbour = FIRST_BORDER + u32::from(LINE);
+                    made.face = self.faces.len() as u32;
+                    self.line_faces.push((made.face, number));
                     let face = border_face(cell, made.neighbour, new, edge);
                     self.add_face(face, 0.0, ground);
                 }
@@ -577,7 +592,7 @@ fn rim(layout: &Layout, tile: usize, k: usize, margin: f64) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::walls::{Wall, of_outlines};
+    use super::super::walls::{Wall, WallKind, of_outlines};
     use super::*;
     use crate::obstacles::Outline;
     use corpuscle_terrain::Bounds;
@@ -662,7 +677,7 @@ mod tests {
                 solid.iter().map(|ring| Outline { obstacle: 0, rings: vec![ring.clone()] }).collect();
             let line = |ring: &Vec<[f64; 2]>| {
                 let sides = ring.windows(2).map(|side| [side[0], side[1]]).chain([[ring[0], ring[2]]]);
-                sides.map(|ends| Wall { ends, obstacle: Some(1), crest: [1.0; 2] }).collect::<Vec<_>>()
+                sides.map(|ends| Wall { ends, kind: WallKind::Obstacle(1), crest: [1.0; 2] }).collect::<Vec<_>>()
             };
             let bounds = Bounds { x_min: 0.0, x_max: 100.0, y_min: 0.0, y_max: 70.0 };
             let walls: Vec<_> = of_outlines(&outlines).chain(lines.iter().flat_map(line)).collect();

@@ -6,7 +6,7 @@ mod outlines;
 mod overtopping;
 mod roofs;
 
-pub(crate) use outlines::{no_data, of_lines, of_outlines};
+pub(crate) use outlines::{no_data, of_lines, of_outlines, of_sides};
 pub(crate) use overtopping::overtop;
 pub(crate) use roofs::{areas, collect};
 
@@ -18,10 +18,20 @@ use std::collections::HashMap;
 pub(crate) struct Wall {
     /// m.
     pub ends: [[f64; 2]; 2],
-    /// Number of the obstacle that it belongs to; none at ground without data.
-    pub obstacle: Option<u32>,
+    pub kind: WallKind,
     /// Levels of its crest at both ends, m, over which water flows; infinite where none does.
     pub crest: [f64; 2],
+}
+
+/// What a wall belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum WallKind {
+    /// Ground without data, and what is neither of the others.
+    Plain,
+    /// The obstacle with a number.
+    Obstacle(u32),
+    /// The line inside the terrain with a number, at which water comes or goes on its right.
+    Side(u32),
 }
 
 /// All walls within a rectangle.
@@ -161,10 +171,13 @@ mod tests {
     #[test]
     fn walls_are_cut_off_at_the_sides_and_found_near_them() {
         let bounds = Bounds { x_min: 0.0, x_max: 10.0, y_min: 0.0, y_max: 5.0 };
-        let wall = |a, b| Wall { ends: [a, b], obstacle: Some(0), crest: [1.0, 2.0] };
+        let wall = |a, b| Wall { ends: [a, b], kind: WallKind::Obstacle(0), crest: [1.0, 2.0] };
         let walls = [wall([-5.0, 2.0], [15.0, 2.0]), wall([3.0, 6.0], [9.0, 6.0]), wall([4.0, 4.0], [4.0, 4.0])];
         let walls = Walls::new(walls, bounds, 1.0);
-        assert_eq!(walls.all, [Wall { ends: [[0.0, 2.0], [10.0, 2.0]], obstacle: Some(0), crest: [1.25, 1.75] }]);
+        assert_eq!(
+            walls.all,
+            [Wall { ends: [[0.0, 2.0], [10.0, 2.0]], kind: WallKind::Obstacle(0), crest: [1.25, 1.75] }]
+        );
         let mut found = Vec::new();
         walls.near([6.2, 1.5], [6.4, 2.5], &mut found);
         assert_eq!(found, [0]);

@@ -1,6 +1,6 @@
 //! Where walls come from: outlines of obstacles, and of ground without data.
 
-use super::Wall;
+use super::{Wall, WallKind};
 use crate::obstacles::{Outline, check_overlap};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Flood as Settings;
@@ -12,8 +12,8 @@ const MOST_PARTS: f64 = 1e5;
 /// The sides of outlines; no water flows over them.
 pub(crate) fn of_outlines(outlines: &[Outline]) -> impl Iterator<Item = Wall> {
     let walls = |outline: &Outline| {
-        let obstacle = Some(outline.obstacle as u32);
-        outline.sides().map(move |ends| Wall { ends, obstacle, crest: [f64::INFINITY; 2] }).collect::<Vec<_>>()
+        let kind = WallKind::Obstacle(outline.obstacle as u32);
+        outline.sides().map(move |ends| Wall { ends, kind, crest: [f64::INFINITY; 2] }).collect::<Vec<_>>()
     };
     outlines.iter().flat_map(walls)
 }
@@ -46,9 +46,24 @@ pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Res
             };
             walls.extend((0..parts as usize).map(|part| {
                 let ends = [at(part), at(part + 1)];
-                Wall { ends, obstacle: Some(number as u32), crest: ends.map(crest) }
+                Wall { ends, kind: WallKind::Obstacle(number as u32), crest: ends.map(crest) }
             }));
         }
+    }
+    Ok(walls)
+}
+
+/// The lines inside the terrain at which water comes or goes.
+///
+/// # Errors
+/// [`ModelError::Setup`] for one that lies outside the terrain.
+pub(crate) fn of_sides(scene: &Settings, terrain: &Terrain) -> Result<Vec<Wall>, ModelError> {
+    let mut walls = Vec::new();
+    for (number, side) in scene.edge_line.iter().enumerate() {
+        let line: Vec<[f64; 2]> = side.line.iter().map(|corner| terrain.to_model(*corner)).collect();
+        check_overlap(&format!("flood.edge_line.{number}"), &line, terrain)?;
+        let kind = WallKind::Side(number as u32);
+        walls.extend(line.windows(2).map(|ends| Wall { ends: [ends[0], ends[1]], kind, crest: [f64::INFINITY; 2] }));
     }
     Ok(walls)
 }
@@ -60,7 +75,7 @@ pub(crate) fn no_data(terrain: &Terrain) -> Vec<Wall> {
     let mut walls = Vec::new();
     let mut add = |from: [usize; 2], to: [usize; 2]| {
         let corner = |[column, row]: [usize; 2]| grid.place([column as f64 - 0.5, row as f64 - 0.5]);
-        walls.push(Wall { ends: [corner(from), corner(to)], obstacle: None, crest: [f64::INFINITY; 2] });
+        walls.push(Wall { ends: [corner(from), corner(to)], kind: WallKind::Plain, crest: [f64::INFINITY; 2] });
     };
     // Sides between a row and the next, then between a column and the next.
     for row in 1..rows {
