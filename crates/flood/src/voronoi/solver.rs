@@ -397,8 +397,11 @@ impl Solver {
         let Self { mesh, columns, water, slopes, before, fluxes, kept, borders, .. } = self;
         mesh.shrink();
         [columns, before].into_iter().for_each(Vec::shrink_to_fit);
-        (water.shrink_to_fit(), slopes.shrink_to_fit(), fluxes.shrink_to_fit());
-        (kept.shrink_to_fit(), borders.shrink_to_fit());
+        water.shrink_to_fit();
+        slopes.shrink_to_fit();
+        fluxes.shrink_to_fit();
+        kept.shrink_to_fit();
+        borders.shrink_to_fit();
     }
 
     /// Bytes held.

@@ -480,8 +480,11 @@ impl Mesh {
         let Self { cell_of_point, point, centroid, area, width, bed, first_link, links, faces, lift, rim, .. } = self;
         [area, width, bed, lift].into_iter().for_each(Vec::shrink_to_fit);
         [cell_of_point, first_link].into_iter().for_each(Vec::shrink_to_fit);
-        (point.shrink_to_fit(), centroid.shrink_to_fit(), rim.shrink_to_fit());
-        (links.shrink_to_fit(), faces.shrink_to_fit());
+        point.shrink_to_fit();
+        centroid.shrink_to_fit();
+        rim.shrink_to_fit();
+        links.shrink_to_fit();
+        faces.shrink_to_fit();
     }
 
     /// Bytes held.
