@@ -8,6 +8,7 @@ use crate::scene_argument;
 use crate::terrain::fetch_for;
 use corpuscle::Simulation;
 use corpuscle::model::Model;
+use corpuscle::scene::{ModelScene, Scene, Scheme};
 use corpuscle::terrain::Terrain;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -29,8 +30,11 @@ const SHORTEST_PROBE: f64 = 1e-3;
 /// Parts of a run for which the particles to come are counted.
 const ESTIMATE_PARTS: usize = 20;
 
-/// Memory for each particle, bytes, measured: state, sorted copies, neighbours and work space.
+/// Memory for each particle of schemes balanced and sph-swe, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
+
+/// Memory for each wet particle of scheme voronoi, bytes, 628 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.
+const BYTES_PER_CELL_OF_WATER: f64 = 650.0;
 
 /// Memory for each ball of a gas, bytes: 340 measured where no frames are written, and room to write them.
 const BYTES_PER_BALL: f64 = 500.0;
@@ -133,7 +137,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         terrain,
         particles_at_start,
         particles_to_come,
-        memory_bytes: particles * bytes_per_particle(simulation.model().name()) + cells as f64 * BYTES_PER_CELL,
+        memory_bytes: particles * bytes_per_particle(scene) + cells as f64 * BYTES_PER_CELL,
         time_step_s: probe.time_step.filter(|_| !is_gas),
         estimated_wall_time_s,
         until_s: run.until_s,
@@ -145,11 +149,12 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     })
 }
 
-fn bytes_per_particle(model: &str) -> f64 {
-    match model {
-        "gas" => BYTES_PER_BALL,
-        "dew" => BYTES_PER_PARCEL,
-        _ => BYTES_PER_PARTICLE,
+fn bytes_per_particle(scene: &Scene) -> f64 {
+    match &scene.model {
+        ModelScene::Gas(_) => BYTES_PER_BALL,
+        ModelScene::Dew(_) => BYTES_PER_PARCEL,
+        ModelScene::Flood(flood) if flood.flood.scheme == Scheme::Voronoi => BYTES_PER_CELL_OF_WATER,
+        ModelScene::Flood(_) => BYTES_PER_PARTICLE,
     }
 }
 

@@ -133,7 +133,7 @@ fn water_balances_with_inflow_and_outflow() {
 fn an_edge_held_at_a_level_fills_and_empties_a_pool() {
     for (depth, level) in [(1.0, 1.5), (1.5, 1.0)] {
         let text = "run.until_s = 200\nterrain.plane = { extent = { length_m = 60, width_m = 30, cell_m = 2 } }\n\
-                    flood = { spacing_m = 2, spacing_depth_m = 1, manning = 0.1, water = [{ depth_m = 1 }] }\n";
+                    flood = { scheme = \"balanced\", spacing_m = 2, spacing_depth_m = 1, manning = 0.1, water = [{ depth_m = 1 }] }\n";
         let mut scene = parse(text, &[]);
         scene.flood.water[0].depth_m = Some(depth.into());
         let edges = &mut scene.flood.edges;
@@ -220,6 +220,7 @@ fn a_lone_particle_in_a_corner_stays_as_deep_as_it_was() {
         run.until_s = 60
         terrain.plane = { extent = { length_m = 20, width_m = 20, cell_m = 1 }, slope_east = 0.1, slope_north = 0.1 }
         [flood]
+        scheme = "balanced"
         spacing_m = 2
         spacing_depth_m = 1
         manning = 0.05
