@@ -1,6 +1,6 @@
 //! Rates of the flood model.
 
-use super::{SEED, run, settings, water_everywhere};
+use super::{SEED, error_cost, run, settings, water_everywhere};
 use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::{Filling, Flood, StartWater, VoronoiFlood};
@@ -58,6 +58,12 @@ pub(crate) const BENCHES: &[Bench] = &[
         about: "Scheme sph-swe, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
         needs_card: false,
         run: |options| rate("flood/sph-swe-60k", options),
+    },
+    Bench {
+        name: "flood/error-cost",
+        about: "Error and cost of the dam breaks of Stoker (wet) and Ritter (dry) by schemes voronoi and balanced at 4, 2 and 1 m; use --threads 1.",
+        needs_card: false,
+        run: |_| error_cost::measured(),
     },
 ];
 

@@ -31,6 +31,9 @@ pub(super) const DAM: f64 = 500.0;
 pub(super) const UPSTREAM: f64 = 10.0;
 pub(super) const TIME: f64 = 20.0;
 
+/// Width of the channel in spacings; its long sides are joined.
+pub(super) const WIDTH: f64 = 14.0;
+
 fn stoker(options: &Options) -> Vec<Row> {
     rows(STOKER.name, measure(STOKER.name, 1.0, [3.2e-3, 1.0e-2], options))
 }
@@ -53,7 +56,17 @@ fn measure(case: &'static str, downstream: f64, bounds: [f64; 2], options: &Opti
 
 /// The dam break at its end.
 pub(super) fn run_to_end(spacing: f64, downstream: f64, refinement: Option<Refinement>) -> Result<Flood, ModelError> {
-    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: 14.0 * spacing };
+    run_until(TIME, spacing, downstream, refinement)
+}
+
+/// The dam break at a time, s.
+pub(super) fn run_until(
+    time: f64,
+    spacing: f64,
+    downstream: f64,
+    refinement: Option<Refinement>,
+) -> Result<Flood, ModelError> {
+    let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH * spacing };
     let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
     let pool = |depth: f64, from: f64, to: f64| InitialWater {
         depth: Box::new(move |_, _| depth),
@@ -66,12 +79,12 @@ pub(super) fn run_to_end(spacing: f64, downstream: f64, refinement: Option<Refin
         water.push(pool(downstream, DAM, LENGTH));
     }
     let settings = Settings { refinement, ..settings(TIME, spacing, UPSTREAM, strip(&Edge::Wall)) };
-    run(&settings, &terrain, &water, TIME)
+    run(&settings, &terrain, &water, time)
 }
 
 /// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
-fn error(flood: &Flood, spacing: f64, downstream: f64) -> f64 {
-    let width = 14.0 * spacing;
+pub(super) fn error(flood: &Flood, spacing: f64, downstream: f64) -> f64 {
+    let width = WIDTH * spacing;
     let lines = 7;
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in 0..LENGTH as usize {

@@ -5,6 +5,7 @@ mod channel;
 mod dam_break;
 mod device;
 mod ea_test5;
+mod error_cost;
 mod isolated_building;
 mod lake;
 mod malpasset;

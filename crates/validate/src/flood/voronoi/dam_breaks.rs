@@ -31,7 +31,7 @@ pub(in super::super) const RITTER: Case = Case {
 };
 
 /// Width of the channel in spacings; its long sides are joined.
-const WIDTH: f64 = 8.0;
+pub(in super::super) const WIDTH: f64 = 8.0;
 
 /// Lines along the channel on which depths are compared.
 const LINES: usize = 8;
@@ -46,7 +46,7 @@ fn stoker(_: &Options) -> Vec<crate::Row> {
         ],
         order: ("order", 0.95),
     };
-    rows(STOKER.name, convergence.rows(|spacing, seed| Ok(error(&broken(spacing, seed, 1.0)?, spacing, 1.0))))
+    rows(STOKER.name, convergence.rows(|spacing, seed| Ok(error(&broken(TIME, spacing, seed, 1.0)?, spacing, 1.0))))
 }
 
 fn ritter(_: &Options) -> Vec<crate::Row> {
@@ -59,11 +59,16 @@ fn ritter(_: &Options) -> Vec<crate::Row> {
         ],
         order: ("order", 0.95),
     };
-    rows(RITTER.name, convergence.rows(|spacing, seed| Ok(error(&broken(spacing, seed, 0.0)?, spacing, 0.0))))
+    rows(RITTER.name, convergence.rows(|spacing, seed| Ok(error(&broken(TIME, spacing, seed, 0.0)?, spacing, 0.0))))
 }
 
-/// The dam break at its end.
-fn broken(spacing: f64, seed: u64, downstream: f64) -> Result<VoronoiFlood, ModelError> {
+/// The dam break at a time, s.
+pub(in super::super) fn broken(
+    time: f64,
+    spacing: f64,
+    seed: u64,
+    downstream: f64,
+) -> Result<VoronoiFlood, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH * spacing };
     let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
     let pool = |depth: f64, from: f64, to: f64| StartWater {
@@ -75,11 +80,11 @@ fn broken(spacing: f64, seed: u64, downstream: f64) -> Result<VoronoiFlood, Mode
     if downstream > 0.0 {
         water.push(pool(downstream, DAM, LENGTH + 1.0));
     }
-    run(&settings(spacing, 0.0, strip(&Edge::Wall)), seed, &terrain, &water, TIME)
+    run(&settings(spacing, 0.0, strip(&Edge::Wall)), seed, &terrain, &water, time)
 }
 
 /// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
-fn error(flood: &VoronoiFlood, spacing: f64, downstream: f64) -> f64 {
+pub(in super::super) fn error(flood: &VoronoiFlood, spacing: f64, downstream: f64) -> f64 {
     let (mut wrong, mut right) = (0.0, 0.0);
     for metre in 0..LENGTH as usize {
         let x = metre as f64 + 0.5;

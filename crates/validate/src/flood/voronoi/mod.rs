@@ -2,7 +2,7 @@
 
 mod balances;
 mod beach;
-mod dam_breaks;
+pub(super) mod dam_breaks;
 mod invariance;
 mod lakes;
 mod malpasset;
