@@ -455,3 +455,22 @@ fn what_a_paddle_sweeps_is_booked() {
     let jumps = "spacing_m = 1\nedges.west.paddle = { csv = \"missing.csv\" }";
     assert!(basin(jumps, 1, |_, _| 0.0).map(|_| ()).unwrap_err().to_string().contains("missing.csv"));
 }
+
+/// A block of water that falls: as much as written, whatever the spacing of the cells comes to, and all of it on the ground in the end.
+#[test]
+fn a_falling_block_holds_what_it_says() {
+    for spacing in [1.0, 0.8, 1.3] {
+        let keys = format!(
+            "spacing_m = {spacing}\nspacing_depth_m = 0.5\n{WALLS}water = [{{ block = {{ from = [20, 8], to = [{}, {}], height_m = 2, layers = 3 }} }}]",
+            20.0 + 10.0 * spacing,
+            8.0 + 12.0 * spacing
+        );
+        let mut flood = basin(&keys, 5, |x, y| 0.1 * (x * 0.3).sin() + 0.05 * y).unwrap();
+        let volume = 10.0 * 12.0 * 3.0 * spacing * spacing * 0.5;
+        go(&mut flood, 3.0);
+        let balance = flood.ledger().balances[0].clone();
+        assert!((balance.initial / volume - 1.0).abs() < 1e-12, "{} {volume}", balance.initial);
+        let landed: f64 = flood.wet_cells().map(|cell| cell.area * cell.depth).sum();
+        assert!((landed / volume - 1.0).abs() < 1e-12, "{landed} {volume}");
+    }
+}

@@ -33,15 +33,18 @@ impl Model for VoronoiFlood {
     }
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
-        while self.state.time < time {
-            if stop.load(Ordering::Relaxed) {
-                self.shown = self.shown.max(self.state.time);
-                return Ok(());
+        // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
+        rayon::scope(|_| {
+            while self.state.time < time {
+                if stop.load(Ordering::Relaxed) {
+                    self.shown = self.shown.max(self.state.time);
+                    return Ok(());
+                }
+                self.step()?;
             }
-            self.step()?;
-        }
-        self.shown = time;
-        Ok(())
+            self.shown = time;
+            Ok(())
+        })
     }
 
     fn frame(&self) -> Frame {

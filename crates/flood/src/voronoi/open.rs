@@ -300,7 +300,9 @@ impl VoronoiFlood {
     }
 
     fn begin(&mut self, seed: u64) {
-        self.state.falling = drops(&self.settings, self.solver.mesh.layout.spacing(), &self.terrain, seed);
+        // As far apart as written, not as the cells are: so blocks hold the water that they say.
+        let spacing = self.settings.spacing_m.unwrap_or_else(|| self.solver.mesh.layout.spacing());
+        self.state.falling = drops(&self.settings, spacing, &self.terrain, seed);
         let none = self.solver.columns.iter().all(|column| column.volume <= 0.0) && self.state.falling.is_empty();
         if none
             && self.weather.is_none()
