@@ -33,8 +33,8 @@ const ESTIMATE_PARTS: usize = 20;
 /// Memory for each particle of schemes balanced and sph-swe, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
 
-/// Memory for each wet particle of scheme voronoi, bytes, 628 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.
-const BYTES_PER_CELL_OF_WATER: f64 = 650.0;
+/// Memory for each wet particle of scheme voronoi, bytes, 533 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.
+const BYTES_PER_CELL_OF_WATER: f64 = 560.0;
 
 /// Memory for each ball of a gas, bytes: 340 measured where no frames are written, and room to write them.
 const BYTES_PER_BALL: f64 = 500.0;

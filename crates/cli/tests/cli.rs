@@ -151,7 +151,10 @@ fn check_says_what_would_be_run_and_writes_nothing() {
     assert_eq!(report["particles_to_come"], 0, "all the ground is wet at the start");
     // Nothing is there at the start; 820,000 m3 come in, thought of as 1 m deep, over particles of 4 x 4 m.
     let report = place.run(&["check", "flood/valley", "--json"]).expect_status(0).json();
-    assert_eq!((&report["particles_at_start"], &report["particles_to_come"]), (&0.into(), &51_250.into()));
+    assert_eq!(report["particles_at_start"], 0);
+    let to_come = report["particles_to_come"].as_f64().unwrap();
+    // A whole number of cells fits the terrain: they are up to 2 % larger than asked for.
+    assert!((0.98 * 51_250.0..=51_250.0).contains(&to_come), "{to_come}");
     assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 1.0);
     assert!(!place.path("runs").exists());
 }
