@@ -70,6 +70,8 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::LEDGER,
     voronoi::ENERGY,
     voronoi::INVARIANCE,
+    voronoi::TIDE,
+    voronoi::FINER,
     voronoi::MALPASSET,
     voronoi::BEACH,
     voronoi::RUN_UP,

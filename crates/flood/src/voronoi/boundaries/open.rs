@@ -13,6 +13,12 @@ use std::path::Path;
 /// How long a held level takes to be met exactly, in crossings of the terrain by waves: shorter waves leave.
 const CROSSINGS: f64 = 10.0;
 
+/// The same where the level changes fast: so that sloshing, which takes four crossings, still goes out.
+const FEWEST_CROSSINGS: f64 = 0.25;
+
+/// How far the level may be from one that changes, over the depth: where it would be farther, waves are let out less.
+const LAG: f64 = 0.005;
+
 /// A part of a side with a rule of its own.
 #[derive(Debug, Clone)]
 struct Part {
@@ -229,7 +235,9 @@ impl Boundaries {
     }
 
     /// The velocity of the water beyond held levels after a step: a level that rises sends a wave in, as fast as a wave into still water is; over many crossings of the
-    /// terrain it comes to move as the water inside, so that the level is met exactly.
+    /// terrain it comes to move as the water inside, so that the level is met exactly. With a the height of the waves that come in, b of those that leave, and T
+    /// the level, linear theory gives (T - a)' = (b - (T - a)) / (2 t), with t the time that this takes: in a basin without another way out
+    /// b = T/2, and a + b is off by t T'. So t is short where T changes fast, as in a tide.
     pub fn follow(&self, solver: &Solver, time: f64, step: f64, beyond: &mut [f64]) {
         let size = solver.mesh.layout.bounds.size();
         for (border, rule) in self.of_faces.iter().enumerate() {
@@ -249,7 +257,9 @@ impl Boundaries {
             let beyond_now = Now::Beyond(level.at(time + step), beyond[border], self.ground[border]);
             let found = state(beyond_now, &at, solver.gravity);
             let axis = usize::from(face.normal[1].abs() > face.normal[0].abs());
-            let relaxation = CROSSINGS * size[axis] / is;
+            let change = (level.at(time + step) - level.at(time)).abs() / step;
+            let crossing = size[axis] / is;
+            let relaxation = (LAG * water.depth / change).clamp(FEWEST_CROSSINGS * crossing, CROSSINGS * crossing);
             beyond[border] += (step / relaxation).min(1.0) * (found.across - beyond[border]);
         }
     }

@@ -2,12 +2,13 @@
 
 use super::super::dam_break::{DAM, LENGTH, TIME, UPSTREAM, exact_depth};
 use super::super::{rows, strip};
-use super::{Convergence, run, settings};
+use super::{Convergence, run, settings, worst};
 use crate::{Case, Options};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
-use corpuscle_model::ModelError;
-use corpuscle_scene::Edge;
+use corpuscle_model::{Model, ModelError};
+use corpuscle_scene::{Edge, Finer, Flood as Settings};
 use corpuscle_terrain::{Bounds, Terrain};
+use std::ops::Range;
 use std::sync::Arc;
 
 pub(in super::super) const STOKER: Case = Case {
@@ -28,6 +29,15 @@ pub(in super::super) const RITTER: Case = Case {
     slow: true,
     reduced: 1.0,
     run: ritter,
+};
+
+pub(in super::super) const FINER: Case = Case {
+    name: "flood/voronoi/finer",
+    about: "The dam break of `flood/voronoi/stoker` with particles 4 m apart, and 1 m from 20 m above the dam on, three seeds: where cells are finer \
+            the depth has less than half of the error, and it is none the worse elsewhere.",
+    slow: true,
+    reduced: 1.0,
+    run: finer,
 };
 
 /// Width of the channel in spacings; its long sides are joined.
@@ -62,6 +72,34 @@ fn ritter(_: &Options) -> Vec<crate::Row> {
     rows(RITTER.name, convergence.rows(|spacing, seed| Ok(error(&broken(TIME, spacing, seed, 0.0)?, spacing, 0.0))))
 }
 
+fn finer(_: &Options) -> Vec<crate::Row> {
+    rows(FINER.name, measure_finer())
+}
+
+/// Errors of the depth below and above the dam, over those with all cells coarse.
+fn measure_finer() -> Result<Vec<crate::Row>, ModelError> {
+    let part = Finer {
+        spacing_m: 1.0,
+        polygon: Some(vec![[DAM - 20.0, -1.0], [LENGTH + 1.0, -1.0], [LENGTH + 1.0, 99.0], [DAM - 20.0, 99.0]]),
+        ..Finer::default()
+    };
+    let [below, above, water] = worst(|seed| {
+        let graded = dam(TIME, &Settings { finer: vec![part.clone()], ..even(4.0) }, seed, 4.0, 1.0)?;
+        let coarse = dam(TIME, &even(4.0), seed, 4.0, 1.0)?;
+        let of = |flood: &VoronoiFlood, range| error_within(flood, 4.0, 1.0, range);
+        let (below, above) = (DAM as usize..LENGTH as usize, 0..DAM as usize);
+        let water = graded.ledger().balances[0].relative_error().abs();
+        let share = |range: Range<usize>| of(&graded, range.clone()) / of(&coarse, range);
+        Ok([share(below), share(above), water])
+    })?;
+    let row = |measure, value, bound| crate::Row::at_most(FINER.name, measure, value, "", bound);
+    Ok(vec![
+        row("error_below_the_dam_over_coarse", below, 0.5),
+        row("error_above_the_dam_over_coarse", above, 1.0),
+        row("water_relative_error", water, 1e-13),
+    ])
+}
+
 /// The dam break at a time, s.
 pub(in super::super) fn broken(
     time: f64,
@@ -69,6 +107,16 @@ pub(in super::super) fn broken(
     seed: u64,
     downstream: f64,
 ) -> Result<VoronoiFlood, ModelError> {
+    dam(time, &even(spacing), seed, spacing, downstream)
+}
+
+/// Cells of one size.
+fn even(spacing: f64) -> Settings {
+    settings(spacing, 0.0, strip(&Edge::Wall))
+}
+
+/// The dam break at a time, s, in a channel [`WIDTH`] times `spacing` m wide.
+fn dam(time: f64, settings: &Settings, seed: u64, spacing: f64, downstream: f64) -> Result<VoronoiFlood, ModelError> {
     let bounds = Bounds { x_min: 0.0, x_max: LENGTH, y_min: 0.0, y_max: WIDTH * spacing };
     let terrain = Arc::new(Terrain::analytic(bounds, spacing, |_, _| (0.0, [0.0; 2])));
     let pool = |depth: f64, from: f64, to: f64| StartWater {
@@ -80,13 +128,18 @@ pub(in super::super) fn broken(
     if downstream > 0.0 {
         water.push(pool(downstream, DAM, LENGTH + 1.0));
     }
-    run(&settings(spacing, 0.0, strip(&Edge::Wall)), seed, &terrain, &water, time)
+    run(settings, seed, &terrain, &water, time)
 }
 
 /// mean |h - h_exact| / mean h_exact on a uniform 1 m grid over the whole channel.
 pub(in super::super) fn error(flood: &VoronoiFlood, spacing: f64, downstream: f64) -> f64 {
+    error_within(flood, spacing, downstream, 0..LENGTH as usize)
+}
+
+/// The same between two places along the channel, m.
+fn error_within(flood: &VoronoiFlood, spacing: f64, downstream: f64, metres: Range<usize>) -> f64 {
     let (mut wrong, mut right) = (0.0, 0.0);
-    for metre in 0..LENGTH as usize {
+    for metre in metres {
         let x = metre as f64 + 0.5;
         let exact = exact_depth((x - DAM) / TIME, downstream);
         let depth = |line: usize| flood.sample(x, WIDTH * spacing * (line as f64 + 0.5) / LINES as f64).depth;

@@ -12,11 +12,12 @@ mod rain;
 mod sheets;
 mod swashes;
 mod thacker;
+mod tide;
 mod waves;
 
 pub(super) use balances::{ENERGY, LEDGER, MOMENTUM};
 pub(super) use beach::{BEACH, RUN_UP, SENT_WAVE};
-pub(super) use dam_breaks::{RITTER, STOKER};
+pub(super) use dam_breaks::{FINER, RITTER, STOKER};
 pub(super) use invariance::INVARIANCE;
 pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO};
 pub(super) use malpasset::MALPASSET;
@@ -25,6 +26,7 @@ pub(super) use rain::RAIN;
 pub(super) use sheets::SHEETS;
 pub(super) use swashes::SWASHES;
 pub(super) use thacker::{PLANAR, RADIAL};
+pub(super) use tide::TIDE;
 pub(super) use waves::WAVES;
 
 use super::{GRAVITY, order};
