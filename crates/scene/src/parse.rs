@@ -59,7 +59,7 @@ fn scheme_is_written(scene: &Scene, document: &Document<'_>) -> Result<(), Box<P
         Err(Problem::new(
             key,
             ": this is for scheme balanced, and the scheme where none is written is voronoi now; write \
-             scheme = \"balanced\" into [flood], or take this out",
+             scheme = \"balanced\" into [flood], or take this out (finer cells of scheme voronoi are in [[flood.finer]])",
         ))
     })
 }
