@@ -116,6 +116,21 @@ fn finer_cells_make_a_wave_better() {
     assert!(graded_outside < 1.1 * coarse_outside, "{graded_outside} {coarse_outside}");
 }
 
+/// A billion cells are refused before they are made.
+#[test]
+fn too_many_cells_are_told() {
+    let text = "run.until_s = 1\nterrain.plane.extent = { length_m = 1e5, width_m = 1e5, cell_m = 500 }\n[flood]\nscheme = \"voronoi\"\nspacing_m = 100\n\
+                water = [{ depth_m = 1 }]\nfiner = [{ spacing_m = 2, circle = { centre = [5e4, 5e4], radius_m = 4e4 } }]";
+    let mut scene = Scene::parse(text, "test", &[]).unwrap();
+    scene.resolve_defaults();
+    let scene = scene.flood().unwrap();
+    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
+    let error = VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain))
+        .err()
+        .map_or(String::new(), |e| e.to_string());
+    assert!(error.contains("more than the 1e8 that fit in memory") && error.contains("particles"), "{error}");
+}
+
 #[test]
 fn what_cannot_be_finer_is_told() {
     for (keys, told) in [

@@ -228,8 +228,7 @@ impl VoronoiFlood {
         tiles.dedup();
         tiles.retain(|tile| !self.solver.mesh.has(*tile));
         let layout = &self.solver.mesh.layout;
-        let cells = self.solver.mesh.len() + tiles.iter().map(|tile| layout.count(*tile)).sum::<usize>();
-        let cells = cells as f64;
+        let cells = self.solver.mesh.len() as f64 + tiles.iter().map(|tile| layout.about(*tile)).sum::<f64>();
         if cells > MOST_CELLS {
             return Err(setup(format!(
                 "the water would need about {cells:.1e} particles, more than the {MOST_CELLS:.0e} that fit in memory; \
@@ -262,8 +261,7 @@ impl VoronoiFlood {
     fn make_first_tiles(&mut self, bodies: &[StartWater]) -> Result<(), ModelError> {
         let layout = &self.solver.mesh.layout;
         let wet = |tile: &usize| {
-            (0..layout.count(*tile)).any(|k| {
-                let at = layout.position(*tile, k);
+            layout.positions(*tile).any(|at| {
                 let ground = self.terrain.height(at[0], at[1]);
                 bodies.iter().any(|body| body.may_be_at(at, ground, layout.spacing()))
             })

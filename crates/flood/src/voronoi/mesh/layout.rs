@@ -23,6 +23,9 @@ const JITTER: f64 = 0.5;
 /// Rounds in which each point moves to the centroid of its cell (Lloyd 1982).
 const ROUNDS: usize = 10;
 
+/// Positions along each side of a tile at which it is looked at how fine its cells are.
+const LOOKS: usize = 16;
+
 /// How far neighbours are looked for at first, in spacings; one spacing farther each time that this was not enough.
 const FIRST_RING: f64 = 2.5;
 
@@ -190,6 +193,25 @@ impl Layout {
     /// Number of points of a tile.
     pub fn count(&self, tile: usize) -> usize {
         self.points(tile).at.len()
+    }
+
+    /// Positions all over a tile, a spacing apart, whether its cells are finer or not, m.
+    pub fn positions(&self, tile: usize) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let corner = self.corner(tile);
+        self.pattern.at.iter().map(move |within| [0, 1].map(|axis| corner[axis] + within[axis]))
+    }
+
+    /// About how many points a tile has, without making them.
+    pub fn about(&self, tile: usize) -> f64 {
+        let count = self.pattern.at.len() as f64;
+        if !self.graded.contains_key(&(tile as u32)) {
+            return count;
+        }
+        let corner = self.corner(tile);
+        let at = |look: usize, axis: usize| corner[axis] + (look as f64 + 0.5) / LOOKS as f64 * self.tile[axis];
+        let level = |k: usize| self.grading.finest_within(self.images([at(k % LOOKS, 0), at(k / LOOKS, 1)]), 0.0);
+        let finer: f64 = (0..LOOKS * LOOKS).map(|k| f64::from(1 << (2 * level(k)))).sum();
+        count * finer / (LOOKS * LOOKS) as f64
     }
 
     /// South-west corner of a tile, m.
@@ -457,6 +479,10 @@ mod tests {
         let spacings = sums.map(|[count, area]| (area / count).sqrt() / layout.spacing());
         for (found, expected) in spacings.into_iter().zip([0.25, 0.5, 1.0]) {
             assert!((found / expected - 1.0).abs() < 0.01, "{spacings:?}");
+        }
+        for tile in 0..layout.tiles[0] * layout.tiles[1] {
+            let share = layout.about(tile) / layout.count(tile) as f64;
+            assert!((0.8..1.25).contains(&share), "{tile}: {share}");
         }
         // The square lies at a joined side: cells beyond are finer too.
         let (tile, k) = layout.nearest([96.5, 15.0]);
