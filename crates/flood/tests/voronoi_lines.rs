@@ -42,7 +42,7 @@ fn a_lake_at_rest_stays_at_rest_at_lines() {
         go(&mut flood, 30.0);
         let fastest = flood.wet_cells().map(|cell| cell.velocity[0].hypot(cell.velocity[1])).fold(0.0, f64::max);
         assert!(fastest < 1e-12, "{edge}: {fastest}");
-        assert!(flood.wet_cells().all(|cell| (cell.bed + cell.depth - 1.0).abs() < 1e-9));
+        assert!(flood.wet_cells().all(|cell| (cell.level - 1.0).abs() < 1e-9));
     }
 }
 

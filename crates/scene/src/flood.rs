@@ -58,6 +58,8 @@ pub struct Flood {
     pub refinement: Option<Refinement>,
     /// Parts of the terrain with finer cells (scheme `voronoi`).
     pub finer: Vec<Finer>,
+    /// How much water a cell holds below a level (scheme `voronoi`).
+    pub storage: Storage,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
@@ -109,6 +111,7 @@ impl Default for Flood {
             rain: None,
             refinement: None,
             finer: Vec::new(),
+            storage: Storage::Mean,
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),
@@ -139,6 +142,16 @@ pub enum Scheme {
     Balanced,
     /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
     SphSwe,
+}
+
+/// How much water a cell holds below a level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Storage {
+    /// The ground of a cell is level, at its mean height.
+    Mean,
+    /// The heights of the ground within a cell count: a table of volume against level for each.
+    LevelVolume,
 }
 
 /// What the numbers of a flood are written in.

@@ -148,6 +148,7 @@ fn full(terrain: Terrain) -> Scene {
             height_m: Some(1.0),
             crest_m: Some(1.0),
         }],
+        storage: Storage::LevelVolume,
         finer: vec![Finer {
             spacing_m: 1.0,
             polygon: Some(vec![[0.0; 2]]),

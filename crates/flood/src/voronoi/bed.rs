@@ -1,8 +1,10 @@
 //! The ground as the cells see it.
 
 use super::mesh::{Ground, SOLID};
+use super::storage::{self, Heights};
 use super::walls::{Wall, Walls, no_data, of_outlines};
 use crate::obstacles::Obstacles;
+use corpuscle_scene::Storage;
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
@@ -23,6 +25,7 @@ pub(crate) struct Bed {
     mirrors: [bool; 4],
     periodic: [bool; 2],
     lift: [f64; 2],
+    storage: Storage,
 }
 
 impl Bed {
@@ -34,11 +37,25 @@ impl Bed {
         periodic: [bool; 2],
         lines: Vec<Wall>,
         spacing: f64,
+        storage: Storage,
     ) -> Self {
         let walls = of_outlines(obstacles.outlines()).chain(no_data(&terrain)).chain(lines);
         let walls = Walls::new(walls, terrain.bounds(), GRID * spacing);
         let lift = [0, 1].map(|axis| if periodic[axis] { lift(&terrain, axis) } else { 0.0 });
-        Self { terrain, obstacles, walls, mirrors, periodic, lift }
+        Self { terrain, obstacles, walls, mirrors, periodic, lift, storage }
+    }
+
+    /// Height of the ground at a position, beyond joined sides too, m.
+    fn height(&self, mut at: [f64; 2]) -> f64 {
+        let bounds = self.terrain.bounds();
+        let (low, size) = ([bounds.x_min, bounds.y_min], bounds.size());
+        let mut lift = 0.0;
+        for axis in (0..2).filter(|axis| self.periodic[*axis]) {
+            let sides = ((at[axis] - low[axis]) / size[axis]).floor();
+            at[axis] -= sides * size[axis];
+            lift += sides * self.lift[axis];
+        }
+        self.terrain.height(at[0], at[1]) + lift
     }
 
     /// Integral of the height over a convex polygon, m3, and its area, m2. What lies beyond a joined side is the ground inside the opposite side, from
@@ -99,6 +116,10 @@ impl Ground for Bed {
         if area > 0.0 { integral / area } else { self.terrain.mean_over(polygon) }
     }
 
+    fn heights(&self, polygons: &[Vec<[f64; 2]>], mean: f64) -> Option<Heights> {
+        (self.storage == Storage::LevelVolume).then(|| storage::heights(polygons, mean, |at| self.height(at)))
+    }
+
     fn is_there(&self, at: [f64; 2]) -> bool {
         self.terrain.has_data_at(at[0], at[1]) && !self.obstacles.hold(at)
     }
@@ -144,7 +165,7 @@ mod tests {
         let wide = Bounds { x_min: -20.0, x_max: 40.0, y_min: -15.0, y_max: 15.0 };
         let endless = Terrain::analytic(wide, 1.0, move |x, y| (height(x, y), [0.0; 2]));
         let obstacles = Arc::new(Obstacles::default());
-        let bed = Bed::new(terrain, obstacles, [false; 4], [true; 2], Vec::new(), 1.0);
+        let bed = Bed::new(terrain, obstacles, [false; 4], [true; 2], Vec::new(), 1.0, Storage::Mean);
         for [x, y] in [[7.0, 0.0], [19.8, 1.0], [0.1, -4.9], [20.0, 5.0], [-0.2, 5.1]] {
             let corners = [[-0.6, -0.5], [0.7, -0.4], [0.5, 0.6], [-0.3, 0.7]].map(|[a, b]| [x + a, y + b]);
             let [found, exact] = [bed.mean(&corners), endless.mean_over(&corners)];

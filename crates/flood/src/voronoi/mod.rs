@@ -12,7 +12,7 @@
 //! | `start`, `rain`, `structures` | where water comes from and goes to |
 //! | `maps` | what happened in each cell, on the terrain's grid |
 //!
-//! `solver.rs` is a step of the water, `step.rs` one of the model.
+//! `solver.rs` is a step of the water, `storage.rs` what a cell holds below a level, `step.rs` one of the model.
 
 mod bed;
 mod boundaries;
@@ -32,6 +32,7 @@ mod sampling;
 mod solver;
 mod start;
 mod step;
+mod storage;
 mod structures;
 #[cfg(test)]
 mod tests;
@@ -169,6 +170,7 @@ impl VoronoiFlood {
             area: mesh.area[cell],
             bed: mesh.bed[cell],
             depth: water.depth,
+            level: water.level,
             velocity: water.velocity,
         })
     }
@@ -179,9 +181,20 @@ impl VoronoiFlood {
         let gravity = self.solver.gravity;
         let columns = self.solver.columns.iter().enumerate();
         let kinetic = columns.clone().map(|(_, column)| column.kinetic()).collect::<ExactSum>();
-        let potential = columns
-            .map(|(cell, column)| column.energy(mesh.area[cell], mesh.bed[cell] - level, gravity) - column.kinetic());
+        let potential =
+            columns.map(|(cell, column)| gravity * (mesh.potential(cell, column.volume) - level * column.volume));
         [kinetic, potential.collect::<ExactSum>()].map(|sum| DENSITY * sum.value())
+    }
+
+    /// Energy that the water has and a lake at rest at a level, m, would not have, J: kinetic, and what it takes to raise and lower the surface from
+    /// that level in each cell. Not below 0, and small where the water nearly is such a lake: nothing cancels out.
+    pub fn energy_above_lake(&self, level: f64) -> f64 {
+        let mesh = &self.solver.mesh;
+        let of_cell = |(cell, column): (usize, &Column)| {
+            let depth = column.volume / mesh.area[cell];
+            column.kinetic() + self.solver.gravity * mesh.area[cell] * mesh.raised(cell, depth, level)
+        };
+        DENSITY * self.solver.columns.iter().enumerate().map(of_cell).collect::<ExactSum>().value()
     }
 
     /// The water of a cell at the time shown.
@@ -193,7 +206,7 @@ impl VoronoiFlood {
         }
         let mesh = &self.solver.mesh;
         let columns = [&self.solver.before()[cell], &self.solver.columns[cell]];
-        maps::between(columns[0], columns[1], share, mesh.area[cell], mesh.bed[cell])
+        maps::between(mesh, cell, columns, share)
     }
 
     fn sampler(&self) -> Sampler<'_, impl Fn(usize) -> Water> {
@@ -229,8 +242,10 @@ pub struct WetCell {
     pub area: f64,
     /// Mean height of the ground, m.
     pub bed: f64,
-    /// Depth, m.
+    /// Depth, m: volume over area.
     pub depth: f64,
+    /// Level of the surface, m.
+    pub level: f64,
     /// Velocity `[east, north]`, m/s.
     pub velocity: [f64; 2],
 }

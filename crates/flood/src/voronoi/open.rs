@@ -130,7 +130,7 @@ impl VoronoiFlood {
         }
         let longest = 0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt();
         lines.extend(walls::of_sides(&settings, &terrain)?);
-        let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing);
+        let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing, settings.storage);
         let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
         let flat = settings.obstacle.iter().map(|obstacle| obstacle.height_m.is_none());
         roofs.iter_mut().zip(flat).filter(|(_, flat)| *flat).for_each(|(area, _)| *area = 0.0);

@@ -98,7 +98,7 @@ impl Patch {
     pub fn hold(&self, solver: &mut Solver, level: f64) -> Change {
         let mut change = Change::default();
         for cell in self.cells.iter().map(|cell| *cell as usize) {
-            let wanted = solver.mesh.area[cell] * (level - solver.mesh.bed[cell]).max(0.0);
+            let wanted = solver.mesh.area[cell] * solver.mesh.depth_below(cell, level);
             let volume = wanted - solver.columns[cell].volume;
             let momentum = solver.water[cell].velocity.map(|velocity| volume * velocity);
             change.apply(solver, cell, Column { volume, momentum });
@@ -110,17 +110,18 @@ impl Patch {
 impl Change {
     /// Adds water to a cell.
     pub fn apply(&mut self, solver: &mut Solver, cell: usize, added: Column) {
-        let (area, bed, gravity) = (solver.mesh.area[cell], solver.mesh.bed[cell], solver.gravity);
+        let (mesh, gravity) = (&solver.mesh, solver.gravity);
         let column = &mut solver.columns[cell];
+        let energy = |column: &Column| column.kinetic() + gravity * mesh.potential(cell, column.volume);
         let before = column.volume;
-        self.energy -= column.energy(area, bed, gravity);
+        self.energy -= energy(column);
         column.volume = (before + added.volume).max(0.0);
         self.volume += column.volume - before;
         for axis in 0..2 {
             column.momentum[axis] += added.momentum[axis];
             self.momentum[axis] += added.momentum[axis];
         }
-        self.energy += column.energy(area, bed, gravity);
+        self.energy += energy(column);
         solver.touch(cell);
     }
 }

@@ -130,7 +130,7 @@ impl Solver {
         let (first_face, faces, cells) = (self.fluxes.len(), self.mesh.faces.len(), self.mesh.len());
         let counts = (self.columns.len()..cells).map(|cell| self.mesh.links_of(cell).len());
         self.most_faces = counts.fold(self.most_faces, usize::max);
-        let dry = |cell: usize| Water { level: self.mesh.bed[cell], ..Water::default() };
+        let dry = |cell: usize| Water { level: self.mesh.level(cell, 0.0), ..Water::default() };
         self.water.extend((self.water.len()..cells).map(dry));
         self.columns.resize(cells, Column::default());
         self.before.resize(cells, Column::default());
@@ -150,7 +150,7 @@ impl Solver {
             let mut found = NOTHING;
             for (k, (column, water)) in columns.iter_mut().zip(water).enumerate() {
                 let cell = chunk * CHUNK + k;
-                *water = Water::of(column, mesh.area[cell], mesh.bed[cell]);
+                *water = mesh.water(cell, column);
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }
             found
@@ -221,7 +221,7 @@ impl Solver {
     pub fn touch(&mut self, cell: usize) {
         let Self { mesh, columns, water, gravity, chunks, .. } = self;
         let was_wet = water[cell].depth > 0.0;
-        water[cell] = Water::of(&mut columns[cell], mesh.area[cell], mesh.bed[cell]);
+        water[cell] = mesh.water(cell, &mut columns[cell]);
         let found = &mut chunks.found[cell / CHUNK];
         found.count -= u32::from(was_wet);
         found.see(&water[cell], mesh.width[cell], mesh.rim[cell], *gravity);
@@ -375,13 +375,13 @@ impl Solver {
                         *column = column.mean(before[k]);
                     }
                     let [p, q] = column.momentum;
-                    *water = Water::of(column, area, mesh.bed[cell]);
+                    *water = mesh.water(cell, column);
                     let weight = if second { 2.0 } else { 1.0 };
                     found.slowed[0] += weight * (column.momentum[0] - p);
                     found.slowed[1] += weight * (column.momentum[1] - q);
                 } else if second && before[k].volume > 0.0 {
                     *column = column.mean(before[k]);
-                    *water = Water::of(column, mesh.area[cell], mesh.bed[cell]);
+                    *water = mesh.water(cell, column);
                 }
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }

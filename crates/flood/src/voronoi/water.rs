@@ -26,11 +26,6 @@ impl Column {
         }
     }
 
-    /// Kinetic and potential energy over density above the level 0, over a cell of an area, m2, with its bed at a height, m: m5/s2.
-    pub fn energy(&self, area: f64, bed: f64, gravity: f64) -> f64 {
-        self.kinetic() + gravity * self.volume * (bed + 0.5 * self.volume / area)
-    }
-
     /// Kinetic energy over density, m5/s2.
     pub fn kinetic(&self) -> f64 {
         let [p, q] = self.momentum;
@@ -43,7 +38,7 @@ impl Column {
 pub(crate) struct Water {
     /// m; 0 where dry.
     pub depth: f64,
-    /// Bed plus depth, m.
+    /// Bed plus depth, m; where a cell stores by volume against level, the level of the water in its lower part.
     pub level: f64,
     /// m/s.
     pub velocity: [f64; 2],
@@ -69,9 +64,9 @@ pub(crate) fn slope(slopes: &Slopes, quantity: usize) -> [f64; 2] {
 }
 
 impl Water {
-    /// The water of a column over a cell; momentum that its velocity does not carry is taken off the column.
+    /// The water of a column over a cell of an area, m2, where `level` gives the level for a depth, m; momentum that its velocity does not carry is taken off the column.
     #[inline]
-    pub fn of(column: &mut Column, area: f64, bed: f64) -> Self {
+    pub fn of(column: &mut Column, area: f64, level: impl FnOnce(f64) -> f64) -> Self {
         let depth = (column.volume / area).max(0.0);
         let velocity = if depth >= THIN {
             column.momentum.map(|momentum| momentum / column.volume)
@@ -85,7 +80,7 @@ impl Water {
             column.momentum = velocity.map(|velocity| velocity * column.volume);
             velocity
         };
-        Self { depth, level: bed + depth, velocity }
+        Self { depth, level: level(depth), velocity }
     }
 
     /// Speed, m/s.
@@ -103,7 +98,7 @@ mod tests {
     fn velocity_stays_finite_where_there_is_next_to_no_water() {
         for volume in [0.0_f64, 1e-300, 1e-13, 1e-9, 1e-6, 1.0] {
             let mut column = Column { volume, momentum: [volume.sqrt(), 0.0] };
-            let water = Water::of(&mut column, 1.0, 3.0);
+            let water = Water::of(&mut column, 1.0, |depth| 3.0 + depth);
             assert!(water.velocity[0].is_finite() && water.velocity[0] <= 1.000001 / volume.sqrt().max(1e-3));
             assert!((column.momentum[0] - volume * water.velocity[0]).abs() <= 1e-15);
         }

@@ -5,7 +5,7 @@ mod ground;
 use super::{Check, Checked};
 use crate::{
     Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
-    StartVelocity, Water,
+    StartVelocity, Storage, Water,
 };
 use std::collections::HashMap;
 
@@ -27,6 +27,9 @@ impl Check {
         self.manning(&flood.manning)?;
         self.ground(flood)?;
         self.refinement(flood)?;
+        self.require("flood.storage", flood.storage == Storage::Mean || flood.scheme == Scheme::Voronoi, || {
+            "is for scheme = \"voronoi\": particles of the other schemes have no cells".into()
+        })?;
         self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
         if let Some(period) = flood.map_every_s {
             self.above("flood.map_every_s", period, 0.0)?;

@@ -72,6 +72,7 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::INVARIANCE,
     voronoi::TIDE,
     voronoi::FINER,
+    voronoi::STORAGE,
     voronoi::MALPASSET,
     voronoi::BEACH,
     voronoi::RUN_UP,

@@ -218,7 +218,7 @@ impl Boundaries {
         let level = self.level_of_depth(solver, rule);
         let depth = |cell: usize| match solver.water[cell].depth {
             depth if discharge < 0.0 => depth,
-            _ => (level - solver.mesh.bed[cell]).max(0.0),
+            _ => solver.mesh.depth_below(cell, level),
         };
         let conveyance = |cell: usize| depth(cell).powf(5.0 / 3.0);
         let Self { of_faces, now, .. } = self;

@@ -88,7 +88,7 @@ pub(crate) fn maps(
     let (columns, rows) = (grid.columns, grid.rows);
     let highest = |cell: usize| {
         let depth = f64::from(records[cell].max_depth);
-        Water { depth, level: mesh.bed[cell] + depth, velocity: [0.0; 2] }
+        Water { depth, level: mesh.level(cell, depth), velocity: [0.0; 2] }
     };
     let mut values = vec![[f32::NAN; NAMES.len()]; columns * rows];
     values.par_chunks_mut(columns.max(1)).enumerate().for_each(|(row, values)| {
@@ -142,14 +142,14 @@ const NAMES: [[&str; 3]; 11] = [
     ["fastest_north", "Velocity at the highest speed, northwards", "m/s"],
 ];
 
-/// Water between two columns: `share` of the way from the first to the second.
-pub(crate) fn between(before: &Column, after: &Column, share: f64, area: f64, bed: f64) -> Water {
+/// Water of a cell between two columns: `share` of the way from the first to the second.
+pub(crate) fn between(mesh: &Mesh, cell: usize, [before, after]: [&Column; 2], share: f64) -> Water {
     let mix = |a: f64, b: f64| a + share * (b - a);
     let mut column = Column {
         volume: mix(before.volume, after.volume),
         momentum: [0, 1].map(|axis| mix(before.momentum[axis], after.momentum[axis])),
     };
-    Water::of(&mut column, area, bed)
+    mesh.water(cell, &mut column)
 }
 
 #[cfg(test)]

@@ -470,7 +470,7 @@ impl<'a> Build<'a> {
             for part in &piece.parts {
                 let on_ground: Polygon2 = part.iter().map(|r| [at[0] + r[0], at[1] + r[1]]).collect();
                 heights += super::polygon::area(part) * (ground.mean(&on_ground) + lift);
-                parts.push(part.iter().map(|r| [seen[0] + r[0], seen[1] + r[1]]).collect());
+                parts.push(part.iter().map(|r| [seen[0] + r[0], seen[1] + r[1]]).collect::<Polygon2>());
             }
             for edge in &self.edges[number] {
                 let length = edge.normal[0].hypot(edge.normal[1]);
@@ -499,6 +499,7 @@ impl<'a> Build<'a> {
             area,
             width,
             bed: heights / whole,
+            heights: ground.heights(&parts, heights / whole),
             rim: rim(self.layout, tile, k, RIM),
             edges,
         };

@@ -11,7 +11,9 @@ pub(crate) use grading::Grading;
 pub(crate) use layout::Layout;
 pub(crate) use polygon::area;
 
+use super::storage::{self, Heights};
 use super::walls::Walls;
+use super::water::{Column, Water};
 use cuts::Cuts;
 
 use layout::Candidate;
@@ -90,6 +92,10 @@ impl Link {
 pub(crate) trait Ground: Sync {
     /// Mean height of the ground over a polygon, m.
     fn mean(&self, polygon: &[[f64; 2]]) -> f64;
+    /// Heights of the parts of a cell, its convex polygons given with their mean height, m; none where the mean alone counts.
+    fn heights(&self, _polygons: &[Vec<[f64; 2]>], _mean: f64) -> Option<Heights> {
+        None
+    }
     /// Whether there is ground at a position.
     fn is_there(&self, at: [f64; 2]) -> bool;
     /// Whether water is mirrored at a side (or at [`SOLID`]), so that its image counts in slopes.
@@ -123,6 +129,8 @@ pub(crate) struct Mesh {
     pub width: Vec<f64>,
     /// Mean height of the ground, m.
     pub bed: Vec<f64>,
+    /// Heights of the parts of each cell; empty where the mean alone counts.
+    heights: Vec<Heights>,
     /// First link of each cell, and the number of links at the end.
     pub first_link: Vec<u32>,
     pub links: Vec<Link>,
@@ -161,6 +169,7 @@ struct NewCell {
     area: f64,
     width: f64,
     bed: f64,
+    heights: Option<Heights>,
     rim: u8,
     edges: Vec<NewEdge>,
 }
@@ -207,6 +216,7 @@ impl Mesh {
             area: Vec::new(),
             width: Vec::new(),
             bed: Vec::new(),
+            heights: Vec::new(),
             first_link: vec![0],
             links: Vec::new(),
             faces: Vec::new(),
@@ -346,6 +356,7 @@ impl Mesh {
             self.area.push(cell.area);
             self.width.push(cell.width);
             self.bed.push(cell.bed);
+            self.heights.extend(cell.heights);
             self.rim.push(cell.rim);
         }
     }
@@ -434,6 +445,51 @@ impl Mesh {
         }
     }
 
+    /// Level of the water in a cell, m, that holds `depth` m spread over all of it; that of its ground where it is dry.
+    #[inline]
+    pub fn level(&self, cell: usize, depth: f64) -> f64 {
+        let above = if self.heights.is_empty() { depth } else { storage::level(&self.heights[cell], depth) };
+        self.bed[cell] + above
+    }
+
+    /// Water in a cell below a level, m, spread over all of it, m.
+    pub fn depth_below(&self, cell: usize, level: f64) -> f64 {
+        let above = level - self.bed[cell];
+        if self.heights.is_empty() { above.max(0.0) } else { storage::depth(&self.heights[cell], above) }
+    }
+
+    /// Potential energy of a volume, m3, at rest in a cell above the level 0, over density and gravity, m4.
+    pub fn potential(&self, cell: usize, volume: f64) -> f64 {
+        let depth = volume / self.area[cell];
+        let own = match self.heights.get(cell) {
+            None => 0.5 * depth * depth,
+            Some(heights) => storage::potential(heights, storage::level(heights, depth)),
+        };
+        volume * self.bed[cell] + self.area[cell] * own
+    }
+
+    /// Work over density, gravity and area, m2, that it takes to bring the water of a cell from a level, m, to that at which it holds `depth` m, while
+    /// what comes and goes does so at the former level.
+    pub fn raised(&self, cell: usize, depth: f64, level: f64) -> f64 {
+        let level = level - self.bed[cell];
+        let of_part = |ground: f64, surface: f64| {
+            let [from, to] = [level, surface].map(|level| level.max(ground) - ground);
+            // Of ground above the level: what stands on it was lifted there.
+            let lifted = (ground - level).max(0.0);
+            0.5 * (to - from) * (to - from) + lifted * to
+        };
+        match self.heights.get(cell) {
+            None => of_part(0.0, depth),
+            Some(heights) => storage::mean_of(heights, |ground| of_part(ground, storage::level(heights, depth))),
+        }
+    }
+
+    /// The water of a column over a cell: see [`Water::of`].
+    #[inline]
+    pub fn water(&self, cell: usize, column: &mut Column) -> Water {
+        Water::of(column, self.area[cell], |depth| self.level(cell, depth))
+    }
+
     /// By how much the second cell of a face stands higher than its bed says, m.
     #[inline]
     pub fn lift_of(&self, face: usize) -> f64 {
@@ -477,7 +533,10 @@ impl Mesh {
 
     /// Gives back the room that no cell needs.
     pub fn shrink(&mut self) {
-        let Self { cell_of_point, point, centroid, area, width, bed, first_link, links, faces, lift, rim, .. } = self;
+        let Self {
+            cell_of_point, point, centroid, area, width, bed, heights, first_link, links, faces, lift, rim, ..
+        } = self;
+        heights.shrink_to_fit();
         [area, width, bed, lift].into_iter().for_each(Vec::shrink_to_fit);
         [cell_of_point, first_link].into_iter().for_each(Vec::shrink_to_fit);
         point.shrink_to_fit();
@@ -492,6 +551,7 @@ impl Mesh {
         self.links.capacity() * size_of::<Link>()
             + self.faces.capacity() * size_of::<Face>()
             + self.lift.capacity() * 8
+            + self.heights.capacity() * size_of::<Heights>()
             + self.area.capacity() * (8 + 16 + 8 + 8 + 8 + 4 + 1 + 4)
     }
 }
@@ -559,12 +619,14 @@ fn new_cell(
     let measures = polygon.measures();
     corners.clear();
     corners.extend(polygon.corners.iter().map(|r| on_ground(*r)));
+    let bed = ground.mean(corners);
     NewCell {
         point: layout.number(tile, k),
         centroid: on_ground(measures.centroid),
         area: measures.area,
         width: 2.0 * measures.area / measures.perimeter,
-        bed: ground.mean(corners),
+        bed,
+        heights: ground.heights(std::slice::from_ref(corners), bed),
         rim: rim(layout, tile, k, RIM),
         edges,
     }

@@ -73,8 +73,9 @@ impl StartWater<'_> {
         }
     }
 
-    /// The water of this body in a cell: its convex parts have corners in model coordinates.
-    pub(crate) fn column(&self, parts: &[Vec<[f64; 2]>], area: f64, bed: f64, scratch: &mut Clip) -> Column {
+    /// The water of this body in a cell, whose convex parts have corners in model coordinates.
+    pub(crate) fn column(&self, mesh: &Mesh, cell: usize, parts: &[Vec<[f64; 2]>], scratch: &mut Clip) -> Column {
+        let area = mesh.area[cell];
         let inside = |outline| parts.iter().map(|part| scratch.area_inside(outline, part)).sum::<f64>();
         let share = self.polygon.as_deref().map(inside).map_or(1.0, |inside| inside / area);
         if share <= 0.0 {
@@ -82,7 +83,7 @@ impl StartWater<'_> {
         }
         let depth = match &self.filling {
             Filling::Depth(depth) => mean_over(parts, |x, y| depth(x, y).max(0.0)),
-            Filling::Level(level) => (mean_over(parts, level) - bed).max(0.0),
+            Filling::Level(level) => mesh.depth_below(cell, mean_over(parts, level)),
         };
         let volume = share * area * depth;
         if volume <= 0.0 {
@@ -102,7 +103,7 @@ pub(crate) fn columns(mesh: &Mesh, bodies: &[StartWater]) -> Vec<Column> {
             mesh.parts(cell, parts);
             let mut sum = Column::default();
             for body in bodies {
-                let column = body.column(parts, mesh.area[cell], mesh.bed[cell], clip);
+                let column = body.column(mesh, cell, parts, clip);
                 sum.volume += column.volume;
                 (0..2).for_each(|axis| sum.momentum[axis] += column.momentum[axis]);
             }

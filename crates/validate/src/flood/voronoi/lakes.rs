@@ -1,10 +1,10 @@
 //! Lakes at rest, and after waves, on rough ground.
 
-use super::super::{GRAVITY, rows};
+use super::super::rows;
 use super::noise::squares;
 use super::{SEEDS, advance, all_sides, set_up, settings};
 use crate::{Case, Options, Row};
-use corpuscle_flood::{Filling, StartWater, VoronoiFlood, WetCell};
+use corpuscle_flood::{Filling, StartWater};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, NoData, Terrain as TerrainScene, TerrainFile};
 use corpuscle_terrain::{Bounds, Terrain};
@@ -152,42 +152,21 @@ impl Lake {
             };
             set_up(&settings, seed, terrain, &[water])
         };
-        let below = energy_below(&lake(0.0, 0.0)?, level);
         let mut flood = lake(surface, velocity)?;
-        let energy = |flood: &VoronoiFlood| energy_above(flood, level) + (below - energy_below(flood, level));
-        let start = energy(&flood);
+        let start = flood.energy_above_lake(level);
         let mut most = f64::NEG_INFINITY;
         for look in 1..=LOOKS {
             advance(&mut flood, self.time * look as f64 / LOOKS as f64)?;
-            most = most.max(energy(&flood));
+            most = most.max(flood.energy_above_lake(level));
         }
         let (mut moving, mut volume, mut farthest) = (0.0, 0.0, 0.0_f64);
         for cell in flood.wet_cells() {
             let [u, v] = cell.velocity;
             moving += cell.area * cell.depth * (u * u + v * v);
             volume += cell.area * cell.depth;
-            farthest = farthest.max((cell.bed + cell.depth - level).abs());
+            farthest = farthest.max((cell.level - level).abs());
         }
         let gained = if start > 0.0 { most / start - 1.0 } else { 0.0 };
         Ok(Settled { rms: (moving / volume).sqrt(), level: farthest, gained })
     }
-}
-
-/// Energy that a lake at rest at a level, m, has not, J: kinetic, and potential of the surface above or below the level and of water on ground above it;
-/// without that of dry cells that the lake would cover.
-fn energy_above(flood: &VoronoiFlood, level: f64) -> f64 {
-    let energy = |cell: WetCell| {
-        let [u, v] = cell.velocity;
-        let ground = cell.bed - level;
-        let surface = ground + cell.depth;
-        let raised = if ground > 0.0 { cell.depth * (cell.depth + 2.0 * ground) } else { surface * surface };
-        500.0 * cell.area * (cell.depth * (u * u + v * v) + GRAVITY * raised)
-    };
-    flood.wet_cells().map(energy).sum()
-}
-
-/// Energy that it takes to empty the wet cells below a level, m, with the lake at that level, J.
-fn energy_below(flood: &VoronoiFlood, level: f64) -> f64 {
-    let lake = flood.wet_cells().filter(|cell| cell.bed < level);
-    lake.map(|cell| 500.0 * GRAVITY * cell.area * (level - cell.bed).powi(2)).sum()
 }

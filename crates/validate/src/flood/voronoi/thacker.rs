@@ -6,7 +6,7 @@ use super::{Convergence, all_sides, run, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
-use corpuscle_scene::Edge;
+use corpuscle_scene::{Edge, Flood as Settings};
 use std::f64::consts::TAU;
 
 pub(in super::super) const PLANAR: Case = Case {
@@ -51,6 +51,11 @@ fn measure(case: &'static str, exact: Exact, period: f64) -> Result<Vec<Row>, Mo
 
 /// The water at `time` s, started as an exact solution has it.
 pub(super) fn swing(exact: Exact, time: f64, spacing: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
+    swing_with(&settings(spacing, 0.0, all_sides(&Edge::Wall)), exact, time, seed)
+}
+
+/// The same with settings.
+pub(super) fn swing_with(settings: &Settings, exact: Exact, time: f64, seed: u64) -> Result<VoronoiFlood, ModelError> {
     let terrain = bowl();
     let depth = |x: f64, y: f64| exact(x, y, 0.0).0 - terrain.height(x, y);
     let water = StartWater {
@@ -58,11 +63,11 @@ pub(super) fn swing(exact: Exact, time: f64, spacing: f64, seed: u64) -> Result<
         polygon: None,
         velocity: Box::new(move |x, y| exact(x, y, 0.0).1),
     };
-    run(&settings(spacing, 0.0, all_sides(&Edge::Wall)), seed, &terrain, &[water], time)
+    run(settings, seed, &terrain, &[water], time)
 }
 
 /// mean |h - h_exact| / mean h_exact on a grid of 2 cm.
-fn error(flood: &VoronoiFlood, exact: Exact, time: f64) -> f64 {
+pub(super) fn error(flood: &VoronoiFlood, exact: Exact, time: f64) -> f64 {
     let terrain = bowl();
     let bounds = bounds();
     let cells = 200;
