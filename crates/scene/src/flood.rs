@@ -60,6 +60,8 @@ pub struct Flood {
     pub finer: Vec<Finer>,
     /// How much water a cell holds below a level (scheme `voronoi`).
     pub storage: Storage,
+    /// Whether all cells take the same time step (scheme `voronoi`).
+    pub time_steps: TimeSteps,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
@@ -112,6 +114,7 @@ impl Default for Flood {
             refinement: None,
             finer: Vec::new(),
             storage: Storage::Mean,
+            time_steps: TimeSteps::Global,
             wet_depth_m: 0.01,
             map_every_s: None,
             balanced: Balanced::default(),
@@ -152,6 +155,16 @@ pub enum Storage {
     Mean,
     /// The heights of the ground within a cell count: a table of volume against level for each.
     LevelVolume,
+}
+
+/// Which time steps cells take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeSteps {
+    /// All the same.
+    Global,
+    /// Cells that can take longer steps do, where that saves time.
+    Local,
 }
 
 /// What the numbers of a flood are written in.

@@ -149,6 +149,7 @@ fn full(terrain: Terrain) -> Scene {
             crest_m: Some(1.0),
         }],
         storage: Storage::LevelVolume,
+        time_steps: TimeSteps::Local,
         finer: vec![Finer {
             spacing_m: 1.0,
             polygon: Some(vec![[0.0; 2]]),

@@ -12,7 +12,8 @@
 //! | `start`, `rain`, `structures` | where water comes from and goes to |
 //! | `maps` | what happened in each cell, on the terrain's grid |
 //!
-//! `solver.rs` is a step of the water, `storage.rs` what a cell holds below a level, `step.rs` one of the model.
+//! `solver.rs` is a step of the water, `local.rs` which cells take longer ones,
+//! `storage.rs` what a cell holds below a level, `step.rs` one of the model.
 
 mod bed;
 mod boundaries;
@@ -20,6 +21,7 @@ mod change;
 mod finer;
 mod fluxes;
 mod friction;
+mod local;
 mod maps;
 mod measures;
 mod mesh;

@@ -161,7 +161,10 @@ impl Model for VoronoiFlood {
         self.solver.columns = now;
         *self.solver.before_mut() = before;
         (self.shown, self.state) = (shown, state);
-        self.solver.renew();
+        self.solver.renew_as_they_are();
+        if self.state.steps > 0 {
+            self.solver.plan();
+        }
         Ok(())
     }
 }

@@ -4,6 +4,7 @@ use super::bed::Bed;
 use super::boundaries::Boundaries;
 use super::change::Overrides;
 use super::friction::Slowing;
+use super::local::Local;
 use super::maps::{DRY, Record};
 use super::mesh::{LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
@@ -20,7 +21,7 @@ use crate::structures::Structures;
 use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ModelError};
-use corpuscle_scene::Flood as Settings;
+use corpuscle_scene::{Flood as Settings, TimeSteps};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 use std::path::Path;
@@ -136,10 +137,12 @@ impl VoronoiFlood {
         roofs.iter_mut().zip(flat).filter(|(_, flat)| *flat).for_each(|(area, _)| *area = 0.0);
         let mut mesh = Mesh::new(layout);
         mesh.cut(&bed);
+        let mut solver = Solver::new(mesh, gravity, slowing, longest, brings);
+        solver.local = (settings.time_steps == TimeSteps::Local).then(Local::default);
         let mut model = Self {
             points: setup::point_gauges(&settings, &terrain)?,
             lines: setup::line_gauges(&settings, &terrain, spacing)?,
-            solver: Solver::new(mesh, gravity, slowing, longest, brings),
+            solver,
             inflows: Vec::new(),
             patches: Patches::default(),
             obstacle_of: Vec::new(),
@@ -237,6 +240,10 @@ impl VoronoiFlood {
         }
         self.solver.mesh.make(&tiles, &self.bed);
         self.solver.grow();
+        if self.solver.end_local_steps() {
+            let step = self.solver.time_step();
+            self.state.time_step = self.limited(step);
+        }
         let mesh = &self.solver.mesh;
         self.solver.slowing.extend(&self.roughness, self.solver.gravity, &mesh.centroid);
         self.state.records.resize(mesh.len(), DRY);

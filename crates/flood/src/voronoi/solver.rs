@@ -7,6 +7,7 @@
 use super::boundaries::Now;
 use super::fluxes::{Flux, Inputs, OnFaces, fluxes_of_chunk};
 use super::friction::Slowing;
+use super::local::Local;
 use super::mesh::{Crest, Mesh, NONE};
 use super::reconstruction::slopes;
 use super::water::{Column, Slopes, Water};
@@ -45,6 +46,8 @@ pub(crate) struct Solver {
     /// Whether something came to no number in the last stage: the step ends there.
     broken: bool,
     chunks: Chunks,
+    /// Cells take steps of their own where that pays; none where all are to take the same.
+    pub local: Option<Local>,
 }
 
 /// Which chunks have water, and which touch which.
@@ -120,6 +123,7 @@ impl Solver {
             brings,
             broken: false,
             chunks: Chunks::default(),
+            local: None,
         };
         solver.grow();
         solver
@@ -142,22 +146,56 @@ impl Solver {
         self.chunks.grow(&self.mesh, first_face, self.brings);
     }
 
-    /// Finds depth, level and velocity of all cells; the longest time step that they allow, s.
+    /// Finds depth, level and velocity of all cells; the longest time step that all can take, s.
     pub fn renew(&mut self) -> f64 {
-        let Self { mesh, columns, water, gravity, chunks, .. } = self;
-        let gravity = *gravity;
-        let renew = |(chunk, (columns, water)): (usize, (&mut [Column], &mut [Water]))| {
-            let mut found = NOTHING;
+        let Self { mesh, columns, water, .. } = self;
+        let cells = columns.par_chunks_mut(CHUNK).zip(water.par_chunks_mut(CHUNK)).enumerate();
+        cells.for_each(|(chunk, (columns, water))| {
             for (k, (column, water)) in columns.iter_mut().zip(water).enumerate() {
+                *water = mesh.water(chunk * CHUNK + k, column);
+            }
+        });
+        self.survey();
+        self.time_step()
+    }
+
+    /// The same from columns as a step left them, to the bit as it left them.
+    pub fn renew_as_they_are(&mut self) {
+        let Self { mesh, columns, water, .. } = self;
+        water.par_iter_mut().zip(&*columns).enumerate().for_each(|(cell, (water, column))| {
+            *water = mesh.water_as_it_is(cell, column);
+        });
+        self.survey();
+    }
+
+    /// Looks at the water of all cells.
+    fn survey(&mut self) {
+        let Self { mesh, water, gravity, chunks, .. } = self;
+        let gravity = *gravity;
+        let look = |(chunk, water): (usize, &[Water])| {
+            let mut found = NOTHING;
+            for (k, water) in water.iter().enumerate() {
                 let cell = chunk * CHUNK + k;
-                *water = mesh.water(cell, column);
                 found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
             }
             found
         };
-        let cells = columns.par_chunks_mut(CHUNK).zip(water.par_chunks_mut(CHUNK)).enumerate();
-        cells.map(renew).collect_into_vec(&mut chunks.found);
-        self.time_step()
+        water.par_chunks(CHUNK).enumerate().map(look).collect_into_vec(&mut chunks.found);
+        self.time_step();
+    }
+
+    /// How long the next step may be, s: where cells may take steps of their own, and that pays, the longest of them.
+    pub fn plan(&mut self) -> f64 {
+        let shortest = self.time_step();
+        let Self { mesh, water, gravity, local, longest, .. } = self;
+        let Some(local) = local else { return shortest };
+        let longest = *longest;
+        let step = |cell: usize| {
+            let water = &water[cell];
+            let fastest = water.speed() + (*gravity * water.depth).sqrt();
+            if water.depth > 0.0 { (COURANT * mesh.width[cell] / fastest).min(longest) } else { f64::INFINITY }
+        };
+        shortest * local.plan(mesh, shortest, step)
     }
 
     /// The time step that the last update allows, s; marks the chunks with water.
@@ -237,39 +275,87 @@ impl Solver {
     }
 
     /// Goes on by `step` s. `boundaries` gives what each border face does in the first and the second stage, by its number among
-    /// [`Solver::borders`]; `passed` is told what passed each.
+    /// [`Solver::borders`]; `passed` is told what passed each. `ended` is told how far it came, s, whenever cells have ended a step of their own.
     pub fn step(
         &mut self,
         step: f64,
         boundaries: &(impl Fn(usize, usize) -> Now + Sync),
         passed: &mut impl FnMut(usize, Passed),
-    ) -> (f64, Done) {
+        ended: &mut impl FnMut(&Self, f64),
+    ) -> Done {
         let mut done = Done::default();
         self.before.copy_from_slice(&self.columns);
         self.broken = false;
-        for stage in 0..2 {
-            self.chunks.activate(stage == 1);
-            self.find_slopes();
-            let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
-            self.pass_borders(step, passed);
-            let slowed = self.update(step, stage == 1);
-            self.broken = self.chunks.found.iter().any(|found| found.broken);
-            if self.broken {
-                break;
+        let parts = self.local.as_ref().map_or(1, Local::parts);
+        let shortest = step / f64::from(parts);
+        for part in 0..parts {
+            self.local.iter_mut().for_each(|local| local.begin(part, step));
+            for stage in 0..2 {
+                self.stage(shortest, stage, boundaries, passed, &mut done);
+                if self.broken {
+                    return done;
+                }
             }
-            for axis in 0..2 {
-                done.by_ground[axis] += 0.5 * step * by_ground[axis];
-                done.slowed[axis] += 0.5 * slowed[axis];
-            }
-            self.time_step();
+            ended(self, f64::from(part + 1) * shortest);
         }
-        (self.time_step(), done)
+        if self.steps_are_local() {
+            self.survey();
+        }
+        done
+    }
+
+    fn stage(
+        &mut self,
+        step: f64,
+        stage: usize,
+        boundaries: &(impl Fn(usize, usize) -> Now + Sync),
+        passed: &mut impl FnMut(usize, Passed),
+        done: &mut Done,
+    ) {
+        let second = stage == 1;
+        let Self { local, columns, water, .. } = self;
+        local.iter_mut().filter(|local| local.is_on()).for_each(|local| local.show(second, columns, water));
+        self.chunks.activate(second);
+        self.find_slopes();
+        let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
+        self.pass_borders(step, passed);
+        let slowed = if self.steps_are_local() { self.update_local(second) } else { self.update(step, second) };
+        let Self { mesh, local, columns, water, .. } = self;
+        let on = local.iter().filter(|local| second && local.is_on());
+        on.for_each(|local| local.show_ended(mesh, columns, water));
+        self.broken = self.chunks.found.iter().any(|found| found.broken);
+        for axis in 0..2 {
+            done.by_ground[axis] += 0.5 * step * by_ground[axis];
+            done.slowed[axis] += 0.5 * slowed[axis];
+        }
+        self.time_step();
+    }
+
+    /// All cells take the same step from here on, as some were added; whether they did not before.
+    pub fn end_local_steps(&mut self) -> bool {
+        let were = self.steps_are_local();
+        self.local.iter_mut().for_each(Local::end);
+        were
+    }
+
+    fn steps_are_local(&self) -> bool {
+        self.local.as_ref().is_some_and(Local::is_on)
+    }
+
+    /// Whether a cell has ended a step in the last part of the last step, how long it took, s, and the volume in the cell before it, m3.
+    pub fn ended(&self, cell: usize, step: f64) -> Option<(f64, f64)> {
+        match self.local.as_ref().filter(|local| local.is_on()) {
+            None => Some((step, self.before[cell].volume)),
+            Some(local) => local.has_ended(cell).then(|| (local.step(cell), local.start(cell).volume)),
+        }
     }
 
     fn find_slopes(&mut self) {
-        let Self { mesh, water, slopes, chunks, .. } = self;
+        let Self { mesh, water, slopes, chunks, local, .. } = self;
+        let local = local.as_ref().filter(|local| local.is_on());
         slopes.par_chunks_mut(CHUNK).enumerate().filter(|(chunk, _)| chunks.wet[*chunk]).for_each(|(chunk, slopes)| {
-            dispatch!(Level::new(), simd => slopes_of_chunk(simd, mesh, water, chunk * CHUNK, slopes));
+            let seen = |cell: usize| local.is_none_or(|local| local.view[cell] <= local.now);
+            dispatch!(Level::new(), simd => slopes_of_chunk(simd, mesh, water, chunk * CHUNK, slopes, seen));
         });
     }
 
@@ -286,10 +372,11 @@ impl Solver {
     /// Finds the fluxes of the faces in active chunks; where `draining` holds, only of those beside a cell that lacks the water for its outflow, with
     /// what it has.
     fn for_active_faces(&mut self, step: f64, draining: bool, boundaries: &(impl Fn(usize) -> Now + Sync)) {
-        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, .. } = self;
+        let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, local, .. } = self;
+        let local = local.as_ref().filter(|local| local.is_on());
         let outflow_time = step * (*most_faces as f64);
         let kept = draining.then_some(&kept[..]);
-        let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time };
+        let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time, local };
         let Chunks { active_faces, were_active, all_kept, cells_of_faces, on_faces, .. } = chunks;
         let find = |(chunk, (fluxes, found)): (usize, (&mut [Flux], &mut OnFaces))| {
             if !active_faces[chunk] {
@@ -307,7 +394,8 @@ impl Solver {
 
     /// Finds what part of the outflow of each cell it has the water for, in chunks where some cell may lack it.
     fn find_kept(&mut self, step: f64) {
-        let Self { mesh, columns, fluxes, kept, chunks, .. } = self;
+        let Self { mesh, columns, water, fluxes, kept, chunks, local, .. } = self;
+        let local = local.as_ref().filter(|local| local.is_on());
         let Chunks { may_drain, all_kept, .. } = chunks;
         let find = |(chunk, (kept, all_kept)): (usize, (&mut [f32], &mut bool))| {
             if !*all_kept {
@@ -316,7 +404,12 @@ impl Solver {
             *all_kept = true;
             if may_drain[chunk] {
                 for (k, kept) in kept.iter_mut().enumerate() {
-                    *kept = kept_of_cell(mesh, fluxes, columns[chunk * CHUNK + k].volume, chunk * CHUNK + k, step);
+                    let cell = chunk * CHUNK + k;
+                    let (volume, step) = match local {
+                        None => (columns[cell].volume, step),
+                        Some(local) => (water[cell].depth * mesh.area[cell], local.step(cell)),
+                    };
+                    *kept = kept_of_cell(mesh, fluxes, volume, cell, step);
                     *all_kept &= *kept == 1.0;
                 }
             }
@@ -326,15 +419,17 @@ impl Solver {
 
     /// Tells what passes the faces on borders in half of `step` s.
     fn pass_borders(&self, step: f64, passed: &mut impl FnMut(usize, Passed)) {
+        let local = self.local.as_ref().filter(|local| local.is_on());
         for (number, &border) in self.borders.iter().enumerate() {
             let face = &self.mesh.faces[border as usize];
             let cell = face.cells[0] as usize;
             let flux = &self.fluxes[border as usize];
-            if self.water[cell].depth <= 0.0 && flux.volume == 0.0 {
+            let takes_part = local.is_none_or(|local| local.takes_part(cell));
+            if !takes_part || (self.water[cell].depth <= 0.0 && flux.volume == 0.0) {
                 continue;
             }
             let depth = self.water[cell].depth;
-            let half = 0.5 * step;
+            let half = 0.5 * step * local.map_or(1.0, |local| local.times(cell));
             // The cell's own thrust is left out: round the cell it comes to nothing.
             let own = 0.5 * self.gravity * depth * depth;
             let momentum = [0, 1].map(|axis| half * (own * face.normal[axis] - flux.momentum[0][axis]));
@@ -392,6 +487,66 @@ impl Solver {
         sum(chunks.found.iter().map(|found| &found.slowed))
     }
 
+    /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell goes on by.
+    fn update_local(&mut self, second: bool) -> [f64; 2] {
+        let Self { mesh, columns, water, fluxes, chunks, slowing, gravity, local, .. } = self;
+        let Some(local) = local else { return [0.0; 2] };
+        let (gravity, active, were) = (*gravity, &chunks.active_cells, &chunks.wet);
+        let mut sums = std::mem::take(&mut local.sum);
+        let local = &*local;
+        let update = |(chunk, ((columns, sums), water)): (usize, LocalCells)| {
+            // Cells that do not take part now may have water.
+            let mut found = Found { wet: were[chunk], ..NOTHING };
+            if !active[chunk] {
+                return found;
+            }
+            for (k, ((column, sum), water)) in columns.iter_mut().zip(sums).zip(water).enumerate() {
+                let cell = chunk * CHUNK + k;
+                if !local.takes_part(cell) {
+                    continue;
+                }
+                let change = gathered(mesh, fluxes, cell);
+                found.broken |= !(change.volume + change.momentum[0] + change.momentum[1]).is_finite();
+                let (start, step, share) = (local.start(cell), local.step(cell), local.share(cell));
+                let mut next = if second { *column } else { *start };
+                let volume = (next.volume + step * change.volume).max(0.0);
+                next.volume = volume;
+                (0..2).for_each(|axis| next.momentum[axis] += step * change.momentum[axis]);
+                let area = mesh.area[cell];
+                let [p, q] = next.momentum;
+                let factor = slowing.factor(cell, volume / area, (p * p + q * q).sqrt() / area, step);
+                for axis in 0..2 {
+                    let slowed = (factor - 1.0) * next.momentum[axis];
+                    next.momentum[axis] += slowed;
+                    found.slowed[axis] += share * slowed;
+                }
+                let mut weight = share;
+                if second {
+                    let mean = next.mean(*start);
+                    sum.volume += share * mean.volume;
+                    (0..2).for_each(|axis| sum.momentum[axis] += share * mean.momentum[axis]);
+                    if !local.ends(cell) {
+                        continue;
+                    }
+                    (next, weight) = (*sum, 2.0);
+                }
+                let [p, q] = next.momentum;
+                *water = mesh.water(cell, &mut next);
+                found.slowed[0] += weight * (next.momentum[0] - p);
+                found.slowed[1] += weight * (next.momentum[1] - q);
+                *column = next;
+                found.see(water, mesh.width[cell], mesh.rim[cell], gravity);
+            }
+            found
+        };
+        let cells = columns.par_chunks_mut(CHUNK).zip(sums.par_chunks_mut(CHUNK)).zip(water.par_chunks_mut(CHUNK));
+        cells.enumerate().map(update).collect_into_vec(&mut chunks.found);
+        if let Some(local) = &mut self.local {
+            local.sum = sums;
+        }
+        sum(self.chunks.found.iter().map(|found| &found.slowed))
+    }
+
     /// Gives back the room that no cell needs.
     pub fn shrink(&mut self) {
         let Self { mesh, columns, water, slopes, before, fluxes, kept, borders, .. } = self;
@@ -409,6 +564,7 @@ impl Solver {
         self.mesh.bytes()
             + self.columns.capacity() * (2 * size_of::<Column>() + size_of::<Water>() + size_of::<Slopes>() + 4)
             + self.fluxes.capacity() * size_of::<Flux>()
+            + self.local.as_ref().map_or(0, Local::bytes)
     }
 }
 
@@ -449,14 +605,24 @@ fn kept_of_cell(mesh: &Mesh, fluxes: &[Flux], volume: f64, cell: usize, step: f6
     if outflow > volume { ((volume / outflow) as f32).next_down().max(0.0) } else { 1.0 }
 }
 
+/// Columns of a chunk, what they come to at the end of their own steps, and their water.
+type LocalCells<'a> = ((&'a mut [Column], &'a mut [Column]), &'a mut [Water]);
+
 /// Columns of a chunk, the same before the step, and their water.
 type Cells<'a> = ((&'a mut [Column], &'a [Column]), &'a mut [Water]);
 
-/// Slopes of the wet cells from `first` on. Inlined into versions of itself for the vector instructions at hand.
+/// Slopes of the wet cells from `first` on for which `seen` holds. Inlined into versions of itself for the vector instructions at hand.
 #[inline(always)]
-fn slopes_of_chunk<S: Simd>(_: S, mesh: &Mesh, water: &[Water], first: usize, of_cells: &mut [Slopes]) {
+fn slopes_of_chunk<S: Simd>(
+    _: S,
+    mesh: &Mesh,
+    water: &[Water],
+    first: usize,
+    of_cells: &mut [Slopes],
+    seen: impl Fn(usize) -> bool,
+) {
     for (k, of_cell) in of_cells.iter_mut().enumerate() {
-        if water[first + k].depth > 0.0 {
+        if water[first + k].depth > 0.0 && seen(first + k) {
             *of_cell = slopes(mesh, &|cell: usize| water[cell], first + k);
         }
     }

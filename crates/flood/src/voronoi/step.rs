@@ -1,7 +1,7 @@
 //! A step of the model: what falls from the air, the water's motion, and what comes and goes.
 
 use super::patch::Change;
-use super::solver::Passed;
+use super::solver::{Passed, Solver};
 use super::water::Column;
 use super::{DENSITY, State, VoronoiFlood, maps, walls};
 use crate::fields::block_velocity;
@@ -66,14 +66,13 @@ impl VoronoiFlood {
         }
         self.state.particle_steps += self.solver.wet_cells() as u64;
         self.state.steps += 1;
-        maps::record(&self.solver, &mut self.state.records, until, step, self.settings.wet_depth_m);
         self.bring_and_take(from, until);
         let missing = self.solver.missing_tiles();
         if !missing.is_empty() {
             self.make_tiles(missing)?;
         }
         (self.state.before, self.state.time) = (from, until);
-        let step = self.solver.time_step();
+        let step = self.solver.plan();
         self.state.time_step = self.limited(step);
         Ok(())
     }
@@ -83,7 +82,8 @@ impl VoronoiFlood {
         self.boundaries.prepare(&self.solver, from, step, &self.state.beyond);
         let boundaries = &self.boundaries;
         let now = |stage: usize, border: usize| boundaries.now(stage, border);
-        let State { water, momentum, energy, forces, .. } = &mut self.state;
+        let wet_depth = self.settings.wet_depth_m;
+        let State { water, momentum, energy, forces, records, .. } = &mut self.state;
         // Thrusts of ground and walls are far larger than what they come to together: only that is booked.
         let mut gained = ExactSum::default();
         let obstacle_of = &self.obstacle_of;
@@ -96,7 +96,8 @@ impl VoronoiFlood {
             }
             passed.momentum.into_iter().for_each(|momentum| gained.add(-momentum));
         };
-        let (_, done) = self.solver.step(step, &now, &mut book);
+        let mut record = |solver: &Solver, done: f64| maps::record(solver, records, from + done, step, wet_depth);
+        let done = self.solver.step(step, &now, &mut book, &mut record);
         done.slowed.iter().chain(&done.by_ground).for_each(|momentum| gained.add(*momentum));
         momentum.book(DENSITY * gained.value());
         for (impulse, force) in self.state.impulses.iter_mut().zip(&self.state.forces) {

@@ -67,19 +67,23 @@ impl Water {
     /// The water of a column over a cell of an area, m2, where `level` gives the level for a depth, m; momentum that its velocity does not carry is taken off the column.
     #[inline]
     pub fn of(column: &mut Column, area: f64, level: impl FnOnce(f64) -> f64) -> Self {
-        let depth = (column.volume / area).max(0.0);
-        let velocity = if depth >= THIN {
-            column.momentum.map(|momentum| momentum / column.volume)
-        } else if depth < STILL {
+        let depth = column.volume / area;
+        if depth < STILL {
             column.momentum = [0.0; 2];
-            [0.0; 2]
-        } else {
+        } else if depth < THIN {
             let thin = THIN * area;
-            let factor = 2.0 * column.volume / (column.volume * column.volume + thin * thin);
-            let velocity = column.momentum.map(|momentum| momentum * factor);
-            column.momentum = velocity.map(|velocity| velocity * column.volume);
-            velocity
-        };
+            let factor = 2.0 * column.volume * column.volume / (column.volume * column.volume + thin * thin);
+            column.momentum = column.momentum.map(|momentum| momentum * factor);
+        }
+        Self::as_it_is(column, area, level)
+    }
+
+    /// The same of a column whose momentum was looked at before.
+    #[inline]
+    pub fn as_it_is(column: &Column, area: f64, level: impl FnOnce(f64) -> f64) -> Self {
+        let depth = (column.volume / area).max(0.0);
+        let moves = depth >= STILL;
+        let velocity = column.momentum.map(|momentum| if moves { momentum / column.volume } else { 0.0 });
         Self { depth, level: level(depth), velocity }
     }
 

@@ -5,7 +5,7 @@ mod ground;
 use super::{Check, Checked};
 use crate::{
     Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
-    StartVelocity, Storage, Water,
+    StartVelocity, Storage, TimeSteps, Water,
 };
 use std::collections::HashMap;
 
@@ -30,6 +30,11 @@ impl Check {
         self.require("flood.storage", flood.storage == Storage::Mean || flood.scheme == Scheme::Voronoi, || {
             "is for scheme = \"voronoi\": particles of the other schemes have no cells".into()
         })?;
+        self.require(
+            "flood.time_steps",
+            flood.time_steps == TimeSteps::Global || flood.scheme == Scheme::Voronoi,
+            || "is for scheme = \"voronoi\": particles of the other schemes all take the same step".into(),
+        )?;
         self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
         if let Some(period) = flood.map_every_s {
             self.above("flood.map_every_s", period, 0.0)?;

@@ -1,6 +1,7 @@
 //! The pass over faces: eight at a time between cells, one at a time on borders.
 
 use super::super::boundaries::{Now, through};
+use super::super::local::Local;
 use super::super::mesh::{Face, Mesh, SOLID};
 use super::super::reconstruction::{Faces, at_side, at_wall, differences};
 use super::super::water::{DEPTH, LEVEL, Slopes, Water};
@@ -20,6 +21,43 @@ pub(crate) struct Inputs<'a> {
     pub kept: Option<&'a [f32]>,
     /// Time step, s, times the number of faces that a cell has at most.
     pub outflow_time: f64,
+    /// Where cells take steps of their own: `outflow_time` is for the shortest.
+    pub local: Option<&'a Local>,
+}
+
+impl Inputs<'_> {
+    /// Whether some of the faces are beside a cell whose fluxes are needed now.
+    #[inline(always)]
+    fn are_needed(&self, faces: &[Face]) -> bool {
+        let needed = |local: &Local, face: &Face| {
+            let near = |cell: u32| local.near.get(cell as usize).is_some_and(|near| *near <= local.now);
+            face.cells.into_iter().any(near)
+        };
+        self.local.is_none_or(|local| faces.iter().any(|face| needed(local, face)))
+    }
+
+    /// For how many of the shortest steps what faces do counts, in the first cells and in the second.
+    #[inline(always)]
+    fn weights(&self, local: &Local, faces: &[Face]) -> [[f64; LANES]; 2] {
+        self.of_cells(faces, |cell| local.times(cell))
+    }
+
+    /// The steps of the first and the second cells times the number of faces that a cell has at most, s.
+    #[inline(always)]
+    fn outflow_times(&self, local: &Local, faces: &[Face]) -> [[f64; LANES]; 2] {
+        let faces_a_cell = self.outflow_time / local.shortest;
+        self.of_cells(faces, |cell| faces_a_cell * local.step(cell))
+    }
+
+    /// A value of the cells on both sides of faces between cells; 0 on borders.
+    #[inline(always)]
+    fn of_cells(&self, faces: &[Face], value: impl Fn(usize) -> f64) -> [[f64; LANES]; 2] {
+        let mut lanes = [[0.0; LANES]; 2];
+        for (k, face) in faces.iter().enumerate().filter(|(_, face)| face.border().is_none()) {
+            (0..2).for_each(|side| lanes[side][k] = value(face.cells[side] as usize));
+        }
+        lanes
+    }
 }
 
 /// What a chunk of faces did.
@@ -45,6 +83,9 @@ pub(crate) fn fluxes_of_chunk<S: Simd>(
     let faces = &inputs.mesh.faces[first..first + fluxes.len()];
     for (block, (fluxes, faces)) in fluxes.chunks_mut(LANES).zip(faces.chunks(LANES)).enumerate() {
         let number = first + block * LANES;
+        if !inputs.are_needed(faces) {
+            continue;
+        }
         may_drain |= block_between(simd, inputs, number, faces, fluxes, &mut by_ground);
         for (k, (flux, face)) in
             fluxes.iter_mut().zip(faces).enumerate().filter(|(_, (_, face))| face.border().is_some())
@@ -71,16 +112,29 @@ fn block_between<S: Simd>(
         fluxes.fill(Flux::default());
         return false;
     }
+    let block_faces = faces;
     let (faces, limits, length) = block.turned(simd);
     let own = [[faces.water[0][DEPTH], faces.water[0][LEVEL]], [faces.water[1][DEPTH], faces.water[1][LEVEL]]];
     let found = between(simd, faces.at(simd), own, inputs.gravity);
     let half = 0.5 * inputs.gravity;
-    let pushed = (found.thrust[1] + own[1][0] * own[1][0] * half) - (found.thrust[0] + own[0][0] * own[0][0] * half);
+    let on_first = found.thrust[0] + own[0][0] * own[0][0] * half;
+    let on_second = found.thrust[1] + own[1][0] * own[1][0] * half;
+    let (pushed, times) = match inputs.local {
+        None => (on_second - on_first, [Lanes::splat(simd, inputs.outflow_time); 2]),
+        Some(local) => {
+            let [first, second] = inputs.weights(local, block_faces);
+            let [first, second] = [first, second].map(|lanes| Lanes::simd_from(simd, lanes));
+            (
+                on_second * second - on_first * first,
+                inputs.outflow_times(local, block_faces).map(|lanes| Lanes::simd_from(simd, lanes)),
+            )
+        }
+    };
     by_ground[0] += pushed * length * faces.normal[0];
     by_ground[1] += pushed * length * faces.normal[1];
     store(simd, &found, limits.kept, faces.normal, length, fluxes);
-    let out = found.volume * length * inputs.outflow_time;
-    (out - limits.volume[0]).max(-out - limits.volume[1]).largest() > 0.0
+    let out = found.volume * length;
+    (out * times[0] - limits.volume[0]).max(-(out * times[1]) - limits.volume[1]).largest() > 0.0
 }
 
 /// What eight faces can let out of the cells on both sides.
@@ -220,5 +274,7 @@ fn border_flux<S: Simd>(
     let kept = inputs.kept.map_or(1.0, |kept| f64::from(kept[cell]));
     let found = through(now, at, [here.depth, here.level], inputs.gravity);
     *flux = found.through(length, [nx, ny], kept);
-    found.volume * length * inputs.outflow_time > here.depth * inputs.mesh.area[cell]
+    let time =
+        inputs.local.map_or(inputs.outflow_time, |local| inputs.outflow_time / local.shortest * local.step(cell));
+    found.volume * length * time > here.depth * inputs.mesh.area[cell]
 }

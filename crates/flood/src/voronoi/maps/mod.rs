@@ -29,13 +29,14 @@ pub(crate) struct Record {
 pub(crate) const DRY: Record =
     Record { max_depth: 0.0, fastest: [0.0; 2], hazard: 0.0, arrival: f32::NAN, duration: 0.0 };
 
-/// Records the water after a step of `step` s that ended at `time` s. The time at which a depth was passed is found on the straight line between
+/// Records the water after a step of `step` s, or of steps of their own of cells, that ended at `time` s. The time at which a depth was passed is found on the straight line between
 /// the depths before and after.
 pub(crate) fn record(solver: &Solver, records: &mut [Record], time: f64, step: f64, wet_depth: f64) {
     solver.for_wet_chunks(records, |cell, record| {
         let water = &solver.water[cell];
-        let before = solver.before()[cell].volume / solver.mesh.area[cell];
-        record.see(water, before, time, step, wet_depth);
+        if let Some((step, before)) = solver.ended(cell, step) {
+            record.see(water, before / solver.mesh.area[cell], time, step, wet_depth);
+        }
     });
 }
 

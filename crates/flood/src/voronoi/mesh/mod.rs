@@ -490,6 +490,11 @@ impl Mesh {
         Water::of(column, self.area[cell], |depth| self.level(cell, depth))
     }
 
+    /// The same of a column whose momentum was looked at before: see [`Water::as_it_is`].
+    pub fn water_as_it_is(&self, cell: usize, column: &Column) -> Water {
+        Water::as_it_is(column, self.area[cell], |depth| self.level(cell, depth))
+    }
+
     /// By how much the second cell of a face stands higher than its bed says, m.
     #[inline]
     pub fn lift_of(&self, face: usize) -> f64 {
