@@ -4,7 +4,7 @@ use super::bed::Bed;
 use super::boundaries::Boundaries;
 use super::change::Overrides;
 use super::friction::Slowing;
-use super::local::Local;
+use super::local::{HIGHEST, Local};
 use super::maps::{DRY, Record};
 use super::mesh::{LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
@@ -128,6 +128,10 @@ impl VoronoiFlood {
         let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), obstacles.outlines(), &lines))?;
         if !grading.is_even() {
             layout.refine(grading);
+        }
+        if settings.time_steps == TimeSteps::Local {
+            // Many short steps are taken before tiles are made.
+            layout.rim *= f64::from(1_u32 << HIGHEST);
         }
         let longest = 0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt();
         lines.extend(walls::of_sides(&settings, &terrain)?);

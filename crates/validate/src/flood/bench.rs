@@ -1,6 +1,6 @@
 //! Rates of the flood model.
 
-use super::{SEED, error_cost, run, settings, water_everywhere};
+use super::{SEED, error_cost, run, settings, time_steps, water_everywhere};
 use crate::bench::Measuring;
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_flood::{Filling, Flood, StartWater, VoronoiFlood};
@@ -65,6 +65,12 @@ pub(crate) const BENCHES: &[Bench] = &[
         needs_card: false,
         run: |_| error_cost::measured(),
     },
+    Bench {
+        name: "flood/voronoi-time-steps",
+        about: "Scheme voronoi with finer cells round a place, all cells with the same time step and with steps of their own, in turn: an eighth as wide over 4 m; use --threads 1.",
+        needs_card: false,
+        run: |_| time_steps::measured(),
+    },
 ];
 
 /// Scheme and particles of each.
@@ -99,15 +105,34 @@ fn voronoi_rate(name: &'static str, particles: usize, waves: bool, options: &Ben
 
 /// The same water by scheme voronoi; still at a level of 1 m where it has no waves.
 fn voronoi(particles: usize, waves: bool) -> Result<VoronoiFlood, ModelError> {
+    filled(particles, SEED, if waves { 0.1 } else { 0.0 }, |_| ())
+}
+
+/// The same water in waves, with settings changed.
+pub(super) fn waters(
+    particles: usize,
+    seed: u64,
+    change: impl FnOnce(&mut Settings),
+) -> Result<VoronoiFlood, ModelError> {
+    filled(particles, seed, 0.1, change)
+}
+
+/// The same water in waves of a height, m.
+fn filled(
+    particles: usize,
+    seed: u64,
+    height: f64,
+    change: impl FnOnce(&mut Settings),
+) -> Result<VoronoiFlood, ModelError> {
     let (_, terrain, mut settings) = basin(Scheme::Voronoi, particles);
     settings.manning = Manning::Number(0.03);
-    let height = if waves { 0.1 } else { 0.0 };
+    change(&mut settings);
     let water = StartWater {
         filling: Filling::Level(Box::new(move |x, _| 1.0 + height * (0.05 * x).sin())),
         polygon: None,
         velocity: Box::new(move |_, y| [10.0 * height * (0.07 * y).sin(), 0.0]),
     };
-    VoronoiFlood::with_water(&settings, SEED, Path::new("."), terrain, &[water])
+    VoronoiFlood::with_water(&settings, seed, Path::new("."), terrain, &[water])
 }
 
 /// Ground with a relief of its own under room for so many particles 1 m apart, and the settings of a flood there.

@@ -16,6 +16,7 @@ mod solids;
 mod structures;
 mod swashes;
 mod thacker;
+mod time_steps;
 mod triangular_obstacle;
 mod voronoi;
 mod weather;

@@ -19,9 +19,8 @@ const REACH: f64 = 1.5;
 /// Overlaps of edges shorter than this part of the spacing are no faces.
 const SHORTEST: f64 = 1e-11;
 
-/// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings: pieces that are joined to it lie farther
-/// out than its point.
-const RIM: f64 = 6.0;
+/// [`Layout::rim`] of cells near walls over that of others: pieces that are joined to them lie farther out than their points.
+const RIM: f64 = 2.0;
 
 /// The cells near walls.
 #[derive(Debug, Default)]
@@ -500,7 +499,7 @@ impl<'a> Build<'a> {
             width,
             bed: heights / whole,
             heights: ground.heights(&parts, heights / whole),
-            rim: rim(self.layout, tile, k, RIM),
+            rim: rim(self.layout, tile, k, RIM * self.layout.rim),
             edges,
         };
         (cell, parts)

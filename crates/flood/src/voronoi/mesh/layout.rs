@@ -17,6 +17,9 @@ const POINTS_A_SIDE: f64 = 32.0;
 /// Fewest points along a side of the terrain: no cell is its own neighbour, and none is another's twice.
 const FEWEST_A_SIDE: f64 = 5.0;
 
+/// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings, where water comes two cells on in a step.
+const RIM: f64 = 3.0;
+
 /// Greatest shift of a point from its place in the lattice, part of the spacing.
 const JITTER: f64 = 0.5;
 
@@ -50,6 +53,9 @@ pub(crate) struct Layout {
     graded: HashMap<u32, OnceLock<Points>>,
     /// Room in the numbers of points for those of a tile.
     most_points: usize,
+    /// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings. Cells with a neighbour that is not
+    /// made stay dry so.
+    pub rim: f64,
 }
 
 /// The points of a tile, bin by bin.
@@ -137,6 +143,7 @@ impl Layout {
             tiles: [1; 2],
             tile,
             most_points: points.len(),
+            rim: RIM,
             pattern: Points::sorted(points, &[], lattice.map(|points| points as usize), tile),
             grading: Grading::default(),
             graded: HashMap::new(),

@@ -157,10 +157,6 @@ type Pending = (u32, u32, u64);
 /// The tiles round a tile.
 pub(crate) const AROUND: [[i64; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
-/// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings. Cells with a neighbour
-/// that is not made stay dry so.
-const RIM: f64 = 3.0;
-
 /// A cell of a tile that is being made.
 #[derive(Debug, Clone)]
 struct NewCell {
@@ -632,7 +628,7 @@ fn new_cell(
         width: 2.0 * measures.area / measures.perimeter,
         bed,
         heights: ground.heights(std::slice::from_ref(corners), bed),
-        rim: rim(layout, tile, k, RIM),
+        rim: rim(layout, tile, k, layout.rim),
         edges,
     }
 }
