@@ -210,6 +210,26 @@ fn cells_with_heights_hold_what_is_below_the_level() {
     assert!(stored("mean") < 0.1 * exact, "{}", stored("mean"));
 }
 
+/// Of the same water both ways to count energy, the second without what cancels out, come down alike, however cells hold it.
+#[test]
+fn energy_above_a_lake_falls_as_energy_does() {
+    for storage in ["mean", "level-volume"] {
+        let keys = format!(
+            "spacing_m = 2.3\nstorage = \"{storage}\"\n{WALLS}water = [{{ level_m = 1.1, polygon = [[0, 0], [25, 0], [25, 30], [0, 30]] }}]"
+        );
+        let mut flood = basin(&keys, 6, |x, y| 0.3 * (2.5 * x).sin() * (2.0 * y).sin()).unwrap();
+        let energy = |flood: &VoronoiFlood| [flood.energy(0.0).iter().sum::<f64>(), flood.energy_above_lake(0.1)];
+        let before = energy(&flood);
+        go(&mut flood, 8.0);
+        let after = energy(&flood);
+        let [lost, seen] = [0, 1].map(|way| before[way] - after[way]);
+        assert!(
+            lost > 0.1 * before[1] && (lost - seen).abs() < 1e-9 * before[1],
+            "{storage}: {lost} {seen} {before:?}"
+        );
+    }
+}
+
 #[test]
 fn what_came_in_is_the_hydrograph_to_the_last_drop() {
     let keys = format!(

@@ -394,6 +394,17 @@ fn tables_of_scheme_balanced_without_a_scheme_are_refused_with_what_to_write() {
 }
 
 #[test]
+fn what_only_cells_have() {
+    for key in ["storage = \"level-volume\"", "time_steps = \"local\""] {
+        let of_cells = GOOD.replace("scheme = \"balanced\"", &format!("scheme = \"voronoi\"\n{key}"));
+        Scene::parse(&of_cells, "test", &[]).unwrap();
+        let other = refuse(&of_cells.replace("\"voronoi\"", "\"balanced\""), &[]);
+        let name = key.split(' ').next().unwrap();
+        assert!(other.contains(&format!("flood.{name}")) && other.contains("is for scheme = \"voronoi\""), "{other}");
+    }
+}
+
+#[test]
 fn paddles() {
     let good = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"");
     let with = |edge: &str| good.replace("west = \"wall\"", &format!("west = {edge}"));

@@ -170,6 +170,7 @@ mod tests {
             let corners = [[-0.6, -0.5], [0.7, -0.4], [0.5, 0.6], [-0.3, 0.7]].map(|[a, b]| [x + a, y + b]);
             let [found, exact] = [bed.mean(&corners), endless.mean_over(&corners)];
             assert!((found - exact).abs() < 1e-8, "{x} {y}: {found} {exact}");
+            assert!((bed.height([x, y]) - endless.height(x, y)).abs() < 1e-8, "{x} {y}");
         }
     }
 }

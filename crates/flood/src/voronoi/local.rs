@@ -1,4 +1,4 @@
-//! Time steps of their own for parts of the cells.
+//! Local time steps: cells that can take longer steps than others do.
 //!
 //! The shortest step that any cell needs is doubled 0 to [`HIGHEST`] times for each cell: its level. In the time of the longest step cells of lower levels
 //! take two or four steps of Heun's method; those of higher levels near them repeat the stages of theirs from the same start each time, and go on by the
@@ -55,6 +55,11 @@ impl Local {
     /// Whether cells take steps of their own.
     pub fn is_on(&self) -> bool {
         !self.level.is_empty()
+    }
+
+    /// The steps where cells take steps of their own; none where all take the same.
+    pub fn in_use(local: Option<&Self>) -> Option<&Self> {
+        local.filter(|local| local.is_on())
     }
 
     /// Number of the shortest steps in the longest.
@@ -184,9 +189,7 @@ impl Local {
             }
         });
     }
-}
 
-impl Local {
     /// Shows the water of cells that had that of their second stage to show, as they left it.
     pub fn show_ended(&self, mesh: &Mesh, columns: &[Column], water: &mut [Water]) {
         if self.now == self.highest {

@@ -339,12 +339,12 @@ impl Solver {
     }
 
     fn steps_are_local(&self) -> bool {
-        self.local.as_ref().is_some_and(Local::is_on)
+        Local::in_use(self.local.as_ref()).is_some()
     }
 
     /// Whether a cell has ended a step in the last part of the last step, how long it took, s, and the volume in the cell before it, m3.
     pub fn ended(&self, cell: usize, step: f64) -> Option<(f64, f64)> {
-        match self.local.as_ref().filter(|local| local.is_on()) {
+        match Local::in_use(self.local.as_ref()) {
             None => Some((step, self.before[cell].volume)),
             Some(local) => local.has_ended(cell).then(|| (local.step(cell), local.start(cell).volume)),
         }
@@ -352,7 +352,7 @@ impl Solver {
 
     fn find_slopes(&mut self) {
         let Self { mesh, water, slopes, chunks, local, .. } = self;
-        let local = local.as_ref().filter(|local| local.is_on());
+        let local = Local::in_use(local.as_ref());
         slopes.par_chunks_mut(CHUNK).enumerate().filter(|(chunk, _)| chunks.wet[*chunk]).for_each(|(chunk, slopes)| {
             let seen = |cell: usize| local.is_none_or(|local| local.view[cell] <= local.now);
             dispatch!(Level::new(), simd => slopes_of_chunk(simd, mesh, water, chunk * CHUNK, slopes, seen));
@@ -373,7 +373,7 @@ impl Solver {
     /// what it has.
     fn for_active_faces(&mut self, step: f64, draining: bool, boundaries: &(impl Fn(usize) -> Now + Sync)) {
         let Self { mesh, water, slopes, fluxes, chunks, gravity, borders, kept, most_faces, local, .. } = self;
-        let local = local.as_ref().filter(|local| local.is_on());
+        let local = Local::in_use(local.as_ref());
         let outflow_time = step * (*most_faces as f64);
         let kept = draining.then_some(&kept[..]);
         let inputs = Inputs { mesh, water, slopes, borders, gravity: *gravity, kept, outflow_time, local };
@@ -395,7 +395,7 @@ impl Solver {
     /// Finds what part of the outflow of each cell it has the water for, in chunks where some cell may lack it.
     fn find_kept(&mut self, step: f64) {
         let Self { mesh, columns, water, fluxes, kept, chunks, local, .. } = self;
-        let local = local.as_ref().filter(|local| local.is_on());
+        let local = Local::in_use(local.as_ref());
         let Chunks { may_drain, all_kept, .. } = chunks;
         let find = |(chunk, (kept, all_kept)): (usize, (&mut [f32], &mut bool))| {
             if !*all_kept {
@@ -419,7 +419,7 @@ impl Solver {
 
     /// Tells what passes the faces on borders in half of `step` s.
     fn pass_borders(&self, step: f64, passed: &mut impl FnMut(usize, Passed)) {
-        let local = self.local.as_ref().filter(|local| local.is_on());
+        let local = Local::in_use(self.local.as_ref());
         for (number, &border) in self.borders.iter().enumerate() {
             let face = &self.mesh.faces[border as usize];
             let cell = face.cells[0] as usize;
@@ -456,16 +456,8 @@ impl Solver {
                 let change = gathered(mesh, fluxes, cell);
                 found.broken |= !(change.volume + change.momentum[0] + change.momentum[1]).is_finite();
                 if column.volume > 0.0 || change.volume != 0.0 {
-                    column.volume = (column.volume + step * change.volume).max(0.0);
-                    (0..2).for_each(|axis| column.momentum[axis] += step * change.momentum[axis]);
-                    let area = mesh.area[cell];
-                    let [p, q] = column.momentum;
-                    let factor = slowing.factor(cell, column.volume / area, (p * p + q * q).sqrt() / area, step);
-                    (0..2).for_each(|axis| {
-                        let slowed = (factor - 1.0) * column.momentum[axis];
-                        column.momentum[axis] += slowed;
-                        found.slowed[axis] += slowed;
-                    });
+                    let slowed = go_on(column, &change, step, slowing, (cell, mesh.area[cell]));
+                    (0..2).for_each(|axis| found.slowed[axis] += slowed[axis]);
                     if second {
                         *column = column.mean(before[k]);
                     }
@@ -509,17 +501,8 @@ impl Solver {
                 found.broken |= !(change.volume + change.momentum[0] + change.momentum[1]).is_finite();
                 let (start, step, share) = (local.start(cell), local.step(cell), local.share(cell));
                 let mut next = if second { *column } else { *start };
-                let volume = (next.volume + step * change.volume).max(0.0);
-                next.volume = volume;
-                (0..2).for_each(|axis| next.momentum[axis] += step * change.momentum[axis]);
-                let area = mesh.area[cell];
-                let [p, q] = next.momentum;
-                let factor = slowing.factor(cell, volume / area, (p * p + q * q).sqrt() / area, step);
-                for axis in 0..2 {
-                    let slowed = (factor - 1.0) * next.momentum[axis];
-                    next.momentum[axis] += slowed;
-                    found.slowed[axis] += share * slowed;
-                }
+                let slowed = go_on(&mut next, &change, step, slowing, (cell, mesh.area[cell]));
+                (0..2).for_each(|axis| found.slowed[axis] += share * slowed[axis]);
                 let mut weight = share;
                 if second {
                     let mean = next.mean(*start);
@@ -578,6 +561,19 @@ impl Found {
             self.step = self.step.min(width / (water.speed() + (gravity * water.depth).sqrt()));
         }
     }
+}
+
+/// Takes a column an Euler step of `step` s on by a change, a second, and slows it, over a cell of an area, m2; the change of its momentum by
+/// friction, over density, m4/s.
+#[inline(always)]
+fn go_on(column: &mut Column, change: &Column, step: f64, slowing: &Slowing, (cell, area): (usize, f64)) -> [f64; 2] {
+    column.volume = (column.volume + step * change.volume).max(0.0);
+    (0..2).for_each(|axis| column.momentum[axis] += step * change.momentum[axis]);
+    let [p, q] = column.momentum;
+    let factor = slowing.factor(cell, column.volume / area, (p * p + q * q).sqrt() / area, step);
+    let slowed = column.momentum.map(|momentum| (factor - 1.0) * momentum);
+    (0..2).for_each(|axis| column.momentum[axis] += slowed[axis]);
+    slowed
 }
 
 /// Change of a cell's column, a second.

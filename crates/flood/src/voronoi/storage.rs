@@ -1,4 +1,4 @@
-//! The volume that a cell holds below a level, where the heights of the ground within it count (`flood.storage = "level_volume"`).
+//! The volume that a cell holds below a level, where the heights of the ground within it count (`flood.storage = "level-volume"`).
 //!
 //! The ground of a cell is taken as level parts of the same area, each at a height of its own, as in the tables of volume against level of
 //! Casulli (2009, "A high-resolution wetting and drying algorithm for free-surface hydrodynamics", equation 7). So a cell in which the water stands
