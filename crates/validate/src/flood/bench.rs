@@ -67,7 +67,7 @@ pub(crate) const BENCHES: &[Bench] = &[
     },
     Bench {
         name: "flood/voronoi-time-steps",
-        about: "Scheme voronoi with finer cells round a place, all cells with the same time step and with steps of their own, in turn: an eighth as wide over 4 m; use --threads 1.",
+        about: "Scheme voronoi with finer cells over a part (a quarter as wide over 8 m, an eighth over 4 m), with one time step for all and with local time steps, in turn; use --threads 1.",
         needs_card: false,
         run: |_| time_steps::measured(),
     },
@@ -105,22 +105,12 @@ fn voronoi_rate(name: &'static str, particles: usize, waves: bool, options: &Ben
 
 /// The same water by scheme voronoi; still at a level of 1 m where it has no waves.
 fn voronoi(particles: usize, waves: bool) -> Result<VoronoiFlood, ModelError> {
-    filled(particles, SEED, if waves { 0.1 } else { 0.0 }, |_| ())
+    filled(particles, if waves { 0.1 } else { 0.0 }, |_| ())
 }
 
-/// The same water in waves, with settings changed.
-pub(super) fn waters(
+/// The same water in waves of a height, m, with settings changed.
+pub(super) fn filled(
     particles: usize,
-    seed: u64,
-    change: impl FnOnce(&mut Settings),
-) -> Result<VoronoiFlood, ModelError> {
-    filled(particles, seed, 0.1, change)
-}
-
-/// The same water in waves of a height, m.
-fn filled(
-    particles: usize,
-    seed: u64,
     height: f64,
     change: impl FnOnce(&mut Settings),
 ) -> Result<VoronoiFlood, ModelError> {
@@ -132,7 +122,7 @@ fn filled(
         polygon: None,
         velocity: Box::new(move |_, y| [10.0 * height * (0.07 * y).sin(), 0.0]),
     };
-    VoronoiFlood::with_water(&settings, seed, Path::new("."), terrain, &[water])
+    VoronoiFlood::with_water(&settings, SEED, Path::new("."), terrain, &[water])
 }
 
 /// Ground with a relief of its own under room for so many particles 1 m apart, and the settings of a flood there.
