@@ -1,6 +1,7 @@
 //! What a flood scene says. Lengths in m, times in s, discharges in m3/s, in the terrain's coordinates
 //! (for a geographic terrain: longitude and latitude in degrees wherever a place is named).
 
+mod adaptive;
 mod finer;
 mod obstacle;
 mod rain;
@@ -8,6 +9,7 @@ mod refinement;
 mod start;
 mod structures;
 
+pub use adaptive::Adaptive;
 pub use finer::Finer;
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
@@ -58,6 +60,9 @@ pub struct Flood {
     pub refinement: Option<Refinement>,
     /// Parts of the terrain with finer cells (scheme `voronoi`).
     pub finer: Vec<Finer>,
+    /// Cells that become finer where the water is shallow on uneven ground (scheme `voronoi`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<Adaptive>,
     /// How much water a cell holds below a level (scheme `voronoi`).
     pub storage: Storage,
     /// Whether all cells take the same time step (scheme `voronoi`).
@@ -113,6 +118,7 @@ impl Default for Flood {
             rain: None,
             refinement: None,
             finer: Vec::new(),
+            adaptive: None,
             storage: Storage::Mean,
             time_steps: TimeSteps::Global,
             wet_depth_m: 0.01,

@@ -159,6 +159,7 @@ fn full(terrain: Terrain) -> Scene {
             walls: true,
             within_m: 1.0,
         }],
+        adaptive: Some(Adaptive { finest_m: 1.0, rise_over_depth: 1.0, fronts: true, every_steps: 1 }),
         gauge: vec![Gauge { name: "a".into(), at: place, lon_lat: place }],
         section: vec![Section { name: "a".into(), line: vec![[0.0; 2]] }],
         observed_extent: Some("a".into()),
@@ -367,7 +368,7 @@ fn the_guide_tells_the_defaults() {
                 0], to = [9, 9], law = { culvert = { diameter_m = 1 } } }, { name = \"b\", from = [0, 0], to = [9, 9], law = \
                 { weir = { crest_m = 1, width_m = 1 } } }]\nland_use = { raster = \"a\", class = [{ code = 1 }] }";
     compared += compare_defaults(&Scene::parse(rain, "smallest", &[]).unwrap(), &told);
-    let finer = "run.until_s = 1\nterrain.plane = {}\n[flood]\nscheme = \"voronoi\"\nfiner = [{ spacing_m = 3, polygon = [[0, 0], [9, 0], [9, 9]] }]";
+    let finer = "run.until_s = 1\nterrain.plane = {}\n[flood]\nscheme = \"voronoi\"\nfiner = [{ spacing_m = 3, polygon = [[0, 0], [9, 0], [9, 9]] }]\nadaptive = { finest_m = 3 }";
     compared += compare_defaults(&Scene::parse(finer, "smallest", &[]).unwrap(), &told);
     let gas = "run.until_s = 1\ngas = { size = [9, 9], ball = [{ position = [2, 2], radius = 1, mass = 1 }], species = [\
                { name = \"a\", count = 1, radius = 1, mass = 1, temperature = 1 }], walls = { x_max = { piston = { \

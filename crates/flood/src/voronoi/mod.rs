@@ -11,10 +11,12 @@
 //! | `friction` | Manning, Chezy, linear |
 //! | `start`, `rain`, `structures` | where water comes from and goes to |
 //! | `maps` | what happened in each cell, on the terrain's grid |
+//! | `adaptive` | cells that follow the water |
 //!
 //! `solver.rs` is a step of the water, `local.rs` which cells take longer ones,
 //! `storage.rs` what a cell holds below a level, `step.rs` one of the model.
 
+mod adaptive;
 mod bed;
 mod boundaries;
 mod change;
@@ -50,6 +52,8 @@ use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::sampling::Sample;
 use crate::structures::{Flows, Structures};
+use crate::zone::Zone;
+use adaptive::Adaptive;
 use bed::Bed;
 use boundaries::Boundaries;
 use change::Overrides;
@@ -84,6 +88,9 @@ pub struct VoronoiFlood {
     /// Area of each obstacle from which rain runs off, m2.
     roofs: Vec<f64>,
     solver: Solver,
+    adaptive: Option<Adaptive>,
+    /// How many tiles were made for inflows, structures and held sides: the first ones.
+    zone_tiles: usize,
     inflows: Vec<Inflow>,
     weather: Option<Weather>,
     structures: Structures,
@@ -99,6 +106,7 @@ pub struct VoronoiFlood {
 
 /// Water that comes in over a part of the ground.
 struct Inflow {
+    zone: Zone,
     patch: Patch,
     /// m3/s over time.
     discharge: Table,
@@ -135,6 +143,10 @@ struct State {
     forces: Vec<[f64; 2]>,
     warnings: Vec<String>,
     overrides: Overrides,
+    /// Blocks with finer cells, by number, and how often the spacing is halved there. Kept in the mesh while the model runs.
+    blocks: Vec<(u32, u8)>,
+    /// How often the cells were made anew.
+    remakes: u64,
 }
 
 impl VoronoiFlood {

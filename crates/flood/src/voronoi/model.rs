@@ -119,6 +119,7 @@ impl Model for VoronoiFlood {
     fn save(&self) -> Vec<u8> {
         let state = State {
             tiles: self.solver.mesh.made.clone(),
+            blocks: self.solver.mesh.layout.blocks().finer(),
             columns: [self.solver.columns.clone(), self.solver.before().to_vec()],
             ..self.state.clone()
         };
@@ -137,6 +138,9 @@ impl Model for VoronoiFlood {
         // The tiles that a model without water has made come first, and in any state of this scene too.
         let made = self.solver.mesh.made.len().min(state.tiles.len());
         if self.solver.mesh.made[..made] != state.tiles[..made] || self.solver.mesh.made.len() > state.tiles.len() {
+            return Err(other());
+        }
+        if !self.restore_blocks(&state.blocks)? {
             return Err(other());
         }
         for tile in state.tiles.split_off(made) {

@@ -1,12 +1,13 @@
 //! How a flood is set up.
 
+use super::adaptive::Adaptive;
 use super::bed::Bed;
 use super::boundaries::Boundaries;
 use super::change::Overrides;
 use super::friction::Slowing;
 use super::local::{HIGHEST, Local};
 use super::maps::{DRY, Record};
-use super::mesh::{LINE, Layout, Mesh, NONE};
+use super::mesh::{Blocks, Grading, LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
 use super::rain::{Soaked, Weather};
 use super::solver::Solver;
@@ -76,6 +77,13 @@ impl VoronoiFlood {
         let mut model = Self::empty(settings, seed, folder, terrain)?;
         model.make_first_tiles(bodies)?;
         model.fill(bodies)?;
+        for _ in 0..model.looks_at_start() {
+            if !model.adapt_to_start()? {
+                break;
+            }
+            model.fill(bodies)?;
+        }
+        model.warn_of_empty(bodies);
         model.begin(seed);
         Ok(model)
     }
@@ -123,17 +131,17 @@ impl VoronoiFlood {
             energy: Account::default(),
             warnings: Vec::new(),
             overrides: Overrides::default(),
+            blocks: Vec::new(),
+            remakes: 0,
         };
         let mut lines = walls::of_lines(&settings, &terrain, spacing)?;
         let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), obstacles.outlines(), &lines))?;
-        if !grading.is_even() {
-            layout.refine(grading);
-        }
+        let adaptive = refine(&mut layout, grading, settings.adaptive)?;
         if settings.time_steps == TimeSteps::Local {
             // Many short steps are taken before tiles are made.
             layout.rim *= f64::from(1_u32 << HIGHEST);
         }
-        let longest = 0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt();
+        let longest = longest_step(&layout, gravity);
         lines.extend(walls::of_sides(&settings, &terrain)?);
         let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing, settings.storage);
         let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
@@ -147,6 +155,8 @@ impl VoronoiFlood {
             points: setup::point_gauges(&settings, &terrain)?,
             lines: setup::line_gauges(&settings, &terrain, spacing)?,
             solver,
+            adaptive,
+            zone_tiles: 0,
             inflows: Vec::new(),
             patches: Patches::default(),
             obstacle_of: Vec::new(),
@@ -196,6 +206,7 @@ impl VoronoiFlood {
                 )));
             }
         }
+        self.zone_tiles = mesh.made.len();
         self.patches = Patches::of(&self.structures, mesh);
         for (source, written) in sources.into_iter().zip(&self.settings.inflow) {
             let patch = Patch::of(&source.zone, mesh);
@@ -205,7 +216,8 @@ impl VoronoiFlood {
                     "the inflow '{name}' lies where there is no ground: in an obstacle or where the terrain has no data"
                 )));
             }
-            self.inflows.push(Inflow { patch, discharge: source.discharge, velocity: source.velocity });
+            let (zone, discharge, velocity) = (source.zone, source.discharge, source.velocity);
+            self.inflows.push(Inflow { zone, patch, discharge, velocity });
         }
         if self.weather.as_ref().is_some_and(Weather::rains) {
             self.make_all_tiles()?;
@@ -234,6 +246,11 @@ impl VoronoiFlood {
         tiles.sort_unstable();
         tiles.dedup();
         tiles.retain(|tile| !self.solver.mesh.has(*tile));
+        self.make_in_order(&tiles)
+    }
+
+    /// Makes tiles that are not made yet, each after the one before it.
+    pub(super) fn make_in_order(&mut self, tiles: &[usize]) -> Result<(), ModelError> {
         let layout = &self.solver.mesh.layout;
         let cells = self.solver.mesh.len() as f64 + tiles.iter().map(|tile| layout.about(*tile)).sum::<f64>();
         if cells > MOST_CELLS {
@@ -242,7 +259,7 @@ impl VoronoiFlood {
                  take a larger flood.spacing_m"
             )));
         }
-        self.solver.mesh.make(&tiles, &self.bed);
+        self.solver.mesh.make(tiles, &self.bed);
         self.solver.grow();
         if self.solver.end_local_steps() {
             let step = self.solver.time_step();
@@ -296,6 +313,14 @@ impl VoronoiFlood {
             }
             self.make_tiles(missing)?;
         }
+        Ok(())
+    }
+
+    /// Says of which bodies of water there is none.
+    fn warn_of_empty(&mut self, bodies: &[StartWater]) {
+        if self.solver.mesh.len() == 0 && bodies.is_empty() {
+            return;
+        }
         for (number, body) in bodies.iter().enumerate() {
             let some = start::columns(&self.solver.mesh, std::slice::from_ref(body)).iter().any(|c| c.volume > 0.0);
             if !some {
@@ -305,7 +330,6 @@ impl VoronoiFlood {
                 ));
             }
         }
-        Ok(())
     }
 
     fn begin(&mut self, seed: u64) {
@@ -337,4 +361,38 @@ impl VoronoiFlood {
         let starts = self.solver.water.iter().map(|water| Record::start(water, wet_depth));
         self.state.records = starts.collect();
     }
+}
+
+/// The longest time step, s: where there is no water yet, or hardly any.
+pub(super) fn longest_step(layout: &Layout, gravity: f64) -> f64 {
+    0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt()
+}
+
+/// Has a layout finer cells where a scene asks for them; what makes cells follow the water, if it does.
+///
+/// # Errors
+/// [`ModelError::Setup`] where the finest cells would not be finer than others.
+fn refine(
+    layout: &mut Layout,
+    grading: Grading,
+    settings: Option<corpuscle_scene::Adaptive>,
+) -> Result<Option<Adaptive>, ModelError> {
+    let has_parts = !grading.is_even();
+    let Some(settings) = settings else {
+        if has_parts {
+            layout.refine(grading, 0);
+        }
+        return Ok(None);
+    };
+    let spacing = layout.spacing();
+    if settings.finest_m >= spacing {
+        return Err(setup(format!(
+            "flood.adaptive.finest_m is {}: must be smaller than {spacing:.4}, the spacing elsewhere",
+            settings.finest_m
+        )));
+    }
+    let deepest = grading.level_of(settings.finest_m);
+    let grading = grading.with(Blocks::new(layout));
+    layout.refine(grading, deepest);
+    Ok(Some(Adaptive::new(settings, layout, has_parts)))
 }

@@ -58,6 +58,7 @@ impl VoronoiFlood {
     }
 
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
+        self.adapt()?;
         let (from, step) = (self.state.time, self.state.time_step);
         let until = from + step;
         self.move_water(from, step);

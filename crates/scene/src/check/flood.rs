@@ -4,7 +4,7 @@ mod ground;
 
 use super::{Check, Checked};
 use crate::{
-    Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
+    Adaptive, Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
     StartVelocity, Storage, TimeSteps, Water,
 };
 use std::collections::HashMap;
@@ -50,6 +50,9 @@ impl Check {
         }
         for (index, finer) in flood.finer.iter().enumerate() {
             self.finer(&format!("flood.finer.{index}"), finer, flood)?;
+        }
+        if let Some(adaptive) = &flood.adaptive {
+            self.adaptive(adaptive, flood)?;
         }
         for (index, outflow) in flood.outflow.iter().enumerate() {
             self.outflow(&format!("flood.outflow.{index}"), outflow)?;
@@ -118,10 +121,23 @@ impl Check {
         self.require(&format!("{key}.walls"), !finer.walls || !flood.obstacle.is_empty(), || {
             "there is no [[flood.obstacle]] to be finer at".into()
         })?;
-        let key = format!("{key}.spacing_m");
-        self.above(&key, finer.spacing_m, 0.0)?;
+        self.finer_spacing(&format!("{key}.spacing_m"), finer.spacing_m, flood)
+    }
+
+    fn adaptive(&self, adaptive: &Adaptive, flood: &Flood) -> Checked {
+        self.require("flood.adaptive", flood.scheme == Scheme::Voronoi, || {
+            "is for scheme = \"voronoi\": scheme balanced has flood.refinement".into()
+        })?;
+        self.above("flood.adaptive.rise_over_depth", adaptive.rise_over_depth, 0.0)?;
+        self.require("flood.adaptive.every_steps", adaptive.every_steps >= 1, || "must be at least 1".into())?;
+        self.finer_spacing("flood.adaptive.finest_m", adaptive.finest_m, flood)
+    }
+
+    /// A spacing that is smaller than elsewhere.
+    fn finer_spacing(&self, key: &str, spacing: f64, flood: &Flood) -> Checked {
+        self.above(key, spacing, 0.0)?;
         let Some(coarse) = flood.spacing_m else { return Ok(()) };
-        self.require(&key, finer.spacing_m < coarse && finer.spacing_m >= coarse / FINEST, || {
+        self.require(key, spacing < coarse && spacing >= coarse / FINEST, || {
             format!("must be smaller than flood.spacing_m = {coarse}, and not more than {FINEST} times")
         })
     }

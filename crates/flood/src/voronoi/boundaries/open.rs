@@ -133,6 +133,23 @@ impl Boundaries {
         self.now.iter_mut().for_each(|now| now.resize(self.of_faces.len(), Now::Wall));
     }
 
+    /// Clears what is known of the border faces.
+    pub fn forget_faces(&mut self) {
+        self.of_faces.clear();
+        self.ground.clear();
+        self.now.iter_mut().for_each(Vec::clear);
+    }
+
+    /// The rule of a border face, by its number; none at solids.
+    pub fn rule_of(&self, border: usize) -> Option<u16> {
+        self.of_faces[border]
+    }
+
+    /// Whether a border face is on an open side.
+    pub fn is_open(&self, border: usize) -> bool {
+        self.of_faces[border].is_some_and(|rule| matches!(self.rules[usize::from(rule)], Boundary::Open))
+    }
+
     /// What a border face does in a stage of the step.
     #[inline]
     pub fn now(&self, stage: usize, border: usize) -> Now {

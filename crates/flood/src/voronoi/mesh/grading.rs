@@ -3,16 +3,18 @@
 //! The spacing is halved a whole number of times, its level. Round a part with finer cells it grows again by a level at a time, so that neighbours
 //! differ by a factor of two at most. The points of a level are the pattern of a tile made smaller; each is there where its level is asked for.
 
+use super::blocks::{Blocks, lowered};
 use super::layout::Points;
 use crate::setup::is_inside;
 use crate::voronoi::walls::{Wall, WallKind, Walls};
 use corpuscle_terrain::{Bounds, Polygon};
+use std::sync::Arc;
 
 /// The spacing is halved so often at most.
 const DEEPEST: u8 = 6;
 
 /// Width of the band over which a level lasts, in spacings of the finer level next to it.
-const BAND: f64 = 8.0;
+pub(super) const BAND: f64 = 8.0;
 
 /// Points of a level are left out that are nearer than this, in their spacings, to a point of the coarser level beside it.
 const NEAREST: f64 = 0.8;
@@ -37,14 +39,16 @@ struct Part {
 /// Where cells are finer.
 #[derive(Debug, Default)]
 pub(crate) struct Grading {
-    parts: Vec<Part>,
+    parts: Arc<Vec<Part>>,
+    /// What the water asks for beside the parts.
+    blocks: Blocks,
     spacing: f64,
 }
 
 impl Grading {
     /// No finer cells, where the spacing is `spacing` m elsewhere.
     pub fn new(spacing: f64) -> Self {
-        Self { parts: Vec::new(), spacing }
+        Self { parts: Arc::default(), blocks: Blocks::default(), spacing }
     }
 
     /// Adds the inside of polygons and the ground `within` m of their sides and of `lines`: cells about `spacing` m wide. `bounds` are those of
@@ -59,7 +63,7 @@ impl Grading {
     ) {
         let whole = |polygon: Polygon| polygon.into_iter().filter(|ring| ring.len() >= 3).collect();
         let polygons: Vec<Polygon> = polygons.into_iter().map(whole).collect();
-        let level = (self.spacing / spacing).log2().round().clamp(0.0, f64::from(DEEPEST)) as u8;
+        let level = self.level_of(spacing);
         let spacing = self.spacing / f64::from(1 << level);
         let far = within + BAND * self.spacing;
         let sides = polygons.iter().flatten().flat_map(|ring| {
@@ -73,7 +77,25 @@ impl Grading {
         let (x_min, x_max, y_min, y_max) = (x_min - width, x_max + width, y_min - length, y_max + length);
         let lines = Walls::new(lines, Bounds { x_min, x_max, y_min, y_max }, far);
         let band = 0.5 * BAND * self.spacing;
-        self.parts.push(Part { level, spacing, within, band, polygons, lines });
+        let part = Part { level, spacing, within, band, polygons, lines };
+        if let Some(parts) = Arc::get_mut(&mut self.parts) {
+            parts.push(part);
+        }
+    }
+
+    /// The same parts, with other blocks.
+    pub fn with(&self, blocks: Blocks) -> Self {
+        Self { parts: Arc::clone(&self.parts), blocks, spacing: self.spacing }
+    }
+
+    /// How often the spacing is halved for about `spacing` m.
+    pub fn level_of(&self, spacing: f64) -> u8 {
+        (self.spacing / spacing).log2().round().clamp(0.0, f64::from(DEEPEST)) as u8
+    }
+
+    /// The blocks.
+    pub fn blocks(&self) -> &Blocks {
+        &self.blocks
     }
 
     /// Whether cells are the same everywhere.
@@ -83,12 +105,21 @@ impl Grading {
 
     /// How often the spacing is halved at most.
     pub fn finest(&self) -> u8 {
-        self.parts.iter().map(|part| part.level).max().unwrap_or(0)
+        self.parts.iter().map(|part| part.level).max().unwrap_or(0).max(self.blocks.finest())
+    }
+
+    /// How often the parts have the spacing halved at most at a position, given with its images beyond joined sides.
+    pub fn of_parts(&self, images: impl Iterator<Item = [f64; 2]>) -> u8 {
+        images.flat_map(|at| self.parts.iter().map(move |part| part.level_at(at, 0.0))).max().unwrap_or(0)
     }
 
     /// How often the spacing is halved at most within `reach` m of a position, given with its images beyond joined sides.
     pub fn finest_within(&self, images: impl Iterator<Item = [f64; 2]>, reach: f64) -> u8 {
-        images.flat_map(|at| self.parts.iter().map(move |part| part.level_at(at, reach))).max().unwrap_or(0)
+        let at_image = |at: [f64; 2]| {
+            let of_parts = self.parts.iter().map(|part| part.level_at(at, reach)).max().unwrap_or(0);
+            of_parts.max(self.blocks.level_within(at, reach))
+        };
+        images.map(at_image).max().unwrap_or(0)
     }
 
     /// The points of a tile of size `tile` m, whose pattern is `pattern`; `images` gives where a position in the tile is, once or, round joined sides, more
@@ -203,11 +234,7 @@ impl Part {
     fn level_at(&self, at: [f64; 2], reach: f64) -> u8 {
         let sure = self.within + reach;
         let beyond = self.distance(at, sure + self.band) - sure;
-        if beyond <= 0.0 {
-            return self.level;
-        }
-        let steps = (1.0 + beyond / (BAND * self.spacing)).log2().ceil();
-        self.level.saturating_sub(steps.min(255.0) as u8)
+        lowered(self.level, beyond, self.spacing * f64::from(1 << self.level))
     }
 
     /// Distance of a position from the inside of the polygons or from the lines, m; infinite where it is more than `farthest`.

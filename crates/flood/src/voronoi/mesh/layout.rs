@@ -2,13 +2,14 @@
 //!
 //! Any part of the plane can be filled when water comes there, and always with the same particles.
 
+use super::blocks::Blocks;
 use super::grading::Grading;
 use super::polygon::{Beyond, Polygon};
 use corpuscle_terrain::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
 
 /// Points along a side of a tile, where the terrain is wide enough.
@@ -51,6 +52,8 @@ pub(crate) struct Layout {
     grading: Grading,
     /// The points of the tiles with finer cells, found when they are first asked for.
     graded: HashMap<u32, OnceLock<Points>>,
+    /// The tiles in which parts of the terrain have finer cells, whatever the blocks.
+    of_parts: Vec<u32>,
     /// Room in the numbers of points for those of a tile.
     most_points: usize,
     /// How near to a side of its tile a cell must be for the next tile to be made before it gets wet, in spacings. Cells with a neighbour that is not
@@ -147,6 +150,7 @@ impl Layout {
             pattern: Points::sorted(points, &[], lattice.map(|points| points as usize), tile),
             grading: Grading::default(),
             graded: HashMap::new(),
+            of_parts: Vec::new(),
         };
         for _ in 0..ROUNDS {
             pattern.relax();
@@ -154,20 +158,73 @@ impl Layout {
         Self { bounds, periodic, tiles: tiles.map(|count| count as usize), ..pattern }
     }
 
-    /// Has finer cells in parts of the terrain.
-    pub fn refine(&mut self, grading: Grading) {
+    /// Has finer cells in parts of the terrain. The spacing is halved `deepest` times at most, now or later.
+    pub fn refine(&mut self, grading: Grading, deepest: u8) {
         let count = self.tiles[0] * self.tiles[1];
         let reach = 0.5 * self.tile[0].hypot(self.tile[1]);
-        let graded = (0..count).into_par_iter().filter(|tile| {
-            let corner = self.corner(*tile);
-            let middle = [0, 1].map(|axis| corner[axis] + 0.5 * self.tile[axis]);
-            grading.finest_within(self.images(middle), reach) > 0
-        });
-        self.graded = graded.map(|tile| (tile as u32, OnceLock::new())).collect::<Vec<_>>().into_iter().collect();
+        if !grading.is_even() {
+            let graded = (0..count).into_par_iter().filter(|tile| {
+                let corner = self.corner(*tile);
+                let middle = [0, 1].map(|axis| corner[axis] + 0.5 * self.tile[axis]);
+                grading.finest_within(self.images(middle), reach) > 0
+            });
+            self.of_parts = graded.map(|tile| tile as u32).collect();
+        }
+        self.graded = self.of_parts.iter().map(|tile| (*tile, OnceLock::new())).collect();
         // As many as where all of a tile is as fine as anything, and some more where coarse points stand beside it.
         let whole = self.pattern.at.len();
-        self.most_points = whole * (1 << (2 * grading.finest())) + whole;
+        self.most_points = whole * (1 << (2 * deepest.max(grading.finest()))) + whole;
         self.grading = grading;
+    }
+
+    /// The same layout with other blocks. Tiles whose blocks, and those round them, are the same keep their points.
+    pub fn with(&self, blocks: Blocks) -> Self {
+        let touched = self.tiles_of(self.grading.blocks()).into_iter().chain(self.tiles_of(&blocks));
+        let changed: HashSet<u32> = self.tiles_of(&blocks.difference(self.grading.blocks())).into_iter().collect();
+        let mut tiles: Vec<u32> = touched.chain(self.of_parts.iter().copied()).collect();
+        tiles.sort_unstable();
+        tiles.dedup();
+        let kept = |tile: &u32| self.graded.get(tile).filter(|_| !changed.contains(tile)).cloned().unwrap_or_default();
+        Self {
+            graded: tiles.iter().map(|tile| (*tile, kept(tile))).collect(),
+            of_parts: self.of_parts.clone(),
+            pattern: self.pattern.clone(),
+            grading: self.grading.with(blocks),
+            ..*self
+        }
+    }
+
+    /// The tiles in which cells may be finer for the sake of blocks, in the order of their numbers.
+    fn tiles_of(&self, blocks: &Blocks) -> Vec<u32> {
+        let far = blocks.band() + self.spacing();
+        let mut tiles: Vec<u32> = Vec::new();
+        for (block, _) in blocks.finer() {
+            let [low, high] = blocks.corners(block as usize).map(|corner| [0, 1].map(|axis| corner[axis] - self.corner(0)[axis]));
+            let span = |axis: usize| {
+                let tile = |x: f64| (x / self.tile[axis]).floor() as i64;
+                tile(low[axis] - far)..=tile(high[axis] + far)
+            };
+            let round = span(1).flat_map(|row| span(0).map(move |column| [column, row]));
+            tiles.extend(round.filter_map(|away| self.beside(0, away)).map(|tile| tile as u32));
+        }
+        tiles.sort_unstable();
+        tiles.dedup();
+        tiles
+    }
+
+    /// The blocks that say where cells are finer for the water's sake.
+    pub fn blocks(&self) -> &Blocks {
+        self.grading.blocks()
+    }
+
+    /// How often the spacing is halved at a position for the sake of parts of the terrain.
+    pub fn level_of_parts(&self, at: [f64; 2]) -> u8 {
+        self.grading.of_parts(self.images(at))
+    }
+
+    /// How often the spacing is halved for about `spacing` m.
+    pub fn level_of(&self, spacing: f64) -> u8 {
+        self.grading.level_of(spacing)
     }
 
     /// Moves each point to the centroid of its cell.
@@ -266,6 +323,19 @@ impl Layout {
         let corner = self.corner(tile);
         let images = |within: [f64; 2]| self.images([0, 1].map(|axis| corner[axis] + within[axis]));
         self.grading.points(&self.pattern.at, self.tile, images)
+    }
+
+    /// Where a position beyond a joined side is inside, m.
+    pub fn home(&self, at: [f64; 2]) -> [f64; 2] {
+        let (low, size) = ([self.bounds.x_min, self.bounds.y_min], self.bounds.size());
+        [0, 1].map(|axis| {
+            let x = at[axis] - low[axis];
+            if self.periodic[axis] && !(0.0..size[axis]).contains(&x) {
+                low[axis] + x.rem_euclid(size[axis])
+            } else {
+                at[axis]
+            }
+        })
     }
 
     /// Where a position is, round joined sides too.
@@ -422,7 +492,7 @@ mod tests {
         let square = vec![vec![[-9.0, 9.0], [9.0, 9.0], [9.0, 21.0], [-9.0, 21.0]]];
         grading.add(0.28, 1.0, vec![square], std::iter::empty(), layout.bounds);
         grading.add(0.55, 2.0, Vec::new(), [[[40.0, 30.0], [80.0, 50.0]]].into_iter(), layout.bounds);
-        layout.refine(grading);
+        layout.refine(grading, 0);
         layout
     }
 

@@ -1,11 +1,13 @@
 //! The cells of the particles and the faces between them, made where there is water or where it may come next.
 
+mod blocks;
 mod cuts;
 mod grading;
 mod layout;
 mod polygon;
 mod split;
 
+pub(crate) use blocks::Blocks;
 pub(crate) use cuts::Crest;
 pub(crate) use grading::Grading;
 pub(crate) use layout::Layout;

@@ -139,6 +139,13 @@ impl Weather {
         Ok(())
     }
 
+    /// Clears what was looked up for each cell.
+    pub fn forget_cells(&mut self) {
+        self.factors.clear();
+        self.law.clear();
+        self.roofs.clear();
+    }
+
     /// What has soaked in at each cell of the terrain's grid, 0 where no water has come near; none where nothing soaks in.
     pub fn map(&self, mesh: &Mesh, terrain: &Terrain, soaked: &Soaked) -> Option<Map> {
         self.soaks().then_some(())?;

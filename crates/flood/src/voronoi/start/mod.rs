@@ -148,8 +148,20 @@ fn mean(polygon: &[[f64; 2]], function: impl Fn(f64, f64) -> f64) -> f64 {
 pub(crate) struct Clip(Vec<[f64; 2]>, Vec<[f64; 2]>);
 
 impl Clip {
-    /// Area of a polygon inside a convex one with corners in counter-clockwise order (Sutherland & Hodgman 1974), m2.
+    /// Area of a polygon inside a convex one with corners in counter-clockwise order, m2.
     pub fn area_inside(&mut self, polygon: &[[f64; 2]], convex: &[[f64; 2]]) -> f64 {
+        let subject = self.inside(polygon, convex);
+        let origin = convex[0];
+        let corners = (0..subject.len()).map(|n| {
+            let [p, q] = [subject[n], subject[(n + 1) % subject.len()]];
+            let [p, q] = [p, q].map(|r| [r[0] - origin[0], r[1] - origin[1]]);
+            p[0] * q[1] - q[0] * p[1]
+        });
+        (0.5 * corners.sum::<f64>()).abs()
+    }
+
+    /// The part of a polygon inside a convex one with corners in counter-clockwise order (Sutherland & Hodgman 1974).
+    pub fn inside(&mut self, polygon: &[[f64; 2]], convex: &[[f64; 2]]) -> &[[f64; 2]] {
         let Self(subject, cut) = self;
         subject.clear();
         subject.extend_from_slice(polygon);
@@ -170,13 +182,7 @@ impl Clip {
             }
             std::mem::swap(subject, cut);
         }
-        let origin = convex[0];
-        let corners = (0..subject.len()).map(|n| {
-            let [p, q] = [subject[n], subject[(n + 1) % subject.len()]];
-            let [p, q] = [p, q].map(|r| [r[0] - origin[0], r[1] - origin[1]]);
-            p[0] * q[1] - q[0] * p[1]
-        });
-        (0.5 * corners.sum::<f64>()).abs()
+        subject
     }
 }
 

@@ -1,0 +1,193 @@
+//! Cells that become finer and coarser while the water moves.
+//!
+//! Now and then the water is looked at ([`wanted`]). Where cells should be finer than they are, or many could be coarser, all are made anew, and the
+//! water and what is known of each cell is carried over ([`carry`]) by what old and new cells have in common ([`overlap`]).
+
+mod borders;
+mod carry;
+mod overlap;
+mod wanted;
+
+use super::friction::Slowing;
+use super::local::Local;
+use super::maps::Record;
+use super::mesh::{Blocks, Layout, Mesh};
+use super::open::longest_step;
+use super::patch::Patch;
+use super::solver::Solver;
+use super::structures::Patches;
+use super::{VoronoiFlood, rain::Weather};
+use borders::Border;
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Adaptive as Settings, TimeSteps};
+
+/// What makes cells follow the water.
+pub(super) struct Adaptive {
+    settings: Settings,
+    /// How often the spacing is halved at most.
+    finest: u8,
+    /// How often it is halved everywhere in each block by `[[flood.finer]]`; empty where there is none.
+    of_parts: Vec<u8>,
+    /// What each cell asks for: see [`wanted::Asked`].
+    asked: Vec<wanted::Asked>,
+}
+
+/// Cells as they were, with the water and what is known of them.
+pub(super) struct Old {
+    solver: Solver,
+    records: Vec<Record>,
+    /// What has soaked into each cell, m; empty where nothing does.
+    soaked: Vec<f32>,
+    borders: Vec<Border>,
+}
+
+impl Adaptive {
+    /// Cells that follow the water over a layout, as a scene asks.
+    pub fn new(settings: Settings, layout: &Layout, has_parts: bool) -> Self {
+        let finest = layout.level_of(settings.finest_m);
+        let of_parts = if has_parts { wanted::levels_of_parts(layout) } else { Vec::new() };
+        Self { settings, finest, of_parts, asked: Vec::new() }
+    }
+
+    /// Whether blocks may have these levels.
+    pub fn allows(&self, levels: &[(u32, u8)]) -> bool {
+        levels.iter().all(|(_, level)| *level <= self.finest)
+    }
+}
+
+impl VoronoiFlood {
+    /// Makes the cells anew, finer where a function says how often the spacing is halved at a position in model coordinates, and carries the water
+    /// over. As often as `flood.adaptive.finest_m` allows at most, and until the water itself asks for other cells. A scene without `[flood.adaptive]` keeps
+    /// its cells.
+    ///
+    /// # Errors
+    /// [`ModelError::Setup`] where the cells would not fit in memory.
+    pub fn remake_cells(&mut self, halvings: impl Fn(f64, f64) -> u8) -> Result<(), ModelError> {
+        let Some(adaptive) = &self.adaptive else { return Ok(()) };
+        let mut blocks = self.solver.mesh.layout.blocks().cleared();
+        for block in 0..blocks.levels().len() {
+            let [x, y] = blocks.middle(block);
+            blocks.levels_mut()[block] = halvings(x, y).min(adaptive.finest);
+        }
+        self.regrade(blocks)
+    }
+
+    /// How often the cells were made anew since the start.
+    pub fn remakes(&self) -> u64 {
+        self.state.remakes
+    }
+
+    /// Makes cells finer and coarser as the water asks, where it is time to look. At the start of a step: what is shown between two steps has the cells
+    /// of both.
+    pub(super) fn adapt(&mut self) -> Result<(), ModelError> {
+        let Some(adaptive) = &self.adaptive else { return Ok(()) };
+        // The water at the start was looked at.
+        if self.state.steps == 0 || !self.state.steps.is_multiple_of(u64::from(adaptive.settings.every_steps)) {
+            return Ok(());
+        }
+        self.wanted_blocks().map_or(Ok(()), |blocks| self.regrade(blocks))
+    }
+
+    /// Makes the cells finer that the water at the start asks for; whether there were any.
+    pub(super) fn adapt_to_start(&mut self) -> Result<bool, ModelError> {
+        let Some(blocks) = self.wanted_blocks() else { return Ok(false) };
+        self.remake(blocks)?;
+        Ok(true)
+    }
+
+    /// How often the water at the start is looked at, at most: finer cells see more of the ground.
+    pub(super) fn looks_at_start(&self) -> u8 {
+        self.adaptive.as_ref().map_or(0, |adaptive| adaptive.finest + 1)
+    }
+
+    /// Makes all cells anew and carries over what is known of the old ones.
+    fn regrade(&mut self, blocks: Blocks) -> Result<(), ModelError> {
+        let old = self.remake(blocks)?;
+        let carried = carry::carry(&old, &self.solver, &self.bed, &self.terrain);
+        self.solver.columns = carried.columns;
+        self.state.records = carried.records;
+        if !old.soaked.is_empty() {
+            self.state.soaked.depth = carried.soaked;
+        }
+        borders::carry(&old.borders, &self.borders(), &mut self.state.beyond);
+        self.state.remakes += 1;
+        self.solver.renew_as_they_are();
+        loop {
+            let missing = self.solver.missing_tiles();
+            if missing.is_empty() {
+                break;
+            }
+            self.make_tiles(missing)?;
+        }
+        let columns = self.solver.columns.clone();
+        *self.solver.before_mut() = columns;
+        self.state.before = self.state.time;
+        let step = self.solver.plan();
+        self.state.time_step = self.limited(step);
+        Ok(())
+    }
+
+    /// Makes the cells anew, dry, with the blocks of a state; whether there can be such.
+    pub(super) fn restore_blocks(&mut self, levels: &[(u32, u8)]) -> Result<bool, ModelError> {
+        let present = self.solver.mesh.layout.blocks();
+        if present.finer() == levels {
+            return Ok(true);
+        }
+        let allowed = self.adaptive.as_ref().is_some_and(|adaptive| adaptive.allows(levels));
+        let Some(blocks) = present.with(levels).filter(|_| allowed) else { return Ok(false) };
+        self.remake(blocks)?;
+        Ok(true)
+    }
+
+    /// Makes the cells of all tiles that are made anew, with other blocks, dry; what the old ones were.
+    pub(super) fn remake(&mut self, blocks: Blocks) -> Result<Old, ModelError> {
+        let tiles: Vec<usize> = self.solver.mesh.made.iter().map(|tile| *tile as usize).collect();
+        let layout = self.solver.mesh.layout.with(blocks);
+        let longest = longest_step(&layout, self.solver.gravity);
+        let mut mesh = Mesh::new(layout);
+        mesh.cut(&self.bed);
+        let slowing = Slowing::of(&self.roughness, self.solver.gravity);
+        let mut solver = Solver::new(mesh, self.solver.gravity, slowing, longest, self.boundaries.brings());
+        solver.local = (self.settings.time_steps == TimeSteps::Local).then(Local::default);
+        let borders = self.borders();
+        let old = Old {
+            solver: std::mem::replace(&mut self.solver, solver),
+            records: std::mem::take(&mut self.state.records),
+            soaked: std::mem::take(&mut self.state.soaked.depth),
+            borders,
+        };
+        self.forget_cells();
+        // Inflows and structures have the cells of the tiles that were made for them.
+        let (first, others) = tiles.split_at(self.zone_tiles.min(tiles.len()));
+        self.make_in_order(first)?;
+        self.find_patches();
+        self.make_in_order(others)?;
+        Ok(old)
+    }
+
+    /// Clears what was looked up for each cell and each border face.
+    fn forget_cells(&mut self) {
+        self.state.beyond.clear();
+        self.obstacle_of.clear();
+        self.boundaries.forget_faces();
+        self.weather.iter_mut().for_each(Weather::forget_cells);
+    }
+
+    /// Finds the cells of inflows and structures.
+    pub(super) fn find_patches(&mut self) {
+        let mesh = &self.solver.mesh;
+        self.patches = Patches::of(&self.structures, mesh);
+        self.inflows.iter_mut().for_each(|inflow| inflow.patch = Patch::of(&inflow.zone, mesh));
+    }
+
+    /// The border faces as they are.
+    fn borders(&self) -> Vec<Border> {
+        let border = |number: usize| Border {
+            rule: self.boundaries.rule_of(number),
+            takes_highest: self.boundaries.is_open(number),
+            ends: borders::ends(&self.solver.mesh, self.solver.borders[number] as usize),
+            beyond: self.state.beyond.get(number).copied().unwrap_or(0.0),
+        };
+        (0..self.solver.borders.len()).map(border).collect()
+    }
+}
