@@ -114,14 +114,22 @@ fn handed_out(pieces: &[Piece], within: Option<&Within>, volume: f64) -> Vec<f64
         pieces.iter().zip(&raised).map(|(piece, raised)| piece.area * piece.depth_below(level + raised)).collect();
     let depth = |piece: &Piece| piece.area * within.value(DEPTH, piece.from_centroid).max(0.0);
     let by_depth: Vec<f64> = pieces.iter().map(depth).collect();
-    let [level_factor, depth_factor] = [&by_level, &by_depth].map(|of| volume / of.iter().sum::<f64>());
+    let [by_level, by_depth] = [by_level, by_depth].map(|shares| scaled(&shares, pieces, volume));
     let share = within.level_share;
-    let mixed = by_level.iter().zip(&by_depth).map(|(by_level, by_depth)| {
-        share * level_factor * by_level + (1.0 - share) * depth_factor * by_depth
-    });
-    let mut volumes: Vec<f64> = mixed.collect();
+    let mixed = by_level.iter().zip(&by_depth);
+    let mut volumes: Vec<f64> = mixed.map(|(level, depth)| share * level + (1.0 - share) * depth).collect();
     settle(&mut volumes, volume);
     volumes
+}
+
+/// Shares of pieces, made a volume, m3, together; in proportion to their areas where there are none but by rounding.
+fn scaled(shares: &[f64], pieces: &[Piece], volume: f64) -> Vec<f64> {
+    let factor = volume / shares.iter().sum::<f64>();
+    if factor.is_finite() {
+        return shares.iter().map(|share| factor * share).collect();
+    }
+    let area: f64 = pieces.iter().map(|piece| piece.area).sum();
+    pieces.iter().map(|piece| volume * (piece.area / area)).collect()
 }
 
 /// Adds what rounding left of a sum to the largest of the values.
