@@ -4,8 +4,8 @@ mod ground;
 
 use super::{Check, Checked};
 use crate::{
-    Adaptive, Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
-    StartVelocity, Storage, TimeSteps, Water,
+    Adaptive, Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series,
+    SphSwe, StartVelocity, Storage, TimeSteps, Water,
 };
 use std::collections::HashMap;
 

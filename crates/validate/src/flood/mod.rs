@@ -73,6 +73,7 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::INVARIANCE,
     voronoi::TIDE,
     voronoi::FINER,
+    voronoi::ADAPTIVE,
     voronoi::STORAGE,
     voronoi::MALPASSET,
     voronoi::BEACH,

@@ -21,8 +21,7 @@ pub(super) struct Border {
 pub(super) fn ends(mesh: &Mesh, face: usize) -> [[f64; 2]; 2] {
     let face = &mesh.faces[face];
     let cell = mesh.centroid[face.cells[0] as usize];
-    let [x, y] =
-        [0, 1].map(|axis| cell[axis] + 0.5 * f64::from(face.between[axis]) + f64::from(face.offset[axis]));
+    let [x, y] = [0, 1].map(|axis| cell[axis] + 0.5 * f64::from(face.between[axis]) + f64::from(face.offset[axis]));
     let [along_x, along_y] = [-0.5 * face.normal[1], 0.5 * face.normal[0]];
     [[x - along_x, y - along_y], [x + along_x, y + along_y]]
 }
@@ -99,8 +98,16 @@ mod tests {
             beyond,
         };
         for (takes_highest, expected) in [(false, [0.75, 2.0, 7.0]), (true, [1.0, 2.0, 7.0])] {
-            let old = [border(0.0, 1.0, 0.0, takes_highest), border(4.0, 1.0, 1.0, takes_highest), border(4.0, 8.0, 2.0, takes_highest)];
-            let new = [border(0.0, 4.0, 0.0, takes_highest), border(4.0, 5.0, 0.0, takes_highest), border(9.0, 11.0, 0.0, takes_highest)];
+            let old = [
+                border(0.0, 1.0, 0.0, takes_highest),
+                border(4.0, 1.0, 1.0, takes_highest),
+                border(4.0, 8.0, 2.0, takes_highest),
+            ];
+            let new = [
+                border(0.0, 4.0, 0.0, takes_highest),
+                border(4.0, 5.0, 0.0, takes_highest),
+                border(9.0, 11.0, 0.0, takes_highest),
+            ];
             let mut beyond = [7.0; 3];
             carry(&old, &new, &mut beyond);
             assert_eq!(beyond, expected);

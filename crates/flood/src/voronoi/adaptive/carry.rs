@@ -153,7 +153,7 @@ fn common_level(pieces: &[Piece], raised: &[f64], volume: f64) -> f64 {
         }
         let next = level - (held - volume) / wet;
         // From above it falls to the exact one, until rounding.
-        if !(next < level) {
+        if next.is_nan() || next >= level {
             break;
         }
         level = next;

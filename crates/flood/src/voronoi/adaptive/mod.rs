@@ -9,7 +9,7 @@ mod overlap;
 mod wanted;
 
 use super::friction::Slowing;
-use super::local::Local;
+use super::local::{HIGHEST, Local};
 use super::maps::Record;
 use super::mesh::{Blocks, Layout, Mesh};
 use super::open::longest_step;
@@ -81,8 +81,11 @@ impl VoronoiFlood {
     /// of both.
     pub(super) fn adapt(&mut self) -> Result<(), ModelError> {
         let Some(adaptive) = &self.adaptive else { return Ok(()) };
+        // A step that is counted may have several of the shortest.
+        let parts = if self.settings.time_steps == TimeSteps::Local { 1 << HIGHEST } else { 1 };
+        let every = u64::from((adaptive.settings.every_steps / parts).max(1));
         // The water at the start was looked at.
-        if self.state.steps == 0 || !self.state.steps.is_multiple_of(u64::from(adaptive.settings.every_steps)) {
+        if self.state.steps == 0 || !self.state.steps.is_multiple_of(every) {
             return Ok(());
         }
         self.wanted_blocks().map_or(Ok(()), |blocks| self.regrade(blocks))

@@ -131,7 +131,8 @@ impl<'a> Overlap<'a> {
                 let centre = centroid(found);
                 whole += size;
                 heights += size * (self.bed.mean(found) + lift);
-                (0..2).for_each(|axis| moment[axis] += size * (centre[axis] + away[axis] - self.old.centroid[old][axis]));
+                (0..2)
+                    .for_each(|axis| moment[axis] += size * (centre[axis] + away[axis] - self.old.centroid[old][axis]));
                 common.push(found.to_vec());
             }
         }
@@ -167,9 +168,11 @@ impl<'a> Overlap<'a> {
     /// By how many times the size of the terrain a position is nearest to another beyond joined sides.
     fn sides(&self, at: [f64; 2], to: [f64; 2]) -> [f64; 2] {
         let size = self.new.layout.bounds.size();
-        [0, 1].map(|axis| {
-            if self.new.layout.periodic[axis] { ((to[axis] - at[axis]) / size[axis]).round() } else { 0.0 }
-        })
+        [0, 1].map(
+            |axis| {
+                if self.new.layout.periodic[axis] { ((to[axis] - at[axis]) / size[axis]).round() } else { 0.0 }
+            },
+        )
     }
 }
 

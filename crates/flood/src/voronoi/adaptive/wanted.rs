@@ -12,8 +12,11 @@ const KEPT: f64 = 0.7;
 /// Cells that were finer stay so while the water is deeper than this part of the depth of wet ground.
 const KEPT_DEPTH: f64 = 0.5;
 
-/// Water comes this far between two looks at most, in spacings where cells are not finer.
-const GUARD: f64 = 1.0;
+/// A front comes this far in a time step at most, in spacings of its cells.
+const FRONT_STEP: f64 = 0.4;
+
+/// The same over all steps between two looks is taken to be less than this part of a block, so that blocks just made finer are far enough ahead.
+const MOST_GUARD: f64 = 0.9;
 
 /// All cells are made anew where this part of them could be spared.
 const SPARED: f64 = 0.2;
@@ -33,12 +36,12 @@ impl VoronoiFlood {
         solver.for_wet_chunks(&mut adaptive.asked, |cell, asked| *asked = ask.of_cell(cell));
         let blocks = solver.mesh.layout.blocks();
         let present = |block: usize| blocks.levels()[block].max(adaptive.of_parts.get(block).copied().unwrap_or(0));
-        let mut wanted = Wanted::new(blocks, &solver.mesh.layout);
+        let mut wanted = Wanted::new(blocks, &solver.mesh.layout, adaptive.settings.every_steps);
         let mut is_short = false;
         for (cell, [least, most]) in adaptive.asked.iter().enumerate().filter(|(_, asked)| asked[1] > 0) {
             let at = solver.mesh.centroid[cell];
             wanted.add(at, [*least, *most]);
-            is_short |= *least > 0 && wanted.round(at).any(|block| present(block) < *least);
+            is_short |= *least > 0 && wanted.round(at, *least).any(|block| present(block) < *least);
         }
         let [least, most] = wanted.spread();
         let mut new = blocks.cleared();
@@ -91,7 +94,8 @@ impl Ask<'_> {
         let to = |link: &super::super::mesh::Link| {
             let other = link.cell()?;
             let face = &mesh.faces[link.face as usize];
-            let lift = if link.side(cell) == 0 { mesh.lift_of(link.face as usize) } else { -mesh.lift_of(link.face as usize) };
+            let lift =
+                if link.side(cell) == 0 { mesh.lift_of(link.face as usize) } else { -mesh.lift_of(link.face as usize) };
             let [x, y] = face.between;
             Some((mesh.bed[other] + lift - mesh.bed[cell]).abs() / f64::from(x.hypot(y)))
         };
@@ -109,12 +113,15 @@ impl Ask<'_> {
 struct Wanted<'a> {
     blocks: &'a Blocks,
     layout: &'a Layout,
+    /// How far fronts come between two looks, in spacings of their cells.
+    reach: f64,
     asked: [Vec<u8>; 2],
 }
 
 impl<'a> Wanted<'a> {
-    fn new(blocks: &'a Blocks, layout: &'a Layout) -> Self {
-        Self { blocks, layout, asked: [(); 2].map(|()| vec![0; blocks.levels().len()]) }
+    fn new(blocks: &'a Blocks, layout: &'a Layout, every_steps: u32) -> Self {
+        let reach = FRONT_STEP * f64::from(every_steps);
+        Self { blocks, layout, reach, asked: [(); 2].map(|()| vec![0; blocks.levels().len()]) }
     }
 
     /// A cell at a position asks.
@@ -130,10 +137,11 @@ impl<'a> Wanted<'a> {
         self.blocks.at(self.layout.home(at))
     }
 
-    /// The blocks at a position and round it, as far as water may come before the next look.
-    fn round(&self, at: [f64; 2]) -> impl Iterator<Item = usize> {
-        let reach = GUARD * self.layout.spacing();
-        AROUND.into_iter().filter_map(move |[x, y]| self.block([at[0] + x * reach, at[1] + y * reach]))
+    /// The blocks at a position and round it, as far as water in cells of a level may come before the next look.
+    fn round(&self, at: [f64; 2], level: u8) -> impl Iterator<Item = usize> {
+        let far = self.reach * self.layout.spacing() / f64::from(1 << level);
+        let reach = self.blocks.size().map(|size| far.min(MOST_GUARD * size));
+        AROUND.into_iter().filter_map(move |[x, y]| self.block([at[0] + x * reach[0], at[1] + y * reach[1]]))
     }
 
     /// What each block and those beside it ask for.

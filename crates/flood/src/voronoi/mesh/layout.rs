@@ -199,7 +199,8 @@ impl Layout {
         let far = blocks.band() + self.spacing();
         let mut tiles: Vec<u32> = Vec::new();
         for (block, _) in blocks.finer() {
-            let [low, high] = blocks.corners(block as usize).map(|corner| [0, 1].map(|axis| corner[axis] - self.corner(0)[axis]));
+            let [low, high] =
+                blocks.corners(block as usize).map(|corner| [0, 1].map(|axis| corner[axis] - self.corner(0)[axis]));
             let span = |axis: usize| {
                 let tile = |x: f64| (x / self.tile[axis]).floor() as i64;
                 tile(low[axis] - far)..=tile(high[axis] + far)

@@ -1,5 +1,6 @@
 //! Cases of scheme `voronoi`. Particles lie on no lattice; each measure is the worst of three seeds of their positions.
 
+mod adaptive;
 mod balances;
 mod beach;
 pub(super) mod dam_breaks;
@@ -16,6 +17,7 @@ mod thacker;
 mod tide;
 mod waves;
 
+pub(super) use adaptive::ADAPTIVE;
 pub(super) use balances::{ENERGY, LEDGER, MOMENTUM};
 pub(super) use beach::{BEACH, RUN_UP, SENT_WAVE};
 pub(super) use dam_breaks::{FINER, RITTER, STOKER};
