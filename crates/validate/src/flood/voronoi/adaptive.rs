@@ -82,13 +82,3 @@ fn bowls(seed: u64) -> Result<[f64; 3], ModelError> {
     let work = flood.particle_steps() as f64 / fine.particle_steps() as f64;
     Ok([error(&flood, exact, time) / error(&fine, exact, time), work, water_error(&flood)])
 }
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn scratch() {
-        for row in super::measure().unwrap() {
-            println!("{row:?}");
-        }
-    }
-}
