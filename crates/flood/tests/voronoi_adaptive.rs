@@ -342,3 +342,25 @@ fn what_cannot_follow_the_water_is_told() {
     let error = VoronoiFlood::new(&scene.flood().unwrap().flood, 1, Path::new("."), terrain).err();
     assert!(error.is_some_and(|error| error.to_string().contains("flood.adaptive.finest_m is 30")));
 }
+
+/// What comes in by an inflow comes in at its place, and what a held level takes goes from its own, whatever becomes of the cells.
+#[test]
+fn inflows_and_held_levels_stay_in_their_places() {
+    let keys = format!(
+        "{BY_HAND}{WALLS}[[flood.inflow]]\nname = \"spring\"\nat = [70, 40]\ndischarge_m3_per_s = 1\n\
+         [[flood.stage]]\nname = \"lake\"\npolygon = [[10, 10], [22, 10], [22, 22], [10, 22]]\nlevel_m = 0.5\n"
+    );
+    let mut flood = flood(&keys, 6, |_, _| 0.0, |_, _| -1.0, [0.0; 2]);
+    for (half, level) in [2, 1, 0, 2].into_iter().enumerate() {
+        flood.remake_cells(move |x, y| if x < 20.0 || y > 38.0 { level } else { 0 }).unwrap();
+        go(&mut flood, 0.5 * (half + 1) as f64);
+    }
+    let beside = |at: [f64; 2], reach: f64| move |[x, y]: [f64; 2]| (x - at[0]).hypot(y - at[1]) < reach;
+    let [spring, lake] = [beside([70.0, 40.0], 15.0), beside([16.0, 16.0], 25.0)];
+    let of = |is_in: &dyn Fn([f64; 2]) -> bool| {
+        flood.wet_cells().filter(|cell| is_in(cell.centroid)).map(|cell| cell.area * cell.depth).sum::<f64>()
+    };
+    assert!((of(&spring) - 2.0).abs() < 0.1 && of(&lake) > 70.0, "{} {}", of(&spring), of(&lake));
+    assert!((of(&|at| !spring(at) && !lake(at))).abs() < 1e-9);
+    assert!(flood.sample(16.0, 16.0).depth > 0.45);
+}
