@@ -160,29 +160,42 @@ fn an_overtopped_levee_is_a_weir() {
     assert!(balance.relative_error().abs() < 1e-12, "{balance:?}");
 }
 
-/// A street of 6 m between blocks, of two cells and of eight.
+/// Mean discharge through a street of 6 m between blocks, m3/s, with particles `spacing` m apart and what is `finer`.
+fn discharge_of_street(spacing: f64, finer: &str) -> f64 {
+    let scene = format!(
+        "{}[flood]\nscheme = \"voronoi\"\nspacing_m = {spacing}\nmanning = 0.02\nwater = [{{ level_m = 1 }}]\nedges = {{ west = {{ stage = 1.5 }}, east = \
+         {{ stage = 1.0 }}, south = \"wall\", north = \"wall\" }}\n[[flood.obstacle]]\nname = \"a\"\npolygon = [[30, 0], [60, 2], [60, 18], [30, 16]]\n\
+         [[flood.obstacle]]\nname = \"b\"\npolygon = [[30, 22], [60, 24], [60, 40], [30, 38]]\n[[flood.obstacle]]\nname = \"c\"\npolygon = \
+         [[30, -1], [60, -1], [60, 2], [30, 0]]\n[[flood.obstacle]]\nname = \"d\"\npolygon = [[30, 38], [60, 40], [60, 41], [30, 41]]\n\
+         [[flood.section]]\nname = \"street\"\nline = [[20, 0], [20, 40]]\n{finer}",
+        plane(90.0, 40.0, 1.0)
+    );
+    let mut flood = open(&parse(&scene), 1);
+    go(&mut flood, 200.0);
+    let (mut sum, count) = (0.0, 20);
+    for step in 1..=count {
+        go(&mut flood, 200.0 + 5.0 * f64::from(step));
+        sum += gauge(&flood, "street.discharge_m3_per_s");
+    }
+    sum / f64::from(count)
+}
+
+/// In eight cells it is 14.1 and 14.2 m3/s for two seeds, and 14.3 in twelve.
 #[test]
-#[ignore = "a minute long, and not met yet: 12.3 m3/s in two cells, 14.1 in eight"]
+#[ignore = "a minute long, and not met: 10.4 to 12.4 m3/s in two cells for six seeds, lost where the water turns round the corners"]
 fn a_street_of_two_cells_passes_what_one_of_eight_does() {
-    let discharge = |spacing: f64| {
-        let scene = format!(
-            "{}[flood]\nscheme = \"voronoi\"\nspacing_m = {spacing}\nmanning = 0.02\nwater = [{{ level_m = 1 }}]\nedges = {{ west = {{ stage = 1.5 }}, east = \
-             {{ stage = 1.0 }}, south = \"wall\", north = \"wall\" }}\n[[flood.obstacle]]\nname = \"a\"\npolygon = [[30, 0], [60, 2], [60, 18], [30, 16]]\n\
-             [[flood.obstacle]]\nname = \"b\"\npolygon = [[30, 22], [60, 24], [60, 40], [30, 38]]\n[[flood.obstacle]]\nname = \"c\"\npolygon = \
-             [[30, -1], [60, -1], [60, 2], [30, 0]]\n[[flood.obstacle]]\nname = \"d\"\npolygon = [[30, 38], [60, 40], [60, 41], [30, 41]]\n[[flood.section]]\nname = \"street\"\nline = [[20, 0], [20, 40]]\n",
-            plane(90.0, 40.0, 1.0)
-        );
-        let mut flood = open(&parse(&scene), 1);
-        go(&mut flood, 200.0);
-        let (mut sum, count) = (0.0, 20);
-        for step in 1..=count {
-            go(&mut flood, 200.0 + 5.0 * f64::from(step));
-            sum += gauge(&flood, "street.discharge_m3_per_s");
-        }
-        sum / f64::from(count)
-    };
-    let [coarse, fine] = [discharge(3.0), discharge(0.75)];
+    let [coarse, fine] = [discharge_of_street(3.0, ""), discharge_of_street(0.75, "")];
     assert!(fine > 3.0 && (coarse / fine - 1.0).abs() < 0.05, "{coarse} {fine}");
+}
+
+#[test]
+fn a_street_of_two_cells_with_finer_ones_at_its_corners_passes_what_one_of_eight_does() {
+    let corner = |[x, y]: [f64; 2]| {
+        format!("[[flood.finer]]\nspacing_m = 0.75\ncircle = {{ centre = [{x}, {y}], radius_m = 2 }}\n")
+    };
+    let corners: String = [[30.0, 16.0], [30.0, 22.0], [60.0, 18.0], [60.0, 24.0]].map(corner).concat();
+    let found = discharge_of_street(3.0, &corners);
+    assert!((found / 14.2 - 1.0).abs() < 0.05, "{found}");
 }
 
 /// A bore among obstacles: nothing inside them, nothing lost, the same bits for one and two threads.

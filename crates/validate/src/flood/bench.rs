@@ -66,6 +66,12 @@ pub(crate) const BENCHES: &[Bench] = &[
         run: |_| error_cost::measured(),
     },
     Bench {
+        name: "flood/voronoi-vortex",
+        about: "Error and cost of a vortex that a current carries through a periodic box three times, by scheme voronoi at 2, 1 and 0.5 m; use --threads 1.",
+        needs_card: false,
+        run: |_| error_cost::of_vortex(),
+    },
+    Bench {
         name: "flood/voronoi-time-steps",
         about: "Scheme voronoi with finer cells over a part (a quarter as wide over 8 m, an eighth over 4 m), with one time step for all and with local time steps, in turn; use --threads 1.",
         needs_card: false,

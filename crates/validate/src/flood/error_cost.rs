@@ -1,7 +1,7 @@
-//! What an error costs: the dam breaks with exact solutions, by schemes voronoi and balanced at three spacings.
+//! What an error costs: the dam breaks with exact solutions, by schemes voronoi and balanced at three spacings, and a vortex by scheme voronoi.
 
 use super::dam_break::{self, TIME};
-use super::voronoi::dam_breaks;
+use super::voronoi::{dam_breaks, vortex};
 use crate::Rate;
 use crate::bench::Stepped;
 use corpuscle_model::ModelError;
@@ -9,6 +9,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 const SPACINGS: [f64; 3] = [4.0, 2.0, 1.0];
+
+/// Unit of the cost of a dam break.
+const PER_WIDTH: &str = "core_s_per_m";
 
 /// Error and cost of each dam break, scheme and spacing. The cost is that of all threads, for each metre of the channel's width; setting up does not count.
 pub(super) fn measured() -> Vec<Rate> {
@@ -18,11 +21,15 @@ pub(super) fn measured() -> Vec<Rate> {
             let name = |scheme: &str| format!("flood/error-cost/{name}-{scheme}-{spacing}m");
             let by_cells = dam_breaks::broken(0.0, spacing, 1, downstream).and_then(|flood| {
                 let width = dam_breaks::WIDTH * spacing;
-                entries(name("voronoi"), flood, width, |flood| dam_breaks::error(flood, spacing, downstream))
+                entries(name("voronoi"), flood, TIME, (1.0 / width, PER_WIDTH), |flood| {
+                    dam_breaks::error(flood, spacing, downstream)
+                })
             });
             let by_kernels = dam_break::run_until(0.0, spacing, downstream, None).and_then(|flood| {
                 let width = dam_break::WIDTH * spacing;
-                entries(name("balanced"), flood, width, |flood| dam_break::error(flood, spacing, downstream))
+                entries(name("balanced"), flood, TIME, (1.0 / width, PER_WIDTH), |flood| {
+                    dam_break::error(flood, spacing, downstream)
+                })
             });
             rates.extend(by_cells.unwrap_or_default());
             rates.extend(by_kernels.unwrap_or_default());
@@ -31,16 +38,28 @@ pub(super) fn measured() -> Vec<Rate> {
     rates
 }
 
+/// Error of the velocity and cost of the carried vortex at each spacing; the cost is that of all threads.
+pub(super) fn of_vortex() -> Vec<Rate> {
+    let of_spacing = |spacing: f64| {
+        let name = format!("flood/voronoi-vortex/{spacing}m");
+        let flood = vortex::start(spacing, 1)?;
+        entries(name, flood, vortex::TIME, (1.0, "core_s"), |flood| vortex::errors(flood)[0])
+    };
+    vortex::SPACINGS.into_iter().rev().flat_map(|spacing| of_spacing(spacing).unwrap_or_default()).collect()
+}
+
+/// Error at `time` s, and the cost until then, as so many of a unit for each core-second.
 fn entries<M: Stepped>(
     name: String,
     mut model: M,
-    width: f64,
+    time: f64,
+    (per_core_second, unit_of_cost): (f64, &str),
     error: impl Fn(&M) -> f64,
 ) -> Result<Vec<Rate>, ModelError> {
     let (particles, threads) = (model.particles(), rayon::current_num_threads());
     let began = Instant::now();
-    model.advance_to(TIME, &AtomicBool::new(false))?;
-    let cost = began.elapsed().as_secs_f64() * threads as f64 / width;
+    model.advance_to(time, &AtomicBool::new(false))?;
+    let cost = began.elapsed().as_secs_f64() * threads as f64 * per_core_second;
     let entry = |rate: f64, unit: &str| Rate {
         name: name.clone(),
         particles,
@@ -53,5 +72,5 @@ fn entries<M: Stepped>(
         bytes_per_particle: model.bytes() as f64 / particles as f64,
         passes: Vec::new(),
     };
-    Ok(vec![entry(error(&model), "relative_l1_error"), entry(cost, "core_s_per_m")])
+    Ok(vec![entry(error(&model), "relative_l1_error"), entry(cost, unit_of_cost)])
 }

@@ -65,6 +65,7 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::PLANAR,
     voronoi::RADIAL,
     voronoi::WAVES,
+    voronoi::VORTEX,
     voronoi::SHEETS,
     voronoi::RAIN,
     voronoi::MOMENTUM,

@@ -15,6 +15,7 @@ mod storage;
 mod swashes;
 mod thacker;
 mod tide;
+pub(super) mod vortex;
 mod waves;
 
 pub(super) use adaptive::ADAPTIVE;
@@ -31,6 +32,7 @@ pub(super) use storage::STORAGE;
 pub(super) use swashes::SWASHES;
 pub(super) use thacker::{PLANAR, RADIAL};
 pub(super) use tide::TIDE;
+pub(super) use vortex::VORTEX;
 pub(super) use waves::WAVES;
 
 use super::{GRAVITY, order};
