@@ -94,10 +94,8 @@ impl Ask<'_> {
         let to = |link: &super::super::mesh::Link| {
             let other = link.cell()?;
             let face = &mesh.faces[link.face as usize];
-            let lift =
-                if link.side(cell) == 0 { mesh.lift_of(link.face as usize) } else { -mesh.lift_of(link.face as usize) };
             let [x, y] = face.between;
-            Some((mesh.bed[other] + lift - mesh.bed[cell]).abs() / f64::from(x.hypot(y)))
+            Some((mesh.bed[other] + mesh.lift_seen(link, cell) - mesh.bed[cell]).abs() / f64::from(x.hypot(y)))
         };
         mesh.links_of(cell).iter().filter_map(to).fold(0.0, f64::max)
     }

@@ -499,6 +499,16 @@ impl Mesh {
         if self.lift.is_empty() { 0.0 } else { self.lift[face] }
     }
 
+    /// By how much the neighbour behind a link of a cell stands higher than its bed says, m.
+    #[inline]
+    pub fn lift_seen(&self, link: &Link, cell: usize) -> f64 {
+        if self.lift.is_empty() {
+            return 0.0;
+        }
+        let lift = self.lift[link.face as usize];
+        if link.side(cell) == 0 { lift } else { -lift }
+    }
+
     /// Finds the factors of the least-squares gradient of a cell: weights length over distance. Mirror images behind walls count; where the
     /// border is open there is none.
     fn fit_gradient(&mut self, cell: usize, ground: &impl Ground) {

@@ -48,7 +48,7 @@ pub(crate) fn slopes(mesh: &Mesh, water: &impl Fn(usize) -> Water, cell: usize) 
             continue;
         };
         let there = &water(other);
-        let [depth, level] = differences(here, there, lift_seen(mesh, link, cell));
+        let [depth, level] = differences(here, there, mesh.lift_seen(link, cell));
         let wet = f64::from(u8::from(there.depth > 0.0));
         let velocity = [0, 1].map(|axis| wet * (there.velocity[axis] - here.velocity[axis]));
         let difference = [depth, level, velocity[0], velocity[1]];
@@ -57,16 +57,6 @@ pub(crate) fn slopes(mesh: &Mesh, water: &impl Fn(usize) -> Water, cell: usize) 
         }
     }
     std::array::from_fn(|k| slopes[k / 4][k % 4] as f32)
-}
-
-/// By how much the neighbour behind a link stands higher than its bed says, m.
-#[inline]
-fn lift_seen(mesh: &Mesh, link: &Link, cell: usize) -> f64 {
-    if mesh.lift.is_empty() {
-        return 0.0;
-    }
-    let lift = mesh.lift[link.face as usize];
-    if link.side(cell) == 0 { lift } else { -lift }
 }
 
 /// Difference of the velocity to that of the mirror image behind a wall, m/s.
