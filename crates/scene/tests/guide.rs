@@ -455,3 +455,23 @@ fn the_guide_tells_the_forms_of_values() {
         assert!(text.contains(form), "{form}");
     }
 }
+
+/// A block of TOML that says when the run ends is a whole scene.
+#[test]
+fn whole_scenes_in_the_guide_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src");
+    let mut read = 0;
+    for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if path.extension().is_none_or(|ending| ending != "md") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let blocks = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+        for block in blocks.filter(|block| block.contains("until_s")) {
+            let scene = Scene::parse(block, "scene", &[]);
+            assert!(scene.is_ok(), "{}: {}", path.display(), scene.unwrap_err());
+            read += 1;
+        }
+    }
+    assert!(read >= 5, "{read}");
+}
