@@ -4,7 +4,7 @@
 //! device and never waits: what takes long is drawn elsewhere. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
 //! it off screen.
 
-mod darkroom;
+mod background_device;
 mod dropped;
 mod files;
 mod gallery;
@@ -12,6 +12,7 @@ mod help;
 mod icons;
 mod meshes;
 mod meter;
+mod offscreen;
 mod overlay;
 mod parameters;
 pub mod physics;
@@ -19,17 +20,19 @@ mod pick;
 mod picture;
 mod plots;
 mod screen;
-mod sight;
+mod snapshot;
 mod spot;
 mod style;
 mod touch;
 mod transport;
 mod view;
+mod view_state;
 mod window;
 
 pub use meshes::Meshes;
 pub use meter::Measurement;
 pub use screen::Screen;
-pub use sight::Sight;
+pub use snapshot::{Measures, Snapshot, Wake};
 pub use view::{ViewError, view};
+pub use view_state::ViewState;
 pub use window::{Source, Start, Window};

@@ -1,12 +1,12 @@
 //! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
 
-mod rest;
+mod paused;
 
-use crate::darkroom::Darkroom;
+use crate::offscreen::OffscreenRenderer;
 use crate::overlay::Over;
-use crate::physics::Snapshot;
 use crate::screen::OnScreen;
-use crate::sight::moment;
+use crate::snapshot::Snapshot;
+use crate::view_state::moment;
 use crate::{Screen, style};
 use corpuscle::gpu::GpuKind;
 use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
@@ -44,8 +44,8 @@ pub struct Picture {
     shown: Option<Shown>,
     /// What was drawn last.
     drawn: Option<Drawn>,
-    /// What the darkroom was asked for since something last changed, by its number.
-    wished: Option<(u64, Drawn)>,
+    /// The full-quality picture requested since something last changed, with the number of the request.
+    requested: Option<(u64, Drawn)>,
     /// How the camera was moved.
     pub hand: Hand,
     /// When the partition was lifted, s.
@@ -82,7 +82,7 @@ impl Picture {
             on_screen: None,
             shown: None,
             drawn: None,
-            wished: None,
+            requested: None,
             hand: Hand::default(),
             lifted: None,
             quality: Quality::Auto,
@@ -123,9 +123,15 @@ impl Picture {
         }
     }
 
-    /// Fills what is left of the window with the picture of a snapshot; gives where it is and what was done to it. What takes long is
-    /// asked of the darkroom.
-    pub fn ui(&mut self, ui: &mut Ui, snapshot: &Arc<Snapshot>, moves: bool, darkroom: &Darkroom) -> Response {
+    /// Fills what is left of the window with the picture of a snapshot; returns where it is and what was done to it. The full-quality
+    /// picture of a paused scene is drawn by the offscreen renderer.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        snapshot: &Arc<Snapshot>,
+        moves: bool,
+        offscreen: &OffscreenRenderer,
+    ) -> Response {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, ui.is_enabled(), "Picture of the scene"));
         self.follow_hand(ui, rect, &response);
@@ -138,13 +144,13 @@ impl Picture {
             Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper }
         });
         if !still {
-            self.wished = None;
+            self.requested = None;
         }
         if !still || self.drawn.as_ref() != Some(&best) {
             let asks = still && quick != best;
             self.draw_as(snapshot, quick, linear);
             if asks {
-                self.wish(snapshot, best, linear, darkroom);
+                self.request(snapshot, best, linear, offscreen);
             }
         }
         self.key_height = self.paint(ui, rect);
@@ -164,8 +170,8 @@ impl Picture {
     /// The partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
         self.lifted = Some(time);
-        self.sight().lift(&mut self.pictures);
-        (self.drawn, self.wished) = (None, None);
+        self.view_state().lift(&mut self.pictures);
+        (self.drawn, self.requested) = (None, None);
     }
 
     /// True where nothing has changed for a while; asks to be called again where that is yet to come.

@@ -1,6 +1,7 @@
 //! What a hand does to a gas while it goes on.
 
-use crate::physics::{Change, Snapshot};
+use crate::physics::Change;
+use crate::snapshot::Snapshot;
 use corpuscle::GasByHand as ByHand;
 use corpuscle::scene::{Axis, Gas, Wall};
 use corpuscle_drawing::text::short_number;

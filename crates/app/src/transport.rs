@@ -1,7 +1,7 @@
 //! The strip below the picture: play, pause, step, restart, pace, the time bar, and how fast it goes.
 
 use crate::icons::{self, Icon};
-use crate::physics::Snapshot;
+use crate::snapshot::Snapshot;
 use corpuscle::scene::{Scene, Units};
 use corpuscle_drawing::text;
 use egui::{Align, Color32, CornerRadius, Layout, Rect, RichText, Role, Sense, Slider, Ui, WidgetInfo, vec2};

@@ -5,8 +5,7 @@
 mod stage;
 
 use corpuscle::scene::builtin;
-use corpuscle_app::Source;
-use corpuscle_app::physics::Snapshot;
+use corpuscle_app::{Snapshot, Source};
 use stage::{Stage, stage_of_card};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};

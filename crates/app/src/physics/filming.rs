@@ -1,7 +1,7 @@
 //! A film of what goes on, drawn in its thread: the physics waits for the pictures, the window does not.
 
 use super::subject::Subject;
-use crate::sight::Sight;
+use crate::view_state::ViewState;
 use corpuscle::Error;
 use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Gpu;
@@ -32,17 +32,17 @@ impl Filming {
     }
 
     /// Adds a picture, seen as it is seen in the window now, if one is due.
-    pub fn look(&mut self, subject: &Subject, sight: &Sight) -> Result<(), Error> {
+    pub fn look(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
         if subject.time() < self.next {
             return Ok(());
         }
         let (frame, paths, container) = subject.look();
-        self.add(&Moment { frame: &frame, on_device: None, paths: &paths, container }, sight)
+        self.add(&Moment { frame: &frame, on_device: None, paths: &paths, container }, view_state)
     }
 
     /// Adds a picture of a moment.
-    pub fn add(&mut self, moment: &Moment<'_>, sight: &Sight) -> Result<(), Error> {
-        let image = sight.still(&mut self.pictures, moment)?;
+    pub fn add(&mut self, moment: &Moment<'_>, view_state: &ViewState) -> Result<(), Error> {
+        let image = view_state.still(&mut self.pictures, moment)?;
         self.film.add(&image.rgba)?;
         self.next = moment.frame.time + self.every;
         Ok(())
@@ -72,11 +72,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();
-        let near = Sight { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
-        let lifted = Sight { lifted: Some(0.0), ..near };
-        for sight in [Sight::default(), near, near, lifted] {
+        let near = ViewState { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
+        let lifted = ViewState { lifted: Some(0.0), ..near };
+        for view_state in [ViewState::default(), near, near, lifted] {
             filming.next = 0.0;
-            filming.look(&subject, &sight).unwrap();
+            filming.look(&subject, &view_state).unwrap();
         }
         let film = filming.finish().unwrap();
         let mut files: Vec<_> = std::fs::read_dir(film).unwrap().map(|entry| entry.unwrap().path()).collect();

@@ -1,9 +1,10 @@
 //! A scene that steps where it is drawn: while it goes on its particles stay there, and rows of gauges come by themselves.
 
+use super::Shared;
 use super::filming::Filming;
 use super::pace::Pace;
 use super::thread::{MEASURE, PICTURES, Rate, Running};
-use super::{Measures, Shared, Snapshot};
+use crate::snapshot::{Measures, Snapshot};
 use corpuscle::gpu::Gpu;
 use corpuscle::model::{Companion, Container, Frame, Passed};
 use corpuscle::pictures::{Glance, Moment};
@@ -120,7 +121,7 @@ impl Glide<'_> {
         let Some(filming) = self.filming.as_mut().filter(|filming| filming.next <= glance.frame.time) else { return };
         let Glance { frame, on_device } = glance;
         let moment = Moment { frame, on_device: on_device.as_ref(), paths: &[], container: self.container };
-        if let Err(error) = filming.add(&moment, &self.shared.sight()) {
+        if let Err(error) = filming.add(&moment, &self.shared.view_state()) {
             (self.filming, self.film_fault) = (None, Some(error));
             self.shared.stop.store(true, Ordering::Relaxed);
         }

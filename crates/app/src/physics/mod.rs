@@ -3,14 +3,12 @@
 mod filming;
 mod glide;
 mod pace;
-mod snapshot;
 mod subject;
 mod thread;
 
-pub use snapshot::{Measures, Snapshot};
-
-use crate::darkroom::SlowDevice;
-use crate::sight::Sight;
+use crate::background_device::BackgroundDevice;
+use crate::snapshot::{Snapshot, Wake};
+use crate::view_state::ViewState;
 use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
 use corpuscle::pictures::{Pictures, Scenery};
@@ -21,9 +19,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-
-/// Tells whoever shows the physics that there is something new; called from its thread.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// Seconds in which a scene is seen from start to end, if it can be computed so fast.
 const WHOLE: f64 = 40.0;
@@ -126,7 +121,7 @@ pub struct Opened {
 struct Shared {
     newest: Mutex<Option<Arc<Snapshot>>>,
     /// How it is seen, for films.
-    sight: Mutex<Sight>,
+    view_state: Mutex<ViewState>,
     /// Whether a single particle is followed.
     follows: AtomicBool,
     /// Breaks off what is being computed, so that a command is taken.
@@ -139,7 +134,7 @@ struct Shared {
 struct Devices<'a> {
     /// The window's.
     gpu: &'a Gpu,
-    slow: &'a SlowDevice,
+    background: &'a BackgroundDevice,
     backend: Backend,
 }
 
@@ -149,8 +144,8 @@ impl Shared {
         (self.wake)();
     }
 
-    fn sight(&self) -> Sight {
-        *self.sight.lock().unwrap_or_else(PoisonError::into_inner)
+    fn view_state(&self) -> ViewState {
+        *self.view_state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -167,14 +162,19 @@ impl Physics {
     ///
     /// # Errors
     /// Where the system gives no thread.
-    pub(crate) fn start(gpu: &Gpu, slow: SlowDevice, backend: Backend, wake: Wake) -> std::io::Result<Self> {
+    pub(crate) fn start(
+        gpu: &Gpu,
+        background: BackgroundDevice,
+        backend: Backend,
+        wake: Wake,
+    ) -> std::io::Result<Self> {
         let (commands, taken) = channel();
         let (tell, events) = channel();
-        let (newest, sight) = (Mutex::default(), Mutex::default());
+        let (newest, view_state) = (Mutex::default(), Mutex::default());
         let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
-        let shared = Arc::new(Shared { newest, sight, follows, stop, wake });
+        let shared = Arc::new(Shared { newest, view_state, follows, stop, wake });
         let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &tell, &own, Devices { gpu: &gpu, slow: &slow, backend });
+        let run = move || thread::run(&taken, &tell, &own, Devices { gpu: &gpu, background: &background, backend });
         let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
     }
@@ -190,8 +190,8 @@ impl Physics {
     }
 
     /// It is seen so from now on. Never waits.
-    pub fn see(&self, sight: Sight) {
-        *self.shared.sight.lock().unwrap_or_else(PoisonError::into_inner) = sight;
+    pub fn see(&self, view_state: ViewState) {
+        *self.shared.view_state.lock().unwrap_or_else(PoisonError::into_inner) = view_state;
     }
 
     /// A single particle is followed from now on, or none: all of them come to the host again and again. Never waits.

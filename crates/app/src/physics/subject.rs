@@ -1,6 +1,7 @@
 //! What goes on in the thread: a scene that is computed, or a finished run that is shown again.
 
-use super::{Backend, Change, Measures};
+use super::{Backend, Change};
+use crate::snapshot::Measures;
 use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
 use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};

@@ -4,7 +4,8 @@ use super::filming::Filming;
 use super::glide::{self, Fault};
 use super::pace::Pace;
 use super::subject::Subject;
-use super::{Command, Devices, Event, Measures, Opened, Shared, Snapshot, default_pace};
+use super::{Command, Devices, Event, Opened, Shared, default_pace};
+use crate::snapshot::{Measures, Snapshot};
 use corpuscle::gpu::Gpu;
 use corpuscle::model::Frame;
 use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
@@ -211,7 +212,7 @@ impl Thread<'_> {
 
     fn film(&mut self, path: &Path) {
         let Some(running) = &mut self.running else { return };
-        let gpu = self.devices.slow.gpu().map_err(|error| Error::from(RenderError::from(error)));
+        let gpu = self.devices.background.gpu().map_err(|error| Error::from(RenderError::from(error)));
         match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.asked)) {
             Ok(filming) => {
                 running.filming = Some(filming);
@@ -292,8 +293,8 @@ impl Thread<'_> {
     fn look_for_film(&mut self) {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
-        let sight = self.shared.sight();
-        if let Err(error) = filming.look(&running.subject, &sight) {
+        let view_state = self.shared.view_state();
+        if let Err(error) = filming.look(&running.subject, &view_state) {
             running.filming = None;
             self.tell(Event::Filmed(Err(error.to_string())));
         }

@@ -5,7 +5,8 @@ mod history;
 mod speeds;
 
 use crate::icons::{self, Icon};
-use crate::physics::{Opened, Snapshot};
+use crate::physics::Opened;
+use crate::snapshot::Snapshot;
 use corpuscle::model::Chart;
 use corpuscle::scene::{ModelScene, Scene, Units};
 use egui::{ComboBox, RichText, Role, Ui, WidgetInfo, vec2};

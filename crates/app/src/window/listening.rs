@@ -1,11 +1,11 @@
-//! What comes from the physics and from the darkroom.
+//! Events of the physics thread and pictures of the offscreen renderer.
 
 use super::Window;
-use crate::darkroom::Print;
+use crate::offscreen::RenderResult;
 use crate::physics::Event;
 
 impl Window {
-    /// Takes what the physics told, and the pictures of the darkroom.
+    /// Handles the events of the physics thread, and takes the pictures of the offscreen renderer.
     pub(super) fn listen(&mut self) {
         self.look_for_dropped();
         for event in self.physics.events() {
@@ -24,7 +24,7 @@ impl Window {
                 }
             }
         }
-        self.take_prints();
+        self.take_pictures();
         let newest = self.physics.newest();
         if let (Some(open), Some(newest)) = (&mut self.open, newest)
             && newest.number == open.number
@@ -44,12 +44,12 @@ impl Window {
         }
     }
 
-    fn take_prints(&mut self) {
-        for print in self.darkroom.prints() {
-            match (print, &mut self.open) {
-                (Print::Still(still), _) => self.wrote(still),
-                (Print::Rest(number, print), Some(open)) => open.picture.take(number, print),
-                (Print::Rest(..), None) => {}
+    fn take_pictures(&mut self) {
+        for result in self.offscreen.results() {
+            match (result, &mut self.open) {
+                (RenderResult::Still(still), _) => self.wrote(still),
+                (RenderResult::Paused(number, picture), Some(open)) => open.picture.take(number, picture),
+                (RenderResult::Paused(..), None) => {}
             }
         }
     }

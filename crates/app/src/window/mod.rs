@@ -11,11 +11,13 @@ mod source;
 
 pub use source::{Source, Start};
 
-use crate::darkroom::{Darkroom, SlowDevice};
+use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
-use crate::physics::{Backend, Command, Opened, Physics, Snapshot, Wake, default_pace};
+use crate::offscreen::OffscreenRenderer;
+use crate::physics::{Backend, Command, Opened, Physics, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
+use crate::snapshot::{Snapshot, Wake};
 use crate::touch::Hands;
 use crate::{Screen, help, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
@@ -31,7 +33,7 @@ pub struct Window {
     screen: Screen,
     physics: Physics,
     /// Draws what takes long.
-    darkroom: Darkroom,
+    offscreen: OffscreenRenderer,
     gallery: Gallery,
     /// Which of scenes, parameters and plots are shown.
     panels: Panels,
@@ -97,13 +99,13 @@ impl Window {
         style::set_up(context);
         let wake = context.clone();
         let wake: Wake = Arc::new(move || wake.request_repaint());
-        let slow = SlowDevice::beside(&screen.gpu);
-        let physics = Physics::start(&screen.gpu, slow.clone(), backend, wake.clone())?;
-        let darkroom = Darkroom::start(slow, wake)?;
+        let background = BackgroundDevice::beside(&screen.gpu);
+        let physics = Physics::start(&screen.gpu, background.clone(), backend, wake.clone())?;
+        let offscreen = OffscreenRenderer::start(background, wake)?;
         let mut window = Self {
             screen,
             physics,
-            darkroom,
+            offscreen,
             gallery: Gallery::new(),
             panels: Panels { scenes: true, parameters: true, plots: true },
             help: false,

@@ -3,10 +3,10 @@
 use super::Source;
 use crate::overlay::Over;
 use crate::parameters::Parameters;
-use crate::physics::Snapshot;
 use crate::pick::Picked;
 use crate::picture::{Picture, Quality};
 use crate::plots::Plots;
+use crate::snapshot::Snapshot;
 use crate::spot::Spot;
 use crate::touch::Hands;
 use corpuscle::model::Frame;

@@ -58,8 +58,8 @@ impl Window {
         if let Some(open) = &mut self.open
             && let Some(snapshot) = open.snapshot.clone()
         {
-            let response = open.picture.ui(ui, &snapshot, open.playing, &self.darkroom);
-            self.physics.see(open.picture.sight());
+            let response = open.picture.ui(ui, &snapshot, open.playing, &self.offscreen);
+            self.physics.see(open.picture.view_state());
             open.pick(ui, &response, &snapshot);
             let spot = open.spot.map(|spot| spot.at_model());
             // A key, or its card, may have put it away.

@@ -19,7 +19,7 @@ impl Window {
         let Some(open) = &self.open else { return };
         let mut changes = open.parameters.changes().to_vec();
         let planned = open.scene.gas().and_then(|gas| gas.partition.as_ref()?.lifted_at_s);
-        if let Some(time) = open.picture.sight().lifted {
+        if let Some(time) = open.picture.view_state().lifted {
             let time = planned.map_or(time, |planned| planned.min(time));
             changes.push(("gas.partition.lifted_at_s".into(), format!("{time:?}")));
         }
@@ -40,7 +40,7 @@ impl Window {
         open.filming = !open.filming;
         self.physics.ask(if open.filming {
             let path = files::free(&self.folder, &open.source.name, "mp4");
-            self.physics.see(open.picture.sight());
+            self.physics.see(open.picture.view_state());
             Command::Film(path)
         } else {
             Command::EndFilm
@@ -58,7 +58,7 @@ impl Window {
     pub(super) fn save_still(&mut self) {
         let Some(open) = &self.open else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
-        self.darkroom.still(open.picture.sitting(&snapshot), self.folder.clone(), open.source.name.clone());
+        self.offscreen.still(open.picture.job(&snapshot), self.folder.clone(), open.source.name.clone());
         self.notice = Some(("The still is being drawn".into(), Instant::now()));
     }
 }

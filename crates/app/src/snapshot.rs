@@ -5,6 +5,9 @@ use corpuscle::gpu::DeviceParticles;
 use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
 use std::sync::Arc;
 
+/// Tells the window that there is something new to show; called from any thread.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
 /// The physics at one time.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
@@ -55,7 +58,7 @@ pub struct Measures {
 
 impl Measures {
     /// What a model measures now.
-    pub(super) fn of(model: &dyn Model) -> Self {
+    pub(crate) fn of(model: &dyn Model) -> Self {
         Self {
             time: model.time(),
             names: model.gauge_columns().iter().map(GaugeColumn::header).collect(),

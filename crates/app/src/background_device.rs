@@ -10,12 +10,12 @@ const LESS_URGENT: i32 = 10;
 /// The device of pictures that take long: a card draws them between two pictures of the window; software that stands in for one has a
 /// single queue, in which the window would wait for them, so that there is a second device then. It is opened when it is first needed.
 #[derive(Clone)]
-pub struct SlowDevice {
+pub struct BackgroundDevice {
     window: Gpu,
     second: Arc<Mutex<Option<Gpu>>>,
 }
 
-impl SlowDevice {
+impl BackgroundDevice {
     /// The one beside a window's device.
     pub fn beside(window: &Gpu) -> Self {
         Self { window: window.clone(), second: Arc::default() }

@@ -1,20 +1,20 @@
-//! How a scene is seen.
+//! The camera and the partition as the user set them.
 
-use crate::physics::Snapshot;
+use crate::snapshot::Snapshot;
 use corpuscle::Error;
 use corpuscle::gpu::Image;
 use corpuscle::pictures::{Hand, Moment, Pictures};
 
-/// How a scene is seen.
+/// The camera and the partition as the user set them, for pictures drawn elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sight {
+pub struct ViewState {
     /// How the camera was moved.
     pub hand: Hand,
     /// When the partition of a gas was lifted by hand, s.
     pub lifted: Option<f64>,
 }
 
-impl Sight {
+impl ViewState {
     /// A still of a moment seen so, with its title and axes.
     pub(crate) fn still(&self, pictures: &mut Pictures, moment: &Moment<'_>) -> Result<Image, Error> {
         self.lift(pictures);
