@@ -120,6 +120,12 @@ impl Contact {
         self.blocks.get(site / TOGETHER).map_or(&[], |block| block.of(site % TOGETHER))
     }
 
+    /// From a place to a site, m.
+    pub fn offset(&self, site: usize, place: [f64; 3]) -> [f64; 3] {
+        let position = self.sites[site].position;
+        [0, 1, 2].map(|axis| position[axis] - place[axis])
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let of_blocks: usize = self.blocks.iter().map(|block| block.pairs.capacity() * size_of::<Pair>()).sum();

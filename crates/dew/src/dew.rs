@@ -4,12 +4,14 @@ mod by_hand;
 mod motion;
 #[cfg(feature = "gpu")]
 mod on_card;
+mod scatter;
 mod settle;
 mod transfer;
 
 pub use by_hand::ByHand;
 #[cfg(feature = "gpu")]
 pub(crate) use motion::FARTHEST_SPREAD;
+pub use scatter::Scatter;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
@@ -18,6 +20,7 @@ use crate::faces::OpenSide;
 use crate::fan::Fan;
 use crate::humid_air;
 use crate::layer::Layer;
+use crate::normalisation::Tensor;
 use crate::room::Room;
 use crate::settings::Settings;
 use crate::solids::{Body, Conduction, Solids, Surface};
@@ -48,6 +51,7 @@ pub struct Dew {
     pub(crate) contact: Contact,
     pub(crate) ghosts: Contact,
     sums: Vec<Sums>,
+    tensors: Vec<Tensor>,
     columns: Vec<Column>,
     rates: Vec<Rates>,
     work: Work,
@@ -186,6 +190,7 @@ impl Dew {
             contact,
             ghosts,
             sums: Vec::new(),
+            tensors: Vec::new(),
             columns: Vec::new(),
             rates: Vec::new(),
             work: Work::default(),
@@ -393,12 +398,18 @@ impl Dew {
         self.state.time_step
     }
 
+    /// Time up to which steps were taken, s: up to a step before the time shown. Accounts such as [`Dew::heat_from`] are of this time.
+    pub fn stepped_until(&self) -> f64 {
+        self.state.time
+    }
+
     /// Bytes held for the particles and the work on them.
     pub fn bytes(&self) -> usize {
         let air = self.state.air.capacity() * size_of::<Particle>();
         let work = self.columns.capacity() * size_of::<Column>()
             + self.rates.capacity() * size_of::<Rates>()
-            + self.sums.capacity() * size_of::<Sums>();
+            + self.sums.capacity() * size_of::<Sums>()
+            + self.tensors.capacity() * size_of::<Tensor>();
         air + work + self.arrangement.bytes() + self.contact.bytes() + self.ghosts.bytes() + self.conduction.bytes()
     }
 

@@ -5,6 +5,7 @@
 use crate::air::{Arrangement, Column, Particle, Properties, Scale};
 use crate::contact::{Contact, Near, Pair};
 use crate::humid_air::HumidAir;
+use crate::normalisation;
 use crate::settings::{Condensation, Settings};
 use crate::solids::{Site, Solids};
 use rayon::prelude::*;
@@ -99,7 +100,8 @@ impl Exchange<'_> {
         let particle = self.contact.sites[site].particle as usize;
         let air = &self.columns[place];
         let volume = self.contact.volumes[site];
-        let weight = volume * self.scale.kernels.viscosity_laplacian(r) * air.evenness / self.scale.moment;
+        let factor = normalisation::factor(&air.tensor, self.contact.offset(site, air.position));
+        let weight = volume * self.scale.kernels.viscosity_laplacian(r) * factor / self.scale.moment;
         let of_pair = self.settings.faster * self.scale.volume * weight;
         let (of_air, of_solid) = (self.air.conductor(), self.solids.material(particle).conductor());
         let mean = self.settings.mean;

@@ -22,6 +22,7 @@ pub mod humid_air;
 mod layer;
 mod measures;
 mod model;
+mod normalisation;
 mod open;
 mod room;
 mod settings;
@@ -32,7 +33,7 @@ mod utility;
 mod walls;
 mod wetting;
 
-pub use dew::{ByHand, Dew, Setup};
+pub use dew::{ByHand, Dew, Scatter, Setup};
 pub use fan::Fan;
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};

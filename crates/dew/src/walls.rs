@@ -2,6 +2,7 @@
 
 use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
 use crate::contact::{Contact, Near, Pair};
+use crate::normalisation::{self, Moments};
 use crate::settings::WallTreatment;
 use rayon::prelude::*;
 
@@ -9,6 +10,7 @@ use rayon::prelude::*;
 #[derive(Debug, Default)]
 pub struct Work {
     parts: Vec<f64>,
+    moments: Vec<Moments>,
     pushes: Vec<Rates>,
 }
 
@@ -33,17 +35,23 @@ pub fn add_density(
     }
 }
 
-/// Solids join the second moment of the Laplacian, by which diffusion is made exact.
-pub fn add_moment(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums], work: &mut Work) {
+/// Solids join the moments of the Laplacian, by which diffusion is made exact.
+pub fn add_moments(contact: &Contact, arrangement: &Arrangement, scale: &Scale, sums: &mut [Sums], work: &mut Work) {
     let of_one = |near: &Near| {
-        let part = |pair: &Pair| {
-            contact.volumes[pair.other as usize] * pair.r * pair.r * scale.kernels.viscosity_laplacian(pair.r)
-        };
-        contact.of_air(near).iter().map(part).sum::<f64>()
+        let place = arrangement.at(arrangement.place_of[near.particle as usize] as usize);
+        let mut moments = Moments::default();
+        for pair in contact.of_air(near).iter().filter(|pair| pair.r > 0.0) {
+            let number = pair.other as usize;
+            let weight = contact.volumes[number] * scale.kernels.viscosity_laplacian(pair.r) / (pair.r * pair.r);
+            let products = normalisation::products(contact.offset(number, place));
+            moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
+        }
+        moments
     };
-    contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
-    for (near, part) in contact.near.iter().zip(&work.parts) {
-        sums[arrangement.place_of[near.particle as usize] as usize].moment += part / (6.0 * scale.moment);
+    contact.near.par_iter().map(of_one).collect_into_vec(&mut work.moments);
+    for (near, moments) in contact.near.iter().zip(&work.moments) {
+        let sums = &mut sums[arrangement.place_of[near.particle as usize] as usize].moments;
+        sums.iter_mut().zip(moments).for_each(|(sum, part)| *sum += 0.5 / scale.moment * part);
     }
 }
 
@@ -165,8 +173,11 @@ impl Push<'_> {
     fn stick(&self, near: &Near, rates: &mut Rates) {
         let own = self.column(near);
         let Scale { kernels, moment, .. } = *self.scale;
-        let weight = |pair: &Pair| self.contact.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r);
-        let weight = self.contact.of_air(near).iter().map(weight).sum::<f64>() * own.evenness / moment;
+        let weight = |pair: &Pair| {
+            let factor = normalisation::factor(&own.tensor, self.contact.offset(pair.other as usize, own.position));
+            self.contact.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r) * factor
+        };
+        let weight = self.contact.of_air(near).iter().map(weight).sum::<f64>() / moment;
         (0..3).for_each(|axis| rates.acceleration[axis] -= 2.0 * self.air.viscosity * weight * own.velocity[axis]);
         rates.weights += 2.0 * weight;
     }

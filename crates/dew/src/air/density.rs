@@ -1,20 +1,23 @@
-//! How dense the air is, and how regularly its particles stand.
+//! How dense the air is, and how its particles stand about each other.
 
 use super::{Arrangement, Entry, Scale};
-use corpuscle_sph::space::{Neighbours, PairSum};
-use corpuscle_sph::{Lanes, LanesExt, Simd, SimdBase, SimdFloat};
+use crate::normalisation::{self, Moments, Tensor};
+use corpuscle_sph::space::{Neighbours, PairSum, Places};
+use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch};
+use rayon::prelude::*;
 
 /// Sums over the neighbours of a place.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sums {
     /// sum V W, itself included: 1 on the lattice.
     pub filling: f64,
-    /// sum V r^2 lap W / 6, over its value on the lattice.
-    pub moment: f64,
+    /// Fourth moments of the Laplacian's weights, over the mean second moment on the lattice.
+    pub moments: Moments,
 }
 
 struct Filling<'a> {
     entries: &'a [Entry],
+    places: Places<'a>,
     scale: Scale,
 }
 
@@ -23,8 +26,27 @@ impl Arrangement {
     pub fn search(&mut self, scale: &Scale, sums: &mut Vec<Sums>) {
         sums.resize(self.entries.len(), Sums::default());
         let Self { cells, lists, entries, x, y, z, .. } = self;
-        let places = corpuscle_sph::space::Places { x, y, z };
-        lists.search(cells, places, scale.h(), sums, &Filling { entries, scale: *scale });
+        let places = Places { x, y, z };
+        lists.search(cells, places, scale.h(), sums, &Filling { entries, places, scale: *scale });
+    }
+
+    /// Finds the tensor by which each particle's diffusion is normalised.
+    pub fn normalise(&self, sums: &[Sums], tensors: &mut Vec<Tensor>) {
+        tensors.resize(self.place_of.len(), Tensor::default());
+        tensors.par_chunks_mut(BLOCK).zip(self.place_of.par_chunks(BLOCK)).for_each(|(tensors, places)| {
+            dispatch!(Level::new(), simd => normalise_block(simd, sums, places, tensors));
+        });
+    }
+}
+
+#[inline(always)]
+fn normalise_block<S: Simd>(simd: S, sums: &[Sums], places: &[u32], tensors: &mut [Tensor]) {
+    for (tensors, places) in tensors.chunks_mut(LANES).zip(places.chunks(LANES)) {
+        // The last one fills up what is missing.
+        let at = |lane: usize| places[lane.min(places.len() - 1)] as usize;
+        let moments: [&Moments; LANES] = std::array::from_fn(|lane| &sums[at(lane)].moments);
+        let found = normalisation::tensors(simd, moments);
+        tensors.copy_from_slice(&found[..tensors.len()]);
     }
 }
 
@@ -34,17 +56,22 @@ impl PairSum<Sums> for Filling<'_> {
     }
 
     #[inline(always)]
-    fn sum<S: Simd>(&self, simd: S, _: usize, found: Neighbours) -> Sums {
+    fn sum<S: Simd>(&self, simd: S, place: usize, found: Neighbours) -> Sums {
         let Scale { volume, kernels, to_density, moment: of_lattice, .. } = self.scale;
+        let Places { x, y, z } = self.places;
         let mut filling = Lanes::splat(simd, 0.0);
-        let mut moment = Lanes::splat(simd, 0.0);
-        for r_squared in found.lanes(simd) {
+        let mut moments = [Lanes::splat(simd, 0.0); 15];
+        for (r_squared, index) in found.lanes(simd).zip(found.index.chunks_exact(LANES)) {
             filling += kernels.poly6_shape(r_squared);
-            moment += r_squared * kernels.inside(r_squared.sqrt());
+            let offset = [x, y, z].map(|along| Lanes::from_fn(simd, |lane| along[index[lane] as usize]) - along[place]);
+            let weight = kernels.inside(r_squared.sqrt()) / r_squared;
+            let products = normalisation::products(offset);
+            moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
         }
+        let of_moments = 0.5 * volume * kernels.spiky_factor() / of_lattice;
         Sums {
             filling: to_density * volume * (filling.sum() * kernels.poly6_factor() + kernels.poly6(0.0)),
-            moment: volume * moment.sum() * kernels.spiky_factor() / (6.0 * of_lattice),
+            moments: moments.map(|sum| of_moments * sum.sum()),
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Every pair acts on both by the same number with opposite signs, so momentum, heat and vapour are conserved to rounding.
 
 use super::{Arrangement, Properties, Scale};
+use crate::normalisation::{self, Tensor};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch, gather};
 use rayon::prelude::*;
@@ -17,14 +18,14 @@ pub struct Column {
     pub velocity: [f64; 3],
     /// Pressure over the square of the density, Pa m6/kg2.
     pub pressure: f64,
-    /// What the Laplacian is multiplied by so that it is exact where particles stand as they do: 1 on the lattice.
-    pub evenness: f64,
     /// Temperature, K.
     pub temperature: f64,
     /// Part of the mass that is vapour (or relative humidity).
     pub vapour: f64,
+    /// By which the Laplacian is exact where particles stand as they do.
+    pub tensor: Tensor,
     /// Fills the second row.
-    pub unused: [f64; 6],
+    pub unused: f64,
 }
 
 /// What neighbours do to a particle.
@@ -75,10 +76,12 @@ fn sum_block<S: Simd>(
 fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scale: &Scale, air: &Properties) -> Rates {
     let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
     let own = &columns[place];
+    let [a, b, c, d, e, f] = own.tensor;
     let Scale { volume, kernels, to_gradient, moment, .. } = *scale;
     // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1, with the spiky kernel).
     let of_pressure = air.density * volume * to_gradient * kernels.spiky_factor();
     let of_spread = 2.0 * volume * to_gradient * kernels.spiky_factor();
+    // Both sides' tensors, halved.
     let of_laplacian = 0.5 * volume * kernels.spiky_factor() / moment;
     // Distances below this are those of a place to itself.
     let nothing = Lanes::splat(simd, 1e-18 * kernels.support() * kernels.support());
@@ -90,15 +93,16 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let [mut warming, mut moistening, mut weights] = [zero; 3];
     for index in list.chunks_exact(LANES) {
         let first: [usize; LANES] = std::array::from_fn(|lane| 2 * index[lane] as usize);
-        let [x, y, z, u, v, w, pressure, evenness] = gather(simd, rows, first);
-        let [temperature, vapour, ..] = gather(simd, rows, first.map(|row| row + 1));
+        let [x, y, z, u, v, w, pressure, temperature] = gather(simd, rows, first);
+        let [vapour, xx, yy, zz, xy, xz, yz, _] = gather(simd, rows, first.map(|row| row + 1));
         let (dx, dy, dz) = (own.position[0] - x, own.position[1] - y, own.position[2] - z);
         let r_squared = dx * dx + dy * dy + dz * dz;
         let r = r_squared.max(nothing).sqrt();
         let inside = kernels.inside(r);
-        let slope = inside * inside / r;
+        let inverse = 1.0 / r;
+        let slope = inside * inside * inverse;
         let closing = (own.velocity[0] - u) * dx + (own.velocity[1] - v) * dy + (own.velocity[2] - w) * dz;
-        let approach = ((zero - closing) / r).max(zero);
+        let approach = ((zero - closing) * inverse).max(zero);
         let damping = (approach * limit).min(sound) * approach * per_density;
         let push = (pressure + own.pressure + damping) * slope * of_pressure;
         ax += push * dx;
@@ -107,7 +111,9 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         spread_x += slope * dx;
         spread_y += slope * dy;
         spread_z += slope * dz;
-        let weight = r_squared.select_below(nothing, zero, inside * (evenness + own.evenness) * of_laplacian);
+        // Of a place to itself, which fills lists up, it is 0.
+        let both = [xx + a, yy + b, zz + c, xy + d, xz + e, yz + f];
+        let weight = inside * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;
         shear_x += weight * (u - own.velocity[0]);
         shear_y += weight * (v - own.velocity[1]);
         shear_z += weight * (w - own.velocity[2]);

@@ -46,9 +46,9 @@ struct Parameters {
     density: f32,
     rest_density: f32,
     kappa: f32,
-    // Factors of the sums over (1 - q^2)^3, q^2 (1 - q), and, over r or not, (1 - q)^2 and (1 - q), with q = r/h.
+    // Factors of the sums over (1 - q^2)^3, (1 - q) q q q q/|q|^2, and, over r or not, (1 - q)^2 and (1 - q), with q = r/h.
     of_filling: f32,
-    of_moment: f32,
+    of_moments: f32,
     of_pressure: f32,
     of_spread: f32,
     of_laplacian: f32,
@@ -153,11 +153,9 @@ struct Particle {
     temperature: Account,
     vapour: Account,
     role: u32,
-    // What the Laplacian is multiplied by so that it is exact where particles stand as they do.
-    evenness: f32,
     // For how long it has been of low utility, s.
     idle: f32,
-    unused: f32,
+    unused: vec2f,
 }
 
 // A parcel as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
@@ -167,7 +165,7 @@ struct Packed {
     acceleration_and_deposit: vec4f,
     spreading_and_id: vec4u,
     temperature_and_vapour: vec4f,
-    role_evenness_idle: vec4u,
+    role_and_idle: vec4u,
 }
 
 fn unpacked(packed: Packed) -> Particle {
@@ -176,11 +174,10 @@ fn unpacked(packed: Packed) -> Particle {
     let c = packed.acceleration_and_deposit;
     let d = packed.spreading_and_id;
     let e = packed.temperature_and_vapour;
-    let f = packed.role_evenness_idle;
+    let f = packed.role_and_idle;
     let spreading = bitcast<vec3f>(d.xyz);
-    let idle = bitcast<vec2f>(f.yz);
     return Particle(
-        a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, spreading, d.w, Account(e.x, e.y), Account(e.z, e.w), f.x, idle.x, idle.y, 0.0
+        a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, spreading, d.w, Account(e.x, e.y), Account(e.z, e.w), f.x, bitcast<f32>(f.y), vec2f(0.0)
     );
 }
 
@@ -193,7 +190,7 @@ fn packed(particle: Particle) -> Packed {
         vec4f(particle.acceleration, particle.deposit),
         vec4u(bitcast<vec3u>(particle.spreading), particle.id),
         vec4f(temperature.sum, temperature.lacking, vapour.sum, vapour.lacking),
-        vec4u(particle.role, bitcast<u32>(particle.evenness), bitcast<u32>(particle.idle), 0u),
+        vec4u(particle.role, bitcast<u32>(particle.idle), 0u, 0u),
     );
 }
 
@@ -202,26 +199,35 @@ struct Column {
     place: vec3f,
     pressure: f32,
     velocity: vec3f,
-    evenness: f32,
     temperature: f32,
+    // By which the Laplacian is exact where particles stand as they do: xx, yy, zz and, doubled, xy, xz, yz.
+    diagonal: vec3f,
     vapour: f32,
+    doubled: vec3f,
     // What of the vapour diffuses: its part of the mass, or relative humidity.
     humidity: f32,
-    unused: f32,
 }
 
 // The same as it lies in memory: who looks for neighbours needs the first part of those out of reach.
 struct PackedColumn {
     place_and_pressure: vec4f,
-    velocity_and_evenness: vec4f,
-    temperature_vapour_humidity: vec4f,
+    velocity_and_temperature: vec4f,
+    diagonal_and_vapour: vec4f,
+    doubled_and_humidity: vec4f,
 }
 
 fn unpacked_column(packed: PackedColumn) -> Column {
     let a = packed.place_and_pressure;
-    let b = packed.velocity_and_evenness;
-    let c = packed.temperature_vapour_humidity;
-    return Column(a.xyz, a.w, b.xyz, b.w, c.x, c.y, c.z, 0.0);
+    let b = packed.velocity_and_temperature;
+    let c = packed.diagonal_and_vapour;
+    let d = packed.doubled_and_humidity;
+    return Column(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
+}
+
+// e^T Q e of a tensor of a column for an offset. Twin of `factor` in `normalisation.rs`.
+fn factor(diagonal: vec3f, doubled: vec3f, offset: vec3f) -> f32 {
+    let across = offset.xxy * offset.yzz;
+    return (dot(diagonal, offset * offset) + dot(doubled, across)) / max(dot(offset, offset), 1e-30);
 }
 
 // What a group of threads sums up over its parcels: numbers, and temperature, vapour and fog, of those that came and went; what

@@ -1,7 +1,8 @@
-// How dense the air is and how regularly its parcels stand, solids among them, and what neighbours read of each. Twin of
-// `air/density.rs`, of `add_density` and `add_moment` in `walls.rs`, and of `fill_columns` in `dew/motion.rs`.
+// How dense the air is and how its parcels stand about each other, solids among them, and what neighbours read of each. Twin of
+// `air/density.rs`, of `add_density` and `add_moments` in `walls.rs`, and of `fill_columns` in `dew/motion.rs`.
 #import dew_neighbours
 #import dew_humid
+#import dew_normalisation
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;
@@ -12,9 +13,9 @@
 @group(0) @binding(7) var<storage, read> site_start: array<u32>;
 @group(0) @binding(8) var<storage, read> sites: array<Site>;
 
-// Filling and moment by the air, itself included.
-fn of_air(i: u32, place: vec3f) -> vec2f {
-    var sums = vec2f(1.0, 0.0);
+// Filling and moments by the air, itself included.
+fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
+    var filling = 1.0;
     let mirrors = mirrors_round(place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, place);
@@ -26,23 +27,26 @@ fn of_air(i: u32, place: vec3f) -> vec2f {
                 let across = columns_round(truth, y, z);
                 let row = row_of(y, z);
                 let end = start[row + across.y + 1u];
+                var of_row: Moments;
                 for (var j = start[row + across.x]; j < end; j++) {
                     let away = (shown(mirror, spots[j].xyz) - place) * parameters.per_h;
                     let q_squared = dot(away, away);
                     if q_squared >= 1.0 || (j == i && k == 0u) {
                         continue;
                     }
-                    sums += vec2f(poly6(q_squared), q_squared * (1.0 - sqrt(q_squared)));
+                    filling += poly6(q_squared);
+                    add_moments(&of_row, away, 1.0);
                 }
+                join(moments, of_row);
             }
         }
     }
-    return sums;
+    return filling;
 }
 
 // The same by solids: their particles and ghost samples.
-fn of_solids(place: vec3f) -> vec2f {
-    var sums = vec2f(0.0);
+fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
+    var filling = 0.0;
     let low = cell_index(place - parameters.h);
     let high = cell_index(place + parameters.h);
     for (var z = low.z; z <= high.z; z++) {
@@ -50,6 +54,7 @@ fn of_solids(place: vec3f) -> vec2f {
             let across = columns_round(place, y, z);
             let row = row_of(y, z);
             let end = site_start[row + across.y + 1u];
+            var of_row: Moments;
             for (var k = site_start[row + across.x]; k < end; k++) {
                 let away = (sites[k].place - place) * parameters.per_h;
                 let q_squared = dot(away, away);
@@ -58,17 +63,18 @@ fn of_solids(place: vec3f) -> vec2f {
                 }
                 let flags = sites[k].flags;
                 if (flags & GHOST) != 0u {
-                    sums.x += sites[k].volume * poly6(q_squared);
+                    filling += sites[k].volume * poly6(q_squared);
                     continue;
                 }
                 if (flags & JOINS_DENSITY) != 0u {
-                    sums.x += parameters.kappa * sites[k].volume * poly6(q_squared);
+                    filling += parameters.kappa * sites[k].volume * poly6(q_squared);
                 }
-                sums.y += sites[k].volume * q_squared * (1.0 - sqrt(q_squared));
+                add_moments(&of_row, away, sites[k].volume);
             }
+            join(moments, of_row);
         }
     }
-    return sums;
+    return filling;
 }
 
 // Twin of `Room::is_before_outlet`.
@@ -118,10 +124,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     var particle = unpacked(ordered[i]);
-    let sums = of_air(i, particle.place) + of_solids(particle.place);
-    particle.density = density_of(particle, parameters.of_filling * sums.x);
-    // A particle with few neighbours diffuses no faster than one with half of them.
-    particle.evenness = 1.0 / max(parameters.of_moment * sums.y, 0.5);
+    var moments: Moments;
+    let filling = of_air(i, particle.place, &moments) + of_solids(particle.place, &moments);
+    particle.density = density_of(particle, parameters.of_filling * filling);
+    let tensor = normalised(moments);
     var velocity = particle.velocity;
     if particle.role == INSIDE {
         velocity += 0.5 * status.step * particle.acceleration;
@@ -136,8 +142,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     columns[i] = PackedColumn(
         vec4f(particle.place, pressure),
-        vec4f(velocity, particle.evenness),
-        vec4f(temperature, vapour, humidity, 0.0),
+        vec4f(velocity, temperature),
+        vec4f(tensor.diagonal, vapour),
+        vec4f(tensor.others, humidity),
     );
     particles[i] = packed(particle);
 }

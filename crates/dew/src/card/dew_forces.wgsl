@@ -60,7 +60,10 @@ fn of_air(i: u32, own: Column) -> Rates {
                     // Monaghan 1992, equation 3.1, with the spiky kernel.
                     push += (near.pressure + own.pressure + damping) * slope * parameters.of_pressure * away;
                     spread += slope * away;
-                    let weight = (1.0 - q) * (near.evenness + own.evenness) * parameters.of_laplacian;
+                    // Both tensors, the neighbour's as the mirror shows it; halved by `of_laplacian`.
+                    let doubled = own.doubled + mirror.sign.xxy * mirror.sign.yzz * near.doubled;
+                    let even = factor(own.diagonal + near.diagonal, doubled, away);
+                    let weight = (1.0 - q) * even * parameters.of_laplacian;
                     shear += weight * (velocity - own.velocity);
                     warming += weight * (near.temperature - own.temperature);
                     moistening += weight * (near.humidity - own.humidity);
@@ -103,9 +106,9 @@ struct Given {
 }
 
 // Adds what one site gives to a parcel.
-fn give(given: ptr<function, Given>, site: Site, own: Column, q: f32) {
+fn give(given: ptr<function, Given>, site: Site, own: Column, away: vec3f, q: f32) {
     let surface = surfaces[site.particle];
-    let flux = flux(site, surface, own.temperature, own.vapour, own.evenness, q);
+    let flux = flux(site, surface, own, away, q);
     let water = select(flux.water, surface.share * flux.water, flux.water < 0.0);
     let capacity = parameters.mass * parameters.heat_capacity;
     let released = (1.0 - site.part) * parameters.latent_heat * water;
@@ -148,13 +151,13 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
                 } else if (site.flags & REPELS) != 0u {
                     repelled += repulsion(r) / r * away;
                 }
-                stuck += site.volume * inside;
-                give(&given, site, own, q);
+                stuck += site.volume * inside * factor(own.diagonal, own.doubled, away);
+                give(&given, site, own, away, q);
             }
         }
     }
     // Air at a wall is at rest: viscosity against a wall half way between the air and the site.
-    let weight = 2.0 * parameters.of_laplacian * stuck * own.evenness;
+    let weight = 2.0 * parameters.of_laplacian * stuck;
     (*rates).acceleration += pressed(own, corrected) + pressed(own, ghostly) + repelled
         - 2.0 * parameters.viscosity * weight * own.velocity;
     (*rates).spread += corrected + ghostly;

@@ -32,14 +32,14 @@ struct Flux {
     water: f32,
 }
 
-// Between a site and air, q their distance over h.
-fn flux(site: Site, surface: Surface, temperature: f32, vapour: f32, evenness: f32, q: f32) -> Flux {
-    let of_pair = parameters.of_pair * site.volume * (1.0 - q) * evenness;
-    let difference = temperature - surface.temperature;
+// Between a site and air, q their distance over h, `offset` from one to the other as the air's column has axes.
+fn flux(site: Site, surface: Surface, air: Column, offset: vec3f, q: f32) -> Flux {
+    let of_pair = parameters.of_pair * site.volume * (1.0 - q) * factor(air.diagonal, air.doubled, offset);
+    let difference = air.temperature - surface.temperature;
     var water = 0.0;
     if is_set(DIFFUSES) && (site.flags & BOUNDARY) != 0u {
         let at_surface = surface.temperature + (1.0 - site.part) * difference;
-        water = parameters.vapour_reach * of_pair * (vapour - saturation(at_surface).x);
+        water = parameters.vapour_reach * of_pair * (air.vapour - saturation(at_surface).x);
         if water < 0.0 && surface.water <= 0.0 {
             water = 0.0;
         }

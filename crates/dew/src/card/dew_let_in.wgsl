@@ -46,7 +46,6 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
         particle.vapour = Account(inlet.vapour, 0.0);
         particle.id = first_id + k;
         particle.role = COMING | (number << FACE_BITS);
-        particle.evenness = 1.0;
         if first + k < arrayLength(&particles) {
             particles[first + k] = particle;
         }

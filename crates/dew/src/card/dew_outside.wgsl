@@ -63,7 +63,6 @@ fn add_parcel(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     particle.place[b] = parameters.low[b] + (f32(column / along.x) + 0.5) * parameters.apart[b];
     particle.id = id;
     particle.role = OUTSIDE | (number << FACE_BITS);
-    particle.evenness = 1.0;
     if at < arrayLength(&particles) {
         let cell = cell_at(particle.place);
         particles[at] = particle;

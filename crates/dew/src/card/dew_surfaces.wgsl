@@ -28,12 +28,13 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
                 let row = row_of(y, z);
                 let end = start[row + across.y + 1u];
                 for (var j = start[row + across.x]; j < end; j++) {
-                    let q = distance(shown(mirror, columns[j].place_and_pressure.xyz), site.place) * parameters.per_h;
+                    let away = shown(mirror, columns[j].place_and_pressure.xyz) - site.place;
+                    let q = length(away) * parameters.per_h;
                     if q >= 1.0 {
                         continue;
                     }
                     let air = unpacked_column(columns[j]);
-                    let flux = flux(site, surface, air.temperature, air.vapour, air.evenness, q);
+                    let flux = flux(site, surface, air, mirror.sign * away, q);
                     let heat = flux.to_solid * flux.difference;
                     sums += vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid);
                 }

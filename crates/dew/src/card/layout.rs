@@ -57,7 +57,7 @@ pub(super) struct Parameters {
     pub rest_density: f32,
     pub kappa: f32,
     pub of_filling: f32,
-    pub of_moment: f32,
+    pub of_moments: f32,
     pub of_pressure: f32,
     pub of_spread: f32,
     pub of_laplacian: f32,
@@ -138,9 +138,8 @@ pub(super) struct CardParticle {
     pub temperature: Account,
     pub vapour: Account,
     pub role: u32,
-    pub evenness: f32,
     pub idle: f32,
-    pub unused: f32,
+    pub unused: [f32; 2],
 }
 
 /// A particle of a solid, its image, or a ghost sample.
@@ -220,7 +219,7 @@ pub(super) struct OutsideColumn {
 pub(super) type BeforeColumn = [u32; 3];
 
 /// Bytes of a `Column`, a `Surface`, a `Partial`, and of what is summed before faces.
-pub(super) type Column = [f32; 12];
+pub(super) type Column = [f32; 16];
 pub(super) type Surface = [f32; 8];
 pub(super) type Partial = [f32; 16];
 pub(super) type Before = [[f32; 2]; 6];

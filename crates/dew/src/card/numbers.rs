@@ -114,7 +114,7 @@ impl Parameters {
         let spread = 2.0 * volume * to_gradient * spiky * h.powi(2);
         *self = Self {
             of_filling: (to_density * volume * kernels.poly6_factor() * h.powi(6)) as f32,
-            of_moment: (volume * spiky * h.powi(3) / (6.0 * moment)) as f32,
+            of_moments: (0.5 * volume * spiky * h.powi(3) / moment) as f32,
             of_pressure: (0.5 * dew.air.density * spread) as f32,
             of_spread: spread as f32,
             of_laplacian: (0.5 * volume * spiky * h / moment) as f32,

@@ -55,7 +55,6 @@ impl Origin {
             temperature: account(particle.temperature - self.temperature),
             vapour: account(particle.vapour - self.vapour),
             role: role(particle.role),
-            evenness: 1.0,
             idle: particle.idle as f32,
             ..CardParticle::default()
         }

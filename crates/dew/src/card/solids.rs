@@ -38,7 +38,8 @@ impl CardSolids {
             let first = pairs.len() as u32;
             let of_it = dew.conduction.pairs(number);
             pairs.extend(of_it.map(|(other, conductance)| [other as u32, (conductance as f32).to_bits()]));
-            let site = Site { position: particle.position, particle: number as u32, image: false };
+            let site =
+                Site { position: particle.position, particle: number as u32, image: false, mirrored: [false; 3] };
             let end = pairs.len() as u32;
             own.push(CardSite { first, end, ..card_site(dew, origin, &site, particle.volume) });
         }

@@ -16,6 +16,7 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("dew_columns", include_str!("dew_columns.wgsl")),
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),
     ("dew_humid", include_str!("dew_humid.wgsl")),
+    ("dew_normalisation", include_str!("dew_normalisation.wgsl")),
     ("dew_saturate", include_str!("dew_saturate.wgsl")),
     ("dew_solids", include_str!("dew_solids.wgsl")),
     ("dew_utility", include_str!("dew_utility.wgsl")),

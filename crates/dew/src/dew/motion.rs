@@ -3,6 +3,7 @@
 use super::Dew;
 use crate::air::{Arrangement, Column, Entry, Particle, Properties, Rates, Role, Sums, sum_pairs};
 use crate::humid_air::{self, HumidAir};
+use crate::normalisation::{self, Tensor};
 use crate::room::Room;
 use crate::settings::Humidity;
 use crate::walls::{self, Push};
@@ -79,6 +80,7 @@ impl Dew {
             contact,
             ghosts,
             sums,
+            tensors,
             columns,
             rates,
             state,
@@ -92,8 +94,9 @@ impl Dew {
         ghosts.update(arrangement, scale);
         walls::add_density(contact, arrangement, scale, settings.kappa, sums, push);
         walls::add_density(ghosts, arrangement, scale, 1.0, sums, push);
-        walls::add_moment(contact, arrangement, scale, sums, push);
-        fill_columns(arrangement, sums, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
+        walls::add_moments(contact, arrangement, scale, sums, push);
+        arrangement.normalise(sums, tensors);
+        fill_columns(arrangement, sums, tensors, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
         rates.resize(state.air.len(), Rates::default());
         let at_work = Properties {
             conductivity: settings.faster * air.conductivity,
@@ -181,6 +184,7 @@ fn virtual_temperature(temperature: f64, vapour: f64) -> f64 {
 fn fill_columns(
     arrangement: &Arrangement,
     sums: &[Sums],
+    tensors: &[Tensor],
     columns: &mut Vec<Column>,
     particles: &mut [Particle],
     air: &Properties,
@@ -205,7 +209,6 @@ fn fill_columns(
     let particles = &*particles;
     let column = |(place, entry): (usize, &Entry)| {
         let particle = &particles[entry.particle as usize];
-        let place_of_particle = arrangement.place_of[entry.particle as usize] as usize;
         let mut velocity = particle.velocity;
         for axis in 0..3 {
             if particle.role == Role::Inside {
@@ -220,11 +223,10 @@ fn fill_columns(
             velocity,
             pressure: air.sound_speed * air.sound_speed * (particle.density - rest_density)
                 / (particle.density * particle.density),
-            // A particle with few neighbours diffuses no faster than one with half of them.
-            evenness: 1.0 / sums[place_of_particle].moment.max(0.5),
             temperature: particle.temperature,
             vapour: particle.vapour,
-            unused: [0.0; 6],
+            tensor: normalisation::mirrored(tensors[entry.particle as usize], entry.mirrored),
+            unused: 0.0,
         }
     };
     arrangement.entries.par_iter().enumerate().with_min_len(1024).map(column).collect_into_vec(columns);

@@ -17,7 +17,6 @@ const EVEN: f64 = 1e-3;
 impl Dew {
     /// Spreads the air evenly between the solids before anything happens.
     pub(super) fn settle(&mut self) {
-        let (room, spacing) = (self.room, self.scale.spacing);
         let completes =
             |walls: &WallTreatment| matches!(walls, WallTreatment::DensityCorrection | WallTreatment::Ghosts);
         let completed = self.contact.walls.is_empty() || self.contact.walls.iter().any(completes);
@@ -31,7 +30,26 @@ impl Dew {
                 .filter(completing)
                 .for_each(|walls| *walls = WallTreatment::DensityCorrection);
         }
-        for _ in 0..if completed { SETTLING } else { 0 } {
+        self.spread_evenly(if completed { SETTLING } else { 0 });
+        self.evaluate(0.0);
+        if completed {
+            self.take_as_rest();
+        }
+        self.contact.walls = walls;
+        self.evaluate(0.0);
+        self.take_out_repelled();
+    }
+
+    /// The pressure at rest becomes that of the air as it stands: neither too much nor too little of it is in the room.
+    pub(super) fn take_as_rest(&mut self) {
+        let sum: f64 = self.inside().map(|particle| particle.density).sum();
+        self.rest_density = sum / (self.inside().count() as f64).max(1.0);
+    }
+
+    /// Evens out the air in the room, in `most` sweeps at most.
+    pub(super) fn spread_evenly(&mut self, most: u32) {
+        let (room, spacing) = (self.room, self.scale.spacing);
+        for _ in 0..most {
             self.evaluate(0.0);
             let uneven = |rates: &Rates| rates.spread.iter().fold(0.0_f64, |most, along| most.max(along.abs()));
             if self.rates.par_iter().map(uneven).reduce(|| 0.0, f64::max) * spacing < EVEN {
@@ -47,15 +65,6 @@ impl Dew {
                 room.keep(&mut particle.position, &mut particle.velocity);
             });
         }
-        self.evaluate(0.0);
-        // The pressure at rest is that of the air as it stands: neither too much nor too little of it is in the room.
-        if completed {
-            let sum: f64 = self.inside().map(|particle| particle.density).sum();
-            self.rest_density = sum / (self.inside().count() as f64).max(1.0);
-        }
-        self.contact.walls = walls;
-        self.evaluate(0.0);
-        self.take_out_repelled();
     }
 
     /// Takes out air that a virtual force would throw off at the start: where it acts there is a vacuum.

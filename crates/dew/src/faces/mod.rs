@@ -7,10 +7,10 @@ pub use open::OpenSide;
 #[cfg(feature = "gpu")]
 pub(crate) use open::deepest as deepest_outside;
 
-use crate::air::{Particle, Role};
+use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
 use crate::room::{Face, Room};
-use crate::solids::{Body, Searched};
+use crate::solids::{Body, Searched, Solids, Surface};
 
 /// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
 pub(crate) const BEYOND: f64 = 2.0;
@@ -23,6 +23,38 @@ pub(crate) fn before_inlet(h: f64, apart: f64) -> f64 {
 /// Air starts no nearer to a solid's surface than this, in spacings.
 const CLEARANCE: f64 = 0.25;
 
+/// Where air can start: outside of solids and not too near to their surfaces.
+pub(crate) struct Free {
+    solids: Searched,
+    surfaces: Vec<Surface>,
+    /// Least distance from the particles of solids, m.
+    nearest: f64,
+    /// Least distance from surfaces, m.
+    clearance: f64,
+}
+
+impl Free {
+    /// Outside of solids with these surfaces, as far as they are known.
+    pub(crate) fn new(
+        solids: &Solids,
+        room: &Room,
+        scale: &Scale,
+        surfaces: impl ExactSizeIterator<Item = Option<Surface>>,
+    ) -> Self {
+        let sites = solids.sites(room, scale.h(), |_| true);
+        let bodies = surfaces.len();
+        let surfaces: Vec<Surface> = surfaces.flatten().collect();
+        let nearest = if surfaces.len() == bodies { 0.5 } else { 0.75 } * scale.spacing;
+        Self { solids: Searched::new(&sites, scale.h()), surfaces, nearest, clearance: CLEARANCE * scale.spacing }
+    }
+
+    /// Whether air can start at a place.
+    pub(crate) fn holds(&self, place: [f64; 3]) -> bool {
+        self.solids.near(place, self.nearest).next().is_none()
+            && self.surfaces.iter().all(|surface| surface(place) > self.clearance)
+    }
+}
+
 impl Dew {
     /// Fills the room, and what lies before inlets and beyond outlets, with air on a lattice.
     pub(crate) fn fill(&mut self, bodies: &[Body], start: impl Fn([f64; 3]) -> [f64; 2]) {
@@ -34,14 +66,8 @@ impl Dew {
             let more = [0, 1].map(|side| if self.room.faces[axis][side].is_passed() { beyond[axis] } else { 0 });
             -more[0]..counts[axis] + more[1]
         });
-        let sites = self.solids.sites(&self.room, self.scale.h(), |_| true);
-        let solids = Searched::new(&sites, self.scale.h());
-        let known: Vec<_> = bodies.iter().filter_map(|body| body.surface.clone()).collect();
-        let is_free = |place: [f64; 3]| {
-            let near = if known.len() == bodies.len() { 0.5 } else { 0.75 };
-            solids.near(place, near * spacing).next().is_none()
-                && known.iter().all(|surface| surface(place) > CLEARANCE * spacing)
-        };
+        let free = Free::new(&self.solids, &self.room, &self.scale, bodies.iter().map(|body| body.surface.clone()));
+        let is_free = |place: [f64; 3]| free.holds(place);
         for z in range[2].clone() {
             for y in range[1].clone() {
                 for x in range[0].clone() {

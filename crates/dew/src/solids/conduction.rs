@@ -2,6 +2,7 @@
 
 use super::{Searched, Site, Solids};
 use crate::air::Scale;
+use crate::normalisation::{self, Moments, Tensor};
 use crate::room::Room;
 use crate::settings::Mean;
 use corpuscle_sph::BLOCK;
@@ -23,20 +24,21 @@ impl Conduction {
     /// Finds the pairs. `faster` multiplies all transport.
     ///
     /// dT_i/dt = (1/(rho_i c_i)) sum_j V_j k_ij (T_j - T_i) lap W_ij (Cleary & Monaghan 1999 with the viscosity kernel's
-    /// Laplacian), divided by the Laplacian's second moment where the particles stand as they do: exact for what is
-    /// parabolic along every axis of a lattice.
+    /// Laplacian), normalised where the particles stand as they do: see `normalisation.rs`.
     pub fn new(solids: &Solids, room: &Room, scale: &Scale, mean: Mean, faster: f64) -> Self {
         let h = scale.h();
         let all = Searched::new(&solids.sites(room, h, |_| true), h);
-        let evenness: Vec<f64> =
-            (0..solids.particles.len()).into_par_iter().map(|i| evenness(solids, &all, scale, i)).collect();
+        let tensors: Vec<Tensor> =
+            (0..solids.particles.len()).into_par_iter().map(|i| tensor(solids, &all, scale, i)).collect();
         let pairs_of = |i: usize| {
             let own = &solids.particles[i];
             let near = all.near(own.position, h).filter(|(_, r_squared)| *r_squared > 0.0);
             let pair = |(site, r_squared): (&Site, f64)| {
                 let j = site.particle as usize;
-                let even = 0.5 * (evenness[i] + evenness[j]);
-                let laplacian = even * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / scale.moment;
+                let offset = [0, 1, 2].map(|axis| site.position[axis] - own.position[axis]);
+                let seen = normalisation::mirrored(tensors[j], site.mirrored);
+                let factor = normalisation::factor(&tensors[i], offset) + normalisation::factor(&seen, offset);
+                let laplacian = 0.5 * factor * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / scale.moment;
                 let volumes = own.volume * solids.particles[j].volume;
                 let (own, other) = (solids.material(i), solids.material(j));
                 let conductivity = mean.conductivity(own.conductor(), other.conductor());
@@ -86,23 +88,22 @@ impl Conduction {
     }
 }
 
-/// What the Laplacian of particle `i` is multiplied by, 1 in a lattice of the air's spacing. A neighbour that has none
-/// opposite, at a surface, counts twice, as if the solid went on there.
-fn evenness(solids: &Solids, all: &Searched, scale: &Scale, i: usize) -> f64 {
+/// By which the Laplacian of particle `i` is normalised. A neighbour that has none opposite, at a surface, counts twice, as if the solid
+/// went on there.
+fn tensor(solids: &Solids, all: &Searched, scale: &Scale, i: usize) -> Tensor {
     let position = solids.particles[i].position;
-    let near: Vec<_> = all.near(position, scale.h()).filter(|(_, r_squared)| *r_squared > 0.0).collect();
     let opposite = |site: &Site| {
         let image = [0, 1, 2].map(|axis| 2.0 * position[axis] - site.position[axis]);
         all.near(image, OPPOSITE * scale.spacing).next().is_some()
     };
-    let moment: f64 = near
-        .iter()
-        .map(|(site, r_squared)| {
-            let share = if opposite(site) { 1.0 } else { 2.0 };
-            let volume = solids.particles[site.particle as usize].volume;
-            share * volume * r_squared * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / 6.0
-        })
-        .sum();
-    // A few stray particles conduct no better than a lattice would at half its strength.
-    scale.moment / moment.max(0.5 * scale.moment)
+    let mut moments = Moments::default();
+    for (site, r_squared) in all.near(position, scale.h()).filter(|(_, r_squared)| *r_squared > 0.0) {
+        let share = if opposite(site) { 1.0 } else { 2.0 };
+        let volume = solids.particles[site.particle as usize].volume;
+        let weight =
+            share * volume * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / (2.0 * scale.moment * r_squared);
+        let products = normalisation::products([0, 1, 2].map(|axis| site.position[axis] - position[axis]));
+        moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
+    }
+    normalisation::tensor(&moments)
 }

@@ -53,10 +53,10 @@ pub(crate) fn ghost_contact(
     }
     let mut sites = Vec::new();
     for (number, &position) in places.iter().enumerate() {
-        let site = Site { position, particle: number as u32, image: false };
+        let site = Site { position, particle: number as u32, image: false, mirrored: [false; 3] };
         sites.push(site);
         room.images(position, scale.h(), |image| {
-            sites.push(Site { position: image.position, image: true, ..site });
+            sites.push(Site { position: image.position, image: true, mirrored: image.mirrored, ..site });
         });
     }
     let particles = solids.sites(room, scale.h(), |particle| ghostly(&(particle.body as usize)));

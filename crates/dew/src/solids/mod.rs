@@ -93,6 +93,8 @@ pub struct Site {
     pub particle: u32,
     /// Whether it is an image beyond a face.
     pub image: bool,
+    /// The axes along which the image is mirrored.
+    pub mirrored: [bool; 3],
 }
 
 impl Body {
@@ -154,10 +156,11 @@ impl Solids {
     pub fn sites(&self, room: &Room, reach: f64, wanted: impl Fn(&SolidParticle) -> bool) -> Vec<Site> {
         let mut sites = Vec::new();
         for (number, particle) in self.particles.iter().enumerate().filter(|(_, particle)| wanted(particle)) {
-            let site = Site { position: particle.position, particle: number as u32, image: false };
+            let site =
+                Site { position: particle.position, particle: number as u32, image: false, mirrored: [false; 3] };
             sites.push(site);
             room.images(particle.position, reach, |image| {
-                sites.push(Site { position: image.position, image: true, ..site });
+                sites.push(Site { position: image.position, image: true, mirrored: image.mirrored, ..site });
             });
         }
         sites

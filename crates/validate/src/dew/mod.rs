@@ -1,5 +1,6 @@
 //! Cases of the dew model.
 
+mod adiabatic;
 pub(crate) mod bench;
 mod boundaries;
 mod dew_point;
@@ -7,6 +8,7 @@ mod fick;
 mod film;
 mod ledger;
 mod low_utility;
+mod packings;
 mod pane;
 mod slide;
 mod two_slabs;
@@ -23,6 +25,8 @@ pub(crate) const CASES: &[Case] = &[
     two_slabs::TWO_SLABS,
     fick::FICK,
     film::FILM,
+    packings::PACKINGS,
+    adiabatic::ADIABATIC,
     ledger::LEDGER,
     boundaries::BOUNDARIES,
     slide::SLIDE,
@@ -61,9 +65,22 @@ fn column(length: f64, spacing: f64) -> Room {
 
 /// A slab of a [`column`], `from` so many layers on, so many `layers` thick.
 fn slab(from: usize, layers: usize, spacing: f64, material: Material, temperature: f64, held: bool) -> Body {
+    slab_across(ACROSS, from, layers, spacing, material, temperature, held)
+}
+
+/// The same of a column that is `across` particles wide.
+fn slab_across(
+    across: usize,
+    from: usize,
+    layers: usize,
+    spacing: f64,
+    material: Material,
+    temperature: f64,
+    held: bool,
+) -> Body {
     let at = |index: usize| (index as f64 + 0.5) * spacing;
-    let across = |x: usize| (0..ACROSS * ACROSS).map(move |k| [at(x), at(k % ACROSS), at(k / ACROSS)]);
-    let positions: Vec<_> = (from..from + layers).flat_map(across).collect();
+    let layer = |x: usize| (0..across * across).map(move |k| [at(x), at(k % across), at(k / across)]);
+    let positions: Vec<_> = (from..from + layers).flat_map(layer).collect();
     let (volumes, areas) = (vec![spacing.powi(3); positions.len()], vec![spacing.powi(2); positions.len()]);
     Body { positions, volumes, areas, material, temperature, held, surface: None, walls: None }
 }

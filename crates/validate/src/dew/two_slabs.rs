@@ -145,9 +145,9 @@ fn flux_error(ratio: f64, mean: Mean) -> Result<f64, ModelError> {
     // Several times the time of the slowest part, L^2 / (pi^2 / 4 kappa).
     let slowest = length * length / (0.25 * std::f64::consts::PI.powi(2) * air.heat_diffusivity());
     advance(&mut dew, 4.0 * slowest)?;
-    let before = [dew.heat_from(0), dew.heat_from(2)];
-    let time = 0.2 * slowest;
-    advance(&mut dew, 4.0 * slowest + time)?;
+    let (begin, before) = (dew.stepped_until(), [dew.heat_from(0), dew.heat_from(2)]);
+    advance(&mut dew, 4.2 * slowest)?;
+    let time = dew.stepped_until() - begin;
     let area = (ACROSS as f64 * SPACING).powi(2);
     let found = 0.5 * ((dew.heat_from(2) - before[1]) - (dew.heat_from(0) - before[0])) / (time * area);
     Ok((found / flux - 1.0).abs())
