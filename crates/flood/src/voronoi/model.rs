@@ -32,7 +32,19 @@ impl Model for VoronoiFlood {
         self.solver.wet_cells() + self.state.falling.len()
     }
 
+    fn backend(&self) -> &'static str {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return "gpu";
+        }
+        "cpu"
+    }
+
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return self.advance_on_gpu(time, stop);
+        }
         // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
         rayon::scope(|_| {
             while self.state.time < time {
@@ -169,6 +181,8 @@ impl Model for VoronoiFlood {
         if self.state.steps > 0 {
             self.solver.plan();
         }
+        #[cfg(feature = "gpu")]
+        self.tell_gpu();
         Ok(())
     }
 }
