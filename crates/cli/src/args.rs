@@ -33,7 +33,6 @@ pub enum Command {
     /// Draw pictures of a finished run into its folder
     Render(RenderOptions),
     /// Open the window: look at a scene and touch it while it runs
-    #[cfg(feature = "window")]
     View(ViewOptions),
     /// List the built-in scenes, show one, or copy one to edit
     Scenes(ScenesOptions),
@@ -176,6 +175,7 @@ fn film_length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Where a command computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// `run`, `view`: a GPU if there is one and the scene is large enough, else the CPU; `validate`, `bench`: the CPU
@@ -184,16 +184,6 @@ pub enum Backend {
     Cpu,
     /// A GPU
     Gpu,
-}
-
-impl From<Backend> for corpuscle_app::physics::Backend {
-    fn from(backend: Backend) -> Self {
-        match backend {
-            Backend::Auto => Self::Auto,
-            Backend::Cpu => Self::Cpu,
-            Backend::Gpu => Self::Gpu,
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -246,7 +236,7 @@ pub struct RenderOptions {
     pub look: LookOptions,
 }
 
-#[cfg(feature = "window")]
+/// The arguments of `corpuscle view`.
 #[derive(Debug, Args)]
 pub struct ViewOptions {
     /// A built-in scene (`corpuscle scenes` lists them), a TOML file, or the folder of a run [default: the first page]

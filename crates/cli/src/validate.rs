@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
 
 /// Runs cases and prints their rows in the order of the cases.
 pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<ExitCode> {
@@ -28,7 +29,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         }
     }
     let mut rows = Vec::new();
-    each(&chosen, &with, |case, Done { rows: of_case, charts }| {
+    each(&chosen, &with, |case, Done { rows: of_case, charts, .. }| {
         let first = rows.len();
         for row in of_case {
             let line = line(&row);
@@ -60,6 +61,7 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
 struct Done {
     rows: Vec<Row>,
     charts: Vec<Chart>,
+    took: Duration,
 }
 
 /// Runs cases beside each other and takes what they gave in their order: most are so small that two of them on a thread each are done sooner than
@@ -79,8 +81,10 @@ fn each(
             let (tell, with, next) = (tell.clone(), with.clone(), &next);
             let work = move || {
                 while let Some((index, case)) = next_of(cases, next) {
+                    let start = Instant::now();
                     let rows = case.rows(&with);
-                    if tell.send((index, Done { rows, charts: with.take_charts() })).is_err() {
+                    let done = Done { rows, charts: with.take_charts(), took: start.elapsed() };
+                    if tell.send((index, done)).is_err() {
                         break;
                     }
                 }
@@ -90,7 +94,9 @@ fn each(
         drop(tell);
         let mut waiting = BTreeMap::new();
         let mut taken = 0;
-        for (index, done) in told {
+        for (ended, (index, done)) in told.into_iter().enumerate() {
+            let (name, seconds) = (cases[index].name, done.took.as_secs_f64());
+            eprintln!("{name} took {seconds:.1} s ({} of {} cases)", ended + 1, cases.len());
             waiting.insert(index, done);
             while let Some(done) = waiting.remove(&taken) {
                 take(cases[taken], done)?;

@@ -74,7 +74,7 @@ fn every_command_of_the_readme_is_there_and_takes_json() {
 fn what_the_guide_types_is_understood() {
     let place = Place::new();
     let mut typed = 0;
-    for name in ["first-flood", "scene", "sph-swe", "command-line"] {
+    for name in ["first-flood", "first-gas", "gas", "scene", "sph-swe", "command-line"] {
         for block in blocks(&page(&format!("docs/src/{name}.md")), "text") {
             let runs = block.lines().filter(|line| line.starts_with("corpuscle run") && !line.contains("--resume"));
             for line in

@@ -40,8 +40,8 @@ impl Simulation {
 
     /// The name of the card that takes the steps now, or why none does.
     fn try_card(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Result<String, String> {
-        if let Some((what, _)) = self.on_processor_only() {
-            return Err(what.into());
+        if let Some(cpu_only) = self.model().cpu_only() {
+            return Err(cpu_only.what.into());
         }
         let particles = self.model().particles() as f64 + self.particles_to_come();
         if particles < FEWEST_ON_CARD as f64 {

@@ -2,25 +2,22 @@
 
 use crate::ground::ground;
 use crate::{Error, Simulation};
-#[cfg(feature = "gpu")]
-use corpuscle_dew::Dew;
-#[cfg(feature = "gpu")]
-use corpuscle_flood::{Flood, VoronoiFlood};
 use corpuscle_flood::{FloodModel, default_spacing};
 use corpuscle_model::ModelError;
+#[cfg(feature = "gpu")]
+use corpuscle_model::{CpuOnly, Model};
 use corpuscle_record::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene, Scheme};
 use corpuscle_terrain::Terrain;
-#[cfg(feature = "gpu")]
-use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 
+/// The error of a model that runs on the CPU only, where a GPU was asked for.
 #[cfg(feature = "gpu")]
-const NO_GPU: &str = "leave `--backend gpu` out";
-#[cfg(feature = "gpu")]
-const NO_GPU_OR_BALANCED: &str = "leave `--backend gpu` out, or take scheme balanced, which a graphics card computes \
-                                  (`--set flood.scheme=balanced`, or flood.scheme = \"balanced\" in the scene)";
+fn refused(model: &dyn Model) -> Error {
+    let why = model.cpu_only().map(|CpuOnly { what, remedy }| format!("{what}: {remedy}"));
+    ModelError::Setup(why.unwrap_or_else(|| "this program was built without GPU support".into())).into()
+}
 
 impl Simulation {
     /// Makes a scene ready to run: reads its ground and sets up its model. Relative paths are taken from `folder`.
@@ -46,10 +43,10 @@ impl Simulation {
     /// Where there is no card, or it cannot compute this scene: nothing has changed then.
     #[cfg(feature = "gpu")]
     pub fn use_gpu(&mut self) -> Result<(), Error> {
-        match self.on_processor_only() {
-            Some((what, remedy)) => Err(ModelError::Setup(format!("{what}: {remedy}")).into()),
-            None => self.use_this_gpu(corpuscle_gpu::Gpu::open()?),
+        if self.model().cpu_only().is_some() {
+            return Err(refused(self.model()));
         }
+        self.use_this_gpu(corpuscle_gpu::Gpu::open()?)
     }
 
     /// [`Simulation::use_gpu`] with a card that is open.
@@ -58,25 +55,10 @@ impl Simulation {
     /// As [`Simulation::use_gpu`].
     #[cfg(feature = "gpu")]
     pub fn use_this_gpu(&mut self, gpu: corpuscle_gpu::Gpu) -> Result<(), Error> {
-        let model: &mut dyn Any = self.model_mut();
-        if let Some(flood) = model.downcast_mut::<Flood>() {
-            return Ok(flood.use_card(gpu)?);
+        match self.model_mut().on_gpu_mut() {
+            Some(model) => Ok(model.use_gpu(gpu)?),
+            None => Err(refused(self.model())),
         }
-        if let Some(dew) = model.downcast_mut::<Dew>() {
-            return Ok(dew.use_card(gpu)?);
-        }
-        let (what, remedy) = self.on_processor_only().unwrap_or(("this model runs on the CPU only", NO_GPU));
-        Err(ModelError::Setup(format!("{what}: {remedy}")).into())
-    }
-
-    /// That the model runs on the processor only, and what to do where a card was asked for; none where a card may compute it.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn on_processor_only(&self) -> Option<(&'static str, &'static str)> {
-        let model: &dyn Any = self.model();
-        if model.is::<VoronoiFlood>() {
-            return Some(("scheme voronoi of floods runs on the CPU only", NO_GPU_OR_BALANCED));
-        }
-        (self.model().name() == "gas").then_some(("the gas model runs on the CPU only", NO_GPU))
     }
 
     fn open_with(mut scene: Scene, folder: &Path, new_flood: NewFlood) -> Result<Self, Error> {

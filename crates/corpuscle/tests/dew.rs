@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 fn scene() -> Scene {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/first-dew.md");
     let page = fs::read_to_string(page).unwrap();
-    let text = page.split("```").nth(1).unwrap().strip_prefix("toml").unwrap();
+    let text = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let set = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     Scene::parse(text, "first-dew.md", &[set("run.until_s", "0.02"), set("run.frame_every_s", "0.01")]).unwrap()
 }

@@ -8,7 +8,7 @@ use corpuscle_model::{
     Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
 #[cfg(feature = "gpu")]
-use corpuscle_model::{Companion, advance_with};
+use corpuscle_model::{Companion, CpuOnly, GpuModel, advance_with};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -82,6 +82,21 @@ impl Model for Dew {
     #[cfg(feature = "gpu")]
     fn backend(&self) -> &'static str {
         if self.card.is_some() { "gpu" } else { "cpu" }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        None
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self) -> Option<&dyn GpuModel> {
+        Some(self)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu_mut(&mut self) -> Option<&mut dyn GpuModel> {
+        Some(self)
     }
 
     fn time(&self) -> f64 {

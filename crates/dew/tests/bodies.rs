@@ -34,7 +34,8 @@ fn a_scene_becomes_solids_with_particles() {
 
 #[test]
 fn every_material_that_the_guide_names_is_one() {
-    let guide = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md")).unwrap();
+    let guide =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene-dew.md")).unwrap();
     let row = guide.lines().find(|line| line.starts_with("| `material` |")).unwrap();
     let meaning = row.split('|').nth(4).unwrap();
     let named: Vec<_> = meaning.split("`\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();

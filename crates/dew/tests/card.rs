@@ -7,7 +7,7 @@ use corpuscle_dew::{
     ByHand, Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, WallTreatment,
 };
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{GpuModel, Model, ModelError};
 use corpuscle_scene::{ModelScene, Scene, builtin};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::TAU;
@@ -56,7 +56,7 @@ fn stirred(setup: &Setup) -> Dew {
 }
 
 fn on_card(mut dew: Dew, gpu: &Gpu) -> Dew {
-    dew.use_card(gpu.clone()).unwrap();
+    dew.use_gpu(gpu.clone()).unwrap();
     dew
 }
 
@@ -484,7 +484,7 @@ fn what_the_card_cannot_compute_is_refused_by_name() {
     let mut setup = ball([[Face::Wall; 2]; 3], false);
     setup.fans = vec![Fan::new([0.0; 3], [1.0; 3], [1.0, 0.0, 0.0]); 1025];
     let mut dew = stirred(&setup);
-    let error = dew.use_card(gpu).unwrap_err();
+    let error = dew.use_gpu(gpu).unwrap_err();
     assert!(matches!(error, ModelError::Setup(_)) && dew.backend() == "cpu");
     for what in ["[[dew.fan]]", "--backend cpu"] {
         assert!(error.to_string().contains(what), "{error}");

@@ -2,7 +2,7 @@
 
 use corpuscle_dew::Dew;
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Companion, Model, Passed};
+use corpuscle_model::{Companion, GpuModel, Model, Passed};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -11,7 +11,7 @@ fn on_card(name: &str, gpu: &Gpu) -> Dew {
     let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
     scene.resolve_defaults();
     let mut dew = corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
-    dew.use_card(gpu.clone()).unwrap();
+    dew.use_gpu(gpu.clone()).unwrap();
     dew
 }
 

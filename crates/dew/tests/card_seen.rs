@@ -2,7 +2,7 @@
 
 use corpuscle_dew::Dew;
 use corpuscle_gpu::{DeviceParticles, Gpu, require_gpu};
-use corpuscle_model::{Companion, Frame, Model, ParticleSet, Passed, Values};
+use corpuscle_model::{Companion, Frame, Glance, GpuModel, Model, ParticleSet, Passed, Values};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,7 +17,7 @@ fn open(name: &str) -> Dew {
 
 fn on_card(name: &str, gpu: &Gpu) -> Dew {
     let mut dew = open(name);
-    dew.use_card(gpu.clone()).unwrap();
+    dew.use_gpu(gpu.clone()).unwrap();
     dew
 }
 
@@ -48,7 +48,7 @@ fn air_on_the_card_is_that_of_the_frame() {
     let mut dew = on_card("dew/three-boundaries", &gpu);
     for time in [0.0, 0.000_77, 0.0015] {
         dew.advance_to(time, &AtomicBool::new(false)).unwrap();
-        compare(&dew.on_device().unwrap().unwrap(), &dew.frame(), &gpu);
+        compare(&dew.particles_on_gpu().unwrap().unwrap(), &dew.frame(), &gpu);
     }
     assert!(dew.steps() > 5, "{} steps", dew.steps());
 }
@@ -81,7 +81,7 @@ fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
     let [mut watched, mut plain] = [(); 2].map(|()| on_card("dew/pane", &gpu));
     let (stop, mut told) = (AtomicBool::new(false), Told::default());
     let mut looks = Vec::new();
-    let mut show = |frame: Frame, air: Option<DeviceParticles>| {
+    let mut show = |Glance { frame, on_device: air }: Glance| {
         let next = frame.time + 0.0037;
         assert!(frame.sets.iter().all(|set| set.name == "drops"));
         looks.push((frame, air.unwrap().read(&gpu).unwrap()));
@@ -98,13 +98,17 @@ fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
         assert!((frame.time - 0.0037 * number as f64).abs() < 1e-12, "{}", frame.time);
         plain.advance_to(frame.time, &AtomicBool::new(false)).unwrap();
         assert!(set(&plain.frame(), "drops").position == set(&frame, "drops").position);
-        assert!(by_ids(plain.on_device().unwrap().unwrap().read(&gpu).unwrap()) == by_ids(air), "{}", frame.time);
+        assert!(
+            by_ids(plain.particles_on_gpu().unwrap().unwrap().read(&gpu).unwrap()) == by_ids(air),
+            "{}",
+            frame.time
+        );
     }
-    compare(&plain.on_device().unwrap().unwrap(), &plain.frame(), &gpu);
+    compare(&plain.particles_on_gpu().unwrap().unwrap(), &plain.frame(), &gpu);
     assert!(plain.steps() == watched.steps() && plain.air() == watched.air());
     // Where only drops are seen, the air is not even looked at.
     stop.store(false, Ordering::Relaxed);
-    let mut show = |_: Frame, air: Option<DeviceParticles>| {
+    let mut show = |Glance { on_device: air, .. }: Glance| {
         assert!(air.is_none());
         stop.store(true, Ordering::Relaxed);
         0.0
@@ -115,8 +119,8 @@ fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
 #[test]
 fn without_a_card_nobody_is_shown_any_air() {
     let mut dew = open("dew/pane");
-    assert!(dew.card().is_none() && dew.on_device().unwrap().is_none());
-    let mut show = |_: Frame, _: Option<DeviceParticles>| panic!("there is no card");
+    assert!(dew.gpu().is_none() && dew.particles_on_gpu().unwrap().is_none());
+    let mut show = |_: Glance| panic!("there is no card");
     dew.advance_shown(0.005, &AtomicBool::new(false), &mut (), (0.0, true), &mut show).unwrap();
     assert!(dew.time() == 0.005 && dew.steps() > 0);
 }

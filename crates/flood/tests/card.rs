@@ -2,7 +2,7 @@
 
 use corpuscle_flood::{ByHand, Flood, Particle};
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Balance, Model, ModelError};
+use corpuscle_model::{Balance, GpuModel, Model, ModelError};
 use corpuscle_scene::{FloodScene, Scene, builtin};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -248,7 +248,7 @@ fn open(text: &str) -> Flood {
 
 fn on_card(text: &str, gpu: &Gpu) -> Flood {
     let mut flood = open(text);
-    flood.use_card(gpu.clone()).unwrap();
+    flood.use_gpu(gpu.clone()).unwrap();
     flood
 }
 
@@ -526,7 +526,7 @@ fn water_whose_forces_are_no_numbers_breaks_down_with_an_error() {
     let scene = scene.flood().unwrap();
     let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
     let mut both = [(); 2].map(|()| Flood::new(&scene.flood, 1, Path::new("."), Arc::clone(&terrain)).unwrap());
-    both[1].use_card(gpu).unwrap();
+    both[1].use_gpu(gpu).unwrap();
     // Which of its numbers is none first depends on the device.
     for flood in &mut both {
         let error = flood.advance_to(20.0, &AtomicBool::new(false)).unwrap_err();
@@ -539,7 +539,7 @@ fn forms_of_the_cpu_alone_are_refused() {
     let Some(gpu) = require_gpu("what the card does not compute") else { return };
     let text = SPH_SWE.replace("manning = 0.02", "manning = 0.02\nsph_swe.smoothing = \"rate\"");
     let mut flood = open(&text);
-    let error = flood.use_card(gpu).unwrap_err();
+    let error = flood.use_gpu(gpu).unwrap_err();
     assert!(matches!(error, ModelError::Setup(_)), "{error}");
     assert!(error.to_string().contains("flood.sph_swe.smoothing = \"rate\""), "{error}");
     assert_eq!((flood.backend(), flood.steps()), ("cpu", 0));

@@ -2,7 +2,7 @@
 
 use corpuscle_flood::Flood;
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Companion, Model, Passed};
+use corpuscle_model::{Companion, GpuModel, Model, Passed};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -121,7 +121,7 @@ fn on_card(text: &str, gpu: &Gpu) -> Flood {
     let scene = scene.flood().unwrap();
     let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
     let mut flood = Flood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
-    flood.use_card(gpu.clone()).unwrap();
+    flood.use_gpu(gpu.clone()).unwrap();
     flood
 }
 

@@ -2,7 +2,7 @@
 
 use corpuscle_flood::Flood;
 use corpuscle_gpu::require_gpu;
-use corpuscle_model::Model;
+use corpuscle_model::{GpuModel, Model};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -41,12 +41,12 @@ fn a_wave_of_rain_wets_the_ground_as_on_the_processor() {
     let Some(gpu) = require_gpu("rain by a function on the card") else { return };
     let (mut host, mut card) = (open(), open());
     // Whether the card or the rain comes first.
-    card.use_card(gpu.clone()).unwrap();
+    card.use_gpu(gpu.clone()).unwrap();
     let mut after = open();
     for flood in [&mut host, &mut card, &mut after] {
         flood.rain(Box::new(wave));
     }
-    after.use_card(gpu).unwrap();
+    after.use_gpu(gpu).unwrap();
     for flood in [&mut host, &mut card, &mut after] {
         flood.advance_to(18.0, &AtomicBool::new(false)).unwrap();
     }

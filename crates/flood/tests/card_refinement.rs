@@ -2,7 +2,7 @@
 
 use corpuscle_flood::{Flood, Particle};
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Balance, Model};
+use corpuscle_model::{Balance, GpuModel, Model};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -50,7 +50,7 @@ fn open(text: &str) -> Flood {
 
 fn on_card(text: &str, gpu: &Gpu) -> Flood {
     let mut flood = open(text);
-    flood.use_card(gpu.clone()).unwrap();
+    flood.use_gpu(gpu.clone()).unwrap();
     flood
 }
 

@@ -1,8 +1,8 @@
 //! What is drawn on the card is what the frame has.
 
 use corpuscle_flood::Flood;
-use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, require_gpu};
-use corpuscle_model::{Companion, Model, Passed, Values};
+use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
+use corpuscle_model::{Companion, Glance, GpuModel, Model, Passed, Values};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -54,13 +54,13 @@ fn open(text: &str) -> Flood {
 
 fn on_card(text: &str, gpu: &Gpu) -> Flood {
     let mut flood = open(text);
-    flood.use_card(gpu.clone()).unwrap();
+    flood.use_gpu(gpu.clone()).unwrap();
     flood
 }
 
 /// The particles as they lie on the card, by ids, and where they are counted from.
 fn seen(flood: &Flood, gpu: &Gpu) -> (Vec<DeviceParticle>, [f64; 3]) {
-    let particles = flood.on_device().unwrap().unwrap();
+    let particles = flood.particles_on_gpu().unwrap().unwrap();
     let mut all = particles.read(gpu).unwrap();
     all.sort_unstable_by_key(|particle| particle.id);
     (all, particles.origin)
@@ -110,14 +110,15 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     let [mut shown, mut plain] = [(); 2].map(|()| on_card(FALL, &gpu));
     let stop = AtomicBool::new(false);
     let (mut last, mut times) = (Vec::new(), Vec::new());
-    let mut show = |time: f64, particles: &DeviceParticles| {
+    let mut show = |Glance { frame, on_device }: Glance| {
+        let (time, particles) = (frame.time, on_device.unwrap());
         times.push(time);
         last = particles.read(&gpu).unwrap();
         stop.store(times.len() == 91, Ordering::Relaxed);
         0.0
     };
     // Whoever plays a scene on goes on without end.
-    shown.advance_shown(f64::INFINITY, &stop, &mut (), 0.0, &mut show).unwrap();
+    shown.advance_shown(f64::INFINITY, &stop, &mut (), (0.0, true), &mut show).unwrap();
     // The start, and 90 steps.
     assert_eq!((times.len(), shown.steps()), (91, 90));
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times[90] == shown.time(), "{times:?} {}", shown.time());
@@ -137,11 +138,12 @@ fn who_asks_for_times_sees_the_water_of_these_times() {
     // Some fall between two steps; one at the end.
     let until = 0.9;
     let times: Vec<f64> = (1..=30).map(|look| until * f64::from(look) / 30.0).collect();
-    let mut show = |time: f64, particles: &DeviceParticles| {
+    let mut show = |Glance { frame, on_device }: Glance| {
+        let (time, particles) = (frame.time, on_device.unwrap());
         looks.push((time, particles.read(&gpu).unwrap()));
         times.iter().copied().find(|later| *later > time).unwrap_or(f64::INFINITY)
     };
-    shown.advance_shown(until, &AtomicBool::new(false), &mut (), times[0], &mut show).unwrap();
+    shown.advance_shown(until, &AtomicBool::new(false), &mut (), (times[0], true), &mut show).unwrap();
     assert!(looks.iter().map(|(time, _)| *time).eq(times.iter().copied()));
     for (time, look) in &mut looks {
         look.sort_unstable_by_key(|particle| particle.id);
@@ -176,7 +178,7 @@ fn who_is_shown_has_the_gauges_of_who_is_not() {
     let [shown, plain] = [true, false].map(|is_shown| {
         let (mut flood, mut rows) = (on_card(FALL, &gpu), Rows(Vec::new()));
         if is_shown {
-            flood.advance_shown(1.05, &stop, &mut rows, 0.0, &mut |time, _| time + 0.03).unwrap();
+            flood.advance_shown(1.05, &stop, &mut rows, (0.0, true), &mut |glance| glance.frame.time + 0.03).unwrap();
         } else {
             flood.advance_with(1.05, &stop, &mut rows).unwrap();
         }
@@ -193,10 +195,10 @@ fn who_is_shown_has_the_gauges_of_who_is_not() {
 #[test]
 fn without_a_card_nobody_is_shown_anything() {
     let Some(gpu) = require_gpu("a flood without a card") else { return };
-    assert!(on_card(SPH_SWE, &gpu).card().is_some_and(|card| card.is_same(&gpu)));
+    assert!(on_card(SPH_SWE, &gpu).gpu().is_some_and(|card| card.is_same(&gpu)));
     let mut flood = open(SPH_SWE);
-    assert!(flood.card().is_none() && flood.on_device().unwrap().is_none());
-    let mut show = |_: f64, _: &DeviceParticles| panic!("there is no card");
-    flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), 0.0, &mut show).unwrap();
+    assert!(flood.gpu().is_none() && flood.particles_on_gpu().unwrap().is_none());
+    let mut show = |_: Glance| panic!("there is no card");
+    flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), (0.0, true), &mut show).unwrap();
     assert!(flood.time() == 0.5 && flood.steps() > 0);
 }

@@ -21,6 +21,7 @@ pub(crate) fn reserved<T>(len: usize) -> Vec<T> {
 }
 
 #[cfg(target_os = "linux")]
+#[allow(unsafe_code, reason = "no safe call advises the kernel; large pages are a measured gain")]
 fn ask_for_large_pages(start: usize, bytes: usize) {
     let first = start.next_multiple_of(LARGE_PAGE);
     let last = (start + bytes) / LARGE_PAGE * LARGE_PAGE;
@@ -43,6 +44,7 @@ pub(crate) fn filled<T: Clone>(len: usize, value: T) -> Vec<T> {
 /// Asks for the cache line of something that will be read some hundreds of nanoseconds later: into the second cache, which takes
 /// up twice as many such requests at a time as the first.
 #[inline(always)]
+#[allow(unsafe_code, reason = "no safe call prefetches on stable Rust; a measured gain")]
 pub(crate) fn prefetch<T>(item: &T) {
     #[cfg(target_arch = "x86_64")]
     {

@@ -111,6 +111,7 @@ impl<B: Buffers> DeclaredKernel<B> {
 
 /// The shader as a device runs it. On a card loops go without the count by which wgpu ends one that never would: it takes a tenth of the
 /// time of a step of 60,000 particles, and a thirtieth of one of a million (see the guide's benchmarks).
+#[allow(unsafe_code, reason = "wgpu drops the bound on loops only by an unsafe call; a measured gain")]
 fn module(gpu: &Gpu, description: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     match gpu.kind {
         GpuKind::Software => gpu.device.create_shader_module(description),

@@ -7,6 +7,8 @@ mod companion;
 mod container;
 mod frame;
 mod gauge;
+#[cfg(feature = "gpu")]
+mod gpu_model;
 mod ledger;
 mod map;
 mod path;
@@ -17,6 +19,8 @@ pub use companion::{Companion, Passed, advance_with};
 pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
+#[cfg(feature = "gpu")]
+pub use gpu_model::{Glance, GpuModel};
 pub use ledger::{Account, Balance, ExactSum, Ledger};
 pub use map::Map;
 pub use path::Path;
@@ -49,6 +53,15 @@ pub enum ModelError {
     Checkpoint(String),
 }
 
+/// Why a model runs on the CPU only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CpuOnly {
+    /// What runs on the CPU only, as a sentence.
+    pub what: &'static str,
+    /// What to do where a GPU was asked for.
+    pub remedy: &'static str,
+}
+
 /// A model: physics that advances in time and can be looked at.
 ///
 /// The model steps at its own pace. The state that it shows at the time asked for is read between two steps
@@ -61,6 +74,23 @@ pub trait Model: Any + Send {
     /// Where it computes: `cpu` or `gpu`.
     fn backend(&self) -> &'static str {
         "cpu"
+    }
+
+    /// Why the model runs on the CPU only, which a model does unless it says otherwise; none where a GPU can take its steps.
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        Some(CpuOnly { what: "this model runs on the CPU only", remedy: "leave `--backend gpu` out" })
+    }
+
+    /// The model as one that can step on a GPU; none where it runs on the CPU only.
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self) -> Option<&dyn GpuModel> {
+        None
+    }
+
+    /// As [`Model::on_gpu`], to change it.
+    #[cfg(feature = "gpu")]
+    fn on_gpu_mut(&mut self) -> Option<&mut dyn GpuModel> {
+        None
     }
 
     /// The time the model shows now, s. Exactly the time last asked of [`Model::advance_to`].

@@ -1,4 +1,4 @@
-//! The guide's page on the scene file tells every key that there is, no other, and its default.
+//! The guide's pages on the scene file list every key, no other, and its default.
 
 use corpuscle_scene::dew::{self, Air, AirInflow, Dew, Face, Faces, LowUtility, Material, MeshFile, Shape, Solid};
 use corpuscle_scene::*;
@@ -9,20 +9,26 @@ use toml::Value;
 /// A key: its table as headed in the guide, and its name.
 type Key = (String, String);
 
-/// The keys that the guide tells, with their defaults: rows of the tables below headings with a name in ticks.
+/// The text of the guide's pages on the scene file, one after another. Each begins with a heading.
+fn pages() -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src");
+    let names = ["scene", "scene-terrain", "scene-flood", "scene-gas", "scene-dew"];
+    names.map(|name| std::fs::read_to_string(folder.join(format!("{name}.md"))).unwrap()).join("\n")
+}
+
+/// The keys in the guide, with their defaults: rows of the tables below headings with a name in ticks.
 fn told() -> BTreeMap<Key, String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md");
-    let text = std::fs::read_to_string(path).unwrap();
     let in_ticks = |text: &str| text.split('`').nth(1).map(str::to_owned);
     let mut table = None;
     let mut keys = BTreeMap::new();
-    for line in text.lines() {
+    for line in pages().lines() {
         if line.starts_with('#') {
             table = in_ticks(line).map(|name| name.trim_matches(['[', ']']).to_owned());
         } else if let (Some(table), true) = (&table, line.starts_with("| `")) {
             let cells: Vec<_> = line.split('|').map(str::trim).collect();
             let default = in_ticks(cells[3]).unwrap_or_else(|| cells[3].to_owned());
-            keys.insert((table.clone(), in_ticks(cells[1]).unwrap()), default);
+            let key = (table.clone(), in_ticks(cells[1]).unwrap());
+            assert_eq!(keys.insert(key.clone(), default), None, "{key:?} has two rows");
         }
     }
     keys
@@ -412,8 +418,7 @@ fn compare_defaults(scene: &Scene, told: &BTreeMap<Key, String>) -> usize {
 
 #[test]
 fn the_guide_tells_the_forms_of_values() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src/scene.md");
-    let text = std::fs::read_to_string(path).unwrap();
+    let text = pages();
     let forms = [
         "{ raster = ",
         "{ chezy = ",
@@ -449,4 +454,24 @@ fn the_guide_tells_the_forms_of_values() {
     for form in forms {
         assert!(text.contains(form), "{form}");
     }
+}
+
+/// A block of TOML that says when the run ends is a whole scene.
+#[test]
+fn whole_scenes_in_the_guide_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src");
+    let mut read = 0;
+    for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if path.extension().is_none_or(|ending| ending != "md") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let blocks = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+        for block in blocks.filter(|block| block.contains("until_s")) {
+            let scene = Scene::parse(block, "scene", &[]);
+            assert!(scene.is_ok(), "{}: {}", path.display(), scene.unwrap_err());
+            read += 1;
+        }
+    }
+    assert!(read >= 5, "{read}");
 }

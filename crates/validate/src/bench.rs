@@ -3,7 +3,7 @@
 use corpuscle_dew::Dew;
 use corpuscle_flood::{Flood, VoronoiFlood};
 use corpuscle_gpu::{Gpu, Taken};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{GpuModel, Model, ModelError};
 use serde::Serialize;
 use std::sync::LazyLock;
 use std::sync::atomic::AtomicBool;
@@ -81,76 +81,34 @@ pub fn benches() -> &'static [Bench] {
     &ALL
 }
 
-/// A model whose steps are counted, here or on a card.
+/// A model that takes steps.
 pub(crate) trait Stepped: Model {
     /// Time of the next step, s.
     fn time_step(&self) -> f64;
     /// Bytes held on the CPU.
     fn bytes(&self) -> usize;
-    /// Lets a card take the steps.
-    fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError>;
-    /// What the card spent on steps, s.
-    fn seconds_on_card(&self) -> Option<f64>;
-    /// Bytes held on the card.
-    fn bytes_on_card(&self) -> Option<u64>;
-    /// From now on passes are timed.
-    fn time_passes(&mut self);
-    /// What they have taken since.
-    fn pass_times(&self) -> Vec<(&'static str, Taken)>;
 }
 
 macro_rules! stepped {
-    ($model:ty) => {
-        impl Stepped for $model {
+    ($($model:ty),*) => {
+        $(impl Stepped for $model {
             fn time_step(&self) -> f64 {
                 self.time_step()
             }
             fn bytes(&self) -> usize {
                 self.bytes()
             }
-            fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
-                self.use_card(gpu)
-            }
-            fn seconds_on_card(&self) -> Option<f64> {
-                self.seconds_on_card()
-            }
-            fn bytes_on_card(&self) -> Option<u64> {
-                self.bytes_on_card()
-            }
-            fn time_passes(&mut self) {
-                self.time_passes();
-            }
-            fn pass_times(&self) -> Vec<(&'static str, Taken)> {
-                self.pass_times()
-            }
-        }
+        })*
     };
 }
 
-impl Stepped for VoronoiFlood {
-    fn time_step(&self) -> f64 {
-        self.time_step()
-    }
-    fn bytes(&self) -> usize {
-        self.bytes()
-    }
-    fn use_card(&mut self, _: Gpu) -> Result<(), ModelError> {
-        Err(ModelError::Setup("scheme voronoi runs on the CPU only".into()))
-    }
-    fn seconds_on_card(&self) -> Option<f64> {
-        None
-    }
-    fn bytes_on_card(&self) -> Option<u64> {
-        None
-    }
-    fn time_passes(&mut self) {}
-    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
-        Vec::new()
-    }
-}
+stepped!(Flood, VoronoiFlood, Dew);
 
-stepped!(Flood);
-stepped!(Dew);
+/// Lets a GPU take the steps of a model.
+fn use_gpu(model: &mut dyn Model, gpu: Gpu) -> Result<(), ModelError> {
+    let why = model.cpu_only().map_or("", |cpu_only| cpu_only.what);
+    model.on_gpu_mut().ok_or_else(|| ModelError::Setup(why.into()))?.use_gpu(gpu)
+}
 
 /// How a rate is measured.
 pub(crate) struct Measuring {
@@ -167,7 +125,7 @@ pub(crate) struct Measuring {
 impl Measuring {
     /// The rate of a model, or none with a line that says so where the card cannot compute it.
     pub fn rate<M: Stepped>(&self, mut model: M, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
-        if let Some(Err(error)) = options.gpu.clone().map(|gpu| model.use_card(gpu)) {
+        if let Some(Err(error)) = options.gpu.clone().map(|gpu| use_gpu(&mut model, gpu)) {
             eprintln!("left out: {error}");
             return Ok(None);
         }
@@ -177,8 +135,9 @@ impl Measuring {
         while model.steps() < self.settling {
             ahead(&mut model)?;
         }
-        let (began, busy, before) = (Instant::now(), model.seconds_on_card(), model.particle_steps());
-        let spent = |model: &M| match (model.seconds_on_card(), busy) {
+        let gpu_seconds = |model: &M| model.on_gpu().and_then(GpuModel::gpu_seconds);
+        let (began, busy, before) = (Instant::now(), gpu_seconds(&model), model.particle_steps());
+        let spent = |model: &M| match (gpu_seconds(model), busy) {
             (Some(now), Some(before)) => now - before,
             _ => began.elapsed().as_secs_f64(),
         };
@@ -194,13 +153,16 @@ impl Measuring {
             threads: if device.is_some() { 0 } else { rayon::current_num_threads() },
             rate: (model.particle_steps() - before) as f64 / spent(&model),
             rate_unit: "particle_steps_per_s".into(),
-            bytes_per_particle: model.bytes_on_card().unwrap_or(model.bytes() as u64) as f64 / particles as f64,
+            bytes_per_particle: model.on_gpu().and_then(GpuModel::gpu_bytes).unwrap_or(model.bytes() as u64) as f64
+                / particles as f64,
             device,
             passes: Vec::new(),
         };
         if options.passes {
             let steps = model.steps();
-            model.time_passes();
+            if let Some(model) = model.on_gpu_mut() {
+                model.time_passes();
+            }
             ahead(&mut model)?;
             let steps = (model.steps() - steps) as f64;
             let a_step = |(name, taken): (&'static str, Taken)| PassTime {
@@ -208,7 +170,8 @@ impl Measuring {
                 times_a_step: f64::from(taken.times) / steps,
                 seconds_a_step: taken.total.as_secs_f64() / steps,
             };
-            rate.passes = model.pass_times().into_iter().map(a_step).collect();
+            rate.passes =
+                model.on_gpu().map(GpuModel::pass_times).unwrap_or_default().into_iter().map(a_step).collect();
             rate.passes.sort_by(|a, b| b.seconds_a_step.total_cmp(&a.seconds_a_step));
         }
         Ok(Some(rate))

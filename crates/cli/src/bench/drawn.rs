@@ -2,7 +2,7 @@
 
 use crate::args::BenchOptions;
 use corpuscle::gpu::{Gpu, Taken, wgpu};
-use corpuscle::model::Frame;
+use corpuscle::model::{Glance, GpuModel};
 use corpuscle::pictures::{Hand, Look, Moment, PictureSettings, Pictures};
 use corpuscle_validate::{Flood, PassTime, Rate, bench_water};
 use std::collections::VecDeque;
@@ -34,7 +34,7 @@ pub(super) fn drawn(name: &str, gpu: &Gpu, options: &BenchOptions) -> anyhow::Re
 /// The same for so many seconds; then so many pictures whose passes are timed.
 fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> anyhow::Result<Option<Rate>> {
     let Some((mut flood, ground)) = bench_water(name)? else { return Ok(None) };
-    flood.use_card(gpu.clone())?;
+    flood.use_gpu(gpu.clone())?;
     let settings = PictureSettings { samples: 1, ..PictureSettings::default() };
     let mut drawn = Drawn { pictures: Pictures::of_flood(gpu, flood.settings(), &ground, settings)?, flood };
     if splats {
@@ -53,7 +53,7 @@ fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> an
         device: Some(gpu.name.clone()),
         rate: pace.rate,
         rate_unit: "pictures_per_s".into(),
-        bytes_per_particle: flood.bytes_on_card().unwrap_or(0) as f64 / particles as f64,
+        bytes_per_particle: flood.gpu_bytes().unwrap_or(0) as f64 / particles as f64,
         passes: Vec::new(),
     };
     Ok(Some(if timed > 0 { Rate { passes: drawn.passes(timed)?, ..rate } } else { rate }))
@@ -73,9 +73,8 @@ impl Drawn {
         let pictures = &mut self.pictures;
         // After each step.
         let always = 0.0;
-        self.flood.advance_shown(LONG, &stop, &mut (), always, &mut |time, particles| {
-            let frame = Frame { time, sets: Vec::new() };
-            let moment = Moment { frame: &frame, on_device: Some(particles), paths: &[], container: None };
+        self.flood.advance_shown(LONG, &stop, &mut (), (always, true), &mut |Glance { frame, on_device }| {
+            let moment = Moment { frame: &frame, on_device: on_device.as_ref(), paths: &[], container: None };
             let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
             let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
             stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);

@@ -3,30 +3,14 @@
 use super::dew::shows_air;
 use super::{Moment, Pictures, Subject};
 use crate::{Error, Simulation};
-#[cfg(feature = "gpu")]
-use corpuscle_dew::Dew;
-#[cfg(feature = "gpu")]
-use corpuscle_flood::Flood;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
-use corpuscle_model::ModelError;
-use corpuscle_model::{Companion, Frame, Model};
-#[cfg(feature = "gpu")]
-use std::any::Any;
+use corpuscle_model::{Companion, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
-
-/// What is seen of a model that steps on the device that draws, while it goes on.
-#[derive(Debug, Clone)]
-pub struct Glance {
-    /// The time, s, and what of it the host has without asking the device: drops of dew.
-    pub frame: Frame,
-    /// The particles that pictures show, where they lie; they change with the next step. None where pictures show but drops.
-    pub on_device: Option<DeviceParticles>,
-}
 
 impl Simulation {
     /// The graphics card that takes the steps, where one does.
     pub(super) fn card(&self) -> Option<Gpu> {
-        card_of(self.model())
+        gpu_of(self.model())
     }
 
     /// The particles that pictures show as they stand, where the model steps on a device and is drawn there; else none.
@@ -34,7 +18,7 @@ impl Simulation {
     /// # Errors
     /// [`Error::Model`] where the device has too little memory.
     pub fn seen_on(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
-        if self.is_seen_on(gpu) { particles_of(self.model(), self.shows_air()) } else { Ok(None) }
+        if self.is_seen_on(gpu) && self.shows_particles() { particles_of(self.model()) } else { Ok(None) }
     }
 
     /// Whether the model steps on a device and can be drawn there without its particles coming back.
@@ -42,8 +26,9 @@ impl Simulation {
         self.card().is_some_and(|card| card.is_same(gpu))
     }
 
-    fn shows_air(&self) -> bool {
-        self.scene().dew().is_some_and(shows_air)
+    /// Whether pictures show the particles that lie on the GPU: of dew they show the air only where the scene says so.
+    fn shows_particles(&self) -> bool {
+        self.scene().dew().is_none_or(shows_air)
     }
 
     /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
@@ -60,8 +45,12 @@ impl Simulation {
         first: f64,
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), Error> {
-        let shows_air = self.shows_air();
-        Ok(advance_shown(self.model_mut(), (time, stop), companion, (first, shows_air), show)?)
+        let with_particles = self.shows_particles();
+        let model = self.model_mut();
+        if let Some(model) = model.on_gpu_mut() {
+            return Ok(model.advance_shown(time, stop, companion, (first, with_particles), show)?);
+        }
+        Ok(model.advance_with(time, stop, companion)?)
     }
 }
 
@@ -96,74 +85,21 @@ impl Pictures {
 
     /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
     fn on_device(&self, model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
-        let is_here = card_of(model).is_some_and(|card| card.is_same(self.gpu()));
+        let is_here = gpu_of(model).is_some_and(|card| card.is_same(self.gpu()));
         match &self.subject {
-            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model, false),
-            Subject::Dew(dew) if is_here && dew.shows_air() => particles_of(model, true),
+            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model),
+            Subject::Dew(dew) if is_here && dew.shows_air() => particles_of(model),
             _ => Ok(None),
         }
     }
 }
 
-#[cfg(feature = "gpu")]
-fn card_of(model: &dyn Model) -> Option<Gpu> {
-    let model: &dyn Any = model;
-    let dew = || model.downcast_ref().and_then(Dew::card);
-    model.downcast_ref().map_or_else(dew, Flood::card)
+fn gpu_of(model: &dyn Model) -> Option<Gpu> {
+    model.on_gpu().and_then(GpuModel::gpu)
 }
 
-/// The water of a flood, and of dew the air, if it is seen.
-#[cfg(feature = "gpu")]
-fn particles_of(model: &dyn Model, sees_air: bool) -> Result<Option<DeviceParticles>, Error> {
-    let model: &dyn Any = model;
-    if let Some(flood) = model.downcast_ref::<Flood>() {
-        return Ok(flood.on_device()?);
-    }
-    let dew = model.downcast_ref::<Dew>().filter(|_| sees_air);
-    Ok(dew.map(Dew::on_device).transpose()?.flatten())
-}
-
-#[cfg(feature = "gpu")]
-fn advance_shown(
-    model: &mut dyn Model,
-    (time, stop): (f64, &AtomicBool),
-    companion: &mut dyn Companion,
-    (first, shows_air): (f64, bool),
-    show: &mut dyn FnMut(Glance) -> f64,
-) -> Result<(), ModelError> {
-    let any: &mut dyn Any = model;
-    if let Some(flood) = any.downcast_mut::<Flood>() {
-        return flood.advance_shown(time, stop, companion, first, &mut |time, particles| {
-            show(Glance { frame: Frame { time, sets: Vec::new() }, on_device: Some(particles.clone()) })
-        });
-    }
-    if let Some(dew) = any.downcast_mut::<Dew>() {
-        return dew.advance_shown(time, stop, companion, (first, shows_air), &mut |frame, on_device| {
-            show(Glance { frame, on_device })
-        });
-    }
-    model.advance_with(time, stop, companion)
-}
-
-#[cfg(not(feature = "gpu"))]
-fn advance_shown(
-    model: &mut dyn Model,
-    (time, stop): (f64, &AtomicBool),
-    companion: &mut dyn Companion,
-    _: (f64, bool),
-    _: &mut dyn FnMut(Glance) -> f64,
-) -> Result<(), ModelError> {
-    model.advance_with(time, stop, companion)
-}
-
-#[cfg(not(feature = "gpu"))]
-fn card_of(_: &dyn Model) -> Option<Gpu> {
-    None
-}
-
-#[cfg(not(feature = "gpu"))]
-fn particles_of(_: &dyn Model, _: bool) -> Result<Option<DeviceParticles>, Error> {
-    Ok(None)
+fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
+    Ok(model.on_gpu().map(GpuModel::particles_on_gpu).transpose()?.flatten())
 }
 
 #[cfg(all(test, feature = "gpu"))]

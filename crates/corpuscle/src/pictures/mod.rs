@@ -14,6 +14,7 @@ mod viewpoint;
 
 use crate::{Error, Simulation};
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
+pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
 use corpuscle_render::{
     BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
@@ -21,7 +22,6 @@ use corpuscle_render::{
 };
 use corpuscle_scene::{Flood, ModelScene};
 use corpuscle_terrain::Terrain;
-pub use device::Glance;
 use dew::DewPicture;
 use flood::FloodPicture;
 use gas::GasPicture;

@@ -8,8 +8,8 @@ use crate::card::{Card, Crossed, MOST_FANS, Progress};
 use crate::faces::deepest_outside;
 use crate::room::Face;
 use crate::wetting::WettingState;
-use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
-use corpuscle_model::ModelError;
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_model::{Companion, Glance, GpuModel, Model, ModelError};
 use on_device::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -23,12 +23,8 @@ fn failed(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
 }
 
-impl Dew {
-    /// Lets a graphics card take the steps, in single precision. What is laid or stirred by hand comes before.
-    ///
-    /// # Errors
-    /// [`ModelError::Setup`] where the scene has something that the card's program has not yet, or the card too little memory.
-    pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+impl GpuModel for Dew {
+    fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
         let missing = self.missing_on_card();
         if !missing.is_empty() {
             let what = missing.join(", ");
@@ -39,28 +35,48 @@ impl Dew {
         self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }
 
-    /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
-    pub fn seconds_on_card(&self) -> Option<f64> {
+    fn gpu_seconds(&self) -> Option<f64> {
         self.card.as_ref().map(|card| card.busy)
     }
 
-    /// From now on the card times its passes, which makes them wait for one another. Nothing changes where it has no clock.
-    pub fn time_passes(&mut self) {
+    fn time_passes(&mut self) {
         if let Some(card) = &mut self.card {
             card.stopwatch = Stopwatch::new(&card.gpu());
         }
     }
 
-    /// What each pass has taken on the card since [`Dew::time_passes`].
-    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
         self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
     }
 
-    /// Bytes held on the card.
-    pub fn bytes_on_card(&self) -> Option<u64> {
+    fn gpu_bytes(&self) -> Option<u64> {
         self.card.as_ref().map(Card::bytes)
     }
+    fn gpu(&self) -> Option<Gpu> {
+        self.card.as_ref().map(Card::gpu)
+    }
 
+    fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
+        let seen = self.card.as_ref().map(|card| card.seen(self.scale().spacing, self.since()));
+        seen.transpose().map_err(|error| failed(&error))
+    }
+
+    fn advance_shown(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+        (first, sees_air): (f64, bool),
+        show: &mut dyn FnMut(Glance) -> f64,
+    ) -> Result<(), ModelError> {
+        if self.card.is_none() {
+            return self.advance_with(time, stop, companion);
+        }
+        self.advance_measured(time, stop, companion, Some(Watch { wanted: first, sees_air, show }))
+    }
+}
+
+impl Dew {
     /// What this model has that there is no twin of on the card.
     fn missing_on_card(&self) -> Vec<&'static str> {
         let all = [(self.fans.len() > MOST_FANS, "more than 1024 fans ([[dew.fan]])")];
@@ -76,7 +92,7 @@ impl Dew {
     fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut card = Card::new(gpu, room, self)?;
         card.send(&self.state);
-        card.busy = self.seconds_on_card().unwrap_or(0.0);
+        card.busy = self.gpu_seconds().unwrap_or(0.0);
         self.card = Some(card);
         Ok(())
     }

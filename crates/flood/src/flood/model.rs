@@ -7,7 +7,7 @@ use super::{DENSITY, Flood, State};
 use crate::particle::Particle;
 use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 #[cfg(feature = "gpu")]
-use corpuscle_model::{Companion, advance_with};
+use corpuscle_model::{Companion, CpuOnly, GpuModel, advance_with};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Model for Flood {
@@ -18,6 +18,21 @@ impl Model for Flood {
     #[cfg(feature = "gpu")]
     fn backend(&self) -> &'static str {
         if self.card.is_some() { "gpu" } else { "cpu" }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        None
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self) -> Option<&dyn GpuModel> {
+        Some(self)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu_mut(&mut self) -> Option<&mut dyn GpuModel> {
+        Some(self)
     }
 
     fn time(&self) -> f64 {

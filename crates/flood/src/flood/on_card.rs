@@ -1,13 +1,14 @@
 //! A flood whose steps the graphics card takes.
 
 use super::measured_on_card::Onlookers;
+use super::on_device::Watch;
 use super::{DENSITY, Flood, State, open};
 use crate::card::{Birth, Card, MOST_BIRTHS, MOST_LOOKS, MOST_ROWS, Progress, Setting, Span, Water};
 use crate::gauges::Reading;
 use crate::inflow::Source;
 use crate::particle::Particle;
-use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
-use corpuscle_model::{ExactSum, ModelError, Passed};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_model::{Companion, ExactSum, Glance, GpuModel, Model, ModelError, Passed};
 use corpuscle_scene::{Flood as Settings, Scheme as SchemeName, SmoothingForm};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -21,13 +22,8 @@ pub(super) fn failed(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
 }
 
-impl Flood {
-    /// Lets a graphics card take the steps, in single precision.
-    ///
-    /// # Errors
-    /// [`ModelError::Setup`] where the card has too little memory, or the scene asks for what the CPU alone computes: nothing has
-    /// changed then.
-    pub fn use_card(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+impl GpuModel for Flood {
+    fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
         let Settings { scheme, sph_swe, .. } = &self.settings;
         if *scheme == SchemeName::SphSwe && sph_swe.smoothing == SmoothingForm::Rate {
             let what = "flood.sph_swe.smoothing = \"rate\" computes on the CPU only: leave `--backend gpu` out, or take \"density\"";
@@ -40,28 +36,49 @@ impl Flood {
         self.open_card(gpu).map_err(|error| ModelError::Setup(error.to_string()))
     }
 
-    /// Wall-clock time that the card has spent on steps, s: without what the host does when something looks.
-    pub fn seconds_on_card(&self) -> Option<f64> {
+    fn gpu_seconds(&self) -> Option<f64> {
         self.card.as_ref().map(Card::busy)
     }
 
-    /// From now on the card times its passes, which makes them wait for one another. Nothing changes where it has no clock.
-    pub fn time_passes(&mut self) {
+    fn time_passes(&mut self) {
         if let Some(card) = &mut self.card {
             card.stopwatch = Stopwatch::new(&card.gpu());
         }
     }
 
-    /// What each pass has taken on the card since [`Flood::time_passes`].
-    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
         self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
     }
 
-    /// Bytes held on the card.
-    pub fn bytes_on_card(&self) -> Option<u64> {
+    fn gpu_bytes(&self) -> Option<u64> {
         self.card.as_ref().map(Card::bytes)
     }
+    fn gpu(&self) -> Option<Gpu> {
+        self.card.as_ref().map(Card::gpu)
+    }
 
+    fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
+        let seen = self.card.as_ref().map(|card| card.seen(self.particles_shown(self.since())));
+        seen.transpose().map_err(|error| failed(&error))
+    }
+
+    fn advance_shown(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+        (first, _): (f64, bool),
+        show: &mut dyn FnMut(Glance) -> f64,
+    ) -> Result<(), ModelError> {
+        if self.card.is_none() {
+            return self.advance_with(time, stop, companion);
+        }
+        let watch = Some(Watch { wanted: first, shown: self.particles_shown(0.0), show });
+        self.advance_measured(time, stop, Onlookers { watch, ..Onlookers::of(companion) })
+    }
+}
+
+impl Flood {
     /// Makes room on a card for the particles that there are, and for more where water comes in, and hands the state over.
     pub(super) fn open_card(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let count = self.state.particles.len();

@@ -2,7 +2,9 @@
 
 use super::change::Overrides;
 use super::{DENSITY, State, VoronoiFlood, maps};
-use corpuscle_model::{Balance, Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+use corpuscle_model::{
+    Balance, Column, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
+};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water less deep than this part of the depth of wet ground is not shown as a particle.
@@ -14,6 +16,14 @@ const ROUNDING: f64 = 1e-9;
 impl Model for VoronoiFlood {
     fn name(&self) -> &'static str {
         "flood"
+    }
+
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        Some(CpuOnly {
+            what: "scheme voronoi of floods runs on the CPU only",
+            remedy: "leave `--backend gpu` out, or take scheme balanced, which a graphics card computes \
+                     (`--set flood.scheme=balanced`, or flood.scheme = \"balanced\" in the scene)",
+        })
     }
 
     fn time(&self) -> f64 {

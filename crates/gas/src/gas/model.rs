@@ -4,7 +4,7 @@ use super::Gas;
 use super::observe::{collision_rate, mean_free_path, pressure_virial};
 use crate::measure::charts::Context;
 use corpuscle_model::{
-    Balance, Chart, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Path,
+    Balance, Chart, Container, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Path,
 };
 use std::sync::atomic::AtomicBool;
 
@@ -142,6 +142,10 @@ impl<const D: usize> Gas<D> {
 impl<const D: usize> Model for Gas<D> {
     fn name(&self) -> &'static str {
         "gas"
+    }
+
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        Some(CpuOnly { what: "the gas model runs on the CPU only", remedy: "leave `--backend gpu` out" })
     }
 
     fn time(&self) -> f64 {

@@ -15,7 +15,7 @@ use crate::Case;
 use crate::device::{card, rounding, rows};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room};
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::{GpuModel, Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
 pub(crate) const CASES: &[Case] = &[
@@ -38,7 +38,7 @@ fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
 /// Air that is set up, on the card where one takes the steps.
 fn ready(mut dew: Dew) -> Result<Dew, ModelError> {
     if let Some(gpu) = card() {
-        dew.use_card(gpu)?;
+        dew.use_gpu(gpu)?;
     }
     Ok(dew)
 }

@@ -2,12 +2,12 @@
 
 pub(super) use crate::device::rounding;
 use corpuscle_flood::Flood;
-use corpuscle_model::ModelError;
+use corpuscle_model::{GpuModel, ModelError};
 
 /// A flood that is set up, on the card where one takes the steps.
 pub(super) fn ready(mut flood: Flood) -> Result<Flood, ModelError> {
     if let Some(gpu) = crate::device::card() {
-        flood.use_card(gpu)?;
+        flood.use_gpu(gpu)?;
     }
     Ok(flood)
 }

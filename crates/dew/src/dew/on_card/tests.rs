@@ -9,7 +9,7 @@ use crate::settings::Settings;
 use crate::solids::Body;
 use crate::testing::block;
 use corpuscle_gpu::require_gpu;
-use corpuscle_model::Model;
+use corpuscle_model::{GpuModel, Model};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn more_room_is_taken_where_air_that_comes_might_find_none() {
     let come = cards[0].most_in_a_step();
     let scarce = cards[0].state.air.len() + come - 1;
     cards[0].open_card_with(gpu.clone(), scarce).unwrap();
-    cards[1].use_card(gpu).unwrap();
+    cards[1].use_gpu(gpu).unwrap();
     for dew in &mut cards {
         dew.advance_to(0.05, &AtomicBool::new(false)).unwrap();
     }
@@ -51,7 +51,7 @@ fn more_room_is_taken_amid_a_run() {
     let mut cards = [(); 2].map(|()| duct());
     let scarce = cards[0].state.air.len() + cards[0].most_in_a_step();
     cards[0].open_card_with(gpu.clone(), scarce).unwrap();
-    cards[1].use_card(gpu).unwrap();
+    cards[1].use_gpu(gpu).unwrap();
     for dew in &mut cards {
         dew.advance_to(0.1, &AtomicBool::new(false)).unwrap();
         dew.state.air.sort_unstable_by_key(|particle| particle.id);
@@ -77,7 +77,7 @@ fn a_card_lost_amid_a_run_leaves_the_state_of_before() {
     let open = || crate::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
     let stop = AtomicBool::new(false);
     let mut dew = open();
-    dew.use_card(gpu).unwrap();
+    dew.use_gpu(gpu).unwrap();
     dew.advance_to(0.05, &stop).unwrap();
     let saved = dew.save();
     dew.card.as_mut().unwrap().lost_after = Some(3);
@@ -140,7 +140,7 @@ fn air_in_cells_of_half_the_reach_goes_as_on_the_processor() {
     let Some(gpu) = require_gpu("small cells on the card") else { return };
     let [mut host, mut card, mut plain] = [(); 3].map(|()| duct_round_a_block());
     card.open_card_with(gpu.clone(), MANY).unwrap();
-    plain.use_card(gpu).unwrap();
+    plain.use_gpu(gpu).unwrap();
     let cells = |dew: &Dew| dew.card.as_ref().unwrap().cells();
     assert!(cells(&card) > 4 * cells(&plain), "{} and {} cells", cells(&card), cells(&plain));
     let one = [3e-6, 1e-6, 1e-5, 1e-8, 1e-8, 1e-7, 5e-5];

@@ -2,7 +2,7 @@
 
 use super::*;
 use corpuscle_gpu::require_gpu;
-use corpuscle_model::Model;
+use corpuscle_model::{GpuModel, Model};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -54,7 +54,7 @@ fn more_room_is_taken_where_halves_might_find_none() {
     let count = sheets[0].state.particles.len();
     let scarce = count + count / 2; // Enough until the next look at it.
     sheets[0].open_card_with(gpu.clone(), scarce).unwrap();
-    sheets[1].use_card(gpu.clone()).unwrap();
+    sheets[1].use_gpu(gpu.clone()).unwrap();
     for sheet in &mut sheets {
         sheet.advance_to(24.0, &AtomicBool::new(false)).unwrap();
     }
@@ -94,7 +94,7 @@ fn neighbours_for_which_lists_have_no_room_are_looked_for_again() {
     let Some(gpu) = require_gpu("lists of neighbours") else { return };
     let [all, some, none] = [u32::MAX, 12, 0].map(|most| {
         let mut pool = opened(POOL);
-        pool.use_card(gpu.clone()).unwrap();
+        pool.use_gpu(gpu.clone()).unwrap();
         pool.card.as_mut().unwrap().list(most);
         pool.advance_to(1.0, &AtomicBool::new(false)).unwrap();
         // What the clock shows depends, in its last digits, on how many steps were ordered at once.
@@ -111,7 +111,7 @@ fn maps_that_the_card_keeps_are_those_that_the_host_makes() {
     for period in [0.011, 0.1, 0.9] {
         let [by_card, by_host] = [true, false].map(|by_card| {
             let mut pool = opened(&format!("run.gauge_every_s = {period}\n{text}"));
-            pool.use_card(gpu.clone()).unwrap();
+            pool.use_gpu(gpu.clone()).unwrap();
             let card = pool.card.as_mut().unwrap();
             assert!(card.keeps_maps());
             if !by_card {
@@ -144,7 +144,7 @@ fn a_first_step_of_no_length_is_taken_before_the_card_goes_on() {
     let Some(gpu) = require_gpu("a first step of 0 s") else { return };
     let mut pool = opened(POOL);
     pool.state.time_step = 0.0;
-    pool.use_card(gpu).unwrap();
+    pool.use_gpu(gpu).unwrap();
     assert!(pool.state.steps == 1 && pool.state.time == 0.0 && pool.state.time_step > 0.0);
     pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
     assert!(pool.state.steps > 1 && pool.ledger().balances[0].relative_error().abs() < 1e-6);
@@ -157,7 +157,7 @@ fn a_value_that_is_no_number_does_not_come_back() {
     let values: [fn(&mut Particle) -> &mut f64; 3] = [|p| &mut p.u, |p| &mut p.volume, |p| &mut p.ax];
     for value in values {
         let mut pool = opened(POOL);
-        pool.use_card(gpu.clone()).unwrap();
+        pool.use_gpu(gpu.clone()).unwrap();
         pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
         let before = pool.state.particles.clone();
         *value(&mut pool.state.particles[100]) = f64::NAN;

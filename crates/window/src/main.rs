@@ -1,22 +1,24 @@
-//! `corpuscle view`.
+//! `corpuscle-window`: the command line with the window in it. `corpuscle view` starts this program.
 
-use crate::args::ViewOptions;
-use crate::refusal::refuse;
-use crate::scene_argument;
 use anyhow::Context;
-use corpuscle::scene::{Scene, builtin};
-use corpuscle_app::{Measurement, Source, Start, view as open_window};
+use corpuscle::scene::builtin;
+use corpuscle_app::{Measurement, Source, Start, physics, view as open_window};
+use corpuscle_cli::{Backend, ViewOptions, read_scene, refuse};
 use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Opens the window.
-pub fn view(options: &ViewOptions) -> anyhow::Result<ExitCode> {
+fn main() -> ExitCode {
+    corpuscle_cli::run_command_line(view)
+}
+
+/// Opens the window and, where it measures, prints what it measured.
+fn view(options: &ViewOptions) -> anyhow::Result<ExitCode> {
     let start = match &options.what {
         None => Start::Welcome,
         Some(name) => start(name, &options.set)?,
     };
-    let measured = open_window(start, options.backend.into(), options.measure)?;
+    let measured = open_window(start, backend(options.backend), options.measure)?;
     if let Some(Measurement { pictures_per_s, slowest_s, particles, pace }) = measured {
         println!(
             "{pictures_per_s:.1} pictures/s, the slowest took {slowest_s:.3} s; {particles} particles, \
@@ -24,6 +26,14 @@ pub fn view(options: &ViewOptions) -> anyhow::Result<ExitCode> {
         );
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn backend(of: Backend) -> physics::Backend {
+    match of {
+        Backend::Auto => physics::Backend::Auto,
+        Backend::Cpu => physics::Backend::Cpu,
+        Backend::Gpu => physics::Backend::Gpu,
+    }
 }
 
 /// What the window begins with.
@@ -39,11 +49,10 @@ fn start(name: &str, set: &[(String, String)]) -> anyhow::Result<Start> {
         return Ok(Start::Run(path.to_owned()));
     }
     // Refuses what cannot be opened before there is a window.
-    let named = scene_argument::read(Some(name), set)?;
+    let named = read_scene(Some(name), set)?;
     let text = match builtin(name) {
         Some(scene) => scene.text.to_owned(),
         None => fs::read_to_string(path).with_context(|| format!("cannot read {name}"))?,
     };
-    let _: &Scene = &named.scene;
     Ok(Start::Scene(Source { name: name.to_owned(), text, folder: named.folder, changes: set.to_vec() }))
 }

@@ -1,13 +1,12 @@
 //! `corpuscle view`: the window of the system starts, plays, and closes; without a display it says so.
-#![cfg(feature = "window")]
 
 use std::process::Command;
 
-const CORPUSCLE: &str = env!("CARGO_BIN_EXE_corpuscle");
+const PROGRAM: &str = env!("CARGO_BIN_EXE_corpuscle-window");
 
 #[test]
 fn without_a_display_there_is_one_line_and_status_1() {
-    let mut command = Command::new(CORPUSCLE);
+    let mut command = Command::new(PROGRAM);
     let output = command.args(["view", "gas/maxwell"]).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     let output = output.env_remove("WAYLAND_SOCKET").output().unwrap();
     // Other systems always have a display.
@@ -26,17 +25,17 @@ fn without_a_display_there_is_one_line_and_status_1() {
 #[test]
 fn what_cannot_be_shown_is_refused_before_there_is_a_window() {
     for wrong in ["gas/maxvell", "crates"] {
-        let output = Command::new(CORPUSCLE).args(["view", wrong]).output().unwrap();
+        let output = Command::new(PROGRAM).args(["view", wrong]).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
     }
-    let output = Command::new(CORPUSCLE).args(["view", "gas/maxwell", "--set", "gas.restitution=7"]).output().unwrap();
+    let output = Command::new(PROGRAM).args(["view", "gas/maxwell", "--set", "gas.restitution=7"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
 }
 
 #[test]
 fn under_a_virtual_display_the_window_plays_a_scene() {
     let required = std::env::var_os("CORPUSCLE_REQUIRE_GPU").is_some_and(|value| value == "1");
-    let screen = ["-a", "-s", "-screen 0 1400x900x24", CORPUSCLE, "view", "gas/maxwell", "--measure", "1"];
+    let screen = ["-a", "-s", "-screen 0 1400x900x24", PROGRAM, "view", "gas/maxwell", "--measure", "1"];
     let output = match Command::new("xvfb-run").args(screen).output() {
         Ok(output) => output,
         Err(error) if !required => {
