@@ -42,8 +42,6 @@ impl VoronoiFlood {
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     pub fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
         change.check()?;
-        #[cfg(feature = "gpu")]
-        self.check_change(&change)?;
         let done = self.apply(change);
         #[cfg(feature = "gpu")]
         self.tell_gpu();

@@ -7,6 +7,7 @@
 
 mod model;
 mod shared;
+mod supplies;
 mod upload;
 
 pub(super) use model::OnGpu;
@@ -15,7 +16,7 @@ use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
     Buffers, DeclaredKernel, Gpu, GpuError, Pass, ShaderLibrary, Stopwatch, THREADS, Task, read_together, wgpu,
 };
-use shared::{ARRIVED, AT_RIM, BATCH_START, BROKEN, Column, Memory, Record, Status};
+use shared::{ARRIVED, AT_RIM, BATCH_START, BROKEN, Column, Memory, Push, Record, Status, Supply};
 use std::time::Instant;
 use upload::{Input, pair};
 
@@ -27,6 +28,8 @@ const BATCH: f64 = 0.2;
 
 const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_sums", include_str!("voronoi_sums.wgsl")),
+    ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
+    ("infiltration_laws", include_str!("../../infiltration_laws.wgsl")),
     ("voronoi_water", include_str!("voronoi_water.wgsl")),
     ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
     ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),
@@ -35,24 +38,31 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_boundaries", include_str!("../boundaries/voronoi_boundaries.wgsl")),
 ];
 
-/// What tells the stage that a shader is for.
-const STAGES: [(&str, &str); 2] = [("stage", "const IS_SECOND = false;\n"), ("stage", "const IS_SECOND = true;\n")];
+/// Pieces in which two versions of a shader differ: the stage, and whether water comes and goes beside its motion.
+const VERSIONS: [[(&str, &str); 2]; 2] = [
+    [("stage", "const IS_SECOND = false;\n"), ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n")],
+    [("stage", "const IS_SECOND = true;\n"), ("exchange", include_str!("../rain/voronoi_exchange.wgsl"))],
+];
 
-/// Name, text and stage of the kernels.
-const SHADERS: [(&str, &str, usize); 8] = [
+/// Name, text and version of the kernels.
+const SHADERS: [(&str, &str, usize); 11] = [
     ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
     ("voronoi_kept", include_str!("../fluxes/voronoi_kept.wgsl"), 0),
     ("voronoi_update", include_str!("voronoi_update.wgsl"), 0),
     ("voronoi_update", include_str!("voronoi_update.wgsl"), 1),
-    ("voronoi_end", include_str!("../maps/voronoi_end.wgsl"), 0),
+    ("voronoi_end", include_str!("voronoi_end.wgsl"), 0),
+    ("voronoi_end", include_str!("voronoi_end.wgsl"), 1),
     ("voronoi_finish", include_str!("voronoi_finish.wgsl"), 0),
     ("voronoi_begin", include_str!("voronoi_begin.wgsl"), 0),
+    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 0),
+    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 1),
 ];
 
 /// Slots of the numbers of groups that the passes run with.
 const CELLS: u64 = 0;
 const FACES: u64 = 1;
+const BORDERS: u64 = 2;
 
 /// The kernels with what they work on.
 type Tasks = [Task; SHADERS.len()];
@@ -64,12 +74,23 @@ pub(crate) struct GpuSolver {
     memory: Memory,
     tasks: Tasks,
     cells: usize,
+    sides: Sides,
     status: Status,
     /// Steps of the next batch at most.
     batch: u32,
     /// Wall-clock time of all batches, s.
     busy: f64,
     pub stopwatch: Option<Stopwatch>,
+}
+
+/// What a flood has beside the motion of its water.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sides {
+    /// Whether water comes and goes beside its motion.
+    exchanges: bool,
+    /// Whether there are obstacles, whose forces are measured.
+    has_obstacles: bool,
+    borders: usize,
 }
 
 /// Why a batch ended.
@@ -87,6 +108,10 @@ pub(super) struct Downloaded {
     /// Columns now, and before the last step.
     pub columns: [Vec<ColumnOfCpu>; 2],
     pub records: Vec<super::maps::Record>,
+    /// What has soaked into each cell, m; empty where nothing comes or goes.
+    pub soaked: Vec<f32>,
+    /// Impulse over density at each border face since the upload, and in the last step, m4/s; empty where there are no obstacles.
+    pub pushes: Vec<[[f64; 2]; 2]>,
 }
 
 /// What passed since the flood is on the device.
@@ -101,6 +126,10 @@ pub(super) struct Totals {
     pub water: [f64; 2],
     pub energy: [f64; 2],
     pub momentum: [f64; 2],
+    pub rained: f64,
+    pub infiltrated: f64,
+    /// Time since the ground drank, s.
+    pub since_draught: f64,
 }
 
 impl GpuSolver {
@@ -109,14 +138,15 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Memory`], [`GpuError::TooMany`].
     pub fn new(gpu: Gpu, input: &Input<'_>) -> Result<Self, GpuError> {
-        let kernels = SHADERS.map(|(name, text, stage)| {
-            let library: Vec<_> = LIBRARY.iter().copied().chain([STAGES[stage]]).collect();
+        let kernels = SHADERS.map(|(name, text, version)| {
+            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
             DeclaredKernel::new(&gpu, name, text, &library)
         });
         let (memory, status) = input.upload(&gpu)?;
         let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
-        let cells = input.cells();
-        let mut solver = Self { gpu, kernels, memory, tasks, cells, status, batch: 1, busy: 0.0, stopwatch: None };
+        let (cells, sides) = (input.cells(), input.sides());
+        let mut solver =
+            Self { gpu, kernels, memory, tasks, cells, sides, status, batch: 1, busy: 0.0, stopwatch: None };
         solver.begin();
         Ok(solver)
     }
@@ -128,7 +158,7 @@ impl GpuSolver {
     pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
         (self.memory, self.status) = input.upload(&self.gpu)?;
         self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(&self.gpu, &self.memory));
-        self.cells = input.cells();
+        (self.cells, self.sides) = (input.cells(), input.sides());
         self.begin();
         Ok(())
     }
@@ -136,7 +166,7 @@ impl GpuSolver {
     /// Finds the water of the columns that were uploaded.
     fn begin(&mut self) {
         let groups = self.cells.div_ceil(THREADS as usize) as u32;
-        self.submit(|[.., begin], _, pass| begin.run(pass, groups));
+        self.submit(|[.., begin, _, _], _, pass| begin.run(pass, groups));
     }
 
     /// Takes steps up to a time, s, or as many as a batch has. The number of steps.
@@ -167,7 +197,8 @@ impl GpuSolver {
 
     /// Has the device take so many steps, or fewer: from where it is to halt the passes run with no groups.
     fn order(&mut self, count: u32) {
-        self.submit(|tasks, memory, pass| steps(tasks, memory, pass, count));
+        let sides = self.sides;
+        self.submit(|tasks, memory, pass| steps((tasks, sides), memory, pass, count));
     }
 
     /// Has the device do something.
@@ -194,6 +225,9 @@ impl GpuSolver {
             water: [inflow, outflow].map(sum),
             energy: [energy_in, energy_out].map(sum),
             momentum: [momentum_in, momentum_out].map(sum),
+            rained: sum(self.status.rained),
+            infiltrated: sum(self.status.infiltrated),
+            since_draught: f64::from(self.status.since_draught),
         }
     }
 
@@ -202,14 +236,24 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn download(&self) -> Result<Downloaded, GpuError> {
-        let Memory { columns, records, .. } = &self.memory;
-        let parts = [(columns, 2 * self.cells * size_of::<Column>()), (records, self.cells * size_of::<Record>())];
-        let [columns, records] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
+        let Memory { columns, records, supplies, pushes, .. } = &self.memory;
+        let pushed = if self.sides.has_obstacles { self.sides.borders } else { 0 };
+        let supplied = if self.sides.exchanges { self.cells } else { 0 };
+        let parts = [
+            (columns, 2 * self.cells * size_of::<Column>()),
+            (records, self.cells * size_of::<Record>()),
+            (supplies, supplied * size_of::<Supply>()),
+            (pushes, pushed * size_of::<Push>()),
+        ];
+        let [columns, records, supplies, pushes] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
         let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
         let (now, before) = columns.split_at(self.cells);
         let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());
         let records = bytemuck::pod_collect_to_vec::<u8, Record>(&records).iter().map(record_of).collect();
-        Ok(Downloaded { columns, records })
+        let supplies = bytemuck::pod_collect_to_vec::<u8, Supply>(&supplies);
+        let soaked = supplies.iter().map(|supply| supply.soaked).collect();
+        let pushes = bytemuck::pod_collect_to_vec::<u8, Push>(&pushes).iter().map(push_of).collect();
+        Ok(Downloaded { columns, records, soaked, pushes })
     }
 
     /// The device.
@@ -229,14 +273,19 @@ impl GpuSolver {
 }
 
 /// Takes so many steps, or fewer.
-fn steps(tasks: &Tasks, memory: &Memory, pass: &mut Pass<'_>, count: u32) {
-    let [slopes, fluxes, kept, first, second, end, finish, _] = tasks;
+fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, count: u32) {
+    let [slopes, fluxes, kept, first, second, end, end_with_exchange, finish, _, push_first, push_second] = tasks;
+    let end = if sides.exchanges { end_with_exchange } else { end };
     finish.run(pass, 1);
     for _ in 0..count {
-        for update in [first, second] {
-            for (task, slot) in [(slopes, CELLS), (fluxes, FACES), (kept, CELLS), (update, CELLS)] {
+        for (update, push) in [(first, push_first), (second, push_second)] {
+            for (task, slot) in [(slopes, CELLS), (fluxes, FACES), (kept, CELLS)] {
                 task.run_as_told(pass, &memory.groups, slot);
             }
+            if sides.has_obstacles {
+                push.run_as_told(pass, &memory.groups, BORDERS);
+            }
+            update.run_as_told(pass, &memory.groups, CELLS);
         }
         end.run_as_told(pass, &memory.groups, CELLS);
         finish.run(pass, 1);
@@ -256,6 +305,10 @@ fn column_of(column: &Column) -> ColumnOfCpu {
     ColumnOfCpu { volume: sum(column.volume).max(0.0), momentum: column.momentum.map(f64::from) }
 }
 
+fn push_of(push: &Push) -> [[f64; 2]; 2] {
+    [[push.east, push.north].map(sum), push.last.map(f64::from)]
+}
+
 fn record_of(record: &Record) -> super::maps::Record {
     let Record { fastest, max_depth, hazard, arrival, duration } = *record;
     super::maps::Record { max_depth, fastest, hazard, arrival, duration }
@@ -268,8 +321,8 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid_and_within_the_floor() {
-        for (name, text, stage) in SHADERS {
-            let library: Vec<_> = LIBRARY.iter().copied().chain([STAGES[stage]]).collect();
+        for (name, text, version) in SHADERS {
+            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
             let (text, _) = Memory::declaration().complete(name, text, &library).unwrap_or_else(|e| panic!("{e}"));
             check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         }

@@ -1,112 +1,143 @@
 //! A flood whose steps a GPU takes.
 
 use super::{Downloaded, GpuSolver, Halt, Input, Totals};
-use crate::flood::ByHand;
+use crate::rain::Intensity;
 use crate::voronoi::boundaries::Boundary;
+use crate::voronoi::rain::Weather;
 use crate::voronoi::{DENSITY, VoronoiFlood};
-use corpuscle_gpu::{Gpu, GpuError, Stopwatch, Taken};
-use corpuscle_model::{Account, ModelError};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Glance, GpuModel, Model, ModelError};
 use corpuscle_scene::{Storage, TimeSteps};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A GPU that takes the steps, and what the books said when it took over.
+/// A GPU that takes the steps.
 pub(crate) struct OnGpu {
     solver: GpuSolver,
-    /// Accounts of water, momentum and energy when the flood was uploaded.
-    accounts: [Account; 3],
-    cell_steps: u64,
-    /// Whether water, time or what acts on it was changed on the CPU since.
+    start: Start,
+    /// Whether water, time or what acts on it was changed on the CPU since it was uploaded.
     is_stale: bool,
 }
+
+/// What the books said when the flood was uploaded.
+struct Start {
+    /// Accounts of water, momentum and energy.
+    accounts: [Account; 3],
+    /// Rain and infiltration.
+    soaked: [ExactSum; 2],
+    cell_steps: u64,
+    /// Impulse on each obstacle over density, m4/s.
+    impulses: Vec<[f64; 2]>,
+    /// s.
+    time: f64,
+}
+
+/// What to do where the GPU does not compute a scene yet.
+const WITHOUT: &str = "leave `--backend gpu` out";
 
 fn device(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
 }
 
-impl VoronoiFlood {
-    /// Lets a GPU take the steps from here on, in single precision.
-    ///
-    /// # Errors
-    /// [`ModelError::Setup`] where the GPU has too little memory, or the scene asks for what the CPU alone computes: nothing has changed then.
-    pub fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
-        self.check_gpu()?;
+impl GpuModel for VoronoiFlood {
+    fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        if let Some(CpuOnly { what, remedy }) = self.on_cpu_only() {
+            return Err(ModelError::Setup(format!("{what}: {remedy}")));
+        }
         let solver = GpuSolver::new(gpu, &self.input()).map_err(|error| ModelError::Setup(error.to_string()))?;
-        self.on_gpu = Some(Box::new(OnGpu {
-            solver,
-            accounts: self.accounts(),
-            cell_steps: self.state.particle_steps,
-            is_stale: false,
-        }));
+        self.on_gpu = Some(Box::new(OnGpu { solver, start: self.start(), is_stale: false }));
         Ok(())
     }
 
-    /// Whether a GPU can compute the flood.
-    ///
-    /// # Errors
-    /// [`ModelError::Setup`] with what it cannot compute yet, and what to do.
-    pub(crate) fn check_gpu(&self) -> Result<(), ModelError> {
-        let Some((what, instead)) = self.on_cpu_only() else { return Ok(()) };
-        let remedy = instead.map_or(String::new(), |instead| format!(", or {instead}"));
-        let text = format!("{what} runs on the CPU only in scheme voronoi: leave `--backend gpu` out{remedy}");
-        Err(ModelError::Setup(text))
+    fn gpu(&self) -> Option<Gpu> {
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.gpu().clone())
     }
 
-    /// What of the scene the GPU does not compute yet, and what a scene could have instead.
-    pub(crate) fn on_cpu_only(&self) -> Option<(&'static str, Option<&'static str>)> {
-        let settings = &self.settings;
-        let has_edge = |is: fn(&Boundary) -> bool| self.boundaries.rules.iter().any(is);
-        let first = [
-            (settings.adaptive.is_some(), "flood.adaptive", Some("leave [flood.adaptive] out")),
-            (settings.time_steps == TimeSteps::Local, "flood.time_steps = \"local\"", Some("take \"global\"")),
-            (settings.storage == Storage::LevelVolume, "flood.storage = \"level-volume\"", Some("take \"mean\"")),
-            (!self.state.falling.is_empty(), "water in the air (a block of [[flood.water]])", None),
-            (!self.inflows.is_empty(), "[[flood.inflow]]", None),
-            (self.weather.is_some(), "rain or infiltration", None),
-            (!self.structures.is_empty(), "[[flood.outflow]], [[flood.stage]] or [[flood.link]]", None),
-            (!settings.obstacle.is_empty(), "[[flood.obstacle]]", None),
-            (!self.solver.crests.is_empty(), "a line over whose crest water flows", None),
-            (has_edge(|rule| matches!(rule, Boundary::Level(_))), "an edge with a stage", None),
-            (has_edge(|rule| matches!(rule, Boundary::Discharge(_))), "an edge with a discharge", None),
-            (has_edge(|rule| matches!(rule, Boundary::Wave { .. })), "an edge with a wave", None),
-            (has_edge(|rule| matches!(rule, Boundary::Paddle(_))), "an edge with a paddle", None),
-            (has_edge(|rule| matches!(rule, Boundary::Rating(_))), "an edge with a rating", None),
-        ];
-        first.into_iter().find(|(is_there, ..)| *is_there).map(|(_, what, instead)| (what, instead))
+    fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
+        Ok(None)
     }
 
-    /// Whether a GPU that takes the steps can go on with a change.
-    ///
-    /// # Errors
-    /// [`ModelError::Device`] where it cannot.
-    pub(in crate::voronoi) fn check_change(&self, change: &ByHand) -> Result<(), ModelError> {
-        let is_rain = matches!(change, ByHand::Rain(_) | ByHand::RainTimes(_));
-        if self.on_gpu.is_none() || !is_rain {
-            return Ok(());
+    fn advance_shown(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+        (mut next, _): (f64, bool),
+        show: &mut dyn FnMut(Glance) -> f64,
+    ) -> Result<(), ModelError> {
+        while self.on_gpu.is_some() && !stop.load(Ordering::Relaxed) {
+            // A time that has passed stands for the end of the next step.
+            let until = if next > self.shown { next } else { self.state.time + self.state.time_step };
+            if until >= time {
+                break;
+            }
+            self.advance_with(until, stop, companion)?;
+            if self.shown < until {
+                return Ok(());
+            }
+            next = show(Glance { frame: self.frame(), on_device: None });
         }
-        Err(ModelError::Device("rain runs on the CPU only in scheme voronoi: run it with `--backend cpu`".into()))
+        self.advance_with(time, stop, companion)
     }
 
-    /// Wall-clock time that the GPU has spent on steps, s.
-    pub fn seconds_on_gpu(&self) -> Option<f64> {
+    fn gpu_seconds(&self) -> Option<f64> {
         self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.busy())
     }
 
-    /// From now on the GPU times its passes, which makes them wait for one another. Nothing changes where it has no clock.
-    pub fn time_passes(&mut self) {
+    fn gpu_bytes(&self) -> Option<u64> {
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.bytes())
+    }
+
+    fn time_passes(&mut self) {
         if let Some(on_gpu) = &mut self.on_gpu {
             on_gpu.solver.stopwatch = Stopwatch::new(on_gpu.solver.gpu());
         }
     }
 
-    /// What each pass has taken on the GPU since [`VoronoiFlood::time_passes`].
-    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
         let stopwatch = self.on_gpu.iter().filter_map(|on_gpu| on_gpu.solver.stopwatch.as_ref());
         stopwatch.flat_map(Stopwatch::taken).collect()
     }
+}
 
-    /// Bytes held on the GPU.
-    pub fn bytes_on_gpu(&self) -> Option<u64> {
-        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.bytes())
+impl VoronoiFlood {
+    /// What of the scene the GPU does not compute yet, and what to do; none where it computes all.
+    pub(in crate::voronoi) fn on_cpu_only(&self) -> Option<CpuOnly> {
+        let settings = &self.settings;
+        let has_edge = |is: fn(&Boundary) -> bool| self.boundaries.rules.iter().any(is);
+        let rain = self.weather.as_ref().map(|weather| &weather.intensity);
+        let missing = [
+            (settings.adaptive.is_some(), "flood.adaptive runs on the CPU only", "leave [flood.adaptive] out"),
+            (
+                settings.time_steps == TimeSteps::Local,
+                "local time steps run on the CPU only",
+                "take flood.time_steps = \"global\"",
+            ),
+            (
+                settings.storage == Storage::LevelVolume,
+                "flood.storage = \"level-volume\" runs on the CPU only",
+                "take \"mean\"",
+            ),
+            (!self.state.falling.is_empty(), "water in the air (a block of [[flood.water]]) falls on the CPU only", ""),
+            (
+                rain.is_some_and(|rain| matches!(rain, Intensity::Function(_))),
+                "rain by a function falls on the CPU only",
+                "",
+            ),
+            (!self.structures.is_empty(), "flood.outflow, flood.stage and flood.link work on the CPU only", ""),
+            (self.solver.mesh.has_crests(), "walls over which water flows (height_m) work on the CPU only", ""),
+            (has_edge(|rule| matches!(rule, Boundary::Level(_))), "edges with a stage work on the CPU only", ""),
+            (
+                has_edge(|rule| matches!(rule, Boundary::Discharge(_))),
+                "edges with a discharge work on the CPU only",
+                "",
+            ),
+            (has_edge(|rule| matches!(rule, Boundary::Wave { .. })), "edges with a wave work on the CPU only", ""),
+            (has_edge(|rule| matches!(rule, Boundary::Paddle(_))), "edges with a paddle work on the CPU only", ""),
+            (has_edge(|rule| matches!(rule, Boundary::Rating(_))), "edges with a rating work on the CPU only", ""),
+        ];
+        let (_, what, instead) = missing.into_iter().find(|(is_there, ..)| *is_there)?;
+        let remedy = if instead.is_empty() { WITHOUT } else { instead };
+        Some(CpuOnly { what, remedy })
     }
 
     /// The GPU takes the state anew before its next step.
@@ -117,12 +148,12 @@ impl VoronoiFlood {
     /// Advances on the GPU, and takes over what it came to.
     pub(in crate::voronoi) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         let Some(mut on_gpu) = self.on_gpu.take() else { return Ok(()) };
-        let done = self.advance_with(&mut on_gpu, time, stop);
+        let done = self.step_on(&mut on_gpu, time, stop);
         self.on_gpu = Some(on_gpu);
         done
     }
 
-    fn advance_with(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+    fn step_on(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         if std::mem::take(&mut on_gpu.is_stale) {
             self.upload(on_gpu)?;
         }
@@ -156,16 +187,16 @@ impl VoronoiFlood {
     }
 
     fn upload(&self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
-        on_gpu.accounts = self.accounts();
-        on_gpu.cell_steps = self.state.particle_steps;
+        on_gpu.start = self.start();
         on_gpu.solver.renew(&self.input()).map_err(|error| device(&error))
     }
 
     /// Takes the state of the GPU over: water, records, time and books.
     fn take_over(&mut self, on_gpu: &OnGpu) -> Result<(), ModelError> {
-        let Downloaded { columns: [now, before], records } =
+        let Downloaded { columns: [now, before], records, soaked, pushes } =
             on_gpu.solver.download().map_err(|error| device(&error))?;
-        let Totals { time, step, last_step, cell_steps, water, energy, momentum } = on_gpu.solver.totals();
+        let totals = on_gpu.solver.totals();
+        let Totals { time, step, last_step, cell_steps, .. } = totals;
         let is_new = time > self.state.time;
         self.solver.columns = now;
         *self.solver.before_mut() = before;
@@ -175,15 +206,35 @@ impl VoronoiFlood {
             (self.state.before, self.state.time) = (time - last_step, time);
         }
         self.state.time_step = step;
-        self.state.particle_steps = on_gpu.cell_steps + cell_steps;
-        [self.state.water, self.state.momentum, self.state.energy] = on_gpu.accounts;
+        self.state.particle_steps = on_gpu.start.cell_steps + cell_steps;
+        if self.weather.as_ref().is_some_and(Weather::soaks) {
+            self.state.soaked.depth = soaked;
+            self.state.soaked.until = time - totals.since_draught;
+        }
+        if time > on_gpu.start.time {
+            self.book_pushes(&on_gpu.start, &pushes, last_step);
+        }
+        self.book(on_gpu, &totals);
+        Ok(())
+    }
+
+    /// Books what passed since the flood was uploaded.
+    fn book(&mut self, on_gpu: &OnGpu, totals: &Totals) {
         let state = &mut self.state;
-        let booked = [(&mut state.water, water, 1.0), (&mut state.momentum, momentum, DENSITY)];
-        for (account, [came, went], factor) in booked.into_iter().chain([(&mut state.energy, energy, DENSITY)]) {
+        [state.water, state.momentum, state.energy] = on_gpu.start.accounts;
+        [state.soaked.rained, state.soaked.infiltrated] = on_gpu.start.soaked;
+        let Totals { rained, infiltrated, .. } = *totals;
+        state.soaked.rained.add(rained);
+        state.soaked.infiltrated.add(infiltrated);
+        state.water.inflow.add(rained);
+        state.water.outflow.add(infiltrated);
+        let water = (&mut state.water, totals.water, 1.0);
+        let momentum = (&mut state.momentum, totals.momentum, DENSITY);
+        let energy = (&mut state.energy, totals.energy, DENSITY);
+        for (account, [came, went], factor) in [water, momentum, energy] {
             account.inflow.add(factor * came);
             account.outflow.add(factor * went);
         }
-        Ok(())
     }
 
     /// Says where the computation came to no number, and goes back to the state before.
@@ -205,8 +256,29 @@ impl VoronoiFlood {
         }
     }
 
-    fn accounts(&self) -> [Account; 3] {
-        [self.state.water, self.state.momentum, self.state.energy]
+    fn start(&self) -> Start {
+        let state = &self.state;
+        Start {
+            accounts: [state.water, state.momentum, state.energy],
+            soaked: [state.soaked.rained, state.soaked.infiltrated],
+            cell_steps: state.particle_steps,
+            impulses: state.impulses.clone(),
+            time: state.time,
+        }
+    }
+
+    /// Books what the water pushed obstacles with, by the impulse at each border face since the upload and in the last step.
+    fn book_pushes(&mut self, start: &Start, pushes: &[[[f64; 2]; 2]], last_step: f64) {
+        self.state.impulses.clone_from(&start.impulses);
+        self.state.forces.fill([0.0; 2]);
+        for (&obstacle, [all, last]) in self.obstacle_of.iter().zip(pushes) {
+            let Some(impulse) = self.state.impulses.get_mut(obstacle as usize) else { continue };
+            let force = &mut self.state.forces[obstacle as usize];
+            for axis in 0..2 {
+                impulse[axis] += all[axis];
+                force[axis] += last[axis] / last_step;
+            }
+        }
     }
 
     fn input(&self) -> Input<'_> {
@@ -219,6 +291,11 @@ impl VoronoiFlood {
             step: self.state.time_step,
             last_step: self.state.time - self.state.before,
             wet_depth: self.settings.wet_depth_m,
+            steps: self.state.steps,
+            inflows: &self.inflows,
+            weather: self.weather.as_ref(),
+            obstacle_of: &self.obstacle_of,
+            soaked: &self.state.soaked,
         }
     }
 }

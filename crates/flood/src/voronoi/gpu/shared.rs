@@ -42,6 +42,14 @@ corpuscle_gpu::declare! {
         pub const STILL_ON_BED: f32 = friction::STILL as f32;
         /// The part of the outflow that a cell without enough water for it keeps back, for rounding.
         pub const OUTFLOW_MARGIN: f32 = 1e-6;
+        /// The ground drinks once in so many steps.
+        pub const STEPS_A_DRAUGHT: u32 = super::super::rain::STEPS_A_DRAUGHT as u32;
+        /// Words of `tables` that each table has at their beginning: first row, number of rows, what it comes to over the step, and one that is not used.
+        pub const TABLE: u32 = 4;
+        /// Words of a row: time as a pair, s, and value.
+        pub const ROW: u32 = 3;
+        /// Words of a source of a cell: its table, the cell's share of it, and its velocity, m/s.
+        pub const SOURCE: u32 = 4;
         /// Threads of a group.
         pub const GROUP: u32 = corpuscle_gpu::THREADS;
     }
@@ -62,8 +70,12 @@ corpuscle_gpu::declare! {
             pub friction_law: u32,
             /// Always 0; read at run time so that the optimiser keeps compensated sums.
             pub zero: u32,
-            /// Fills up.
-            pub unused: u32,
+            /// Number of border faces.
+            pub borders: u32,
+            /// Number of tables.
+            pub tables: u32,
+            /// The table of the depth of rain, m; [`NONE`] where there is none.
+            pub rain_table: u32,
         }
 
         /// How far the device is. Pairs are compensated sums: the value and what it lacks, to be added.
@@ -84,6 +96,10 @@ corpuscle_gpu::declare! {
             pub momentum_out: [f32; 2],
             /// The same that they gave.
             pub momentum_in: [f32; 2],
+            /// Rain, m3.
+            pub rained: [f32; 2],
+            /// What soaked in, m3.
+            pub infiltrated: [f32; 2],
             /// Steps of wet cells: low and high part.
             pub cell_steps: [u32; 2],
             /// Whether the batch goes on: [`GOING`] and those after it.
@@ -100,6 +116,10 @@ corpuscle_gpu::declare! {
             pub is_broken: u32,
             /// Last time step, s.
             pub last_step: f32,
+            /// Time since the ground drank, s.
+            pub since_draught: f32,
+            /// Steps since the start of the run.
+            pub all_steps: u32,
             /// Fills up.
             pub unused: u32,
         }
@@ -164,6 +184,20 @@ corpuscle_gpu::declare! {
             pub kind: u32,
             /// At open borders the level beyond above the bed of the cell, m; at those of normal flow its velocity over the depth to 2/3, m^(1/3)/s.
             pub value: f32,
+            /// The face.
+            pub face: u32,
+            /// The obstacle; [`NONE`] elsewhere.
+            pub obstacle: u32,
+        }
+
+        /// What the water pushed an obstacle with at a face.
+        pub struct Push {
+            /// Impulse over density since the flood is on the device, m4/s: eastwards, a compensated sum.
+            pub east: [f32; 2],
+            /// The same northwards.
+            pub north: [f32; 2],
+            /// That of the last step.
+            pub last: [f32; 2],
         }
 
         /// What is conserved: a column of water over a cell.
@@ -232,8 +266,34 @@ corpuscle_gpu::declare! {
             pub is_broken: u32,
         }
 
-        /// What a group of cells looks like after a step.
+        /// What comes into a cell and goes out of it beside the motion of the water.
+        pub struct Supply {
+            /// What has soaked in, m.
+            pub soaked: f32,
+            /// Area that rain runs into the cell from, times its factor, m2.
+            pub rain_area: f32,
+            /// Where in `tables` the law stands by which water soaks in; [`NONE`] where none does.
+            pub law: u32,
+            /// Where in `tables` its sources begin.
+            pub first_source: u32,
+            /// Where they end.
+            pub end_source: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+
+        /// What a group of cells looks like after a step, and what came in and went out beside the motion of the water.
         pub struct Found {
+            /// Rain, m3.
+            pub rained: [f32; 2],
+            /// What soaked in, m3.
+            pub infiltrated: [f32; 2],
+            /// What sources brought, m3.
+            pub supplied: [f32; 2],
+            /// Energy that all of these brought, over density, m5/s2.
+            pub energy: f32,
+            /// Momentum that they brought, over density, sum of both components, m4/s.
+            pub momentum: f32,
             /// Shortest time step over the Courant number, s.
             pub step: f32,
             /// Number of wet cells.
@@ -251,7 +311,7 @@ corpuscle_gpu::declare! {
         uniform parameters: Parameters,
         /// How far it is.
         storage status: Status,
-        /// Numbers of groups for cells and for faces: 3 each.
+        /// Numbers of groups for cells, for faces and for border faces: 3 each.
         storage groups: [u32],
         /// Each cell.
         storage ground: [Ground],
@@ -277,5 +337,11 @@ corpuscle_gpu::declare! {
         storage passed: [Passed],
         /// For each group of cells.
         storage found: [Found],
+        /// For each border face.
+        storage pushes: [Push],
+        /// What each cell is supplied with; empty where nothing comes in or soaks in.
+        storage supplies: [Supply],
+        /// Tables over time, sources and laws of infiltration: see [`TABLE`].
+        storage tables: [u32],
     }
 }

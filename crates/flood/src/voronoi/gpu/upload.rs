@@ -1,13 +1,17 @@
 //! A flood as it is uploaded.
 
+use super::Sides;
 use super::shared::{
     BATCH_START, Border, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, NORMAL, OPEN,
-    Parameters, Passed, Record, Slopes, Status, WALL, Water,
+    Parameters, Passed, Push, Record, Slopes, Status, WALL, Water,
 };
+use super::supplies::{Supplies, supplies};
+use crate::voronoi::Inflow;
 use crate::voronoi::boundaries::{Boundaries, Boundary};
 use crate::voronoi::friction::Slowing;
 use crate::voronoi::maps;
 use crate::voronoi::mesh::{self, Mesh};
+use crate::voronoi::rain::{Soaked, Weather};
 use crate::voronoi::solver::Solver;
 use crate::voronoi::water;
 use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, uniform};
@@ -23,12 +27,32 @@ pub(crate) struct Input<'a> {
     pub step: f64,
     pub last_step: f64,
     pub wet_depth: f64,
+    pub steps: u64,
+    pub inflows: &'a [Inflow],
+    pub weather: Option<&'a Weather>,
+    /// The obstacle at each border face.
+    pub obstacle_of: &'a [u32],
+    pub soaked: &'a Soaked,
 }
 
 impl Input<'_> {
     /// Number of cells.
     pub fn cells(&self) -> usize {
         self.solver.mesh.len()
+    }
+
+    /// Whether water comes and goes beside its motion.
+    pub fn exchanges(&self) -> bool {
+        !self.inflows.is_empty() || self.weather.is_some()
+    }
+
+    /// What there is beside the motion of the water.
+    pub fn sides(&self) -> Sides {
+        Sides {
+            exchanges: self.exchanges(),
+            has_obstacles: self.obstacle_of.iter().any(|obstacle| *obstacle != mesh::NONE),
+            borders: self.solver.borders.len(),
+        }
     }
 
     /// Makes the memory on the device and fills it.
@@ -44,11 +68,12 @@ impl Input<'_> {
         }
         let groups = cells.div_ceil(THREADS as usize);
         let status = self.status();
+        let Supplies { of_cells, tables, count, rain_table } = supplies(self);
         let borders = &self.solver.borders;
         let memory = Memory {
-            parameters: uniform(gpu, "parameters", &self.parameters()),
+            parameters: uniform(gpu, "parameters", &Parameters { tables: count, rain_table, ..self.parameters() }),
             status: filled(gpu, "status", &[status])?,
-            groups: filled(gpu, "groups", &[0_u32, 1, 1, 0, 1, 1])?,
+            groups: filled(gpu, "groups", &[0_u32, 1, 1, 0, 1, 1, 0, 1, 1])?,
             ground: filled(gpu, "cells", &(0..cells).map(|cell| self.ground(cell)).collect::<Vec<_>>())?,
             links: filled(gpu, "links", &(0..cells).flat_map(|cell| links(mesh, cell)).collect::<Vec<_>>())?,
             faces: filled(gpu, "faces", &self.faces())?,
@@ -61,6 +86,9 @@ impl Input<'_> {
             records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
             passed: storage::<Passed>(gpu, "sums of groups", groups)?,
             found: storage::<Found>(gpu, "steps of groups", groups)?,
+            pushes: storage::<Push>(gpu, "pushes", borders.len())?,
+            supplies: filled(gpu, "supplies", &of_cells)?,
+            tables: filled(gpu, "tables", &tables)?,
         };
         Ok((memory, status))
     }
@@ -73,6 +101,7 @@ impl Input<'_> {
             wet_depth: self.wet_depth as f32,
             cells: mesh.len() as u32,
             faces: mesh.faces.len() as u32,
+            borders: self.solver.borders.len() as u32,
             friction_law: match slowing {
                 Slowing::Manning(_) | Slowing::ManningOfCells(_) => MANNING,
                 Slowing::Chezy(_) => CHEZY,
@@ -89,6 +118,8 @@ impl Input<'_> {
             step: self.step as f32,
             last_step: self.last_step as f32,
             halted: BATCH_START,
+            since_draught: (self.time - self.soaked.until) as f32,
+            all_steps: self.steps as u32,
             wet,
             ..Status::default()
         }
@@ -136,15 +167,17 @@ impl Input<'_> {
     fn border(&self, border: usize) -> Border {
         let Solver { mesh, slowing, gravity, .. } = self.solver;
         let cell = mesh.faces[self.solver.borders[border] as usize].cells[0] as usize;
-        let open = |depth: f64| Border { kind: OPEN, value: depth.max(0.0) as f32 };
+        let own =
+            Border { kind: WALL, value: 0.0, face: self.solver.borders[border], obstacle: self.obstacle_of[border] };
+        let open = |depth: f64| Border { kind: OPEN, value: depth.max(0.0) as f32, ..own };
         let rule = self.boundaries.rule_of(border).map(|rule| &self.boundaries.rules[usize::from(rule)]);
         match rule {
             Some(Boundary::Open) => open(self.beyond[border] - mesh.bed[cell]),
             Some(Boundary::NormalDepth(root)) => match slowing.conveyance(cell, *gravity) {
-                Some(conveyance) => Border { kind: NORMAL, value: (root * conveyance) as f32 },
+                Some(conveyance) => Border { kind: NORMAL, value: (root * conveyance) as f32, ..own },
                 None => open(0.0),
             },
-            _ => Border { kind: WALL, value: 0.0 },
+            _ => own,
         }
     }
 

@@ -71,19 +71,6 @@ fn gather(cell: u32) -> Gathered {
     return all;
 }
 
-// The momentum of a film so thin that its velocity is kept finite, and none where it does not move: see `Water::of` in `water.rs`.
-fn bounded_momentum(momentum: vec2f, volume: f32, area: f32) -> vec2f {
-    let depth = volume / area;
-    if depth < STILL {
-        return vec2f(0.0);
-    }
-    if depth >= THIN {
-        return momentum;
-    }
-    let part = depth / THIN;
-    return momentum * (2.0 * part * part / (part * part + 1.0));
-}
-
 // The column of a cell after the stage; what ground, borders and friction gave of momentum is added to `gained`.
 fn next_column(cell: u32, all: Gathered, gained: ptr<function, vec2f>) -> Column {
     let area = ground[cell].area;

@@ -1,8 +1,5 @@
-// The end of a step: records what the water did in each cell (see `maps/mod.rs`), and finds how long the next step may be.
+// Records what the water did in each cell: see `maps/mod.rs`.
 #import declared
-
-var<workgroup> steps: array<f32, 256>;
-var<workgroup> counts: array<vec2u, 256>;
 
 fn is_not_a_number(value: f32) -> bool {
     return (bitcast<u32>(value) & 0x7fffffffu) > 0x7f800000u;
@@ -31,32 +28,4 @@ fn record(cell: u32, now: Water) {
         own.hazard = max(own.hazard, now.depth * (speed + 0.5));
     }
     records[cell] = own;
-}
-
-@compute @workgroup_size(256)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) thread: u32,
-) {
-    steps[thread] = 3.0e38;
-    counts[thread] = vec2u(0u);
-    if id.x < parameters.cells {
-        let now = water[id.x];
-        record(id.x, now);
-        if now.depth > 0.0 {
-            steps[thread] = ground[id.x].width / (length(now.velocity) + sqrt(parameters.gravity * now.depth));
-            counts[thread] = vec2u(1u, ground[id.x].rim);
-        }
-    }
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            steps[thread] = min(steps[thread], steps[thread + half]);
-            counts[thread] += counts[thread + half];
-        }
-    }
-    if thread == 0u {
-        found[group.x] = Found(steps[0], counts[0].x, counts[0].y, 0u);
-    }
 }
