@@ -302,7 +302,7 @@ fn sum([value, lacking]: [f32; 2]) -> f64 {
 }
 
 fn column_of(column: &Column) -> ColumnOfCpu {
-    ColumnOfCpu { volume: sum(column.volume).max(0.0), momentum: column.momentum.map(f64::from) }
+    ColumnOfCpu { volume: sum(column.volume), momentum: column.momentum.map(f64::from) }
 }
 
 fn push_of(push: &Push) -> [[f64; 2]; 2] {
