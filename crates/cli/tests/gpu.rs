@@ -16,22 +16,27 @@ fn a_flood_runs_on_the_card() {
     }
     let place = Place::new();
     place.write("lake.toml", LAKE);
-    let balanced = ["run", "lake.toml", "--set", "flood.scheme=balanced", "--json"];
-    let run = |rest: &[&str]| place.run(&[&balanced[..], rest].concat()).expect_status(0).json();
-    let on_card = run(&["--backend", "gpu", "-o", "card"]);
-    let on_processor = run(&["-o", "processor"]);
-    assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
-    assert_eq!((&on_card["particles"], &on_card["steps"]), (&on_processor["particles"], &on_processor["steps"]));
-    let error = on_card["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
-    assert!(error.abs() < 1e-6, "{error}");
+    for scheme in ["balanced", "voronoi"] {
+        let set = format!("flood.scheme={scheme}");
+        let common = ["run", "lake.toml", "--set", &set, "--json"];
+        let run = |rest: &[&str]| place.run(&[&common[..], rest].concat()).expect_status(0).json();
+        let on_card = run(&["--backend", "gpu", "-o", &format!("card-{scheme}")]);
+        let on_processor = run(&["-o", &format!("processor-{scheme}")]);
+        assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
+        assert_eq!((&on_card["particles"], &on_card["steps"]), (&on_processor["particles"], &on_processor["steps"]));
+        let error = on_card["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
+        assert!(error.abs() < 1e-6, "{error}");
+    }
 }
 
 #[test]
-fn the_card_refuses_the_default_scheme_and_says_what_to_do() {
+fn the_gpu_refuses_what_it_does_not_compute_and_says_what_to_do() {
     let place = Place::new();
     place.write("lake.toml", LAKE);
-    let refused = place.run(&["run", "lake.toml", "--backend", "gpu", "-o", "card"]).expect_status(2);
-    for words in ["scheme voronoi of floods runs on the CPU only", "`--backend gpu`", "--set flood.scheme=balanced"] {
+    let local = ["--set", "flood.time_steps=local"];
+    let refused = place.run(&[&["run", "lake.toml", "--backend", "gpu", "-o", "card"][..], &local].concat());
+    let refused = refused.expect_status(2);
+    for words in ["local time steps run on the CPU only", "flood.time_steps"] {
         assert!(refused.stderr.contains(words), "{}", refused.stderr);
     }
     assert!(!place.path("card").exists());

@@ -2,12 +2,16 @@
 
 use crate::Simulation;
 use corpuscle_gpu::{Gpu, GpuError, GpuKind};
+use corpuscle_scene::Scheme;
 
 /// Fewer particles than this, with those that come, are no work for a card. A step is some twenty kernels, one after
 /// another, of five to ten microseconds each however few particles there are: 0.2 ms at most. In that time one core
 /// takes 200 to 300 steps of a particle (1.3 million a second, see the guide's benchmarks), 16 cores some 4000. A card
 /// has not been measured yet.
 pub const FEWEST_ON_CARD: usize = 10_000;
+
+/// Why floods of scheme voronoi stay on the CPU where nobody says otherwise.
+const VORONOI: &str = "scheme voronoi has not been measured on a GPU yet: ask for one with `--backend gpu`";
 
 /// Where steps are taken, and why there.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,6 +46,9 @@ impl Simulation {
     fn try_card(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Result<String, String> {
         if let Some(cpu_only) = self.model().cpu_only() {
             return Err(cpu_only.what.into());
+        }
+        if self.scene().flood().is_some_and(|scene| scene.flood.scheme == Scheme::Voronoi) {
+            return Err(VORONOI.into());
         }
         let particles = self.model().particles() as f64 + self.particles_to_come();
         if particles < FEWEST_ON_CARD as f64 {

@@ -37,7 +37,7 @@ const DEW: [(&str, f64, &str); 4] = [
 /// Looks and gauges are then due amid steps of scheme sph-swe: a step that ends just then may end a little later in single precision.
 const UNEVEN: (&str, &str) = ("flood.sph_swe.time_step_s", "0.0199");
 
-/// Distance of particles, m, and the depth for it, of the scenes that name no scheme: scheme voronoi, their default, is not for the card.
+/// Distance of particles, m, and the depth for it, of the scenes that name no scheme.
 const AS_FOR_BALANCED: [(&str, &str, &str); 5] = [
     ("flood/valley", "4", "1.5"),
     ("flood/dam-break", "1", "10"),
@@ -222,7 +222,7 @@ fn built_in_dew_goes_as_on_the_processor() {
     }
 }
 
-/// What the card cannot compute says so by name, and those that it can, floods by scheme balanced, are in the lists above.
+/// What the GPU cannot compute says so by name; what it can is in the lists above.
 #[test]
 fn the_other_built_in_scenes_are_refused() {
     if require_gpu("refusals by the card").is_none() {
@@ -236,9 +236,11 @@ fn the_other_built_in_scenes_are_refused() {
         assert!(error.is_refusal() && error.to_string().contains("--backend"), "{}: {error}", scene.name);
     }
     for (name, ..) in AS_FOR_BALANCED {
-        let error = open_as_changed(name, &[]).use_gpu().unwrap_err();
-        let told = error.to_string();
-        let words = ["scheme voronoi", "`--backend gpu`", "flood.scheme = \"balanced\""];
-        assert!(error.is_refusal() && words.iter().all(|word| told.contains(word)), "{name}: {error}");
+        let mut by_voronoi = open_as_changed(name, &[]);
+        by_voronoi.use_gpu().unwrap();
+        assert_eq!(by_voronoi.model().backend(), "gpu", "{name}");
     }
+    let local = [("flood.time_steps".to_owned(), "local".to_owned())];
+    let error = open_as_changed("flood/dam-break", &local).use_gpu().unwrap_err();
+    assert!(error.is_refusal() && error.to_string().contains("local time steps"), "{error}");
 }

@@ -22,6 +22,16 @@ pub fn storage<T>(gpu: &Gpu, label: &'static str, length: usize) -> Result<wgpu:
     Ok(buffer)
 }
 
+/// The same with values in it.
+///
+/// # Errors
+/// [`GpuError::Memory`].
+pub fn filled<T: NoUninit>(gpu: &Gpu, label: &'static str, values: &[T]) -> Result<wgpu::Buffer, GpuError> {
+    let buffer = storage::<T>(gpu, label, values.len())?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(values));
+    Ok(buffer)
+}
+
 /// Numbers that shaders read and nothing but the host changes.
 pub fn uniform<T: NoUninit>(gpu: &Gpu, label: &'static str, value: &T) -> wgpu::Buffer {
     let bytes = size_of::<T>().next_multiple_of(16) as u64;

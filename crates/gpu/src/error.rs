@@ -82,4 +82,12 @@ pub enum ImportError {
         /// Name of the piece.
         piece: String,
     },
+    /// A shader that is no valid WGSL, or beyond what every device has.
+    #[error("shader {shader} is not valid: {reason}")]
+    Invalid {
+        /// Name of the shader.
+        shader: String,
+        /// What is wrong with it.
+        reason: String,
+    },
 }

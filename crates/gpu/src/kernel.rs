@@ -1,6 +1,7 @@
 //! Programs that compute.
 
-use crate::{Gpu, GpuKind, Pass, ShaderLibrary, join};
+use crate::{Buffers, Gpu, GpuKind, Pass, ShaderLibrary, join};
+use std::marker::PhantomData;
 
 /// Threads in a group of every kernel that has one thread for each particle or cell.
 pub const THREADS: u32 = 256;
@@ -13,6 +14,15 @@ pub const MOST_GROUPS: u32 = 65_535;
 pub struct Kernel {
     name: &'static str,
     pipeline: wgpu::ComputePipeline,
+}
+
+/// A kernel whose bindings a declaration names: see [`declare!`](crate::declare).
+#[derive(Debug)]
+pub struct DeclaredKernel<B> {
+    kernel: Kernel,
+    /// Numbers of the bindings that it uses.
+    used: Vec<u32>,
+    of: PhantomData<B>,
 }
 
 /// A kernel with what it works on.
@@ -29,7 +39,11 @@ impl Kernel {
     /// # Panics
     /// Where a piece is missing from `library` or the shader is wrong, which a test of all shaders finds.
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
-        let joined = for_device(gpu, join(name, text, library).expect("a test joins every shader"));
+        Self::compiled(gpu, name, join(name, text, library).expect("a test joins every shader"))
+    }
+
+    fn compiled(gpu: &Gpu, name: &'static str, text: String) -> Self {
+        let joined = for_device(gpu, text);
         let module = module(
             gpu,
             wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(joined.into()) },
@@ -60,12 +74,38 @@ impl Kernel {
         let entries: Vec<_> = numbered
             .filter_map(|(resource, binding)| Some(wgpu::BindGroupEntry { binding, resource: resource? }))
             .collect();
+        self.task(gpu, &entries)
+    }
+
+    fn task(&self, gpu: &Gpu, entries: &[wgpu::BindGroupEntry<'_>]) -> Task {
         let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(self.name),
             layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
+            entries,
         });
         Task { name: self.name, pipeline: self.pipeline.clone(), bindings }
+    }
+}
+
+impl<B: Buffers> DeclaredKernel<B> {
+    /// Compiles the shader `text`, joined from its pieces, which imports the declaration.
+    ///
+    /// # Panics
+    /// As [`Kernel::new`].
+    pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
+        let complete = B::declaration().complete(name, text, library);
+        let (text, used) = complete.expect("a test completes every shader");
+        Self { kernel: Kernel::compiled(gpu, name, text), used, of: PhantomData }
+    }
+
+    /// Gives it the buffers that it uses.
+    pub fn on(&self, gpu: &Gpu, buffers: &B) -> Task {
+        let buffers = buffers.in_order();
+        let entry = |&binding: &u32| {
+            let resource = buffers[binding as usize].as_entire_binding();
+            wgpu::BindGroupEntry { binding, resource }
+        };
+        self.kernel.task(gpu, &self.used.iter().map(entry).collect::<Vec<_>>())
     }
 }
 

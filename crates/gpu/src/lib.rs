@@ -6,23 +6,27 @@
 //! has to give: 128 MiB a binding at least.
 
 mod buffer;
+mod declare;
 mod device;
 mod error;
 mod image;
 mod kernel;
 mod particles;
 mod pass;
+mod reflect;
 mod shader;
 mod sort;
 mod texture;
 
-pub use buffer::{read, read_together, storage, uniform};
+pub use buffer::{filled, read, read_together, storage, uniform};
+pub use declare::{Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedStruct};
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;
-pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
+pub use kernel::{DeclaredKernel, Kernel, MOST_GROUPS, THREADS, Task};
 pub use particles::{DEVICE_PARTICLES, DeviceParticle, DeviceParticles};
 pub use pass::{Pass, Stopwatch, Taken};
+pub use reflect::{check_layouts, check_layouts_in, check_shader};
 pub use shader::{SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use texture::{read_rgba8, texture_2d};

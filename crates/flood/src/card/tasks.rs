@@ -13,6 +13,7 @@ use corpuscle_gpu::{CellSort, Gpu, GpuError, SUMS_BEFORE, THREADS, Task, storage
 /// Pieces that the shaders import.
 pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_card", include_str!("flood_card.wgsl")),
+    ("infiltration_laws", include_str!("../infiltration_laws.wgsl")),
     ("flood_friction", include_str!("flood_friction.wgsl")),
     ("flood_ground", include_str!("flood_ground.wgsl")),
     ("flood_neighbours", include_str!("flood_neighbours.wgsl")),

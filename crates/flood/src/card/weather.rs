@@ -36,7 +36,7 @@ impl Weather {
         let patch =
             |(factor, law): (&f64, &u16)| Patch { factor: *factor as f32, law: u32::from(*law), ..Patch::default() };
         let patches: Vec<Patch> = ground.factor.iter().zip(&ground.law).map(patch).collect();
-        let laws: Vec<[f32; 4]> = ground.laws.iter().map(|law| law.map_or([0.0; 4], numbers)).collect();
+        let laws: Vec<[f32; 4]> = ground.laws.iter().map(|law| law.map_or([0.0; 4], Law::numbers)).collect();
         let groups = |count: usize| count.div_ceil(THREADS as usize);
         let weather = Self {
             ground: storage::<Patch>(gpu, "cells of the ground", patches.len())?,
@@ -82,14 +82,4 @@ impl Weather {
         }
         Ok(())
     }
-}
-
-/// Kind and numbers of a law.
-fn numbers(law: Law) -> [f32; 4] {
-    let numbers = match law {
-        Law::Constant(rate) => [1.0, rate, 0.0, 0.0],
-        Law::Horton { first, last, decay } => [2.0, first, last, decay],
-        Law::GreenAmpt { conductivity, head } => [3.0, conductivity, head, 0.0],
-    };
-    numbers.map(|number| number as f32)
 }

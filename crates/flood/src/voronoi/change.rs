@@ -42,6 +42,13 @@ impl VoronoiFlood {
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     pub fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
         change.check()?;
+        let done = self.apply(change);
+        #[cfg(feature = "gpu")]
+        self.tell_gpu();
+        done
+    }
+
+    fn apply(&mut self, change: ByHand) -> Result<(), ModelError> {
         match change {
             ByHand::Discharge { inflow, discharge } => self.set(Over::Discharge(inflow), discharge),
             ByHand::DischargeTimes { inflow, times } => self.multiply(Over::Discharge(inflow), times),

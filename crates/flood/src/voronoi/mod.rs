@@ -12,6 +12,7 @@
 //! | `start`, `rain`, `structures` | where water comes from and goes to |
 //! | `maps` | what happened in each cell, on the terrain's grid |
 //! | `adaptive` | cells that follow the water |
+//! | `gpu` | the same steps on a GPU; each pass's WGSL stands in the folder of the pass |
 //!
 //! `solver.rs` is a step of the water, `local.rs` which cells take longer ones,
 //! `storage.rs` what a cell holds below a level, `step.rs` one of the model.
@@ -23,6 +24,8 @@ mod change;
 mod finer;
 mod fluxes;
 mod friction;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod local;
 mod maps;
 mod measures;
@@ -102,6 +105,9 @@ pub struct VoronoiFlood {
     shown: f64,
     /// What the scene says of the values over time that were changed since.
     written: Vec<(change::Over, Table)>,
+    /// The GPU that takes the steps, if one does.
+    #[cfg(feature = "gpu")]
+    on_gpu: Option<Box<gpu::OnGpu>>,
 }
 
 /// Water that comes in over a part of the ground.

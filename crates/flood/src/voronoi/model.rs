@@ -2,6 +2,8 @@
 
 use super::change::Overrides;
 use super::{DENSITY, State, VoronoiFlood, maps};
+#[cfg(feature = "gpu")]
+use corpuscle_model::GpuModel;
 use corpuscle_model::{
     Balance, Column, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values,
 };
@@ -19,11 +21,20 @@ impl Model for VoronoiFlood {
     }
 
     fn cpu_only(&self) -> Option<CpuOnly> {
-        Some(CpuOnly {
-            what: "scheme voronoi of floods runs on the CPU only",
-            remedy: "leave `--backend gpu` out, or take scheme balanced, which a graphics card computes \
-                     (`--set flood.scheme=balanced`, or flood.scheme = \"balanced\" in the scene)",
-        })
+        #[cfg(feature = "gpu")]
+        return self.on_cpu_only();
+        #[cfg(not(feature = "gpu"))]
+        Some(CpuOnly { what: "this program runs floods on the CPU only", remedy: "leave `--backend gpu` out" })
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self) -> Option<&dyn GpuModel> {
+        Some(self)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu_mut(&mut self) -> Option<&mut dyn GpuModel> {
+        Some(self)
     }
 
     fn time(&self) -> f64 {
@@ -42,7 +53,19 @@ impl Model for VoronoiFlood {
         self.solver.wet_cells() + self.state.falling.len()
     }
 
+    fn backend(&self) -> &'static str {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return "gpu";
+        }
+        "cpu"
+    }
+
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return self.advance_on_gpu(time, stop);
+        }
         // On a thread of the pool: from outside, each pass of a small flood would wait for one to wake up.
         rayon::scope(|_| {
             while self.state.time < time {
@@ -179,6 +202,8 @@ impl Model for VoronoiFlood {
         if self.state.steps > 0 {
             self.solver.plan();
         }
+        #[cfg(feature = "gpu")]
+        self.tell_gpu();
         Ok(())
     }
 }

@@ -163,6 +163,8 @@ impl VoronoiFlood {
             roofs,
             written: Vec::new(),
             shown: 0.0,
+            #[cfg(feature = "gpu")]
+            on_gpu: None,
             settings,
             folder: folder.to_path_buf(),
             terrain,

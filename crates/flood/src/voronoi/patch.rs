@@ -9,9 +9,9 @@ use corpuscle_terrain::Bounds;
 /// Cells that water comes into or goes out of together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Patch {
-    cells: Vec<u32>,
+    pub(super) cells: Vec<u32>,
     /// Sum of their areas, m2.
-    area: f64,
+    pub(super) area: f64,
 }
 
 /// What adding or taking water changed: volume, m3, momentum over density, m4/s, and energy over density above the level 0, m5/s2.

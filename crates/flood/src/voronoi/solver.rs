@@ -20,7 +20,7 @@ const CHUNK: usize = 1024;
 
 /// Time step over the width of a cell and the speed of waves in it: half the stability limit of the scheme in one dimension
 /// (Audusse et al. 2004, equation 3.16), nearly in full.
-const COURANT: f64 = 0.8;
+pub(crate) const COURANT: f64 = 0.8;
 
 /// The water of all cells and the memory that a step works in.
 pub(crate) struct Solver {
@@ -435,7 +435,9 @@ impl Solver {
             let momentum = [0, 1].map(|axis| half * (own * face.normal[axis] - flux.momentum[0][axis]));
             let volume = half * flux.volume;
             let [p, q] = flux.momentum[1];
-            let speed_squared = if flux.volume == 0.0 { 0.0 } else { (p * p + q * q) / (flux.volume * flux.volume) };
+            // Divided before they are squared: the square of next to nothing is 0.
+            let velocity = [p, q].map(|momentum| if flux.volume == 0.0 { 0.0 } else { momentum / flux.volume });
+            let speed_squared = velocity[0] * velocity[0] + velocity[1] * velocity[1];
             let energy = volume * (self.gravity * self.water[cell].level + 0.5 * speed_squared);
             passed(number, Passed { volume, momentum, energy });
         }

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 /// Depth below which the velocity is taken from volume and momentum so that it stays finite, m (Kurganov & Petrova 2007, equation 2.17).
-const THIN: f64 = 1e-6;
+pub(crate) const THIN: f64 = 1e-6;
 
 /// Depth below which water does not move, m.
-const STILL: f64 = 1e-12;
+pub(crate) const STILL: f64 = 1e-12;
 
 /// What is conserved: a column of water over a cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

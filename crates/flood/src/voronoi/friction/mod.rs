@@ -4,13 +4,13 @@ use crate::friction::Roughness;
 use corpuscle_scene::Friction;
 
 /// Water counts as at least this deep, m: the laws are not made for films that are thinner than the grains of the bed.
-const THINNEST: f64 = 1e-5;
+pub(crate) const THINNEST: f64 = 1e-5;
 
 /// Less than the cube root of [`THINNEST`], m^(1/3).
 const THINNEST_ROOT: f64 = 0.02;
 
 /// Water less deep than this does not move where there is friction, m.
-const STILL: f64 = 1e-9;
+pub(crate) const STILL: f64 = 1e-9;
 
 /// How the bed slows the water in each cell.
 #[derive(Debug)]

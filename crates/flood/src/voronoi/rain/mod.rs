@@ -15,21 +15,21 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// The ground drinks once in so many steps: the laws of infiltration hold for any step of time.
-const STEPS_A_DRAUGHT: u64 = 8;
+pub(crate) const STEPS_A_DRAUGHT: u64 = 8;
 
 /// Rain and soils of a scene.
 pub(crate) struct Weather {
-    intensity: Intensity,
+    pub(super) intensity: Intensity,
     factor: Option<RasterField>,
     classes: Option<RasterField>,
     codes: Vec<f64>,
-    laws: Vec<Option<Law>>,
+    pub(super) laws: Vec<Option<Law>>,
     /// By what the intensity is multiplied in each cell; empty where it is the same everywhere.
-    factors: Vec<f32>,
+    pub(super) factors: Vec<f32>,
     /// Area of roofs whose rain runs into each cell, m2; empty where there are none.
     pub roofs: Vec<f64>,
     /// How water soaks into each cell, by number in `laws`.
-    law: Vec<u16>,
+    pub(super) law: Vec<u16>,
 }
 
 /// What rain and ground have done.
@@ -162,7 +162,7 @@ impl Weather {
         Some(Map { name, title, unit: "m", columns: grid.columns, rows: grid.rows, values })
     }
 
-    fn soaks(&self) -> bool {
+    pub fn soaks(&self) -> bool {
         self.laws.iter().any(Option::is_some)
     }
 

@@ -8,7 +8,7 @@ use super::water::{DEPTH, EAST, LEVEL, NORTH, Slopes, Water, slope};
 use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFrom};
 
 /// A neighbour whose bed stands above the level here counts the less, the thinner its water: in full from this part of the depth here on.
-const FILM: f64 = 4.0;
+pub(crate) const FILM: f64 = 4.0;
 
 /// Water at a face as one side sees it: depth and level, m, velocity across and along the face, m/s.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

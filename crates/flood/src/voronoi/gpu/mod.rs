@@ -1,0 +1,335 @@
+//! Steps of scheme `voronoi` on a GPU, in single precision: the cells are made on the CPU and uploaded, the passes of a step run one after another, and nothing
+//! comes back between the steps of a batch.
+//!
+//! Each pass is a WGSL file in the folder of its CPU code: slopes, fluxes through faces (stored, so that both cells gain and lose the same), the part of its outflow that
+//! each cell has the water for, new columns; twice, then the records of the maps and the length of the next step, and `voronoi_finish.wgsl` decides whether there is one.
+//! There are no atomics: every cell gathers in the order of its links, so the result does not depend on how the threads run.
+
+mod model;
+mod shared;
+mod supplies;
+mod upload;
+
+pub(super) use model::OnGpu;
+
+use super::water::Column as ColumnOfCpu;
+use corpuscle_gpu::{
+    Buffers, DeclaredKernel, Gpu, GpuError, Pass, ShaderLibrary, Stopwatch, THREADS, Task, read_together, wgpu,
+};
+use shared::{ARRIVED, AT_RIM, BATCH_START, BROKEN, Column, Memory, Push, Record, Status, Supply};
+use std::time::Instant;
+use upload::{Input, pair};
+
+/// Steps of a batch at most.
+const MOST_STEPS: u32 = 64;
+
+/// A batch takes about so long at most, s: then the host looks whether it is to stop.
+const BATCH: f64 = 0.2;
+
+const LIBRARY: ShaderLibrary<'_> = &[
+    ("voronoi_sums", include_str!("voronoi_sums.wgsl")),
+    ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
+    ("infiltration_laws", include_str!("../../infiltration_laws.wgsl")),
+    ("voronoi_water", include_str!("voronoi_water.wgsl")),
+    ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
+    ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),
+    ("voronoi_faces", include_str!("../reconstruction/voronoi_faces.wgsl")),
+    ("voronoi_riemann", include_str!("../fluxes/voronoi_riemann.wgsl")),
+    ("voronoi_boundaries", include_str!("../boundaries/voronoi_boundaries.wgsl")),
+];
+
+/// Pieces in which two versions of a shader differ: the stage, and whether water comes and goes beside its motion.
+const VERSIONS: [[(&str, &str); 2]; 2] = [
+    [("stage", "const IS_SECOND = false;\n"), ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n")],
+    [("stage", "const IS_SECOND = true;\n"), ("exchange", include_str!("../rain/voronoi_exchange.wgsl"))],
+];
+
+/// Name, text and version of the kernels.
+const SHADERS: [(&str, &str, usize); 11] = [
+    ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
+    ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
+    ("voronoi_kept", include_str!("../fluxes/voronoi_kept.wgsl"), 0),
+    ("voronoi_update", include_str!("voronoi_update.wgsl"), 0),
+    ("voronoi_update", include_str!("voronoi_update.wgsl"), 1),
+    ("voronoi_end", include_str!("voronoi_end.wgsl"), 0),
+    ("voronoi_end", include_str!("voronoi_end.wgsl"), 1),
+    ("voronoi_finish", include_str!("voronoi_finish.wgsl"), 0),
+    ("voronoi_begin", include_str!("voronoi_begin.wgsl"), 0),
+    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 0),
+    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 1),
+];
+
+/// Slots of the numbers of groups that the passes run with.
+const CELLS: u64 = 0;
+const FACES: u64 = 1;
+const BORDERS: u64 = 2;
+
+/// The kernels with what they work on.
+type Tasks = [Task; SHADERS.len()];
+
+/// A flood on a GPU.
+pub(crate) struct GpuSolver {
+    gpu: Gpu,
+    kernels: [DeclaredKernel<Memory>; SHADERS.len()],
+    memory: Memory,
+    tasks: Tasks,
+    cells: usize,
+    sides: Sides,
+    status: Status,
+    /// Steps of the next batch at most.
+    batch: u32,
+    /// Wall-clock time of all batches, s.
+    busy: f64,
+    pub stopwatch: Option<Stopwatch>,
+}
+
+/// What a flood has beside the motion of its water.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sides {
+    /// Whether water comes and goes beside its motion.
+    exchanges: bool,
+    /// Whether there are obstacles, whose forces are measured.
+    has_obstacles: bool,
+    borders: usize,
+}
+
+/// Why a batch ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Halt {
+    /// All its steps are done.
+    Full,
+    Arrived,
+    AtRim,
+    Broken,
+}
+
+/// The state of a flood as it came back.
+pub(super) struct Downloaded {
+    /// Columns now, and before the last step.
+    pub columns: [Vec<ColumnOfCpu>; 2],
+    pub records: Vec<super::maps::Record>,
+    /// What has soaked into each cell, m; empty where nothing comes or goes.
+    pub soaked: Vec<f32>,
+    /// Impulse over density at each border face since the upload, and in the last step, m4/s; empty where there are no obstacles.
+    pub pushes: Vec<[[f64; 2]; 2]>,
+}
+
+/// What passed since the flood is on the device.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Totals {
+    pub time: f64,
+    /// Next time step, s.
+    pub step: f64,
+    pub last_step: f64,
+    pub cell_steps: u64,
+    /// In and out.
+    pub water: [f64; 2],
+    pub energy: [f64; 2],
+    pub momentum: [f64; 2],
+    pub rained: f64,
+    pub infiltrated: f64,
+    /// Time since the ground drank, s.
+    pub since_draught: f64,
+}
+
+impl GpuSolver {
+    /// Compiles the kernels and uploads a flood.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`], [`GpuError::TooMany`].
+    pub fn new(gpu: Gpu, input: &Input<'_>) -> Result<Self, GpuError> {
+        let kernels = SHADERS.map(|(name, text, version)| {
+            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
+            DeclaredKernel::new(&gpu, name, text, &library)
+        });
+        let (memory, status) = input.upload(&gpu)?;
+        let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
+        let (cells, sides) = (input.cells(), input.sides());
+        let mut solver =
+            Self { gpu, kernels, memory, tasks, cells, sides, status, batch: 1, busy: 0.0, stopwatch: None };
+        solver.begin();
+        Ok(solver)
+    }
+
+    /// Uploads a flood whose cells are others now, or whose water was changed; what passed is counted from 0.
+    ///
+    /// # Errors
+    /// As [`GpuSolver::new`].
+    pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
+        (self.memory, self.status) = input.upload(&self.gpu)?;
+        self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(&self.gpu, &self.memory));
+        (self.cells, self.sides) = (input.cells(), input.sides());
+        self.begin();
+        Ok(())
+    }
+
+    /// Finds the water of the columns that were uploaded.
+    fn begin(&mut self) {
+        let groups = self.cells.div_ceil(THREADS as usize) as u32;
+        self.submit(|[.., begin, _, _], _, pass| begin.run(pass, groups));
+    }
+
+    /// Takes steps up to a time, s, or as many as a batch has. The number of steps.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn advance(&mut self, until: f64) -> Result<(u64, Halt), GpuError> {
+        let left = (until - self.totals().time) / f64::from(self.status.step);
+        let count = (left.ceil().clamp(1.0, f64::from(MOST_STEPS)) as u32).min(self.batch);
+        self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: pair(until), ..self.status };
+        let began = Instant::now();
+        self.gpu.queue.write_buffer(&self.memory.status, 0, bytemuck::bytes_of(&self.status));
+        self.order(count);
+        let [status] = read_together(&self.gpu, [(&self.memory.status, size_of::<Status>())], status_of)?;
+        self.status = status;
+        let took = began.elapsed().as_secs_f64();
+        self.busy += took;
+        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
+        self.batch = (if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { count / 2 }).clamp(1, MOST_STEPS);
+        let halt = match status.halted {
+            ARRIVED => Halt::Arrived,
+            AT_RIM => Halt::AtRim,
+            BROKEN => Halt::Broken,
+            _ => Halt::Full,
+        };
+        Ok((u64::from(status.steps), halt))
+    }
+
+    /// Has the device take so many steps, or fewer: from where it is to halt the passes run with no groups.
+    fn order(&mut self, count: u32) {
+        let sides = self.sides;
+        self.submit(|tasks, memory, pass| steps((tasks, sides), memory, pass, count));
+    }
+
+    /// Has the device do something.
+    fn submit(&mut self, work: impl FnOnce(&Tasks, &Memory, &mut Pass<'_>)) {
+        let label = wgpu::CommandEncoderDescriptor { label: Some("voronoi") };
+        let mut encoder = self.gpu.device.create_command_encoder(&label);
+        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
+        work(&self.tasks, &self.memory, &mut pass);
+        drop(pass);
+        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+    /// What passed so far, of both values each in and out.
+    pub fn totals(&self) -> Totals {
+        let Status {
+            clock, step, last_step, outflow, inflow, energy_out, energy_in, momentum_out, momentum_in, ..
+        } = self.status;
+        let [low, high] = self.status.cell_steps;
+        Totals {
+            time: sum(clock),
+            step: f64::from(step),
+            last_step: f64::from(last_step),
+            cell_steps: (u64::from(high) << 32) + u64::from(low),
+            water: [inflow, outflow].map(sum),
+            energy: [energy_in, energy_out].map(sum),
+            momentum: [momentum_in, momentum_out].map(sum),
+            rained: sum(self.status.rained),
+            infiltrated: sum(self.status.infiltrated),
+            since_draught: f64::from(self.status.since_draught),
+        }
+    }
+
+    /// Reads columns and records back.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn download(&self) -> Result<Downloaded, GpuError> {
+        let Memory { columns, records, supplies, pushes, .. } = &self.memory;
+        let pushed = if self.sides.has_obstacles { self.sides.borders } else { 0 };
+        let supplied = if self.sides.exchanges { self.cells } else { 0 };
+        let parts = [
+            (columns, 2 * self.cells * size_of::<Column>()),
+            (records, self.cells * size_of::<Record>()),
+            (supplies, supplied * size_of::<Supply>()),
+            (pushes, pushed * size_of::<Push>()),
+        ];
+        let [columns, records, supplies, pushes] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
+        let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
+        let (now, before) = columns.split_at(self.cells);
+        let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());
+        let records = bytemuck::pod_collect_to_vec::<u8, Record>(&records).iter().map(record_of).collect();
+        let supplies = bytemuck::pod_collect_to_vec::<u8, Supply>(&supplies);
+        let soaked = supplies.iter().map(|supply| supply.soaked).collect();
+        let pushes = bytemuck::pod_collect_to_vec::<u8, Push>(&pushes).iter().map(push_of).collect();
+        Ok(Downloaded { columns, records, soaked, pushes })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Wall-clock time of all batches, s.
+    pub fn busy(&self) -> f64 {
+        self.busy
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.memory.in_order().into_iter().map(wgpu::Buffer::size).sum()
+    }
+}
+
+/// Takes so many steps, or fewer.
+fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, count: u32) {
+    let [slopes, fluxes, kept, first, second, end, end_with_exchange, finish, _, push_first, push_second] = tasks;
+    let end = if sides.exchanges { end_with_exchange } else { end };
+    finish.run(pass, 1);
+    for _ in 0..count {
+        for (update, push) in [(first, push_first), (second, push_second)] {
+            for (task, slot) in [(slopes, CELLS), (fluxes, FACES), (kept, CELLS)] {
+                task.run_as_told(pass, &memory.groups, slot);
+            }
+            if sides.has_obstacles {
+                push.run_as_told(pass, &memory.groups, BORDERS);
+            }
+            update.run_as_told(pass, &memory.groups, CELLS);
+        }
+        end.run_as_told(pass, &memory.groups, CELLS);
+        finish.run(pass, 1);
+    }
+}
+
+fn status_of(bytes: &[u8]) -> Status {
+    bytemuck::pod_read_unaligned(bytes)
+}
+
+/// A compensated sum in double precision.
+fn sum([value, lacking]: [f32; 2]) -> f64 {
+    f64::from(value) + f64::from(lacking)
+}
+
+fn column_of(column: &Column) -> ColumnOfCpu {
+    ColumnOfCpu { volume: sum(column.volume), momentum: column.momentum.map(f64::from) }
+}
+
+fn push_of(push: &Push) -> [[f64; 2]; 2] {
+    [[push.east, push.north].map(sum), push.last.map(f64::from)]
+}
+
+fn record_of(record: &Record) -> super::maps::Record {
+    let Record { fastest, max_depth, hazard, arrival, duration } = *record;
+    super::maps::Record { max_depth, fastest, hazard, arrival, duration }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::{check_layouts, check_shader};
+
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        for (name, text, version) in SHADERS {
+            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
+            let (text, _) = Memory::declaration().complete(name, text, &library).unwrap_or_else(|e| panic!("{e}"));
+            check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+
+    #[test]
+    fn host_and_device_lay_structures_out_alike() {
+        check_layouts(&Memory::declaration()).unwrap();
+    }
+}

@@ -1,0 +1,347 @@
+//! What the host and the shaders of scheme `voronoi` share: one declaration, from which the WGSL comes too.
+
+use super::super::{friction, water};
+
+corpuscle_gpu::declare! {
+    constants {
+        /// The batch of steps goes on.
+        pub const GOING: u32 = 0;
+        /// The host has just started a batch.
+        pub const BATCH_START: u32 = 1;
+        /// The time asked for is reached.
+        pub const ARRIVED: u32 = 2;
+        /// Water stands beside tiles that are not made yet.
+        pub const AT_RIM: u32 = 3;
+        /// Something is no number.
+        pub const BROKEN: u32 = 4;
+        /// Stands for no cell, no face, no border.
+        pub const NONE: u32 = u32::MAX;
+        /// The border reflects.
+        pub const WALL: u32 = 0;
+        /// Water leaves over the border, and none comes in.
+        pub const OPEN: u32 = 1;
+        /// Water leaves over the border at the depth of normal flow.
+        pub const NORMAL: u32 = 2;
+        /// Friction after Manning 1891.
+        pub const MANNING: u32 = 0;
+        /// Friction after Chezy 1775.
+        pub const CHEZY: u32 = 1;
+        /// Friction in proportion to the velocity.
+        pub const LINEAR: u32 = 2;
+        /// Time step over the width of a cell and the speed of waves in it.
+        pub const COURANT: f32 = super::super::solver::COURANT as f32;
+        /// A neighbour whose bed stands above the level here counts in full from this part of the depth here on.
+        pub const FILM: f32 = super::super::reconstruction::FILM as f32;
+        /// Depth below which the velocity is taken from volume and momentum so that it stays finite, m.
+        pub const THIN: f32 = water::THIN as f32;
+        /// Depth below which water does not move, m.
+        pub const STILL: f32 = water::STILL as f32;
+        /// Water counts as at least this deep in the laws of friction, m.
+        pub const THINNEST: f32 = friction::THINNEST as f32;
+        /// Water less deep than this does not move where there is friction, m.
+        pub const STILL_ON_BED: f32 = friction::STILL as f32;
+        /// The part of the outflow that a cell without enough water for it keeps back, for rounding.
+        pub const OUTFLOW_MARGIN: f32 = 1e-6;
+        /// The ground drinks once in so many steps.
+        pub const STEPS_A_DRAUGHT: u32 = super::super::rain::STEPS_A_DRAUGHT as u32;
+        /// Words of `tables` that each table has at their beginning: first row, number of rows, what it comes to over the step, and one that is not used.
+        pub const TABLE: u32 = 4;
+        /// Words of a row: time as a pair, s, and value.
+        pub const ROW: u32 = 3;
+        /// Words of a source of a cell: its table, the cell's share of it, and its velocity, m/s.
+        pub const SOURCE: u32 = 4;
+        /// Threads of a group.
+        pub const GROUP: u32 = corpuscle_gpu::THREADS;
+    }
+    structs {
+        /// Numbers that stay as they are while the device steps.
+        pub struct Parameters {
+            /// m/s2.
+            pub gravity: f32,
+            /// Longest time step, s.
+            pub longest: f32,
+            /// Depth of wet ground, m.
+            pub wet_depth: f32,
+            /// Number of cells.
+            pub cells: u32,
+            /// Number of faces.
+            pub faces: u32,
+            /// Law of friction: [`MANNING`], [`CHEZY`], [`LINEAR`].
+            pub friction_law: u32,
+            /// Always 0; read at run time so that the optimiser keeps compensated sums.
+            pub zero: u32,
+            /// Number of border faces.
+            pub borders: u32,
+            /// Number of tables.
+            pub tables: u32,
+            /// The table of the depth of rain, m; [`NONE`] where there is none.
+            pub rain_table: u32,
+        }
+
+        /// How far the device is. Pairs are compensated sums: the value and what it lacks, to be added.
+        pub struct Status {
+            /// Time, s.
+            pub clock: [f32; 2],
+            /// The time asked for, s.
+            pub until: [f32; 2],
+            /// Volume that left over borders, m3.
+            pub outflow: [f32; 2],
+            /// Volume that came in over borders, m3.
+            pub inflow: [f32; 2],
+            /// Energy that left over borders, over density, m5/s2.
+            pub energy_out: [f32; 2],
+            /// The same that came in.
+            pub energy_in: [f32; 2],
+            /// Momentum over density that ground, borders and friction took, sum of both components, m4/s.
+            pub momentum_out: [f32; 2],
+            /// The same that they gave.
+            pub momentum_in: [f32; 2],
+            /// Rain, m3.
+            pub rained: [f32; 2],
+            /// What soaked in, m3.
+            pub infiltrated: [f32; 2],
+            /// Steps of wet cells: low and high part.
+            pub cell_steps: [u32; 2],
+            /// Whether the batch goes on: [`GOING`] and those after it.
+            pub halted: u32,
+            /// Steps since the start of the batch.
+            pub steps: u32,
+            /// Next time step, s.
+            pub step: f32,
+            /// Number of wet cells.
+            pub wet: u32,
+            /// Whether water stands beside tiles that are not made yet.
+            pub at_rim: u32,
+            /// Whether something came to no number.
+            pub is_broken: u32,
+            /// Last time step, s.
+            pub last_step: f32,
+            /// Time since the ground drank, s.
+            pub since_draught: f32,
+            /// Steps since the start of the run.
+            pub all_steps: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+
+        /// What does not change of a cell.
+        pub struct Ground {
+            /// m2.
+            pub area: f32,
+            /// Twice the area over the perimeter, m.
+            pub width: f32,
+            /// Mean height of the ground, m: for the books alone, differences of heights stand in links and faces.
+            pub bed: f32,
+            /// Coefficient of the law of friction: g n^2, g / C^2 or g S.
+            pub friction: f32,
+            /// First link.
+            pub first_link: u32,
+            /// Link after the last.
+            pub end_link: u32,
+            /// Whether tiles round it are not made yet.
+            pub rim: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+
+        /// A face as one of its cells sees it.
+        pub struct Link {
+            /// What the difference to the neighbour is multiplied by in the least-squares gradient, 1/m.
+            pub gradient: [f32; 2],
+            /// Outward unit normal times length, m.
+            pub normal: [f32; 2],
+            /// How much higher the bed of the neighbour stands, m.
+            pub rise: f32,
+            /// The cell on the other side; [`NONE`] at borders.
+            pub neighbour: u32,
+            /// The face; [`NONE`] where there is none yet.
+            pub face: u32,
+            /// Which of the face's cells this is: 0 or 1.
+            pub side: u32,
+        }
+
+        /// A face between two cells, or between a cell and a border.
+        pub struct Face {
+            /// Unit normal from the first cell to the second times the length, m.
+            pub normal: [f32; 2],
+            /// From the first cell's centroid to the second's, m; on a border to the first's mirror image.
+            pub between: [f32; 2],
+            /// From the middle between the two centroids to the middle of the face, m.
+            pub offset: [f32; 2],
+            /// How much higher the bed of the second cell stands, m.
+            pub rise: f32,
+            /// The first cell.
+            pub first: u32,
+            /// The second; [`NONE`] on a border.
+            pub second: u32,
+            /// The border face by its number; [`NONE`] between cells.
+            pub border: u32,
+        }
+
+        /// What a border face does.
+        pub struct Border {
+            /// [`WALL`], [`OPEN`] or [`NORMAL`].
+            pub kind: u32,
+            /// At open borders the level beyond above the bed of the cell, m; at those of normal flow its velocity over the depth to 2/3, m^(1/3)/s.
+            pub value: f32,
+            /// The face.
+            pub face: u32,
+            /// The obstacle; [`NONE`] elsewhere.
+            pub obstacle: u32,
+        }
+
+        /// What the water pushed an obstacle with at a face.
+        pub struct Push {
+            /// Impulse over density since the flood is on the device, m4/s: eastwards, a compensated sum.
+            pub east: [f32; 2],
+            /// The same northwards.
+            pub north: [f32; 2],
+            /// That of the last step.
+            pub last: [f32; 2],
+        }
+
+        /// What is conserved: a column of water over a cell.
+        pub struct Column {
+            /// Volume, m3, and what it lacks, to be added.
+            pub volume: [f32; 2],
+            /// Volume times velocity, m4/s.
+            pub momentum: [f32; 2],
+        }
+
+        /// Depth and velocity of a cell. There is no level: differences of levels come from depths and rises of the bed, so that a datum far away costs no digits.
+        pub struct Water {
+            /// m/s.
+            pub velocity: [f32; 2],
+            /// m; 0 where dry.
+            pub depth: f32,
+            /// Fills up.
+            pub unused: f32,
+        }
+
+        /// Slopes of depth, level, and velocity east- and northwards.
+        pub struct Slopes {
+            /// Along x.
+            pub x: [f32; 4],
+            /// Along y.
+            pub y: [f32; 4],
+        }
+
+        /// What passes a face.
+        pub struct Flux {
+            /// Momentum that goes with the volume, over density, m4/s2.
+            pub carried: [f32; 2],
+            /// Thrust across the face per length on the first cell and on the second, over density, less the cell's own, m3/s2.
+            pub thrust: [f32; 2],
+            /// From the first cell to the second, m3/s, where both have the water for it.
+            pub volume: f32,
+            /// Fills up.
+            pub unused: f32,
+        }
+
+        /// What happened in a cell: see the maps.
+        pub struct Record {
+            /// Velocity at the highest speed, m/s.
+            pub fastest: [f32; 2],
+            /// m.
+            pub max_depth: f32,
+            /// Largest depth x (speed + 0.5), m2/s.
+            pub hazard: f32,
+            /// s; not-a-number where it was never wet.
+            pub arrival: f32,
+            /// s.
+            pub duration: f32,
+        }
+
+        /// What passed the borders of a group of cells in a step.
+        pub struct Passed {
+            /// Volume that left, m3.
+            pub outflow: [f32; 2],
+            /// Volume that came in, m3.
+            pub inflow: [f32; 2],
+            /// Energy that left and that came in, over density, m5/s2.
+            pub energy: [f32; 2],
+            /// Momentum over density that ground, borders and friction gave, sum of both components, m4/s.
+            pub momentum: f32,
+            /// Whether something came to no number.
+            pub is_broken: u32,
+        }
+
+        /// What comes into a cell and goes out of it beside the motion of the water.
+        pub struct Supply {
+            /// What has soaked in, m.
+            pub soaked: f32,
+            /// Area that rain runs into the cell from, times its factor, m2.
+            pub rain_area: f32,
+            /// Where in `tables` the law stands by which water soaks in; [`NONE`] where none does.
+            pub law: u32,
+            /// Where in `tables` its sources begin.
+            pub first_source: u32,
+            /// Where they end.
+            pub end_source: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+
+        /// What a group of cells looks like after a step, and what came in and went out beside the motion of the water.
+        pub struct Found {
+            /// Rain, m3.
+            pub rained: [f32; 2],
+            /// What soaked in, m3.
+            pub infiltrated: [f32; 2],
+            /// What sources brought, m3.
+            pub supplied: [f32; 2],
+            /// Energy that all of these brought, over density, m5/s2.
+            pub energy: f32,
+            /// Momentum that they brought, over density, sum of both components, m4/s.
+            pub momentum: f32,
+            /// Shortest time step over the Courant number, s.
+            pub step: f32,
+            /// Number of wet cells.
+            pub wet: u32,
+            /// Whether water stands beside tiles that are not made yet.
+            pub at_rim: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+    }
+
+    /// What the device holds of a flood.
+    pub buffers Memory {
+        /// Numbers that stay as they are.
+        uniform parameters: Parameters,
+        /// How far it is.
+        storage status: Status,
+        /// Numbers of groups for cells, for faces and for border faces: 3 each.
+        storage groups: [u32],
+        /// Each cell.
+        storage ground: [Ground],
+        /// Links of all cells.
+        storage links: [Link],
+        /// Each face.
+        storage faces: [Face],
+        /// Each border face.
+        storage borders: [Border],
+        /// Columns now, then columns before the step.
+        storage columns: [Column],
+        /// Water of each cell.
+        storage water: [Water],
+        /// Slopes of each cell.
+        storage slopes: [Slopes],
+        /// What passes each face.
+        storage fluxes: [Flux],
+        /// The part of its outflow that each cell has the water for.
+        storage kept: [f32],
+        /// What happened in each cell.
+        storage records: [Record],
+        /// For each group of cells.
+        storage passed: [Passed],
+        /// For each group of cells.
+        storage found: [Found],
+        /// For each border face.
+        storage pushes: [Push],
+        /// What each cell is supplied with; empty where nothing comes in or soaks in.
+        storage supplies: [Supply],
+        /// Tables over time, sources and laws of infiltration: see [`TABLE`].
+        storage tables: [u32],
+    }
+}

@@ -1,0 +1,219 @@
+//! A flood as it is uploaded.
+
+use super::Sides;
+use super::shared::{
+    BATCH_START, Border, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, NORMAL, OPEN,
+    Parameters, Passed, Push, Record, Slopes, Status, WALL, Water,
+};
+use super::supplies::{Supplies, supplies};
+use crate::voronoi::Inflow;
+use crate::voronoi::boundaries::{Boundaries, Boundary};
+use crate::voronoi::friction::Slowing;
+use crate::voronoi::maps;
+use crate::voronoi::mesh::{self, Mesh};
+use crate::voronoi::rain::{Soaked, Weather};
+use crate::voronoi::solver::Solver;
+use crate::voronoi::water;
+use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, uniform};
+
+/// What is uploaded.
+pub(crate) struct Input<'a> {
+    pub solver: &'a Solver,
+    pub boundaries: &'a Boundaries,
+    /// What is known of the water beyond each border face: see [`Boundaries::beyond_at_start`].
+    pub beyond: &'a [f64],
+    pub records: &'a [maps::Record],
+    pub time: f64,
+    pub step: f64,
+    pub last_step: f64,
+    pub wet_depth: f64,
+    pub steps: u64,
+    pub inflows: &'a [Inflow],
+    pub weather: Option<&'a Weather>,
+    /// The obstacle at each border face.
+    pub obstacle_of: &'a [u32],
+    pub soaked: &'a Soaked,
+}
+
+impl Input<'_> {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.solver.mesh.len()
+    }
+
+    /// Whether water comes and goes beside its motion.
+    pub fn exchanges(&self) -> bool {
+        !self.inflows.is_empty() || self.weather.is_some()
+    }
+
+    /// What there is beside the motion of the water.
+    pub fn sides(&self) -> Sides {
+        Sides {
+            exchanges: self.exchanges(),
+            has_obstacles: self.obstacle_of.iter().any(|obstacle| *obstacle != mesh::NONE),
+            borders: self.solver.borders.len(),
+        }
+    }
+
+    /// Makes the memory on the device and fills it.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`], [`GpuError::TooMany`].
+    pub fn upload(&self, gpu: &Gpu) -> Result<(Memory, Status), GpuError> {
+        let mesh = &self.solver.mesh;
+        let (cells, faces) = (mesh.len(), mesh.faces.len());
+        let most = MOST_GROUPS as usize * THREADS as usize;
+        if cells.max(faces) > most {
+            return Err(GpuError::TooMany { count: cells.max(faces), most });
+        }
+        let groups = cells.div_ceil(THREADS as usize);
+        let status = self.status();
+        let Supplies { of_cells, tables, count, rain_table } = supplies(self);
+        let borders = &self.solver.borders;
+        let memory = Memory {
+            parameters: uniform(gpu, "parameters", &Parameters { tables: count, rain_table, ..self.parameters() }),
+            status: filled(gpu, "status", &[status])?,
+            groups: filled(gpu, "groups", &[0_u32, 1, 1, 0, 1, 1, 0, 1, 1])?,
+            ground: filled(gpu, "cells", &(0..cells).map(|cell| self.ground(cell)).collect::<Vec<_>>())?,
+            links: filled(gpu, "links", &(0..cells).flat_map(|cell| links(mesh, cell)).collect::<Vec<_>>())?,
+            faces: filled(gpu, "faces", &self.faces())?,
+            borders: filled(gpu, "borders", &(0..borders.len()).map(|border| self.border(border)).collect::<Vec<_>>())?,
+            columns: filled(gpu, "columns", &self.columns())?,
+            water: storage::<Water>(gpu, "water", cells)?,
+            slopes: storage::<Slopes>(gpu, "slopes", cells)?,
+            fluxes: storage::<Flux>(gpu, "fluxes", faces)?,
+            kept: storage::<f32>(gpu, "kept parts", cells)?,
+            records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
+            passed: storage::<Passed>(gpu, "sums of groups", groups)?,
+            found: storage::<Found>(gpu, "steps of groups", groups)?,
+            pushes: storage::<Push>(gpu, "pushes", borders.len())?,
+            supplies: filled(gpu, "supplies", &of_cells)?,
+            tables: filled(gpu, "tables", &tables)?,
+        };
+        Ok((memory, status))
+    }
+
+    fn parameters(&self) -> Parameters {
+        let Solver { mesh, gravity, slowing, longest, .. } = self.solver;
+        Parameters {
+            gravity: *gravity as f32,
+            longest: *longest as f32,
+            wet_depth: self.wet_depth as f32,
+            cells: mesh.len() as u32,
+            faces: mesh.faces.len() as u32,
+            borders: self.solver.borders.len() as u32,
+            friction_law: match slowing {
+                Slowing::Manning(_) | Slowing::ManningOfCells(_) => MANNING,
+                Slowing::Chezy(_) => CHEZY,
+                Slowing::Linear(_) => LINEAR,
+            },
+            ..Parameters::default()
+        }
+    }
+
+    fn status(&self) -> Status {
+        let wet = self.solver.wet_cells() as u32;
+        Status {
+            clock: pair(self.time),
+            step: self.step as f32,
+            last_step: self.last_step as f32,
+            halted: BATCH_START,
+            since_draught: (self.time - self.soaked.until) as f32,
+            all_steps: self.steps as u32,
+            wet,
+            ..Status::default()
+        }
+    }
+
+    fn ground(&self, cell: usize) -> Ground {
+        let Solver { mesh, slowing, .. } = self.solver;
+        Ground {
+            area: mesh.area[cell] as f32,
+            width: mesh.width[cell] as f32,
+            bed: mesh.bed[cell] as f32,
+            friction: match slowing {
+                Slowing::Manning(coefficient) | Slowing::Chezy(coefficient) | Slowing::Linear(coefficient) => {
+                    *coefficient as f32
+                }
+                Slowing::ManningOfCells(of_cells) => of_cells[cell],
+            },
+            first_link: mesh.first_link[cell],
+            end_link: mesh.first_link[cell + 1],
+            rim: u32::from(mesh.rim[cell] != 0),
+            unused: 0,
+        }
+    }
+
+    fn faces(&self) -> Vec<Face> {
+        let mesh = &self.solver.mesh;
+        let mut borders = 0..;
+        let face = |(number, face): (usize, &mesh::Face)| {
+            let [first, second] = face.cells;
+            let is_border = face.border().is_some();
+            let rise = if is_border { 0.0 } else { rise(mesh, [first, second], mesh.lift_of(number)) };
+            Face {
+                normal: single(face.normal),
+                between: face.between,
+                offset: face.offset,
+                rise,
+                first,
+                second: if is_border { NONE } else { second },
+                border: if is_border { borders.next().unwrap_or(NONE) } else { NONE },
+            }
+        };
+        mesh.faces.iter().enumerate().map(face).collect()
+    }
+
+    fn border(&self, border: usize) -> Border {
+        let Solver { mesh, slowing, gravity, .. } = self.solver;
+        let cell = mesh.faces[self.solver.borders[border] as usize].cells[0] as usize;
+        let own =
+            Border { kind: WALL, value: 0.0, face: self.solver.borders[border], obstacle: self.obstacle_of[border] };
+        let open = |depth: f64| Border { kind: OPEN, value: depth.max(0.0) as f32, ..own };
+        let rule = self.boundaries.rule_of(border).map(|rule| &self.boundaries.rules[usize::from(rule)]);
+        match rule {
+            Some(Boundary::Open) => open(self.beyond[border] - mesh.bed[cell]),
+            Some(Boundary::NormalDepth(root)) => match slowing.conveyance(cell, *gravity) {
+                Some(conveyance) => Border { kind: NORMAL, value: (root * conveyance) as f32, ..own },
+                None => open(0.0),
+            },
+            _ => own,
+        }
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let column = |column: &water::Column| Column { volume: pair(column.volume), momentum: single(column.momentum) };
+        self.solver.columns.iter().chain(self.solver.before()).map(column).collect()
+    }
+}
+
+/// A number as two of single precision: the value, and what it lacks.
+pub(super) fn pair(value: f64) -> [f32; 2] {
+    let high = value as f32;
+    [high, (value - f64::from(high)) as f32]
+}
+
+fn single(pair: [f64; 2]) -> [f32; 2] {
+    pair.map(|value| value as f32)
+}
+
+/// How much higher the bed of the second cell stands, seen from the first, m.
+fn rise(mesh: &Mesh, [first, second]: [u32; 2], lift: f64) -> f32 {
+    (mesh.bed[second as usize] + lift - mesh.bed[first as usize]) as f32
+}
+
+fn links(mesh: &Mesh, cell: usize) -> impl Iterator<Item = Link> + '_ {
+    mesh.links_of(cell).iter().map(move |link| {
+        let side = link.side(cell);
+        let normal = if link.face == mesh::NONE { [0.0; 2] } else { mesh.faces[link.face as usize].normal };
+        let outward = if side == 0 { normal } else { normal.map(|n| -n) };
+        let neighbour = link.cell().map_or(NONE, |other| other as u32);
+        let rise = link.cell().map_or(0.0, |other| rise(mesh, [cell as u32, other as u32], mesh.lift_seen(link, cell)));
+        Link { gradient: link.gradient, normal: single(outward), rise, neighbour, face: link.face, side: side as u32 }
+    })
+}
+
+fn record_of(record: &maps::Record) -> Record {
+    let maps::Record { max_depth, fastest, hazard, arrival, duration } = *record;
+    Record { fastest, max_depth, hazard, arrival, duration }
+}

@@ -1,0 +1,148 @@
+// New columns of a stage: each cell gathers what its faces bring, is slowed, and in the second stage averaged with the column before the step (Heun's method). See
+// `update` in `solver.rs`. `IS_SECOND` comes with the stage.
+#import declared
+#import stage
+#import voronoi_sums
+#import voronoi_friction
+#import voronoi_water
+
+var<workgroup> volumes: array<vec4f, 256>;
+var<workgroup> others: array<vec4f, 256>;
+
+// What faces brought a cell in a step: volume, momentum that volume carries, momentum of thrusts, and what passed borders.
+struct Gathered {
+    volume: vec2f,
+    carried: vec2f,
+    thrust: vec2f,
+    outflow: vec2f,
+    inflow: vec2f,
+    energy: vec2f,
+    // Momentum that volume carries over borders.
+    beyond: vec2f,
+}
+
+// The part of what passes a face that the cell which it leaves has the water for.
+fn kept_of(cell: u32, link: Link, outwards: f32) -> f32 {
+    if outwards > 0.0 {
+        return kept[cell];
+    }
+    if link.neighbour == NONE {
+        return 1.0;
+    }
+    return kept[link.neighbour];
+}
+
+// Energy over density above the level 0 that leaves with a volume, by half of the step.
+fn energy_of(cell: u32, flux: Flux, volume: f32) -> f32 {
+    if flux.volume == 0.0 {
+        return 0.0;
+    }
+    // Divided before it is squared: the square of next to nothing is 0.
+    let velocity = flux.carried / flux.volume;
+    return volume * (parameters.gravity * (ground[cell].bed + water[cell].depth) + 0.5 * dot(velocity, velocity));
+}
+
+fn gather(cell: u32) -> Gathered {
+    let zero = vec2f(0.0);
+    var all = Gathered(columns[cell].volume, zero, zero, zero, zero, zero, zero);
+    for (var number = ground[cell].first_link; number < ground[cell].end_link; number++) {
+        let link = links[number];
+        if link.face == NONE {
+            continue;
+        }
+        let flux = fluxes[link.face];
+        let is_second_cell = link.side == 1u;
+        let part = kept_of(cell, link, select(flux.volume, -flux.volume, is_second_cell));
+        // The same bits on both sides.
+        let volume = opaque(status.step * flux.volume * part);
+        let carried = status.step * part * flux.carried;
+        all.volume = add(all.volume, select(-volume, volume, is_second_cell));
+        all.carried += select(-carried, carried, is_second_cell);
+        all.thrust -= status.step * select(flux.thrust.x, flux.thrust.y, is_second_cell) * link.normal;
+        if link.neighbour == NONE {
+            let half = 0.5 * volume;
+            all.outflow = add(all.outflow, max(half, 0.0));
+            all.inflow = add(all.inflow, max(-half, 0.0));
+            let energy = energy_of(cell, flux, half);
+            all.energy += vec2f(max(energy, 0.0), max(-energy, 0.0));
+            all.beyond -= carried;
+        }
+    }
+    return all;
+}
+
+// The column of a cell after the stage; what ground, borders and friction gave of momentum is added to `gained`.
+fn next_column(cell: u32, all: Gathered, gained: ptr<function, vec2f>) -> Column {
+    let area = ground[cell].area;
+    var volume = tidy(all.volume);
+    if volume.x < 0.0 {
+        volume = vec2f(0.0);
+    }
+    let pushed = columns[cell].momentum + (all.carried + all.thrust);
+    let factor = friction_factor(ground[cell].friction, volume.x / area, length(pushed) / area, status.step);
+    var momentum = factor * pushed;
+    *gained += 0.5 * (all.thrust + all.beyond + (factor - 1.0) * pushed);
+    if IS_SECOND {
+        let before = columns[parameters.cells + cell];
+        volume = 0.5 * tidy(add_pair(volume, before.volume));
+        momentum = 0.5 * (momentum + before.momentum);
+    }
+    let bounded = bounded_momentum(momentum, volume.x, area);
+    *gained += select(0.5, 1.0, IS_SECOND) * (bounded - momentum);
+    return Column(volume, bounded);
+}
+
+// Takes a cell on by the stage.
+fn go_on(cell: u32, thread: u32) {
+    let all = gather(cell);
+    var gained = vec2f(0.0);
+    let next = next_column(cell, all, &gained);
+    if !IS_SECOND {
+        columns[parameters.cells + cell] = columns[cell];
+    }
+    columns[cell] = next;
+    water[cell] = water_of(next, ground[cell].area);
+    let change = all.carried + all.thrust;
+    let is_sound = is_finite(all.volume.x) && is_finite(change.x) && is_finite(change.y);
+    volumes[thread] = vec4f(all.outflow, all.inflow);
+    others[thread] = vec4f(all.energy, gained.x + gained.y, select(1.0, 0.0, is_sound));
+}
+
+// Adds what the second half of the threads has to what the first has, until one has all.
+fn sum_up(thread: u32) {
+    for (var half = 128u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if thread < half {
+            let own = volumes[thread];
+            let more = volumes[thread + half];
+            volumes[thread] = vec4f(add_pair(own.xy, more.xy), add_pair(own.zw, more.zw));
+            others[thread] += others[thread + half];
+        }
+    }
+}
+
+@compute @workgroup_size(256)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    volumes[thread] = vec4f(0.0);
+    others[thread] = vec4f(0.0);
+    if id.x < parameters.cells {
+        go_on(id.x, thread);
+    }
+    sum_up(thread);
+    if thread == 0u {
+        var all = Passed(volumes[0].xy, volumes[0].zw, others[0].xy, others[0].z, u32(others[0].w > 0.0));
+        if IS_SECOND {
+            let first = passed[group.x];
+            all.outflow = add_pair(all.outflow, first.outflow);
+            all.inflow = add_pair(all.inflow, first.inflow);
+            all.energy += first.energy;
+            all.momentum += first.momentum;
+            all.is_broken |= first.is_broken;
+        }
+        passed[group.x] = all;
+    }
+}

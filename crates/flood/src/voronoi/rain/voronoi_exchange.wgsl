@@ -1,0 +1,80 @@
+// Water that comes into a cell and goes out of it beside its motion: sources, rain, infiltration. See `patch.rs` and `rain/mod.rs`.
+#import declared
+#import voronoi_sums
+#import voronoi_water
+#import infiltration_laws
+
+fn number(word: u32) -> f32 {
+    return bitcast<f32>(tables[word]);
+}
+
+// What a table comes to over the step: `voronoi_finish.wgsl` has written it.
+fn amount(table: u32) -> f32 {
+    return number(TABLE * table + 2u);
+}
+
+// Sources bring water with their velocity.
+fn supply(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
+    for (var word = supplies[cell].first_source; word < supplies[cell].end_source; word += SOURCE) {
+        let volume = opaque(amount(tables[word]) * number(word + 1u));
+        let momentum = volume * vec2f(number(word + 2u), number(word + 3u));
+        (*column).volume = add((*column).volume, volume);
+        (*column).momentum += momentum;
+        (*own).supplied = add((*own).supplied, volume);
+        (*own).momentum += momentum.x + momentum.y;
+    }
+}
+
+fn rain(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
+    if parameters.rain_table != NONE {
+        let volume = opaque(amount(parameters.rain_table) * supplies[cell].rain_area);
+        (*column).volume = add((*column).volume, volume);
+        (*own).rained = vec2f(volume, 0.0);
+    }
+}
+
+// The ground drinks once in some steps: its laws hold for any step of time.
+fn drink(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
+    let held = (*column).volume.x;
+    let at = supplies[cell].law;
+    if at == NONE || held <= 0.0 || (status.all_steps + 1u) % STEPS_A_DRAUGHT != 0u {
+        return;
+    }
+    let law = vec4f(number(at), number(at + 1u), number(at + 2u), number(at + 3u));
+    let wanted = ground[cell].area * demand(law, supplies[cell].soaked, status.since_draught + status.step);
+    let part = min(wanted / held, 1.0);
+    // All of it to the last bit, or a part.
+    let volume = select(vec2f(opaque(part * held), 0.0), (*column).volume, part == 1.0);
+    let momentum = part * (*column).momentum;
+    (*column).volume = add_pair((*column).volume, -volume);
+    (*column).momentum -= momentum;
+    supplies[cell].soaked += volume.x / ground[cell].area;
+    (*own).infiltrated = volume;
+    (*own).momentum -= momentum.x + momentum.y;
+}
+
+fn kinetic(column: Column) -> f32 {
+    if column.volume.x <= 0.0 {
+        return 0.0;
+    }
+    return 0.5 * dot(column.momentum, column.momentum) / column.volume.x;
+}
+
+fn exchange(cell: u32, own: ptr<function, Found>) {
+    let before = columns[cell];
+    let area = ground[cell].area;
+    var column = before;
+    supply(cell, &column, own);
+    rain(cell, &column, own);
+    drink(cell, &column, own);
+    let gained = (column.volume.x - before.volume.x) + (column.volume.y - before.volume.y);
+    if gained == 0.0 && all(column.momentum == before.momentum) {
+        return;
+    }
+    column.volume = tidy(column.volume);
+    let mean_depth = 0.5 * (column.volume.x + before.volume.x) / area;
+    (*own).energy = kinetic(column) - kinetic(before) + parameters.gravity * gained * (ground[cell].bed + mean_depth);
+    column.momentum = bounded_momentum(column.momentum, column.volume.x, area);
+    columns[cell] = column;
+    water[cell] = water_of(column, area);
+}

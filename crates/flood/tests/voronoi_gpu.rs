@@ -1,0 +1,286 @@
+//! Scheme voronoi on a GPU comes to what the CPU comes to, within single precision.
+
+use corpuscle_flood::VoronoiFlood;
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{GpuModel, Model, ModelError};
+use corpuscle_scene::{FloodScene, Scene};
+use corpuscle_terrain::{Bounds, Terrain};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+const WALLS: &str = "edges = { west = \"wall\", east = \"wall\", south = \"wall\", north = \"wall\" }\n";
+
+fn parse(keys: &str) -> FloodScene {
+    let text = format!(
+        "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\n{keys}"
+    );
+    let mut scene = Scene::parse(&text, "test", &[]).unwrap();
+    scene.resolve_defaults();
+    scene.flood().unwrap().clone()
+}
+
+/// A basin of a size, m, on ground from a function.
+fn basin(keys: &str, [length, width]: [f64; 2], ground: impl Fn(f64, f64) -> f64 + Sync) -> VoronoiFlood {
+    let bounds = Bounds { x_min: 0.0, x_max: length, y_min: 0.0, y_max: width };
+    let terrain = Arc::new(Terrain::gridded(bounds, 0.5, ground));
+    VoronoiFlood::new(&parse(keys).flood, 1, Path::new("."), terrain).unwrap()
+}
+
+fn go(flood: &mut VoronoiFlood, time: f64) {
+    flood.advance_to(time, &AtomicBool::new(false)).unwrap();
+}
+
+/// The same flood on the CPU and on the GPU at a time, s.
+fn both(gpu: Gpu, time: f64, open: impl Fn() -> VoronoiFlood) -> [VoronoiFlood; 2] {
+    let mut floods = [open(), open()];
+    floods[1].use_gpu(gpu).unwrap();
+    for flood in &mut floods {
+        go(flood, time);
+    }
+    assert_eq!(floods.each_ref().map(|flood| flood.backend()), ["cpu", "gpu"]);
+    floods
+}
+
+/// Depth and velocity of each particle by its number.
+fn particles(flood: &VoronoiFlood) -> BTreeMap<u64, [f64; 3]> {
+    let set = flood.frame().sets.remove(0);
+    let corpuscle_model::Values::Scalar(depth) = &set.columns[0].values else { panic!("depth is a scalar") };
+    let rows = set.id.iter().zip(depth).zip(&set.velocity);
+    rows.map(|((id, depth), [u, v, _])| (*id, [*depth, *u, *v])).collect()
+}
+
+/// Sum of the differences of depth over that of the depths, and of discharge over that of the discharges.
+fn differences([cpu, gpu]: &[VoronoiFlood; 2]) -> [f64; 2] {
+    let (cpu, gpu) = (particles(cpu), particles(gpu));
+    let dry = [0.0; 3];
+    let (mut off, mut all) = ([0.0; 2], [0.0; 2]);
+    for id in cpu.keys().chain(gpu.keys().filter(|id| !cpu.contains_key(id))) {
+        let [a, b] = [&cpu, &gpu].map(|of| *of.get(id).unwrap_or(&dry));
+        off[0] += (a[0] - b[0]).abs();
+        off[1] += (a[0] * a[1] - b[0] * b[1]).hypot(a[0] * a[2] - b[0] * b[2]);
+        all = [all[0] + a[0], all[1] + a[0] * a[1].hypot(a[2])];
+    }
+    [off[0] / all[0], off[1] / all[1]]
+}
+
+fn rms(flood: &VoronoiFlood) -> f64 {
+    let (sum, volume) = flood.wet_cells().fold((0.0, 0.0), |(sum, volume), cell| {
+        let [u, v] = cell.velocity;
+        (sum + cell.area * cell.depth * (u * u + v * v), volume + cell.area * cell.depth)
+    });
+    f64::sqrt(sum / volume)
+}
+
+/// A quantity of the first gauge that has it.
+fn value(flood: &VoronoiFlood, quantity: &str) -> f64 {
+    flood.gauge_row()[flood.gauge_columns().iter().position(|column| column.quantity == quantity).unwrap()]
+}
+
+/// Blocks of 6 m at heights of 0 to 3 m, far above the datum.
+fn blocks(x: f64, y: f64) -> f64 {
+    let number = (y / 6.0) as usize * 11 + (x / 6.0) as usize;
+    1000.0 + 3.0 * ((number * 7919 % 101) as f64 / 101.0)
+}
+
+#[track_caller]
+fn agree(floods: &[VoronoiFlood; 2], depth: f64, discharge: f64) {
+    let off = differences(floods);
+    let balances = &floods[1].ledger().balances;
+    let errors = [balances[0].relative_error(), balances[1].relative_error()];
+    let cells = floods[1].wet_cells().count();
+    eprintln!(
+        "{cells} wet cells, {} steps, off {:.2e} {:.2e}, books {:.2e} {:.2e}",
+        floods[1].steps(),
+        off[0],
+        off[1],
+        errors[0],
+        errors[1]
+    );
+    assert!(off[0] < depth && off[1] < discharge, "{off:?}");
+    assert!(errors[0].abs() < 1e-12 && errors[1].abs() < 1e-5, "{balances:?}");
+    assert!(floods[0].steps().abs_diff(floods[1].steps()) <= 1);
+}
+
+#[test]
+fn a_lake_on_rough_ground_stays_at_rest() {
+    let Some(gpu) = require_gpu("a lake on the GPU") else { return };
+    let mut flood =
+        basin(&format!("spacing_m = 2\nmanning = 0\n{WALLS}water = [{{ level_m = 1001.5 }}]"), [66.0, 30.0], blocks);
+    flood.use_gpu(gpu).unwrap();
+    let before = flood.ledger().balances[0].now;
+    for k in 1..=5 {
+        go(&mut flood, 20.0 * f64::from(k));
+        eprintln!("rms {:.2e} m/s after {} steps", rms(&flood), flood.steps());
+        assert!(rms(&flood) < 2e-6, "{}", rms(&flood));
+    }
+    assert!((flood.ledger().balances[0].now / before - 1.0).abs() < 1e-13);
+}
+
+fn dam(before: &str, keys: &str) -> String {
+    format!(
+        "spacing_m = 1.5\n{keys}{WALLS}water = [{{ depth_m = 2, polygon = [[0, 0], [25, 0], [25, 30], [0, 30]] }}{before}]"
+    )
+}
+
+#[test]
+fn a_dam_breaks_onto_water() {
+    let Some(gpu) = require_gpu("a dam on the GPU") else { return };
+    let before = ", { depth_m = 0.5, polygon = [[25, 0], [66, 0], [66, 30], [25, 30]] }";
+    let open = || basin(&dam(before, "manning = 0\n"), [66.0, 30.0], |x, _| 0.2 * (0.3 * x).sin());
+    agree(&both(gpu, 8.0, open), 2e-6, 2e-5);
+}
+
+/// Over tiles that are made as the water comes.
+#[test]
+fn a_dam_breaks_onto_dry_ground() {
+    let Some(gpu) = require_gpu("a dam on the GPU") else { return };
+    let open = || basin(&dam("", ""), [220.0, 30.0], |x, y| 0.2 * (0.3 * x).sin() * (0.2 * y).cos());
+    assert!(open().cells() < 5000);
+    let floods = both(gpu, 12.0, open);
+    assert_eq!(floods[0].cells(), floods[1].cells());
+    assert!(floods[1].cells() > open().cells());
+    agree(&floods, 2e-5, 2e-4);
+    let maps = floods.each_ref().map(|flood| flood.maps());
+    for (cpu, gpu) in maps[0].iter().zip(&maps[1]) {
+        let both = cpu.values.iter().zip(&gpu.values).filter(|(a, b)| !a.is_nan() && !b.is_nan());
+        let (off, all) = both.fold((0.0, 0.0), |(off, all), (a, b)| (off + (a - b).abs(), all + a.abs()));
+        // Of two speeds that are nearly as high another may be the highest.
+        let bound = if cpu.name.starts_with("fastest") { 2e-3 } else { 2e-4 };
+        assert!(off <= bound * all, "{}: {off} of {all}", cpu.name);
+    }
+}
+
+/// Water runs down a slope and over an open edge, with friction, and at another over one of normal flow.
+#[test]
+fn water_leaves_over_open_edges() {
+    let Some(gpu) = require_gpu("open edges on the GPU") else { return };
+    let edges = "edges = { west = \"open\", east = { normal_depth = 0.002 }, south = \"wall\", north = \"open\" }\n";
+    for friction in ["manning = 0.03\n", "friction = { chezy = 40 }\n"] {
+        let keys = format!(
+            "spacing_m = 2\n{friction}{edges}water = [{{ depth_m = 1, polygon = [[5, 5], [40, 5], [40, 25], [5, 25]] }}]"
+        );
+        let open = || basin(&keys, [66.0, 30.0], |x, y| 50.0 - 0.002 * x + 0.002 * y);
+        let floods = both(gpu.clone(), 20.0, open);
+        agree(&floods, 2e-5, 1e-4);
+        let left = floods.each_ref().map(|flood| flood.ledger().balances[0].outflow);
+        eprintln!("left {left:?}");
+        assert!(left[0] > 50.0 && (left[1] / left[0] - 1.0).abs() < 1e-5);
+        let energy = floods.each_ref().map(|flood| value(flood, "energy_out"));
+        assert!((energy[1] / energy[0] - 1.0).abs() < 1e-5, "{energy:?}");
+    }
+}
+
+/// Sheets on a slope that goes on beyond joined sides, from uneven to normal flow.
+#[test]
+fn sheets_run_at_the_velocity_of_normal_flow() {
+    let Some(gpu) = require_gpu("sheets on the GPU") else { return };
+    let edges = "edges = { west = \"periodic\", east = \"periodic\", south = \"periodic\", north = \"periodic\" }\n";
+    let keys = format!("spacing_m = 2\nmanning = 0.03\n{edges}water = [{{ depth_m = 0.02 }}]");
+    let mut flood = basin(&keys, [60.0, 24.0], |x, _| 500.0 - 0.05 * x);
+    flood.use_gpu(gpu).unwrap();
+    go(&mut flood, 40.0);
+    let normal = 0.02_f64.powf(2.0 / 3.0) * f64::sqrt(0.05) / 0.03;
+    let sums = flood.wet_cells().fold([0.0; 2], |[sum, volume], cell| {
+        let own = cell.area * cell.depth;
+        [sum + own * cell.velocity[0], volume + own]
+    });
+    let off = sums[0] / sums[1] / normal - 1.0;
+    assert!(off.abs() < 0.01, "{off}");
+}
+
+#[test]
+fn the_same_run_comes_to_the_same_bits_and_goes_on_from_a_checkpoint() {
+    let Some(gpu) = require_gpu("a repeated run on the GPU") else { return };
+    let open = || {
+        let mut flood = basin(&dam("", ""), [120.0, 30.0], |x, y| 0.2 * (0.3 * x).sin() * (0.2 * y).cos());
+        flood.use_gpu(gpu.clone()).unwrap();
+        flood
+    };
+    let mut whole = open();
+    go(&mut whole, 5.0);
+    let mut looked_at = open();
+    (1..=25).for_each(|k| go(&mut looked_at, 0.2 * f64::from(k)));
+    assert!(whole.save() == looked_at.save());
+    let mut resumed = open();
+    go(&mut looked_at, 8.0);
+    resumed.restore(&whole.save()).unwrap();
+    go(&mut resumed, 8.0);
+    assert!(particles(&resumed) == particles(&looked_at));
+}
+
+/// Two sources, one that jumps and one with a velocity, rain that begins and ends, and infiltration by each law.
+#[test]
+fn water_comes_and_goes_beside_its_motion() {
+    let Some(gpu) = require_gpu("inflow, rain and infiltration on the GPU") else { return };
+    let rain = "rain = { intensity_mm_per_h = [[0, 0], [3, 600], [45, 600], [45, 0]] }\n";
+    // Onto water: at dry fronts the CPU takes cells with less than 1e-38 m for wet, which single precision does not know.
+    let source = "name = \"a\", at = [10, 10], discharge_m3_per_s = [[0, 1], [8, 2], [8, 0.5], [100, 0.5]]";
+    let jet = "name = \"jet\", line = [[20, 15], [20, 25]], velocity_m_per_s = [1, 0], discharge_m3_per_s = 2";
+    let cases = [
+        format!("inflow = [{{ {source} }}, {{ {jet} }}]\nwater = [{{ depth_m = 0.05 }}]"),
+        rain.to_owned(),
+        format!("{rain}infiltration.green-ampt = {{ conductivity_mm_per_h = 50, suction_m = 0.1, deficit = 0.3 }}"),
+        format!("{rain}infiltration.horton = {{ first_mm_per_h = 400, last_mm_per_h = 50, decay_per_h = 30 }}"),
+        format!("{rain}infiltration.constant.rate_mm_per_h = 60"),
+    ];
+    for case in cases {
+        let keys = format!(
+            "spacing_m = 2\nmanning = 0.03\nwet_depth_m = 0.002\n\
+             edges = {{ west = \"wall\", east = \"open\", south = \"wall\", north = \"wall\" }}\n{case}"
+        );
+        let open = || basin(&keys, [66.0, 30.0], |x, y| 300.0 - 0.03 * x + 0.2 * (0.3 * y).sin());
+        // Several draughts of the ground, and no longer than it is wet all over.
+        let until = match case.as_str() {
+            case if case.contains("infiltration") => 44.0,
+            case if case.contains("rain") => 60.0,
+            _ => 20.0,
+        };
+        let floods = both(gpu.clone(), until, open);
+        agree(&floods, 5e-6, 5e-6);
+        for quantity in ["stored", "total_inflow", "total_rain", "total_infiltration", "energy_in"] {
+            if floods[0].gauge_columns().iter().any(|column| column.quantity == quantity) {
+                let [cpu, gpu] = floods.each_ref().map(|flood| value(flood, quantity));
+                assert!((gpu - cpu).abs() <= 5e-6 * cpu, "{quantity}: {cpu} {gpu}");
+            }
+        }
+    }
+}
+
+/// A dam breaks against houses: the water goes round them and pushes them.
+#[test]
+fn water_pushes_obstacles() {
+    let Some(gpu) = require_gpu("obstacles on the GPU") else { return };
+    let houses = "obstacle = [{ name = \"a\", polygon = [[30, 5], [38, 6], [37, 14], [29, 13]] }, { name = \"b\", polygon = [[45, 15], [55, 15], [50, 25]] }]\n";
+    let open = || basin(&dam("", houses), [66.0, 30.0], |_, _| 20.0);
+    let floods = both(gpu, 6.0, open);
+    agree(&floods, 5e-6, 5e-5);
+    let columns = floods[0].gauge_columns();
+    let rows = floods.each_ref().map(|flood| flood.gauge_row());
+    let pushes = columns.iter().enumerate().filter(|(_, column)| ["a", "b"].contains(&column.gauge.as_str()));
+    for (k, column) in pushes {
+        let [cpu, gpu] = rows.each_ref().map(|row| row[k]);
+        // Of the thrust on one side of a house, N, and its impulse, N s.
+        let scale = if column.quantity.starts_with("impulse") { 5e5 } else { 1e5 };
+        assert!((gpu - cpu).abs() < 2e-4 * scale, "{} {}: {cpu} {gpu}", column.gauge, column.quantity);
+    }
+}
+
+#[test]
+fn what_the_gpu_does_not_compute_is_refused_by_name() {
+    let Some(gpu) = require_gpu("refusals of the GPU") else { return };
+    let cases = [
+        ("time_steps = \"local\"\n", "local time steps"),
+        ("storage = \"level-volume\"\n", "storage"),
+        ("outflow = [{ name = \"a\", at = [10, 10], rating = [[0, 0], [1, 1]] }]\n", "flood.outflow"),
+        ("obstacle = [{ name = \"a\", line = [[50, 10], [50, 20]], height_m = 0.5 }]\n", "height_m"),
+        ("adaptive = { finest_m = 0.8 }\n", "adaptive"),
+    ];
+    for (keys, word) in cases {
+        let mut flood = basin(&dam("", keys), [66.0, 30.0], |_, _| 0.0);
+        let Err(ModelError::Setup(text)) = flood.use_gpu(gpu.clone()) else { panic!("{keys} is taken") };
+        assert!(text.contains(word) && text.contains(": "), "{text}");
+        assert_eq!(flood.backend(), "cpu");
+    }
+}

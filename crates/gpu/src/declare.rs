@@ -1,0 +1,276 @@
+//! One declaration of what the host and the shaders of a model share: constants, structures and bindings.
+//!
+//! [`declare!`](crate::declare) makes of it the Rust items and their WGSL text. A shader takes the text in by the line `#import declared`; of the bindings it gets those
+//! that it uses, read-only where it does not write. The host gives buffers by the names of the bindings.
+
+use crate::reflect::{Use, uses};
+use crate::{ImportError, ShaderLibrary, join};
+
+/// The name by which shaders import a declaration.
+pub const DECLARED: &str = "declared";
+
+/// A type that the host and shaders share.
+pub trait Shared {
+    /// Its WGSL name.
+    fn wgsl() -> String;
+}
+
+/// A type of constants that the host and shaders share.
+pub trait SharedConstant: Shared {
+    /// The value as a WGSL literal that reads back to the same bits.
+    fn literal(self) -> String;
+}
+
+macro_rules! shared {
+    ($($type:ty => $wgsl:literal),* $(,)?) => {
+        $(impl Shared for $type {
+            fn wgsl() -> String {
+                $wgsl.into()
+            }
+        })*
+    };
+}
+
+shared! {
+    f32 => "f32", u32 => "u32", i32 => "i32",
+    [f32; 2] => "vec2f", [f32; 4] => "vec4f", [u32; 2] => "vec2u", [u32; 4] => "vec4u",
+}
+
+impl<T: Shared> Shared for [T] {
+    fn wgsl() -> String {
+        format!("array<{}>", T::wgsl())
+    }
+}
+
+impl SharedConstant for f32 {
+    fn literal(self) -> String {
+        format!("{self:?}f")
+    }
+}
+
+impl SharedConstant for u32 {
+    fn literal(self) -> String {
+        format!("{self}u")
+    }
+}
+
+/// A member of a structure as Rust lays it out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Member {
+    /// Its name.
+    pub name: &'static str,
+    /// Its WGSL type.
+    pub wgsl: String,
+    /// Bytes before it.
+    pub offset: usize,
+    /// Its size, bytes.
+    pub size: usize,
+}
+
+/// A structure as Rust lays it out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Layout {
+    /// Its name.
+    pub name: &'static str,
+    /// Its size, bytes.
+    pub size: usize,
+    /// Its members in their order.
+    pub members: Vec<Member>,
+}
+
+impl Layout {
+    fn wgsl(&self) -> String {
+        let members: String = self.members.iter().map(|m| format!("    {}: {},\n", m.name, m.wgsl)).collect();
+        format!("struct {} {{\n{members}}}\n", self.name)
+    }
+}
+
+/// A structure of [`declare!`](crate::declare).
+pub trait SharedStruct: Shared {
+    /// How Rust lays it out.
+    fn layout() -> Layout;
+}
+
+/// A buffer that shaders see.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Binding {
+    /// Its name.
+    pub name: &'static str,
+    /// Its WGSL type.
+    pub wgsl: String,
+    /// A uniform buffer; else a storage buffer.
+    pub is_uniform: bool,
+}
+
+/// What [`declare!`](crate::declare) tells of a declaration.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Declaration {
+    /// The constants as WGSL lines.
+    pub constants: Vec<String>,
+    /// The structures in their order.
+    pub structs: Vec<Layout>,
+    /// The bindings by their numbers, all in group 0.
+    pub bindings: Vec<Binding>,
+}
+
+impl Declaration {
+    /// Constants and structures in WGSL.
+    pub fn types(&self) -> String {
+        self.constants.iter().cloned().chain(self.structs.iter().map(Layout::wgsl)).collect()
+    }
+
+    /// All in WGSL, with the bindings for which `used` tells how a shader uses them.
+    fn wgsl(&self, used: impl Fn(u32) -> Option<Use>) -> String {
+        let line = |(number, binding): (u32, &Binding)| {
+            let space = match (binding.is_uniform, used(number)?) {
+                (true, _) => "uniform",
+                (false, Use::Read) => "storage, read",
+                (false, Use::Written) => "storage, read_write",
+            };
+            let Binding { name, wgsl, .. } = binding;
+            Some(format!("@group(0) @binding({number}) var<{space}> {name}: {wgsl};\n"))
+        };
+        std::iter::once(self.types()).chain((0..).zip(&self.bindings).filter_map(line)).collect()
+    }
+
+    /// The text of a shader joined from its pieces, with the bindings that it uses; and their numbers.
+    ///
+    /// # Errors
+    /// [`ImportError::Missing`], and [`ImportError::Invalid`] where the text is no valid WGSL.
+    pub fn complete(
+        &self,
+        name: &str,
+        text: &str,
+        library: ShaderLibrary<'_>,
+    ) -> Result<(String, Vec<u32>), ImportError> {
+        let with = |declared: &str| {
+            let library: Vec<_> = library.iter().copied().chain([(DECLARED, declared)]).collect();
+            join(name, text, &library)
+        };
+        let invalid = |reason| ImportError::Invalid { shader: name.into(), reason };
+        let used = uses(&with(&self.wgsl(|_| Some(Use::Written)))?).map_err(invalid)?;
+        let text = with(&self.wgsl(|number| used.get(&number).copied()))?;
+        Ok((text, used.into_keys().collect()))
+    }
+}
+
+/// What the device holds for a declaration of [`declare!`](crate::declare): a buffer for each binding.
+pub trait Buffers {
+    /// The declaration.
+    fn declaration() -> Declaration;
+
+    /// The buffers by the numbers of their bindings.
+    fn in_order(&self) -> Vec<&wgpu::Buffer>;
+}
+
+/// Declares what the host and the shaders of a model share.
+///
+/// ```
+/// corpuscle_gpu::declare! {
+///     constants {
+///         /// Gravity, m/s2.
+///         pub const GRAVITY: f32 = 9.81;
+///     }
+///     structs {
+///         /// A column of water.
+///         pub struct Column {
+///             /// m/s.
+///             pub velocity: [f32; 2],
+///             /// Depth, m.
+///             pub depth: f32,
+///             /// Fills up: WGSL aligns `vec2f` to 8 bytes.
+///             pub unused: f32,
+///         }
+///     }
+///
+///     /// What the passes work on.
+///     pub buffers Memory {
+///         /// Numbers that stay as they are.
+///         uniform sizes: [u32; 4],
+///         /// The water.
+///         storage columns: [Column],
+///     }
+/// }
+/// ```
+///
+/// gives the constant, a `#[repr(C)]` structure that can be copied to the device, and `Memory`, with a buffer for each binding, numbered in their order.
+/// [`check_layouts`](crate::check_layouts) says in a test where WGSL would lay a structure out otherwise.
+#[macro_export]
+macro_rules! declare {
+    (
+        constants {
+            $($(#[$const_doc:meta])* $const_vis:vis const $const:ident: $const_type:ty = $value:expr;)*
+        }
+        structs {
+            $($(#[$struct_doc:meta])* $struct_vis:vis struct $struct:ident {
+                $($(#[$member_doc:meta])* $member_vis:vis $member:ident: $member_type:ty),+ $(,)?
+            })*
+        }
+        $(#[$buffers_doc:meta])* $buffers_vis:vis buffers $buffers:ident {
+            $($(#[$binding_doc:meta])* $space:ident $binding:ident: $binding_type:ty),+ $(,)?
+        }
+    ) => {
+        $($(#[$const_doc])* $const_vis const $const: $const_type = $value;)*
+
+        $(
+            $(#[$struct_doc])*
+            #[derive(Debug, Clone, Copy, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            #[repr(C)]
+            $struct_vis struct $struct {
+                $($(#[$member_doc])* $member_vis $member: $member_type),+
+            }
+
+            impl $crate::Shared for $struct {
+                fn wgsl() -> String {
+                    stringify!($struct).into()
+                }
+            }
+
+            impl $crate::SharedStruct for $struct {
+                fn layout() -> $crate::Layout {
+                    $crate::Layout {
+                        name: stringify!($struct),
+                        size: size_of::<Self>(),
+                        members: vec![$($crate::Member {
+                            name: stringify!($member),
+                            wgsl: <$member_type as $crate::Shared>::wgsl(),
+                            offset: std::mem::offset_of!(Self, $member),
+                            size: size_of::<$member_type>(),
+                        }),+],
+                    }
+                }
+            }
+        )*
+
+        $(#[$buffers_doc])*
+        #[derive(Debug)]
+        $buffers_vis struct $buffers {
+            $($(#[$binding_doc])* pub $binding: $crate::wgpu::Buffer),+
+        }
+
+        impl $crate::Buffers for $buffers {
+            fn declaration() -> $crate::Declaration {
+                $crate::Declaration {
+                    constants: vec![$(format!(
+                        "const {}: {} = {};\n",
+                        stringify!($const),
+                        <$const_type as $crate::Shared>::wgsl(),
+                        $crate::SharedConstant::literal($const),
+                    )),*],
+                    structs: vec![$(<$struct as $crate::SharedStruct>::layout()),*],
+                    bindings: vec![$($crate::Binding {
+                        name: stringify!($binding),
+                        wgsl: <$binding_type as $crate::Shared>::wgsl(),
+                        is_uniform: $crate::declare!(@is_uniform $space),
+                    }),+],
+                }
+            }
+
+            fn in_order(&self) -> Vec<&$crate::wgpu::Buffer> {
+                vec![$(&self.$binding),+]
+            }
+        }
+    };
+    (@is_uniform uniform) => { true };
+    (@is_uniform storage) => { false };
+}
