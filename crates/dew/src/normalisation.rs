@@ -41,10 +41,8 @@ fn squares<T: Number>([x, y, z]: [T; 3]) -> [T; 6] {
 pub fn products<T: Number>(offset: [T; 3]) -> [T; 15] {
     let [xx, yy, zz, xy, xz, yz] = squares(offset);
     let [x4, y4, z4, x2y2, x2z2, y2z2] = [xx * xx, yy * yy, zz * zz, xx * yy, xx * zz, yy * zz];
-    let [x, y, z] = [xx, yy, zz].map(
-        #[inline(always)]
-        |square| [square * xy, square * xz, square * yz],
-    );
+    // Closures over lanes would not be inlined here and below.
+    let [x, y, z] = [[xx * xy, xx * xz, xx * yz], [yy * xy, yy * xz, yy * yz], [zz * xy, zz * xz, zz * yz]];
     [x4, y4, z4, x2y2, x2z2, y2z2, x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]]
 }
 
@@ -100,10 +98,7 @@ fn solve<T: Number>(moments: [T; 15], one: T) -> [T; 6] {
     let [x4, y4, z4, x2y2, x2z2, y2z2, x3y, x3z, x2yz, y3x, y2xz, y3z, z2xy, z3x, z3y] = moments;
     let rows = [[x3y, x3z, x2yz], [y3x, y2xz, y3z], [z2xy, z3x, z3y]];
     let others = inverse([x2y2, x2z2, y2z2, x2yz, y2xz, z2xy], one);
-    let [x, y, z] = rows.map(
-        #[inline(always)]
-        |row| times(others, row),
-    );
+    let [x, y, z] = [times(others, rows[0]), times(others, rows[1]), times(others, rows[2])];
     let left = [
         x4 - dot(x, rows[0]),
         y4 - dot(y, rows[1]),
@@ -113,11 +108,9 @@ fn solve<T: Number>(moments: [T; 15], one: T) -> [T; 6] {
         y2z2 - dot(y, rows[2]),
     ];
     let [a, b, c] = times(inverse(left, one), [one; 3]);
-    let others = [0, 1, 2].map(
-        #[inline(always)]
-        |k| -(a * x[k] + b * y[k] + c * z[k]),
-    );
-    [a, b, c, others[0], others[1], others[2]]
+    let other =
+        [-(a * x[0] + b * y[0] + c * z[0]), -(a * x[1] + b * y[1] + c * z[1]), -(a * x[2] + b * y[2] + c * z[2])];
+    [a, b, c, other[0], other[1], other[2]]
 }
 
 /// Whether a symmetric tensor is positive definite, by its leading minors (Sylvester's criterion). Not where a number is none.
@@ -153,9 +146,26 @@ pub fn tensor(moments: &Moments) -> Tensor {
 /// The same of several particles at once.
 #[inline(always)]
 pub fn tensors<S: Simd>(simd: S, moments: [&Moments; LANES]) -> [Tensor; LANES] {
-    let of_each = std::array::from_fn(|k| Lanes::from_fn(simd, |lane| moments[lane][k]));
-    let solution: [[f64; LANES]; 6] = solve(of_each, Lanes::splat(simd, 1.0)).map(Into::into);
-    std::array::from_fn(|lane| accepted(std::array::from_fn(|k| solution[k][lane]), moments[lane]))
+    let mut of_each = [Lanes::splat(simd, 0.0); 15];
+    for (k, of_each) in of_each.iter_mut().enumerate() {
+        let mut lanes = [0.0; LANES];
+        for (lane, moments) in lanes.iter_mut().zip(moments) {
+            *lane = moments[k];
+        }
+        *of_each = Lanes::from_slice(simd, &lanes);
+    }
+    let solution = solve(of_each, Lanes::splat(simd, 1.0));
+    let mut tensors = [Tensor::default(); LANES];
+    for (k, lanes) in solution.into_iter().enumerate() {
+        let lanes: [f64; LANES] = lanes.into();
+        for (tensor, value) in tensors.iter_mut().zip(lanes) {
+            tensor[k] = value;
+        }
+    }
+    for (tensor, moments) in tensors.iter_mut().zip(moments) {
+        *tensor = accepted(*tensor, moments);
+    }
+    tensors
 }
 
 #[cfg(test)]

@@ -63,15 +63,37 @@ impl PairSum<Sums> for Filling<'_> {
         let mut moments = [Lanes::splat(simd, 0.0); 15];
         for (r_squared, index) in found.lanes(simd).zip(found.index.chunks_exact(LANES)) {
             filling += kernels.poly6_shape(r_squared);
-            let offset = [x, y, z].map(|along| Lanes::from_fn(simd, |lane| along[index[lane] as usize]) - along[place]);
+            let index: &[u32; LANES] = index.try_into().expect("chunks are of so many");
+            let offset = [
+                gathered(simd, x, index) - x[place],
+                gathered(simd, y, index) - y[place],
+                gathered(simd, z, index) - z[place],
+            ];
             let weight = kernels.inside(r_squared.sqrt()) / r_squared;
             let products = normalisation::products(offset);
-            moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
+            // Closures over lanes would not be inlined here.
+            for (sum, product) in moments.iter_mut().zip(products) {
+                *sum += weight * product;
+            }
         }
         let of_moments = 0.5 * volume * kernels.spiky_factor() / of_lattice;
-        Sums {
+        let mut sums = Sums {
             filling: to_density * volume * (filling.sum() * kernels.poly6_factor() + kernels.poly6(0.0)),
-            moments: moments.map(|sum| of_moments * sum.sum()),
+            moments: Moments::default(),
+        };
+        for (moment, lanes) in sums.moments.iter_mut().zip(moments) {
+            *moment = of_moments * lanes.sum();
         }
+        sums
     }
+}
+
+/// Numbers by their index, one a lane.
+#[inline(always)]
+fn gathered<S: Simd>(simd: S, numbers: &[f64], index: &[u32; LANES]) -> Lanes<S> {
+    let mut lanes = [0.0; LANES];
+    for (lane, &index) in lanes.iter_mut().zip(index) {
+        *lane = numbers[index as usize];
+    }
+    Lanes::from_slice(simd, &lanes)
 }
