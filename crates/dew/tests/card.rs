@@ -117,6 +117,7 @@ fn all_faces() -> [(&'static str, [[Face; 2]; 3]); 3] {
 
 /// Goes one step and nine more with both, and compares every parcel and every particle of the solids.
 fn assert_as_on_the_processor(name: &str, [mut host, mut card]: [Dew; 2]) {
+    let start = host.temperatures().to_vec();
     for (steps, most) in [(1, ONE), (9, TEN)] {
         step(&mut host, steps);
         step(&mut card, steps);
@@ -124,7 +125,11 @@ fn assert_as_on_the_processor(name: &str, [mut host, mut card]: [Dew; 2]) {
         assert!((0..7).all(|k| apart[k] < most[k]), "{name} after {} steps: {apart:?}", host.steps());
         assert!((card.time_step() / host.time_step() - 1.0).abs() < 1e-5);
         let solids = differences_of_solids(&host, &card);
-        let most = [if steps == 1 { 1e-7 } else { 1e-6 }, 5e-5];
+        // Single precision keeps a few roundings of 6e-8 of what has changed: with the mean of diffusivities, which does not conserve heat, the
+        // ball warms by half a kelvin in a step.
+        let changed = start.iter().zip(host.temperatures()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let rounding = 3e-7 * changed;
+        let most = [rounding.max(if steps == 1 { 1e-7 } else { 1e-6 }), 5e-5];
         assert!((0..2).all(|k| solids[k] < most[k]), "{name} after {} steps: {solids:?}", host.steps());
     }
 }
