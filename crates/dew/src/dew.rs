@@ -1,5 +1,6 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
+mod accelerated;
 mod by_hand;
 mod motion;
 #[cfg(feature = "gpu")]
@@ -111,6 +112,9 @@ pub(crate) struct State {
     pub energy: Account,
     /// What a hand can change, once one has changed it.
     pub hand: Option<Hand>,
+    /// What all air of a closed room is still to gain for accelerated time: temperature, K, and vapour, part of the mass.
+    #[serde(default)]
+    pub drift: [f64; 2],
 }
 
 /// Zero of the energy's temperature, K.
@@ -147,7 +151,7 @@ impl Dew {
         }
         let scale = Scale::new(settings.spacing);
         let solids = Solids::new(bodies, room, &scale, settings.threshold);
-        let conduction = Conduction::new(&solids, room, &scale, settings.mean, settings.faster);
+        let conduction = Conduction::new(&solids, room, &scale, settings.mean);
         let conductances = (0..solids.particles.len()).map(|i| conduction.sum(i)).collect();
         let sites = solids.sites(room, scale.h(), |particle| particle.near_surface);
         let volume = |site: &crate::solids::Site| solids.particles[site.particle as usize].volume;
@@ -174,6 +178,7 @@ impl Dew {
             water: Account::default(),
             energy: Account::default(),
             hand: None,
+            drift: [0.0; 2],
         };
         let mut dew = Self {
             latent_heat: humid_air::latent_heat(settings.ambient_temperature),
@@ -230,8 +235,9 @@ impl Dew {
         self.cross_faces(step);
         self.tend_utility();
         self.evaluate(0.5 * step);
+        let drift = std::mem::take(&mut self.state.drift);
         self.exchange(step);
-        let extremes = self.kick(step);
+        let extremes = self.kick(step, drift);
         self.saturate(step);
         self.state.time += step;
         self.state.steps += 1;
@@ -310,7 +316,7 @@ impl Dew {
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
         let on_solids = self.water_on_all();
-        in_air.chain([on_solids]).collect::<ExactSum>().value()
+        in_air.chain([on_solids, self.owed()[0]]).collect::<ExactSum>().value()
     }
 
     /// Water on the solids, kg.
@@ -330,7 +336,12 @@ impl Dew {
     pub(crate) fn energy(&self) -> f64 {
         let free = (0..self.solids.particles.len()).filter(|&i| !self.solids.is_held(i));
         let solids = free.map(|i| self.solids.heat_capacity(i) * (self.state.temperatures[i] - COLD));
-        self.inside().map(|particle| self.energy_of(particle)).chain(solids).collect::<ExactSum>().value()
+        self.inside()
+            .map(|particle| self.energy_of(particle))
+            .chain(solids)
+            .chain([self.owed()[1]])
+            .collect::<ExactSum>()
+            .value()
     }
 
     /// Gives the air in the room velocities, m/s, by place.

@@ -102,7 +102,7 @@ impl Exchange<'_> {
         let volume = self.contact.volumes[site];
         let factor = normalisation::factor(&air.tensor, self.contact.offset(site, air.position));
         let weight = volume * self.scale.kernels.viscosity_laplacian(r) * factor / self.scale.moment;
-        let of_pair = self.settings.faster * self.scale.volume * weight;
+        let of_pair = self.scale.volume * weight;
         let (of_air, of_solid) = (self.air.conductor(), self.solids.material(particle).conductor());
         let mean = self.settings.mean;
         let conductance =
@@ -124,7 +124,7 @@ impl Exchange<'_> {
         Flux { conductance, difference, water, to_solid }
     }
 
-    /// What every site gets in a step of `step` s, into `given`. Images of sites get nothing.
+    /// What every site gets where the water on it changes for `step` s, into `given`. Images of sites get nothing.
     pub fn to_solids(&self, step: f64, given: &mut Vec<ToSolid>) {
         let sites = self.contact.sites.par_iter().enumerate();
         let of = |(number, site): (usize, &Site)| {

@@ -51,6 +51,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     dew.buoyant = scene.buoyancy;
     dew.shows = scene.output.clone();
     dew.warnings = warnings(scene, &bodies);
+    dew.warnings.extend(dew.lags());
     let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();
     dew.lay_drops(laws(scene), Arc::from(solids), seed);
     Ok(dew)
@@ -191,7 +192,7 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
         condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
         gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
         low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
-        faster: scene.time_factor,
+        time_factor: scene.time_factor,
         threshold: scene.boundary.colour_threshold,
         ..Settings::new(scene.spacing_m, start.temperature, start.mass_fraction())
     }
@@ -289,8 +290,8 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
     }
     if scene.time_factor != 1.0 {
         warnings.push(format!(
-            "time_factor: heat, vapour and phase change go {0} times faster than in reality, while air and drops move at their own \
-             pace: flows of heat and rates of condensation are {0} times those in reality",
+            "time_factor: temperatures of solids that are free and the water on all of them change {0} times faster than in reality; the air, its \
+             flows of heat and vapour, and drops that slide do not. A second of the run is {0} s for the solids",
             scene.time_factor
         ));
     }

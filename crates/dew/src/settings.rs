@@ -104,8 +104,9 @@ pub struct Settings {
     pub ambient_vapour: f64,
     /// Acceleration of all air, m/s2.
     pub body_acceleration: [f64; 3],
-    /// Factor on all transport of heat and vapour: accelerated time.
-    pub faster: f64,
+    /// How many times faster than in reality the slow processes go: the temperatures of the solids and the water on them. See
+    /// `dew/accelerated.rs`.
+    pub time_factor: f64,
     /// Air that no longer matters; none: all air matters.
     pub low_utility: Option<LowUtility>,
     /// Time step over the time in which sound crosses a smoothing length.
@@ -130,7 +131,7 @@ impl Settings {
             ambient_temperature,
             ambient_vapour,
             body_acceleration: [0.0; 3],
-            faster: 1.0,
+            time_factor: 1.0,
             low_utility: None,
             cfl: 0.25,
             threshold: crate::solids::THRESHOLD,

@@ -29,7 +29,7 @@ pub struct Dew {
     /// Whether air rises and sinks by its warmth and vapour; drops feel gravity in any case.
     #[serde(default = "yes")]
     pub buoyancy: bool,
-    /// Heat, vapour and phase change go this many times faster than in reality, at least 1.
+    /// Temperatures of solids and water on them change this many times faster than in reality, at least 1.
     #[serde(default = "one")]
     pub time_factor: f64,
     /// The air at the start.

@@ -81,7 +81,7 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
             "Faster than reality",
             "",
             [1.0, 50.0],
-            "Heat, vapour and phase change go so many times faster",
+            "Solids warm and gather water so many times faster",
         )
         .live("dew.time_factor", go_faster)
         .add("dew.scheme", "Scheme", "", "Which laws of transport hold", Control::Choice(SCHEMES))

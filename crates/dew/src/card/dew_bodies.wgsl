@@ -7,11 +7,11 @@
 @group(0) @binding(3) var<storage, read> status: Status;
 @group(0) @binding(4) var<storage, read> rows: array<Row>;
 
-// Heat through the surface, heat it was held against, how stiff.
-var<workgroup> sums: array<vec3f, 256>;
+// Heat through the surface, heat it was held against, water, how stiff.
+var<workgroup> sums: array<vec4f, 256>;
 
-fn joined(a: vec3f, b: vec3f) -> vec3f {
-    return vec3f(a.xy + b.xy, max(a.z, b.z));
+fn joined(a: vec4f, b: vec4f) -> vec4f {
+    return vec4f(a.xyz + b.xyz, max(a.w, b.w));
 }
 
 // From one time to another, s.
@@ -49,9 +49,9 @@ fn hold(body: Body, thread: u32) {
 
 @compute @workgroup_size(256)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
-    var own = vec3f(0.0);
+    var own = vec4f(0.0);
     for (var i = bodies[group.x].first + thread; i < bodies[group.x].end; i += 256u) {
-        own = joined(own, vec3f(solids[i].flow, solids[i].held, solids[i].stiff));
+        own = joined(own, vec4f(solids[i].flow, solids[i].held, solids[i].water, solids[i].stiff));
     }
     sums[thread] = own;
     hold(bodies[group.x], thread);
@@ -65,6 +65,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     if thread == 0u {
         bodies[group.x].flow = sums[0].x;
         bodies[group.x].held = add(bodies[group.x].held, sums[0].y);
-        bodies[group.x].stiff = sums[0].z;
+        bodies[group.x].water = sums[0].z;
+        bodies[group.x].stiff = sums[0].w;
     }
 }

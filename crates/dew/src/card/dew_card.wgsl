@@ -92,7 +92,10 @@ struct Parameters {
     low_beyond: f32,
     useless_beyond: f32,
     low_after: f32,
-    spare: vec2f,
+    // How many times faster than in reality solids and water on them change.
+    time_factor: f32,
+    // What the ambient air lacks to be saturated, part of the mass.
+    lacking: f32,
     // By low and high x, y, z.
     inlets: array<Inlet, 6>,
 }
@@ -110,6 +113,8 @@ const REFUSES_FAST = 16u;
 const RELATIVE = 32u;
 // Air of low utility is looked for.
 const TENDS = 64u;
+// No air comes or goes.
+const IS_CLOSED = 128u;
 
 // Faces.
 const WALL = 0u;
@@ -272,7 +277,8 @@ struct Status {
     seen: Account,
     turn: u32,
     spare: u32,
-    more_spare: vec2u,
+    // What all air of a closed room gains in the next step for accelerated time: temperature, K, and vapour, part of the mass.
+    drift: vec2f,
     // How long the steps were, s.
     lengths: array<f32, 64>,
 }

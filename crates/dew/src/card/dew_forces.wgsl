@@ -215,8 +215,8 @@ fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial
         (*particle).acceleration = rates.acceleration + driving(*particle);
         (*particle).velocity += 0.5 * step * (*particle).acceleration;
         (*particle).spreading = parameters.spreading * rates.spread;
-        (*particle).temperature = add((*particle).temperature, step * (rates.warming + given.warming));
-        (*particle).vapour = add((*particle).vapour, step * (rates.moistening + given.moistening));
+        (*particle).temperature = add((*particle).temperature, step * (rates.warming + given.warming) + status.drift.x);
+        (*particle).vapour = add((*particle).vapour, step * (rates.moistening + given.moistening) + status.drift.y);
     }
     let speed = dot((*particle).velocity, (*particle).velocity);
     let acceleration = dot((*particle).acceleration, (*particle).acceleration);

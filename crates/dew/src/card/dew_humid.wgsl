@@ -2,24 +2,36 @@
 #import dew_solids
 
 // The constants of `humid_air.rs` (Bolton 1980, equation 10), and molar mass of water over that of dry air.
-const AT_ZERO = 611.2;
 const B = 17.67;
 const C = 243.5;
 const MASS_RATIO = 0.6219453152;
 
-// Pressure of saturated vapour, Pa, at a temperature from the ambient air's.
+// exp(x) - 1 without losing the digits of what is small: the series for a sixteenth of x, then four times (1 + e)^2 - 1.
+fn exp_less_one(x: f32) -> f32 {
+    let y = x / 16.0;
+    var e = y * (1.0 + y / 2.0 * (1.0 + y / 3.0 * (1.0 + y / 4.0 * (1.0 + y / 5.0 * (1.0 + y / 6.0)))));
+    for (var k = 0u; k < 4u; k++) {
+        e *= 2.0 + e;
+    }
+    return e;
+}
+
+// Pressure of saturated vapour less that at the ambient temperature, Pa, at a temperature from the ambient air's: Bolton's formula over its value there.
 fn saturation_pressure(temperature: f32) -> f32 {
-    let celsius = parameters.celsius + temperature;
-    return AT_ZERO * exp(B * celsius / (C + celsius));
+    let ambient = C + parameters.celsius;
+    return parameters.saturated * exp_less_one(B * C * temperature / (ambient * (ambient + temperature)));
 }
 
 // Part of the mass that is vapour in saturated air, less that of the ambient air, and its slope over temperature, 1/K.
 fn saturation(temperature: f32) -> vec2f {
-    let pressure = saturation_pressure(temperature);
+    let higher = saturation_pressure(temperature);
+    let pressure = parameters.saturated + higher;
     let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
+    let at_ambient = parameters.air_pressure - (1.0 - MASS_RATIO) * parameters.saturated;
     let above = C + parameters.celsius + temperature;
     let slope = MASS_RATIO * parameters.air_pressure / (rest * rest) * pressure * B * C / (above * above);
-    return vec2f(MASS_RATIO * pressure / rest - parameters.ambient_vapour, slope);
+    let more = MASS_RATIO * parameters.air_pressure * higher / (rest * at_ambient);
+    return vec2f(more + parameters.lacking, slope);
 }
 
 struct Flux {

@@ -42,6 +42,8 @@ struct Solid {
     flow: f32,
     held: f32,
     stiff: f32,
+    // Water that the air gave, kg.
+    water: f32,
 }
 
 // What air sees of a solid's particle in a step, and what it gets.
@@ -67,6 +69,9 @@ struct Body {
     held: Account,
     first_row: u32,
     end_row: u32,
+    // kg.
+    water: f32,
+    unused: f32,
 }
 
 // A temperature at which a solid is held, K from the ambient air's, and when, s since the state was sent.

@@ -15,7 +15,7 @@
 
 // Heat by difference of temperature, W, condensation and evaporation, kg/s, and the sum of conductances, W/K.
 fn from_air(site: Site, surface: Surface) -> vec4f {
-    var sums = vec4f(0.0);
+    var sums = Account4(vec4f(0.0), vec4f(0.0));
     let mirrors = mirrors_round(site.place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, site.place);
@@ -36,12 +36,12 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
                     let air = unpacked_column(columns[j]);
                     let flux = flux(site, surface, air, mirror.sign * away, q);
                     let heat = flux.to_solid * flux.difference;
-                    sums += vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid);
+                    sums = add4(sums, vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid));
                 }
             }
         }
     }
-    return sums;
+    return sums.sum - sums.lacking;
 }
 
 @compute @workgroup_size(256)
@@ -56,8 +56,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var surface = Surface(value(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     if (site.flags & NEAR_SURFACE) != 0u {
         let sums = from_air(site, surface);
-        if sums.z * status.step > water {
-            surface.share = water / (sums.z * status.step);
+        let step = parameters.time_factor * status.step;
+        if sums.z * step > water {
+            surface.share = water / (sums.z * step);
         }
         surface.gain = sums.y - surface.share * sums.z;
         surface.heat = sums.x + site.part * parameters.latent_heat * surface.gain;

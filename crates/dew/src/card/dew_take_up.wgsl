@@ -53,16 +53,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         laid = deposited(site);
     }
     let step = status.step;
+    let factor = parameters.time_factor;
     let released = site.part * parameters.latent_heat * laid;
     let heat = step * surface.all_heat + released;
     let is_held = (site.flags & HELD) != 0u;
     if !is_held {
-        solid.temperature = add(solid.temperature, heat / site.capacity);
+        solid.temperature = add(solid.temperature, factor * heat / site.capacity);
     }
     // What rounding leaves of the last of the water is nothing.
-    waters[i].gained = add(add(waters[i].gained, max(step * surface.gain, -surface.water)), laid);
+    waters[i].gained = add(add(waters[i].gained, max(factor * step * surface.gain, -surface.water)), factor * laid);
     solid.flow = surface.heat + released / step;
-    solid.held = select(0.0, -heat, is_held);
-    solid.stiff = select(surface.conductance / site.capacity, 0.0, is_held);
+    solid.held = select(0.0, -factor * heat, is_held);
+    solid.stiff = select(factor * surface.conductance / site.capacity, 0.0, is_held);
+    solid.water = step * surface.gain + laid;
     solids[i] = solid;
 }

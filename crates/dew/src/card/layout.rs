@@ -89,7 +89,8 @@ pub(super) struct Parameters {
     pub low_beyond: f32,
     pub useless_beyond: f32,
     pub low_after: f32,
-    pub spare: [f32; 2],
+    pub time_factor: f32,
+    pub lacking: f32,
     pub inlets: [Inlet; 6],
 }
 
@@ -101,6 +102,7 @@ pub(super) const SATURATES: u32 = 8;
 pub(super) const REFUSES_FAST: u32 = 16;
 pub(super) const RELATIVE: u32 = 32;
 pub(super) const TENDS: u32 = 64;
+pub(super) const IS_CLOSED: u32 = 128;
 
 /// What the faces do.
 pub(super) const WALL: u32 = 0;
@@ -183,6 +185,7 @@ pub(super) struct CardSolid {
     pub flow: f32,
     pub held: f32,
     pub stiff: f32,
+    pub water: f32,
 }
 
 /// A solid.
@@ -196,6 +199,8 @@ pub(super) struct CardBody {
     pub held: Account,
     pub first_row: u32,
     pub end_row: u32,
+    pub water: f32,
+    pub unused: f32,
 }
 
 /// A temperature at which a solid is held, and when.
@@ -279,7 +284,7 @@ pub(super) struct Status {
     pub seen: Account,
     pub turn: u32,
     pub spare: u32,
-    pub more_spare: [u32; 2],
+    pub drift: [f32; 2],
     pub lengths: [f32; MOST_STEPS],
 }
 

@@ -92,6 +92,8 @@ pub(crate) struct Progress {
     pub inlet_phase: [[f64; 2]; 3],
     /// When it was last looked for air of low utility, s.
     pub utility_seen: f64,
+    /// What all air of a closed room gains in the next step: temperature, K, and vapour, part of the mass.
+    pub drift: [f64; 2],
     /// m/s.
     pub fastest: f64,
     /// Whether the next step is too short to go on, or the air faster than sound where that is refused.
@@ -190,6 +192,7 @@ impl Card {
             next_id: state.next_id as u32,
             seen: layout::account(state.utility_seen - state.time),
             turn: (state.steps % u64::from(TURN)) as u32,
+            drift: state.drift.map(|gain| gain as f32),
             phase: std::array::from_fn(|number| layout::account(phases[number])),
             ..Status::zeroed()
         };
@@ -260,6 +263,7 @@ impl Card {
             time: self.status.time,
             seen: self.status.seen,
             turn: (self.status.turn + self.status.steps) % TURN,
+            drift: self.status.drift,
             ..Status::zeroed()
         };
         let began = Instant::now();
@@ -305,6 +309,7 @@ impl Card {
             diffused: self.status.diffused.values(),
             fogged: layout::value(self.status.fogged),
             held_heat,
+            drift: self.status.drift.map(f64::from),
             utility_seen: self.sent_at + layout::value(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
             fastest: f64::from(fastest).sqrt(),

@@ -3,6 +3,7 @@
 use super::layout::{self, CardFan, Inlet, MOST_FANS, Parameters};
 use super::origin::Origin;
 use crate::dew::Dew;
+use crate::exchange::saturation;
 use crate::faces::BEYOND;
 use crate::fan::Fan;
 use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
@@ -75,7 +76,7 @@ impl Parameters {
 
     fn tell_air(&mut self, dew: &Dew) {
         let (air, settings) = (&dew.air, &dew.settings);
-        let diffusivities = [air.heat_diffusivity(), air.vapour_diffusivity].map(|value| settings.faster * value);
+        let diffusivities = [air.heat_diffusivity(), air.vapour_diffusivity];
         let ambient = HumidAir::with_mass_fraction(settings.ambient_temperature, air.pressure, settings.ambient_vapour);
         *self = Self {
             gravity: narrow(settings.gravity),
@@ -88,6 +89,7 @@ impl Parameters {
             mass: dew.particle_mass() as f32,
             heat_capacity: air.heat_capacity as f32,
             latent_heat: dew.latent_heat as f32,
+            time_factor: settings.time_factor as f32,
             heat_diffusivity: diffusivities[0] as f32,
             vapour_diffusivity: diffusivities[1] as f32,
             diffusivity: diffusivities.into_iter().fold(air.viscosity, f64::max) as f32,
@@ -103,6 +105,7 @@ impl Parameters {
             slowest: dew.slowest() as f32,
             saturated: humid_air::saturation_pressure(settings.ambient_temperature) as f32,
             ambient_pressure: ambient.vapour_pressure as f32,
+            lacking: (saturation(settings.ambient_temperature, air) - settings.ambient_vapour) as f32,
             ..*self
         };
     }
@@ -118,7 +121,7 @@ impl Parameters {
             of_pressure: (0.5 * dew.air.density * spread) as f32,
             of_spread: spread as f32,
             of_laplacian: (0.5 * volume * spiky * h / moment) as f32,
-            of_pair: (dew.settings.faster * volume * volume * spiky * h / moment) as f32,
+            of_pair: (volume * volume * spiky * h / moment) as f32,
             ..*self
         };
     }
@@ -161,6 +164,7 @@ fn flags(dew: &Dew) -> u32 {
         (dew.wetting.is_some(), layout::REFUSES_FAST),
         (settings.humidity == Humidity::Relative, layout::RELATIVE),
         (settings.low_utility.is_some(), layout::TENDS),
+        (dew.is_closed(), layout::IS_CLOSED),
     ];
     all.into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag)).sum()
 }

@@ -64,7 +64,7 @@ pub enum ByHand {
         /// Acceleration along it, m/s2.
         acceleration: f64,
     },
-    /// Heat, vapour and phase change go so many times faster than in reality; at least 1.
+    /// Temperatures of solids and water on them change so many times faster than in reality; at least 1.
     TimeFactor(f64),
 }
 
@@ -217,11 +217,9 @@ impl Dew {
     }
 
     fn go_faster(&mut self, factor: f64) {
-        let times = factor / self.settings.faster;
-        self.conduction.speed_up(times);
-        self.conductances.iter_mut().for_each(|conductance| *conductance *= times);
-        self.settings.faster = factor;
-        // Until the next evaluation: diffusion must not overshoot.
+        let times = factor / self.settings.time_factor;
+        self.settings.time_factor = factor;
+        // Until the next evaluation: conduction in solids must not overshoot.
         self.state.time_step /= times.max(1.0);
     }
 
@@ -270,9 +268,6 @@ impl Dew {
         if self.as_set_up.is_none() {
             self.as_set_up = Some(self.as_it_is());
         }
-        let step = self.state.time_step;
-        self.go_faster(hand.settings.faster);
-        self.state.time_step = step;
         (self.room, self.fans, self.settings) = (hand.room, hand.fans, hand.settings);
         self.air.sound_speed = hand.sound_speed;
         self.held_to = hand.held_to.into_iter().map(|rows| rows.map(table_of).transpose()).collect::<Result<_, _>>()?;

@@ -98,11 +98,6 @@ impl Dew {
         arrangement.normalise(sums, tensors);
         fill_columns(arrangement, sums, tensors, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
         rates.resize(state.air.len(), Rates::default());
-        let at_work = Properties {
-            conductivity: settings.faster * air.conductivity,
-            vapour_diffusivity: settings.faster * air.vapour_diffusivity,
-            ..*air
-        };
         let relative = settings.humidity == Humidity::Relative;
         let saturated = humid_air::saturation_pressure(settings.ambient_temperature);
         let parcel =
@@ -112,7 +107,7 @@ impl Dew {
                 column.vapour = parcel(&state.air[entry.particle as usize]).vapour_pressure / saturated;
             }
         }
-        sum_pairs(arrangement, columns, scale, &at_work, rates);
+        sum_pairs(arrangement, columns, scale, air, rates);
         if relative {
             for (rates, particle) in rates.iter_mut().zip(&state.air) {
                 rates.moistening *= saturated * parcel(particle).mass_fraction_slope();
@@ -122,8 +117,8 @@ impl Dew {
         walls.add(rates, push);
     }
 
-    /// The second half of the kick; heat and vapour of the whole step.
-    pub(super) fn kick(&mut self, step: f64) -> Extremes {
+    /// The second half of the kick; heat and vapour of the whole step, and what all air gains for accelerated time.
+    pub(super) fn kick(&mut self, step: f64, drift: [f64; 2]) -> Extremes {
         let Self { settings, state, rates, air, fans, .. } = self;
         let spreading = air.spreading * air.sound_speed * air.sound_speed;
         let kicked = state.air.par_iter_mut().zip(rates).with_min_len(1024).map(|(particle, rates)| {
@@ -145,8 +140,8 @@ impl Dew {
                 particle.velocity[axis] += 0.5 * step * particle.acceleration[axis];
             }
             particle.spreading = rates.spread.map(|along| spreading * along);
-            particle.temperature += step * rates.warming;
-            particle.vapour += step * rates.moistening;
+            particle.temperature += step * rates.warming + drift[0];
+            particle.vapour += step * rates.moistening + drift[1];
             Extremes::of(particle, rates)
         });
         kicked.reduce(Extremes::default, Extremes::or)
@@ -160,7 +155,7 @@ impl Dew {
     /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
         let Properties { sound_speed, viscosity, vapour_diffusivity, .. } = self.air;
-        let diffusivity = viscosity.max(self.settings.faster * vapour_diffusivity.max(self.air.heat_diffusivity()));
+        let diffusivity = viscosity.max(vapour_diffusivity).max(self.air.heat_diffusivity());
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
         let stiffest = stiff.iter().copied().fold(diffusivity * extremes.weights, f64::max);
         let by_sound = self.settings.cfl * self.scale.h() / (sound_speed + speed);

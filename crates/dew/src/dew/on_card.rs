@@ -269,6 +269,7 @@ impl Dew {
         state.time_step = progress.step;
         state.next_id = progress.next_id;
         state.inlet_phase = progress.inlet_phase;
+        state.drift = progress.drift;
         if self.settings.low_utility.is_some() {
             state.utility_seen = progress.utility_seen;
         }

@@ -1,5 +1,6 @@
 //! Heat, vapour and water between air and solids in a step.
 
+use super::accelerated::Taken;
 use super::{Dew, State};
 use crate::air::{Particle, Role};
 use crate::exchange::{Exchange, ToAir, Work, excess};
@@ -29,7 +30,8 @@ impl Dew {
         let mut work = std::mem::take(&mut self.work);
         let Work { to_solids, to_air, share_of, heat, stiff, .. } = &mut work;
         let exchange = self.at_surfaces();
-        exchange.to_solids(step, to_solids);
+        let factor = self.settings.time_factor;
+        exchange.to_solids(factor * step, to_solids);
         let particles = self.solids.particles.len();
         share_of.clear();
         share_of.resize(particles, 1.0);
@@ -48,14 +50,17 @@ impl Dew {
         }
         exchange.to_air(share_of, to_air);
         self.state.heat_flow.fill(0.0);
+        let mut taken = Taken::default();
         for (site, given) in real {
+            taken.add(step * given.heat, step * given.water);
             self.state.heat_flow[self.solids.particles[site.particle as usize].body as usize] += given.heat;
             // What rounding leaves of the last of the water is nothing.
             let water = &mut self.state.water_on[site.particle as usize];
-            *water = (*water + step * given.water).max(0.0);
+            *water = (*water + factor * step * given.water).max(0.0);
         }
         for (i, &heat) in heat.iter().enumerate() {
-            of_solids[i] /= self.solids.heat_capacity(i);
+            of_solids[i] *= factor / self.solids.heat_capacity(i);
+            let heat = factor * heat;
             if self.solids.is_held(i) {
                 self.state.held_heat[self.solids.particles[i].body as usize].add(-step * heat);
                 self.state.energy.book(-step * heat);
@@ -64,6 +69,7 @@ impl Dew {
                 self.state.temperatures[i] += step * heat / self.solids.heat_capacity(i);
             }
         }
+        self.accelerate(&taken);
         self.book_open_faces(step, to_air);
         for ((near, given), stiff) in self.contact.near.iter().zip(&*to_air).zip(of_air) {
             let rates = &mut self.rates[near.particle as usize];
@@ -151,17 +157,21 @@ impl Dew {
     /// Water of a parcel, kg, goes onto the boundary particles near it by their shares.
     fn deposit_of(&mut self, particle: usize, water: f64, shares: &[(u32, f64)], step: f64) {
         let mass = self.particle_mass();
+        let factor = self.settings.time_factor;
+        let mut taken = Taken::default();
         let air = &mut self.state.air[particle];
         air.vapour -= water / mass;
         for &(site, share) in shares {
             let site = site as usize;
             let heat = self.latent_heat * water * share;
-            self.state.water_on[site] += water * share;
+            self.state.water_on[site] += factor * water * share;
             // The heat is set free at the surface, from where the better conductor takes the most of it.
             let conductivity = self.solids.material(site).conductivity;
             let to_solid = conductivity / (conductivity + self.air.conductivity);
             air.temperature += (1.0 - to_solid) * heat / (mass * self.air.heat_capacity);
             self.state.heat_flow[self.solids.particles[site].body as usize] += to_solid * heat / step;
+            taken.add(to_solid * heat, water * share);
+            let heat = factor * heat;
             if self.solids.is_held(site) {
                 self.state.held_heat[self.solids.particles[site].body as usize].add(-to_solid * heat);
                 self.state.energy.book(-to_solid * heat);
@@ -169,5 +179,6 @@ impl Dew {
                 self.state.temperatures[site] += to_solid * heat / self.solids.heat_capacity(site);
             }
         }
+        self.accelerate(&taken);
     }
 }

@@ -21,11 +21,11 @@ pub struct Conduction {
 const OPPOSITE: f64 = 0.5;
 
 impl Conduction {
-    /// Finds the pairs. `faster` multiplies all transport.
+    /// Finds the pairs.
     ///
     /// dT_i/dt = (1/(rho_i c_i)) sum_j V_j k_ij (T_j - T_i) lap W_ij (Cleary & Monaghan 1999 with the viscosity kernel's
     /// Laplacian), normalised where the particles stand as they do: see `normalisation.rs`.
-    pub fn new(solids: &Solids, room: &Room, scale: &Scale, mean: Mean, faster: f64) -> Self {
+    pub fn new(solids: &Solids, room: &Room, scale: &Scale, mean: Mean) -> Self {
         let h = scale.h();
         let all = Searched::new(&solids.sites(room, h, |_| true), h);
         let tensors: Vec<Tensor> =
@@ -42,7 +42,7 @@ impl Conduction {
                 let volumes = own.volume * solids.particles[j].volume;
                 let (own, other) = (solids.material(i), solids.material(j));
                 let conductivity = mean.conductivity(own.conductor(), other.conductor());
-                (site.particle, faster * volumes * conductivity * laplacian)
+                (site.particle, volumes * conductivity * laplacian)
             };
             near.map(pair).collect::<Vec<_>>()
         };
@@ -59,11 +59,6 @@ impl Conduction {
             }
         }
         conduction
-    }
-
-    /// All conductances become so many times what they are.
-    pub fn speed_up(&mut self, times: f64) {
-        self.conductance.iter_mut().for_each(|conductance| *conductance *= times);
     }
 
     /// The particles that are near one, and the conductances to them, W/K.
