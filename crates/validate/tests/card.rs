@@ -30,7 +30,7 @@ const FLOODS: [(&str, f64); 21] = [
 ];
 
 /// Of dew those that have a reduced size.
-const DEW: [(&str, f64); 2] = [("dew/two-slabs", 0.05), ("dew/boundaries", 0.1)];
+const DEW: [(&str, f64); 3] = [("dew/two-slabs", 0.05), ("dew/boundaries", 0.1), ("dew/cavity", 0.02)];
 
 /// Of dew those that are small, with as many measures that have bounds.
 const SMALL_DEW: [(&str, usize); 5] =

@@ -3,6 +3,7 @@
 mod adiabatic;
 pub(crate) mod bench;
 mod boundaries;
+mod cavity;
 mod dew_point;
 mod fick;
 mod film;
@@ -26,6 +27,7 @@ pub(crate) const CASES: &[Case] = &[
     fick::FICK,
     film::FILM,
     packings::PACKINGS,
+    cavity::CAVITY,
     adiabatic::ADIABATIC,
     ledger::LEDGER,
     boundaries::BOUNDARIES,
