@@ -24,12 +24,12 @@ size_m = [0.012, 0.012, 0.080]
 spacing_m = 0.002
 time_factor = 40
 buoyancy = false
-air = { temperature_c = 25, relative_humidity = 0.8, velocity_m_per_s = [0, 0, -0.1] }
+air = { temperature_c = 25, relative_humidity = 0.8, velocity_m_per_s = [0, 0, -0.07] }
 drops = { smallest_radius_m = 4e-5, friction = 2e-6 }
 [dew.faces]
 y_min = "periodic"
 y_max = "periodic"
-z_max = { inflow = { velocity_m_per_s = [0, 0, -0.1] } }
+z_max = { inflow = { velocity_m_per_s = [0, 0, -0.07] } }
 z_min = "outflow"
 [[dew.solid]]
 name = "pane"
@@ -44,8 +44,13 @@ pub(super) const LOW_UTILITY: &str = "low_utility = { distance = 2.0, after_s = 
 
 /// The model of a scene.
 pub(super) fn dew_of(text: &str) -> Result<Dew, ModelError> {
+    dew_by_chance(text, 1)
+}
+
+/// The same with another seed of everything random.
+pub(super) fn dew_by_chance(text: &str, seed: u64) -> Result<Dew, ModelError> {
     let scene = Scene::parse(text, "case", &[]).map_err(|error| ModelError::Setup(error.to_string()))?;
-    ready(open(scene.dew().ok_or_else(|| ModelError::Setup("no scene of dew".into()))?, 1, Path::new(""))?)
+    ready(open(scene.dew().ok_or_else(|| ModelError::Setup("no scene of dew".into()))?, seed, Path::new(""))?)
 }
 
 /// A gauge by its header.
