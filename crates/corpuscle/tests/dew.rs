@@ -13,7 +13,14 @@ fn scene() -> Scene {
     let page = fs::read_to_string(page).unwrap();
     let text = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let set = |key: &str, value: &str| (key.to_owned(), value.to_owned());
-    Scene::parse(text, "first-dew.md", &[set("run.until_s", "0.02"), set("run.frame_every_s", "0.01")]).unwrap()
+    // Drops so small are seen at once.
+    let changes = [
+        set("run.until_s", "0.02"),
+        set("run.frame_every_s", "0.01"),
+        set("dew.drops.smallest_radius_m", "5e-6"),
+        set("dew.drops.sites_per_m2", "1e8"),
+    ];
+    Scene::parse(text, "first-dew.md", &changes).unwrap()
 }
 
 #[test]

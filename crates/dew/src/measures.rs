@@ -54,6 +54,8 @@ impl Dew {
                     column(name, "water_per_area", "kg_per_m2"),
                     column(name, "covered_part", ""),
                     column(name, "drops", ""),
+                    column(name, "drop_radius", "m"),
+                    column(name, "polydispersity", ""),
                     column(name, "first_drop_at", "s"),
                     column(name, "clear_at", "s"),
                     column(name, "time_to_clear", "s"),
@@ -87,7 +89,7 @@ impl Dew {
         let mass = self.particle_mass();
         let particles = self.solids().particles.iter().zip(&self.state.water_on);
         let wet = || particles.filter(|(_, water)| **water > 0.0).map(|(particle, _)| particle.area).sum();
-        let drops = self.wetting.as_ref().map(|wetting| wetting.drops());
+        let stories = self.wetting.as_ref().map(|wetting| wetting.stories());
         let mut row = vec![
             mass * air.vapour,
             mass * air.fog,
@@ -95,7 +97,7 @@ impl Dew {
             air.count,
             air.temperature / air.count,
             air.fastest,
-            drops.map_or_else(wet, Drops::covered_area),
+            stories.map_or_else(wet, |stories| stories.iter().map(|story| story.covered).sum()),
             self.state.held_heat.iter().map(ExactSum::value).sum(),
         ];
         row.extend(self.measured_drops());
@@ -125,7 +127,9 @@ impl Dew {
         let mut row = vec![water, temperature, self.heat_from(body), self.state.heat_flow[body]];
         if let Some(wetting) = &self.wetting {
             let (story, area) = (wetting.stories()[body], wetting.open_area(body));
+            let or_none = |value: f64| if story.drops > 0 { value } else { f64::NAN };
             row.extend([water / area, story.covered / area, story.drops as f64]);
+            row.extend([or_none(story.mean_radius), or_none(story.polydispersity)]);
             row.extend([story.first, story.clear, story.time_to_clear()].map(|time| time.unwrap_or(f64::NAN)));
         }
         if let Some(layer) = &self.layers[body] {

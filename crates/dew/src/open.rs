@@ -3,7 +3,7 @@
 use crate::air::Properties;
 use crate::bodies;
 use crate::dew::{Dew, Setup};
-use crate::drops::{DropLaws, WATER_DENSITY};
+use crate::drops::{DropLaws, MOST_SITES, WATER_DENSITY, most_per_area, smallest_reach};
 use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
@@ -53,7 +53,8 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     dew.warnings = warnings(scene, &bodies);
     dew.warnings.extend(dew.lags());
     let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();
-    dew.lay_drops(laws(scene), Arc::from(solids), seed);
+    let laws = laws(scene, &solids)?;
+    dew.lay_drops(laws, Arc::from(solids), sites_per_area(scene), seed);
     Ok(dew)
 }
 
@@ -259,14 +260,51 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
     }
 }
 
-fn laws(scene: &written::Dew) -> DropLaws {
+/// Density of nucleation sites on each solid, 1/m2.
+fn sites_per_area(scene: &written::Dew) -> Vec<f64> {
+    scene.solid.iter().map(|solid| solid.sites_per_m2.unwrap_or(scene.drops.sites_per_m2)).collect()
+}
+
+/// Radius of the smallest drops where the scene does not say and there is room for as many, m.
+const SMALLEST: f64 = 1e-5;
+
+/// Sites that a scene has at most where it does not say how small the smallest drops are.
+const SITES: f64 = 2e5;
+
+fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> {
+    let with = |smallest_radius: f64| DropLaws { smallest_radius, ..laws_but_smallest(scene) };
+    // Sites at most, of drops so large.
+    let sites = |radius: f64| -> f64 {
+        let most = most_per_area(smallest_reach(&with(radius)));
+        solids.iter().zip(sites_per_area(scene)).map(|(solid, wanted)| solid.area() * wanted.min(most)).sum()
+    };
+    // They fall at most as one over the radius squared.
+    let large_enough = |most: f64| {
+        let mut radius = SMALLEST;
+        while sites(radius) > most {
+            radius *= 1.1;
+        }
+        radius
+    };
+    match scene.drops.smallest_radius_m {
+        None => Ok(with(large_enough(SITES))),
+        Some(radius) if sites(radius) <= MOST_SITES => Ok(with(radius)),
+        Some(radius) => Err(ModelError::Setup(format!(
+            "dew.drops.smallest_radius_m = {radius}: drops could begin at {:.1e} places of the solids, more than the {MOST_SITES:.0e} that can be followed;              give {:.1e} or more, or fewer dew.drops.sites_per_m2",
+            sites(radius),
+            large_enough(MOST_SITES)
+        ))),
+    }
+}
+
+fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
     DropLaws {
         contact_angle: scene.drops.contact_angle_deg.to_radians(),
         friction: scene.drops.friction,
         pressure: scene.air.pressure_pa,
         surface_tension: scene.drops.surface_tension_n_per_m,
         gravity: scene.gravity_m_per_s2,
-        smallest_radius: scene.drops.smallest_radius_m,
+        smallest_radius: SMALLEST,
         density: WATER_DENSITY,
     }
 }

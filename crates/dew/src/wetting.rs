@@ -4,7 +4,7 @@
 //! condenses into them, what went evaporates from them, they move, and each boundary particle has what then lies on it.
 
 use crate::dew::Dew;
-use crate::drops::{DropLaws, DropState, Drops, Portion, Share, Site};
+use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces};
 use crate::fogging::{Fogging, Story, open_area};
 use corpuscle_model::{Column, ExactSum, ParticleSet, SolidShape, Surface, Values};
 use corpuscle_solids::Solid;
@@ -20,9 +20,9 @@ const DROPS_TOGETHER: usize = 2;
 /// Drops, and where the boundary particles have their water from.
 pub(crate) struct Wetting {
     drops: Drops,
-    /// The boundary particle of each site.
+    /// The boundary particle of each patch.
     particles: Vec<u32>,
-    /// What each site had of the drops when they last moved.
+    /// What each patch had of the drops when they last moved.
     shares: Vec<Share>,
     portions: Vec<Portion>,
     /// When they last moved, s, and in which step.
@@ -48,7 +48,7 @@ impl Wetting {
         let solids = drops.solids().len();
         let mut wetting = Self {
             fogging: Fogging::new(particles.len(), solids),
-            open_areas: (0..solids).map(|solid| open_area(drops.sites(), solid)).collect(),
+            open_areas: (0..solids).map(|solid| open_area(drops.patches(), solid)).collect(),
             drops,
             particles,
             shares: Vec::new(),
@@ -105,14 +105,13 @@ impl Wetting {
     /// The drops take over what condensed on and evaporated from the boundary particles, and move up to `time`. Gives the water
     /// that left the solids as drops, kg.
     fn take_over(&mut self, water_on: &mut [f64], time: f64) -> f64 {
-        let sites = || self.particles.iter().zip(&self.shares);
-        let gained: Vec<f64> = sites().map(|(&particle, share)| water_on[particle as usize] - share.water).collect();
-        self.drops.evaporate_from(&self.portions, &self.shares, &gained);
-        for (site, &mass) in gained.iter().enumerate().filter(|(_, mass)| **mass > 0.0) {
-            self.drops.condense(site, mass);
-        }
-        let before = self.drops.dripped();
+        let patches = || self.particles.iter().zip(&self.shares);
+        let gained: Vec<f64> = patches().map(|(&particle, share)| water_on[particle as usize] - share.water).collect();
+        self.drops.evaporate(&self.portions, &self.shares, &gained);
+        let begun = self.drops.condense(&gained);
         let step = time - self.since;
+        self.fogging.see_begun(&self.drops, &begun, time, step);
+        let before = self.drops.dripped();
         self.drops.advance(step);
         self.since = time;
         self.share();
@@ -135,7 +134,7 @@ impl Wetting {
 
     /// Takes back a state; false where it belongs to other solids.
     pub fn restore(&mut self, state: WettingState) -> bool {
-        let fits = state.drops.film.len() == self.particles.len()
+        let fits = state.drops.unseen.len() == self.drops.sites().len()
             && state.fogging.spots.len() == self.particles.len()
             && state.fogging.stories.len() == self.open_areas.len();
         if !fits {
@@ -149,30 +148,34 @@ impl Wetting {
 
     /// The surface of a solid: where and since when it is wet. `temperatures` are those of the solids' particles, K.
     pub fn surface(&self, solid: usize, name: &str, temperatures: &[f64]) -> Surface {
-        let sites = self.drops.sites();
-        let of_solid: Vec<usize> = (0..sites.len()).filter(|&site| sites[site].solid as usize == solid).collect();
+        let patches = self.drops.patches();
+        let of_solid: Vec<usize> = (0..patches.len()).filter(|&patch| patches[patch].solid as usize == solid).collect();
         let column = |name, unit, of: &dyn Fn(usize) -> f64| Column {
             name,
             unit,
-            values: Values::Scalar(of_solid.iter().map(|&site| of(site)).collect()),
+            values: Values::Scalar(of_solid.iter().map(|&patch| of(patch)).collect()),
         };
-        let area = |site: usize| (2.0 * sites[site].half_width).powi(2);
-        let spot = |site: usize| self.fogging.spots[site];
+        let area = |patch: usize| patches[patch].area();
+        let spot = |patch: usize| self.fogging.spots[patch];
+        let unseen = |patch: usize| self.drops.unseen_on(patch, &self.shares[patch]);
+        let covered = |patch: usize| self.shares[patch].covered / area(patch) + unseen(patch).covered;
         let shape = self.drops.solids()[solid].clone();
         Surface {
             name: name.into(),
-            position: of_solid.iter().map(|&site| sites[site].position).collect(),
-            normal: of_solid.iter().map(|&site| sites[site].normal).collect(),
-            half_width: of_solid.iter().map(|&site| sites[site].half_width).collect(),
+            position: of_solid.iter().map(|&patch| patches[patch].position).collect(),
+            normal: of_solid.iter().map(|&patch| patches[patch].normal).collect(),
+            half_width: of_solid.iter().map(|&patch| patches[patch].half_width).collect(),
             columns: vec![
-                column("water_kg_per_m2", "kg/m2", &|site| self.shares[site].water / area(site)),
+                column("water_kg_per_m2", "kg/m2", &|patch| self.shares[patch].water / area(patch)),
                 // Where a drop ends within a patch the patch may seem more than covered.
-                column("covered_part", "", &|site| (self.shares[site].covered / area(site)).min(1.0)),
-                column("film_kg_per_m2", "kg/m2", &|site| self.drops.films()[site] / area(site)),
-                column("most_water_kg_per_m2", "kg/m2", &|site| spot(site).most_water / area(site)),
-                column("first_drop_at_s", "s", &|site| spot(site).first.unwrap_or(f64::NAN)),
-                column("wet_for_s", "s", &|site| spot(site).wet_for),
-                column("temperature_k", "K", &|site| temperatures[self.particles[site] as usize]),
+                column("covered_part", "", &|patch| covered(patch).min(1.0)),
+                column("unseen_kg_per_m2", "kg/m2", &|patch| self.shares[patch].unseen / area(patch)),
+                column("unseen_covered_part", "", &|patch| unseen(patch).covered),
+                column("unseen_radius_m", "m", &|patch| unseen(patch).radius),
+                column("most_water_kg_per_m2", "kg/m2", &|patch| spot(patch).most_water / area(patch)),
+                column("first_drop_at_s", "s", &|patch| spot(patch).first.unwrap_or(f64::NAN)),
+                column("wet_for_s", "s", &|patch| spot(patch).wet_for),
+                column("temperature_k", "K", &|patch| temperatures[self.particles[patch] as usize]),
             ],
             shape: SolidShape { bounds: shape.bounds(), distance: Arc::new(move |place| shape.signed_distance(place)) },
         }
@@ -217,8 +220,8 @@ fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
 
 impl Dew {
     /// From here on water on the solids forms drops. `solids` are the bodies, in order.
-    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, seed: u64) {
-        let (mut particles, mut sites) = (Vec::new(), Vec::new());
+    pub(crate) fn lay_drops(&mut self, laws: DropLaws, solids: Arc<[Solid]>, sites_per_area: Vec<f64>, seed: u64) {
+        let (mut particles, mut patches) = (Vec::new(), Vec::new());
         for (number, particle) in self.solids.particles.iter().enumerate() {
             let Some(normal) = particle.normal.filter(|_| particle.area > 0.0) else { continue };
             // The surface is looked for from outside: next to a side of the box where the solid goes on, the nearest is the cut.
@@ -226,15 +229,15 @@ impl Dew {
             let nearest = solids[particle.body as usize].nearest(outside);
             let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
             particles.push(number as u32);
-            sites.push(Site {
+            patches.push(Patch {
                 solid: particle.body,
                 position: [0, 1, 2].map(foot),
                 normal: nearest.normal,
                 half_width: 0.5 * area_in_cell(nearest.normal, self.scale.spacing).sqrt(),
             });
         }
-        let drops = Drops::new(laws, solids, sites, [self.room.low, self.room.high], seed);
-        self.wetting = Some(Wetting::new(drops, particles));
+        let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
+        self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
     }
 
     /// Drops take over what condensed, where it is their turn; there are so many parcels of air.

@@ -1,6 +1,6 @@
 //! Drops: nothing of them is lost, what touches is one, and friction holds them up to its bound.
 
-use corpuscle_dew::drops::{Drop, DropLaws, Drops, Site, WATER_DENSITY};
+use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Surfaces, WATER_DENSITY};
 use corpuscle_model::ExactSum;
 use corpuscle_solids::{Pose, Shape, Solid};
 use proptest::prelude::*;
@@ -22,22 +22,28 @@ fn laws() -> DropLaws {
 const ROOM: [[f64; 3]; 2] = [[-1.0; 3], [1.0; 3]];
 
 /// Drops on a pane in the plane x = 0, from y, z = -5 cm to 5 cm, upright.
-fn on_pane(laws: DropLaws, sites: Vec<Site>) -> Drops {
+fn on_pane(laws: DropLaws, patches: Vec<Patch>) -> Drops {
+    with_sites(laws, patches, 1e10, 1)
+}
+
+/// With so many nucleation sites, 1/m2, at random by a seed.
+fn with_sites(laws: DropLaws, patches: Vec<Patch>, sites_per_area: f64, seed: u64) -> Drops {
     let pane = Shape::cuboid([0.01, 0.1, 0.1]).unwrap();
     let solid = Solid::of_shape(pane, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
-    Drops::new(laws, Arc::from([solid]), sites, ROOM, 1)
+    let surfaces = Surfaces { solids: Arc::from([solid]), sites_per_area: vec![sites_per_area], patches, room: ROOM };
+    Drops::new(laws, surfaces, seed)
 }
 
 /// Patches of a pane, so many along each side.
-fn sites(count: u32, side: f64) -> Vec<Site> {
+fn patches(count: u32, side: f64) -> Vec<Patch> {
     let at = |index: u32| side * ((f64::from(index) + 0.5) / f64::from(count) - 0.5);
-    let site = |y: u32, z: u32| Site {
+    let patch = |y: u32, z: u32| Patch {
         solid: 0,
         position: [0.0, at(y), at(z)],
         normal: [1.0, 0.0, 0.0],
         half_width: 0.5 * side / f64::from(count),
     };
-    (0..count).flat_map(|y| (0..count).map(move |z| site(y, z))).collect()
+    (0..count).flat_map(|y| (0..count).map(move |z| patch(y, z))).collect()
 }
 
 /// Mass of a hemisphere.
@@ -130,7 +136,9 @@ fn drops_fall_from_a_ceiling_when_surface_tension_cannot_hold_them() {
 #[test]
 fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
     let ball = Solid::of_shape(Shape::sphere(0.05).unwrap(), Pose::default());
-    let mut drops = Drops::new(DropLaws { friction: 1e-5, ..laws() }, Arc::from([ball.clone()]), Vec::new(), ROOM, 1);
+    let surfaces =
+        Surfaces { solids: Arc::from([ball.clone()]), sites_per_area: vec![1e10], patches: Vec::new(), room: ROOM };
+    let mut drops = Drops::new(DropLaws { friction: 1e-5, ..laws() }, surfaces, 1);
     let mass = half_ball(5e-3);
     drops.add(0, [0.01, 0.0, 0.1], [0.0; 3], mass);
     while let Some(drop) = drops.drops().first() {
@@ -143,15 +151,13 @@ fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
 
 #[test]
 fn what_condenses_is_on_the_pane_or_has_dripped() {
-    let mut drops = on_pane(laws(), sites(40, 0.02));
+    let mut drops = on_pane(laws(), patches(40, 0.02));
     let (mut condensed, count) = (ExactSum::default(), 1600);
+    // Thickness of 10 micrometres on each patch of half a millimetre.
+    let mass = WATER_DENSITY * 1e-5 * 0.25e-6;
     for _ in 0..200 {
-        for site in 0..count {
-            // Thickness of 10 micrometres on each patch of half a millimetre.
-            let mass = WATER_DENSITY * 1e-5 * 0.25e-6;
-            drops.condense(site, mass);
-            condensed.add(mass);
-        }
+        drops.condense(&vec![mass; count]);
+        (0..count).for_each(|_| condensed.add(mass));
         drops.advance(1e-2);
     }
     assert_apart(&drops);
@@ -161,19 +167,83 @@ fn what_condenses_is_on_the_pane_or_has_dripped() {
     assert!(error.abs() < 1e-13, "{error}");
     let mut evaporated = ExactSum::default();
     for _ in 0..200 {
-        (0..count).for_each(|site| evaporated.add(drops.evaporate(site, 2e-8)));
+        let (portions, shares) = (drops.portions(), drops.shares());
+        let gained: Vec<f64> = shares.iter().map(|share| -share.water.min(2e-8)).collect();
+        drops.evaporate(&portions, &shares, &gained);
+        gained.iter().for_each(|&gained| evaporated.add(-gained));
         drops.advance(1e-2);
     }
     let error = (drops.water() + drops.dripped() + evaporated.value()) / condensed - 1.0;
-    assert!(error.abs() < 1e-13, "{error}");
+    assert!(error.abs() < 1e-12, "{error}");
     assert!(drops.water() < 0.01 * condensed, "it dries: {} of {condensed}", drops.water());
 }
 
 #[test]
-fn shares_of_sites_sum_to_all_water_and_lie_where_it_is() {
-    let mut drops = on_pane(laws(), sites(40, 0.02));
+fn sites_do_not_depend_on_patches_and_gather_the_water_of_their_area() {
+    // The same water on patches of 1 mm and of 0.4 mm.
+    let laws = DropLaws { smallest_radius: 2e-4, gravity: [0.0; 3], ..laws() };
+    let of = |count: u32| with_sites(laws, patches(count, 0.02), 1e10, 7);
+    let (coarse, fine) = (of(20), of(50));
+    let positions = |drops: &Drops| -> Vec<[f64; 3]> { drops.sites().iter().map(|site| site.position).collect() };
+    // Beyond the patches the pane goes on: which sites take part there depends on them.
+    let of_inside = |drops: &Drops| -> Vec<[f64; 3]> {
+        let is_inside = |site: &[f64; 3]| site[1].abs() < 9e-3 && site[2].abs() < 9e-3;
+        positions(drops).into_iter().filter(is_inside).collect()
+    };
+    let (one, other) = (of_inside(&coarse), of_inside(&fine));
+    let shared = one.iter().filter(|site| other.contains(site)).count();
+    assert!(one.len() > 1100 && shared as f64 > 0.99 * one.len().max(other.len()) as f64, "{shared} of {}", one.len());
+    for (at, a) in one.iter().enumerate() {
+        for b in &one[..at] {
+            let away2: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
+            assert!(away2.sqrt() >= 4e-4);
+        }
+    }
+    // The same water, evenly, makes the same drops.
+    let grown = |mut drops: Drops, count: u32| {
+        let thickness = 0.5e-6;
+        let mass = WATER_DENSITY * thickness * (0.02 / f64::from(count)).powi(2);
+        let mut first = None;
+        for step in 0..160 {
+            if !drops.condense(&vec![mass; (count * count) as usize]).is_empty() {
+                first = first.or(Some(f64::from(step) * thickness));
+            }
+            drops.advance(1e-2);
+        }
+        let is_inside = |drop: &&Drop| drop.position[1].abs() < 9e-3 && drop.position[2].abs() < 9e-3;
+        let inside = drops.drops().iter().filter(is_inside);
+        let radii: Vec<f64> = inside.map(|drop| drops.covered_radius(drop)).collect();
+        (first.unwrap(), radii.len() as f64, radii.iter().sum::<f64>() / radii.len() as f64)
+    };
+    let (a, b) = (grown(coarse, 20), grown(fine, 50));
+    assert!((a.0 / b.0 - 1.0).abs() < 0.1, "the first drop: {a:?} {b:?}");
+    assert!((a.1 / b.1 - 1.0).abs() < 0.1 && (a.2 / b.2 - 1.0).abs() < 0.05, "number, mean radius: {a:?} {b:?}");
+}
+
+#[test]
+fn a_sliding_drop_takes_up_what_is_not_seen_below_it() {
+    let mut drops = with_sites(DropLaws { smallest_radius: 3e-4, ..laws() }, patches(20, 0.02), 1e10, 1);
+    drops.condense(&[1e-9; 400]);
+    let before = drops.state().unseen;
+    drops.add(0, [0.0, 0.0, 0.008], [0.0; 3], half_ball(3e-3));
+    drops.advance(0.15);
+    let after = drops.state().unseen;
+    let drop = drops.drops()[0];
+    assert!(drop.velocity[2] < 0.0 && drop.position[2] > -0.04);
+    for (site, (before, after)) in drops.sites().iter().zip(before.iter().zip(&after)) {
+        let [_, y, z] = site.position;
+        let is_passed = y.abs() < 2.9e-3 && z < 0.008 && z > drop.position[2];
+        assert!(!is_passed || *after == 0.0, "{site:?}");
+        assert!(y.abs() < 3.2e-3 || after == before, "{site:?}");
+    }
+    assert!(after.iter().any(|unseen| *unseen > 0.0));
+}
+
+#[test]
+fn shares_of_patches_sum_to_all_water_and_lie_where_it_is() {
+    let mut drops = on_pane(laws(), patches(40, 0.02));
     for _ in 0..100 {
-        (0..1600).for_each(|site| drops.condense(site, WATER_DENSITY * 5e-6 * 0.25e-6));
+        drops.condense(&[WATER_DENSITY * 5e-6 * 0.25e-6; 1600]);
         drops.advance(1e-2);
     }
     drops.add(0, [0.0, 0.03, 0.0], [0.0; 3], half_ball(1e-3));
@@ -198,15 +268,15 @@ fn the_two_sides_of_a_pane_do_not_see_each_other() {
 fn saved_and_restored_or_not_the_same_bits() {
     let run = |drops: &mut Drops, steps: u32| {
         for _ in 0..steps {
-            (0..1600).for_each(|site| drops.condense(site, WATER_DENSITY * 5e-6 * 0.25e-6));
+            drops.condense(&[WATER_DENSITY * 5e-6 * 0.25e-6; 1600]);
             drops.advance(1e-2);
         }
     };
-    let mut through = on_pane(laws(), sites(40, 0.02));
+    let mut through = on_pane(laws(), patches(40, 0.02));
     run(&mut through, 80);
-    let mut other = on_pane(laws(), sites(40, 0.02));
+    let mut other = on_pane(laws(), patches(40, 0.02));
     run(&mut other, 40);
-    let mut resumed = on_pane(laws(), sites(40, 0.02));
+    let mut resumed = on_pane(laws(), patches(40, 0.02));
     resumed.restore(other.state());
     run(&mut resumed, 40);
     assert_eq!(through.state(), resumed.state());

@@ -211,14 +211,23 @@ pub struct Drops {
     pub friction: f64,
     /// Surface tension of water, N/m.
     pub surface_tension_n_per_m: f64,
-    /// Radius of the smallest drop, m: below it water is a film of drops too small to be told apart.
-    pub smallest_radius_m: f64,
+    /// Radius of the smallest drop that is followed by itself, m. Left out: 1e-5, or more where there would be too many drops.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smallest_radius_m: Option<f64>,
+    /// Density of nucleation sites, at which drops begin, 1/m2.
+    pub sites_per_m2: f64,
 }
 
 impl Default for Drops {
-    /// Water at 20 °C on clean, not fresh, glass; friction so that a hemisphere on an upright pane slides from 2 mm on.
+    /// Water at 20 °C on clean, not fresh, glass, whose first drops are 10 micrometres apart; friction so that a hemisphere on an upright pane slides from 2 mm on.
     fn default() -> Self {
-        Self { contact_angle_deg: 90.0, friction: 1.3e-4, surface_tension_n_per_m: 0.0728, smallest_radius_m: 1e-5 }
+        Self {
+            contact_angle_deg: 90.0,
+            friction: 1.3e-4,
+            surface_tension_n_per_m: 0.0728,
+            smallest_radius_m: None,
+            sites_per_m2: 1e10,
+        }
     }
 }
 

@@ -95,8 +95,7 @@ fn every_form_reads_and_round_trips_with_its_defaults() {
     assert_eq!(dew.solid[0].material, Material::Named("glass".into()));
     assert!(matches!(&dew.solid[2].shape, Shape::Mesh(mesh) if mesh.unit == Some(LengthUnit::Mm)));
     assert!(scene.flood().is_none() && scene.gas().is_none());
-    for key in ["colour_threshold", "pressure_pa", "smallest_radius_m", "foot_radius_m", "latent_heat", "rotation_deg"]
-    {
+    for key in ["colour_threshold", "pressure_pa", "sites_per_m2", "foot_radius_m", "latent_heat", "rotation_deg"] {
         assert!(written.contains(&format!("{key} = ")), "{key}:\n{written}");
     }
 }

@@ -303,6 +303,7 @@ fn full_dew() -> Scene {
         held: true,
         layers: Some(1),
         treatment: Some(dew::Treatment::VirtualForce),
+        sites_per_m2: Some(1.0),
     };
     let dew = Dew {
         size_m: [1.0; 3],
@@ -328,7 +329,8 @@ fn full_dew() -> Scene {
             contact_angle_deg: 1.0,
             friction: 1.0,
             surface_tension_n_per_m: 1.0,
-            smallest_radius_m: 1.0,
+            smallest_radius_m: Some(1.0),
+            sites_per_m2: 1.0,
         },
         low_utility: Some(LowUtility { distance: 1.0, after_s: 1.0 }),
         output: dew::Output { air: true, solids: true },

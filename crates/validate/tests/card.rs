@@ -34,10 +34,11 @@ const DEW: [(&str, f64); 3] = [("dew/two-slabs", 0.05), ("dew/boundaries", 0.1),
 
 /// Of dew those that are small, with as many measures that have bounds.
 const SMALL_DEW: [(&str, usize); 5] =
-    [("dew/fick", 3), ("dew/film", 2), ("dew/ledger", 7), ("dew/low-utility", 3), ("dew/pane", 4)];
+    [("dew/fick", 3), ("dew/film", 2), ("dew/ledger", 7), ("dew/low-utility", 3), ("dew/pane", 7)];
 
 /// Of dew those in which no air takes a step, and what does.
-const WITHOUT_AIR: [(&str, &str); 2] = [("dew/dew-point", "formula"), ("dew/slide", "drops")];
+const WITHOUT_AIR: [(&str, &str); 3] =
+    [("dew/dew-point", "formula"), ("dew/slide", "drops"), ("dew/breath-figures", "drops")];
 
 /// Below this a bound is of what rounding leaves, of which the card leaves more and has bounds of its own.
 const ROUNDING: f64 = 1e-5;

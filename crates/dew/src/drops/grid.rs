@@ -69,6 +69,10 @@ impl Grid {
             let around = reach + 0.5 * self.side(level);
             let low = self.cell(level, place.map(|x| x - around));
             let high = self.cell(level, place.map(|x| x + around));
+            let cells: f64 = (0..3).map(|axis| (high[axis] - low[axis] + 1) as f64).product();
+            if cells > self.filed.len() as f64 {
+                return (0..self.filed.len()).for_each(found);
+            }
             for z in low[2]..=high[2] {
                 for y in low[1]..=high[1] {
                     for x in low[0]..=high[0] {

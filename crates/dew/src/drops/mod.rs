@@ -1,8 +1,8 @@
 //! Drops on solids: how they grow, merge, stay, slide and leave.
 //!
-//! A drop is a cap of a sphere on the surface of a solid. Water that condenses at a [`Site`] joins the drop that covers a place
-//! of it at random; where none does, it gathers as a film until it makes a drop of the smallest size. Drops that touch become one,
-//! of their mass and momentum. Friction holds a drop up to the force friction x pressure x covered area (patent CN106650064B);
+//! A drop is a cap of a sphere on the surface of a solid. Water that condenses on a [`Patch`] goes to the nucleation [`Site`]s whose areas
+//! are there: to the drop that covers a site, or else to a drop at the site that is seen once it is of the smallest size. Drops that touch
+//! become one, of their mass and momentum. Friction holds a drop up to the force friction x pressure x covered area (patent CN106650064B);
 //! beyond that it slides and sweeps up what it rolls over. One thread does all of it, in a fixed order.
 
 mod cap;
@@ -10,16 +10,19 @@ mod grid;
 mod map;
 mod merge;
 mod motion;
+mod sites;
+mod unseen;
 
 pub use cap::Cap;
 pub use map::{Portion, Share};
+pub use sites::{MOST_SITES, Site, most_per_area};
+pub use unseen::Unseen;
 
 use corpuscle_model::ExactSum;
 use corpuscle_solids::Solid;
 use grid::Grid;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use sites::Sites;
 use std::sync::Arc;
 
 /// What holds for all drops.
@@ -41,18 +44,12 @@ pub struct DropLaws {
     pub density: f64,
 }
 
-/// How often a place of a site is looked for, how far, in its half widths, so that the sites together leave nothing out, and how far
-/// from the surface it can be, where that is curved.
-const TRIES: u32 = 30;
-const WIDER: f64 = 1.7;
-const FARTHEST_OFF: f64 = 0.35;
-
 /// Density of water at 20 °C, kg/m3 (IAPWS-95 at 1 atm).
 pub const WATER_DENSITY: f64 = 998.2;
 
-/// A patch of a solid's surface on which water condenses.
+/// A patch of a solid's surface on which water condenses, that of a boundary particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Site {
+pub struct Patch {
     /// Which solid.
     pub solid: u32,
     /// Middle of the patch, on the surface, m.
@@ -63,7 +60,12 @@ pub struct Site {
     pub half_width: f64,
 }
 
-impl Site {
+impl Patch {
+    /// Its area, m2.
+    pub fn area(&self) -> f64 {
+        (2.0 * self.half_width).powi(2)
+    }
+
     /// How far its corners are, m.
     fn reach(&self) -> f64 {
         self.half_width * 2_f64.sqrt()
@@ -92,8 +94,8 @@ pub struct Drop {
 pub struct DropState {
     /// The drops.
     pub drops: Vec<Drop>,
-    /// Mass of the film at each site, kg.
-    pub film: Vec<f64>,
+    /// Mass of the drop at each site that is not seen yet, kg.
+    pub unseen: Vec<f64>,
     /// Mass that left the solids as drops, kg.
     pub dripped: ExactSum,
     /// Number of drops that left.
@@ -102,9 +104,19 @@ pub struct DropState {
     pub merged: u64,
     /// Drops that there ever were.
     next_id: u64,
-    /// Random numbers used.
-    drawn: u64,
 }
+
+/// A drop that was first seen when water condensed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Begun {
+    /// Its site.
+    pub site: u32,
+    /// When, as a part of the time in which the water came.
+    pub after: f64,
+}
+
+/// Covered by no drop.
+const NONE: u32 = u32::MAX;
 
 /// Drops on the solids of a scene.
 #[derive(Debug, Clone)]
@@ -112,26 +124,61 @@ pub struct Drops {
     laws: DropLaws,
     cap: Cap,
     solids: Arc<[Solid]>,
-    sites: Vec<Site>,
-    /// The sites by place.
-    site_grid: Grid,
+    /// Density of nucleation sites on each solid, 1/m2.
+    per_area: Vec<f64>,
+    patches: Vec<Patch>,
+    /// The patches by place.
+    patch_grid: Grid,
+    sites: Sites,
+    /// The drop that covers each site, or [`NONE`].
+    cover: Vec<u32>,
+    /// Water that each site gains, kg; kept from call to call.
+    gains: Vec<f64>,
     /// Smallest and largest coordinates that a drop can have; beyond it has left.
     room: [[f64; 3]; 2],
-    random: ChaCha8Rng,
     state: DropState,
     grid: Grid,
     /// Reach of each drop when the grid was made, m.
     reach: Vec<f64>,
 }
 
+/// What drops are made for.
+#[derive(Debug, Clone)]
+pub struct Surfaces {
+    /// The solids.
+    pub solids: Arc<[Solid]>,
+    /// Density of nucleation sites on each of them, 1/m2.
+    pub sites_per_area: Vec<f64>,
+    /// The patches on which water condenses.
+    pub patches: Vec<Patch>,
+    /// Smallest and largest coordinates of the scene, m.
+    pub room: [[f64; 3]; 2],
+}
+
 impl Drops {
-    /// No drops yet. `room` is the box of the scene, from its smallest to its largest coordinates.
-    pub fn new(laws: DropLaws, solids: Arc<[Solid]>, sites: Vec<Site>, room: [[f64; 3]; 2], seed: u64) -> Self {
-        let state = DropState { film: vec![0.0; sites.len()], ..DropState::default() };
-        let (cap, random) = (Cap::new(laws.contact_angle), ChaCha8Rng::seed_from_u64(seed));
-        let reach: Vec<f64> = sites.iter().map(Site::reach).collect();
-        let site_grid = Grid::new(sites.iter().map(|site| site.position), &reach);
-        Self { laws, cap, solids, sites, site_grid, room, random, state, grid: Grid::default(), reach: Vec::new() }
+    /// No drops yet. `seed` is that of the positions of nucleation sites.
+    pub fn new(laws: DropLaws, surfaces: Surfaces, seed: u64) -> Self {
+        let Surfaces { solids, sites_per_area: per_area, patches, room } = surfaces;
+        let cap = Cap::new(laws.contact_angle);
+        let widths: Vec<f64> = patches.iter().map(Patch::reach).collect();
+        let patch_grid = Grid::new(patches.iter().map(|patch| patch.position), &widths);
+        let sites = Sites::scatter(&solids, &patches, &per_area, smallest_reach(&laws), room, seed);
+        let count = sites.all.len();
+        Self {
+            laws,
+            cap,
+            solids,
+            per_area,
+            patches,
+            patch_grid,
+            cover: vec![NONE; count],
+            gains: vec![0.0; count],
+            state: DropState { unseen: vec![0.0; count], ..DropState::default() },
+            sites,
+            room,
+            grid: Grid::default(),
+            reach: Vec::new(),
+        }
     }
 
     /// The drops.
@@ -145,13 +192,13 @@ impl Drops {
     }
 
     /// The patches on which water condenses.
-    pub fn sites(&self) -> &[Site] {
-        &self.sites
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
     }
 
-    /// Water of each patch that is in no drop yet, kg: a film of drops too small to be told apart.
-    pub fn films(&self) -> &[f64] {
-        &self.state.film
+    /// The nucleation sites.
+    pub fn sites(&self) -> &[Site] {
+        &self.sites.all
     }
 
     /// Adds a drop of this mass (kg) on a solid, with its middle at the point of the surface nearest to `position`.
@@ -194,10 +241,10 @@ impl Drops {
         self.state.drops.iter().map(|drop| std::f64::consts::PI * self.covered_radius(drop).powi(2)).sum()
     }
 
-    /// Water on the solids now, drops and films, kg.
+    /// Water on the solids now, in drops that are seen or not, kg.
     pub fn water(&self) -> f64 {
         let drops = self.state.drops.iter().map(|drop| drop.mass);
-        drops.chain(self.state.film.iter().copied()).collect::<ExactSum>().value()
+        drops.chain(self.state.unseen.iter().copied()).collect::<ExactSum>().value()
     }
 
     /// Water that left the solids as drops, kg.
@@ -212,99 +259,44 @@ impl Drops {
 
     /// What changes, between two calls of [`Drops::advance`] and before anything condenses or evaporates.
     pub fn state(&self) -> DropState {
-        DropState { drawn: self.random.get_word_pos() as u64, ..self.state.clone() }
+        self.state.clone()
     }
 
     /// Takes back what [`Drops::state`] gave.
     pub fn restore(&mut self, state: DropState) {
-        self.random.set_word_pos(u128::from(state.drawn));
         self.state = state;
         self.file();
+        self.find_covered();
     }
 
-    /// Water (kg) condenses at a site: it joins the drop that covers a place of it, or gathers as a film there.
-    pub fn condense(&mut self, site: usize, mass: f64) {
-        let place = self.place_in(site);
-        if let Some(drop) = self.drop_over(site, place) {
-            self.state.drops[drop].mass += mass + std::mem::take(&mut self.state.film[site]);
-            return;
+    /// Water condenses where `gained` (kg, one for each patch) is above 0: each site gathers that of its area, for the drop that covers it or
+    /// for one of its own. Tells the drops that are seen from now on.
+    pub fn condense(&mut self, gained: &[f64]) -> Vec<Begun> {
+        self.gains.fill(0.0);
+        for piece in &self.sites.pieces {
+            self.gains[piece.site as usize] += piece.of_patch * gained[piece.patch as usize].max(0.0);
         }
-        self.state.film[site] += mass;
-        if self.state.film[site] >= self.smallest_mass() {
-            let mass = std::mem::take(&mut self.state.film[site]);
-            // From outside: within an edge another face may be nearer.
-            let Site { solid, normal, half_width, .. } = self.sites[site];
-            self.add(solid, std::array::from_fn(|axis| place[axis] + half_width * normal[axis]), [0.0; 3], mass);
-        }
-    }
-
-    /// Water evaporates at a site, from the drop that covers a place of it or from the film there. Gives how much there was to
-    /// take of `mass`, kg. A drop that is used up is gone after [`Drops::advance`].
-    pub fn evaporate(&mut self, site: usize, mass: f64) -> f64 {
-        let place = self.place_in(site);
-        let from = match self.drop_over(site, place) {
-            Some(drop) => &mut self.state.drops[drop].mass,
-            None => &mut self.state.film[site],
-        };
-        let taken = mass.min(*from);
-        *from -= taken;
-        taken
-    }
-
-    fn smallest_mass(&self) -> f64 {
-        self.laws.density * self.cap.volume(self.laws.smallest_radius)
-    }
-
-    /// Any place of a site: nearer to it than to others, on the surface, and in the room.
-    fn place_in(&mut self, site: usize) -> [f64; 3] {
-        let Site { solid, position, normal, half_width } = self.sites[site];
-        let [one, other] = across(normal);
-        for _ in 0..TRIES {
-            let steps = [(); 2].map(|()| WIDER * half_width * self.random.random_range(-1.0..1.0));
-            let place = std::array::from_fn(|axis| position[axis] + steps[0] * one[axis] + steps[1] * other[axis]);
-            let is_near_surface =
-                || self.solids[solid as usize].signed_distance(place).abs() < FARTHEST_OFF * half_width;
-            if self.is_in_room(place) && self.is_nearest(site, place) && is_near_surface() {
-                return place;
+        let smallest = smallest_mass(&self.laws);
+        let mut begun = Vec::new();
+        for site in 0..self.gains.len() {
+            let (gain, before) = (self.gains[site], self.state.unseen[site]);
+            let mass = before + gain;
+            let covering = self.state.drops.get_mut(self.cover[site] as usize).filter(|drop| drop.mass > 0.0);
+            if let Some(drop) = covering {
+                drop.mass += mass;
+                self.state.unseen[site] = 0.0;
+            } else if mass >= smallest {
+                let Site { solid, position, .. } = self.sites.all[site];
+                self.state.unseen[site] = 0.0;
+                self.cover[site] = self.state.drops.len() as u32;
+                self.add(solid, position, [0.0; 3], mass);
+                let after = if gain > 0.0 { ((smallest - before) / gain).clamp(0.0, 1.0) } else { 1.0 };
+                begun.push(Begun { site: site as u32, after });
+            } else {
+                self.state.unseen[site] = mass;
             }
         }
-        position
-    }
-
-    fn is_in_room(&self, place: [f64; 3]) -> bool {
-        (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&place[axis]))
-    }
-
-    /// Whether no other site that faces alike is nearer to a place: where patches overlap, no more begins than elsewhere.
-    fn is_nearest(&self, site: usize, place: [f64; 3]) -> bool {
-        let Site { solid, normal, position, .. } = self.sites[site];
-        let away = distance2(position, place);
-        let mut nearest = true;
-        self.site_grid.near(place, 0.0, 0.0, |at| {
-            let other = &self.sites[at];
-            nearest &=
-                other.solid != solid || dot(other.normal, normal) < 0.5 || distance2(other.position, place) >= away;
-        });
-        nearest
-    }
-
-    /// The largest of the drops that cover a place of a site.
-    fn drop_over(&self, site: usize, place: [f64; 3]) -> Option<usize> {
-        let Site { solid, normal, .. } = self.sites[site];
-        let mut largest: Option<usize> = None;
-        self.grid.near(place, 0.0, 0.0, |at| {
-            let (drop, reach) = (&self.state.drops[at], self.reach[at]);
-            // What is cheap to find out first.
-            let covers = distance2(drop.position, place) < reach * reach
-                && drop.solid == solid
-                && drop.mass > 0.0
-                && dot(drop.normal, normal) > 0.0
-                && distance2(drop.position, place) < self.covered_radius(drop).powi(2);
-            if covers && largest.is_none_or(|known| self.reach[at] > self.reach[known]) {
-                largest = Some(at);
-            }
-        });
-        largest
+        begun
     }
 
     /// Moves the drops on by a time, s: those that touch merge, those that are too heavy slide, sweep up what they meet, and
@@ -313,6 +305,40 @@ impl Drops {
         self.state.drops.retain(|drop| drop.mass > 0.0);
         self.merge();
         self.slide(time);
+        self.find_covered();
+    }
+
+    fn is_in_room(&self, place: [f64; 3]) -> bool {
+        (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&place[axis]))
+    }
+
+    /// Finds which drop covers each site: of several the largest.
+    fn find_covered(&mut self) {
+        let mut cover = std::mem::take(&mut self.cover);
+        cover.fill(NONE);
+        for (number, drop) in self.state.drops.iter().enumerate() {
+            self.sites_under(drop, |site| {
+                let known = self.state.drops.get(cover[site] as usize);
+                if known.is_none_or(|known| known.mass < drop.mass) {
+                    cover[site] = number as u32;
+                }
+            });
+        }
+        self.cover = cover;
+    }
+
+    /// The sites that a drop covers; some come twice.
+    fn sites_under(&self, drop: &Drop, mut found: impl FnMut(usize)) {
+        let covered = self.covered_radius(drop);
+        self.sites.grid.near(drop.position, covered, 0.0, |at| {
+            let site = &self.sites.all[at];
+            let is_under = distance2(site.position, drop.position) < covered * covered
+                && site.solid == drop.solid
+                && dot(site.normal, drop.normal) > 0.0;
+            if is_under {
+                found(at);
+            }
+        });
     }
 
     /// Files the drops by place and reach.
@@ -323,11 +349,15 @@ impl Drops {
     }
 }
 
-/// Two directions across a direction and each other (Duff et al., Journal of Computer Graphics Techniques 6, 2017, 1).
-fn across([x, y, z]: [f64; 3]) -> [[f64; 3]; 2] {
-    let sign = 1_f64.copysign(z);
-    let (a, b) = (-1.0 / (sign + z), -x * y / (sign + z));
-    [[1.0 + sign * x * x * a, sign * b, -sign * x], [b, sign + y * y * a, -y]]
+/// Mass of the smallest drop that is seen, kg.
+fn smallest_mass(laws: &DropLaws) -> f64 {
+    laws.density * Cap::new(laws.contact_angle).volume(laws.smallest_radius)
+}
+
+/// How far the smallest drop that is seen reaches sideways, m.
+pub fn smallest_reach(laws: &DropLaws) -> f64 {
+    let cap = Cap::new(laws.contact_angle);
+    cap.reach(cap.volume(laws.smallest_radius))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -18,12 +18,25 @@ impl Drops {
             let longest = self.state.drops.iter().map(|drop| self.longest_step(drop)).fold(f64::INFINITY, f64::min);
             let step = longest.min(left);
             self.keep(|drops, drop| drops.moved(drop, step));
+            self.sweep();
             self.merge();
             left -= step;
             if left <= 0.0 {
                 return;
             }
         }
+    }
+
+    /// Drops that slide take up the drops below them that are not seen.
+    fn sweep(&mut self) {
+        let mut drops = std::mem::take(&mut self.state.drops);
+        let mut unseen = std::mem::take(&mut self.state.unseen);
+        for drop in drops.iter_mut().filter(|drop| drop.velocity != [0.0; 3]) {
+            let mut swept = 0.0;
+            self.sites_under(drop, |site| swept += std::mem::take(&mut unseen[site]));
+            drop.mass += swept;
+        }
+        (self.state.drops, self.state.unseen) = (drops, unseen);
     }
 
     /// Puts what `stays` makes of it in the place of each drop; where that is nothing it has left, and is counted as dripped.

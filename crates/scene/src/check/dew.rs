@@ -162,7 +162,8 @@ impl Check {
         })?;
         self.at_least("dew.drops.friction", drops.friction, 0.0)?;
         self.above("dew.drops.surface_tension_n_per_m", drops.surface_tension_n_per_m, 0.0)?;
-        self.above("dew.drops.smallest_radius_m", drops.smallest_radius_m, 0.0)
+        self.above("dew.drops.sites_per_m2", drops.sites_per_m2, 0.0)?;
+        drops.smallest_radius_m.map_or(Ok(()), |radius| self.above("dew.drops.smallest_radius_m", radius, 0.0))
     }
 
     fn low_utility(&self, low_utility: &LowUtility) -> Checked {

@@ -32,6 +32,9 @@ pub struct Solid {
     /// How air is kept out of it. Left out: as of all, by `boundary.treatment`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub treatment: Option<super::Treatment>,
+    /// Density of nucleation sites on it, 1/m2. Left out: as on all, by `drops.sites_per_m2`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sites_per_m2: Option<f64>,
 }
 
 /// The form of a solid, in its own coordinates.

@@ -3,6 +3,7 @@
 mod adiabatic;
 pub(crate) mod bench;
 mod boundaries;
+mod breath_figures;
 mod cavity;
 mod dew_point;
 mod fick;
@@ -32,6 +33,7 @@ pub(crate) const CASES: &[Case] = &[
     ledger::LEDGER,
     boundaries::BOUNDARIES,
     slide::SLIDE,
+    breath_figures::BREATH_FIGURES,
     low_utility::CASE,
     pane::PANE,
 ];

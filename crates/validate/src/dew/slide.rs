@@ -3,7 +3,7 @@
 use super::rows;
 use crate::device::refuse_on_card;
 use crate::{Case, Options, Row};
-use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Site, WATER_DENSITY};
+use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Patch, Surfaces, WATER_DENSITY};
 use corpuscle_model::{ExactSum, ModelError};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::PI;
@@ -47,7 +47,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     ])
 }
 
-fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> DropLaws {
+pub(super) fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> DropLaws {
     DropLaws {
         contact_angle,
         friction,
@@ -59,28 +59,47 @@ fn laws(friction: f64, contact_angle: f64, smallest_radius: f64) -> DropLaws {
     }
 }
 
-/// A pane in the plane x = 0, with drops and sites on its side at larger x.
-fn pane(laws: DropLaws, side: f64, sites: Vec<Site>) -> Drops {
-    let shape = Shape::Box { size: [0.01, side, side] };
-    let solid = Solid::of_shape(shape, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
-    Drops::new(laws, Arc::from([solid]), sites, [[-1.0; 3], [1.0; 3]], 1)
+/// A pane in the plane x = 0, with drops and patches on its side at larger x.
+fn pane(laws: DropLaws, side: f64, patches: Vec<Patch>) -> Drops {
+    with_sites(laws, side, patches, 1e10, 1)
 }
 
-fn site(y: f64, z: f64, half_width: f64) -> Site {
-    Site { solid: 0, position: [0.0, y, z], normal: [1.0, 0.0, 0.0], half_width }
+/// The same with so many nucleation sites, 1/m2, by a seed.
+fn with_sites(laws: DropLaws, side: f64, patches: Vec<Patch>, sites_per_area: f64, seed: u64) -> Drops {
+    let shape = Shape::Box { size: [0.01, side, side] };
+    let solid = Solid::of_shape(shape, Pose::new([-0.005, 0.0, 0.0], [0.0; 3]));
+    let surfaces = Surfaces {
+        solids: Arc::from([solid]),
+        sites_per_area: vec![sites_per_area],
+        patches,
+        room: [[-1.0; 3], [1.0; 3]],
+    };
+    Drops::new(laws, surfaces, seed)
+}
+
+/// A pane all of which is patches, so many along each side.
+pub(super) fn on_patches(laws: DropLaws, side: f64, count: u32, sites_per_area: f64, seed: u64) -> Drops {
+    let width = side / f64::from(count);
+    let at = |index: u32| width * (f64::from(index) + 0.5) - 0.5 * side;
+    let patches = (0..count).flat_map(|y| (0..count).map(move |z| patch(at(y), at(z), 0.5 * width))).collect();
+    with_sites(laws, side, patches, sites_per_area, seed)
+}
+
+fn patch(y: f64, z: f64, half_width: f64) -> Patch {
+    Patch { solid: 0, position: [0.0, y, z], normal: [1.0, 0.0, 0.0], half_width }
 }
 
 /// Covered radius with which a drop that grows by a thousandth of its mass at a time begins to slide, m.
 fn sliding_radius(friction: f64, degrees: f64) -> f64 {
-    let mut drops = pane(laws(friction, degrees.to_radians(), 1e-4), 0.1, vec![site(0.0, 0.0, 1e-6)]);
-    drops.condense(0, WATER_DENSITY * Cap::new(degrees.to_radians()).volume(2e-4));
+    let mut drops = pane(laws(friction, degrees.to_radians(), 5e-5), 0.02, vec![patch(0.0, 0.0, 1e-4)]);
+    drops.add(0, [0.0; 3], [0.0; 3], WATER_DENSITY * Cap::new(degrees.to_radians()).volume(4e-4));
     loop {
         drops.advance(1e-3);
         let drop = drops.drops()[0];
         if drop.velocity != [0.0; 3] {
             return drops.covered_radius(&drop);
         }
-        drops.condense(0, 1e-3 * drop.mass);
+        drops.condense(&[1e-3 * drop.mass]);
     }
 }
 
@@ -134,13 +153,11 @@ const STEPS: u32 = 300;
 /// many times of a pane on which water condenses evenly.
 fn size_exponent() -> f64 {
     let width = SIDE / f64::from(PATCHES);
-    let at = |index: u32| width * (f64::from(index) + 0.5) - 0.5 * SIDE;
-    let sites: Vec<_> = (0..PATCHES).flat_map(|y| (0..PATCHES).map(move |z| site(at(y), at(z), 0.5 * width))).collect();
-    let count = sites.len();
-    let mut drops = pane(laws(1.288e-4, 0.5 * PI, SMALLEST), SIDE, sites);
+    let water = vec![WATER_DENSITY * THICKNESS * width * width; (PATCHES * PATCHES) as usize];
+    let mut drops = on_patches(laws(1.288e-4, 0.5 * PI, SMALLEST), SIDE, PATCHES, 1e10, 1);
     let mut radii = Vec::new();
     for step in 1..=STEPS {
-        (0..count).for_each(|site| drops.condense(site, WATER_DENSITY * THICKNESS * width * width));
+        drops.condense(&water);
         drops.advance(0.01);
         if step > SETTLED && step % 10 == 0 {
             radii.extend(drops.drops().iter().map(|drop| drops.covered_radius(drop)));
@@ -160,6 +177,11 @@ fn fitted_exponent(radii: &[f64], from: f64, to: f64) -> f64 {
             [(class[0] * class[1]).sqrt().ln(), (count.max(0.5) / (class[1] - class[0])).ln()]
         })
         .collect();
+    fitted_slope(&points)
+}
+
+/// Slope of a line through points by least squares.
+pub(super) fn fitted_slope(points: &[[f64; 2]]) -> f64 {
     let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
     let [x, y] = [mean(0), mean(1)];
     let (across, along) =

@@ -33,9 +33,6 @@ pub(crate) struct SolidsPicture<'a> {
 const SOLID: Vector = [116.0, 139.0, 152.0];
 const BEHIND: Vector = [240.0, 243.0, 246.0];
 
-/// A film of so much water, kg/m2, covers everything: half balls of 10 µm radius, as breath on glass has, are 2/3 r of water high.
-const FILM_THAT_COVERS: f64 = 998.0 * 2.0 / 3.0 * 1e-5;
-
 /// Pixels for a CSS pixel.
 const FINENESS: f64 = 1.7;
 
@@ -92,13 +89,13 @@ impl SolidsPicture<'_> {
     /// The part of each pixel that films cover.
     fn mist(&self, hits: &[Hit]) -> Vec<f64> {
         let films = self.surfaces.iter().map(|surface| {
-            let film = surface.scalar("film_kg_per_m2").filter(|film| film.iter().any(|&film| film > 0.0))?;
+            let film = surface.scalar("unseen_covered_part").filter(|film| film.iter().any(|&film| film > 0.0))?;
             Some(Field::new(surface, film))
         });
         let films: Vec<Option<Field<'_>>> = films.collect();
         let of = |hit: &Hit| {
             let film = films[hit.solid?].as_ref()?;
-            film.at(hit.place, hit.normal).map(|film| film / FILM_THAT_COVERS)
+            film.at(hit.place, hit.normal)
         };
         hits.par_iter().with_min_len(256).map(|hit| of(hit).unwrap_or(0.0)).collect()
     }

@@ -22,6 +22,7 @@ impl Check {
             self.require(&format!("{key}.layers"), solid.layers != Some(0), || {
                 "must be at least 1; leave it out to fill the solid".into()
             })?;
+            solid.sites_per_m2.map_or(Ok(()), |sites| self.above(&format!("{key}.sites_per_m2"), sites, 0.0))?;
         }
         Ok(())
     }
