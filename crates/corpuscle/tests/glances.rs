@@ -89,7 +89,13 @@ fn run(mut simulation: Simulation, album: &mut Album) -> Result<(), Error> {
 #[test]
 fn glances_are_given_when_pictures_are_due_and_show_what_the_model_does() {
     let Some(gpu) = require_gpu("glances at a model") else { return };
-    let dew = [("run.until_s", "0.5"), ("run.frame_every_s", "0.26")];
+    // Drops so small, and so far apart, are soon seen.
+    let dew = [
+        ("run.until_s", "0.5"),
+        ("run.frame_every_s", "0.26"),
+        ("dew.drops.smallest_radius_m", "2e-5"),
+        ("dew.drops.sites_per_m2", "1e7"),
+    ];
     for (name, changes) in [("flood/dam-break", &DAM[..]), ("dew/pane", &dew)] {
         let [mut of_model, mut of_glances] = [None, Some(gpu.clone())].map(|gpu| Album { gpu, ..Album::default() });
         run(open(name, changes, &gpu), &mut of_model).unwrap();
