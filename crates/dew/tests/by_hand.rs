@@ -138,8 +138,10 @@ fn a_fan_drives_as_a_hand_says() {
 #[test]
 fn drops_run_to_where_gravity_points() {
     let fall = |changes: &[ByHand]| {
-        let text =
-            PANE.replace("friction = 4e-5, smallest_radius_m = 1e-4", "friction = 1e-7, smallest_radius_m = 3e-5");
+        let text = PANE.replace(
+            "friction = 4e-5, smallest_radius_m = 1e-4",
+            "friction = 1e-7, smallest_radius_m = 3e-5, sites_per_m2 = 1e7",
+        );
         let cold = ByHand::SolidTemperature { solid: 0, celsius: 0.0 };
         let all: Vec<ByHand> = [cold, ByHand::TimeFactor(20.0)].into_iter().chain(changes.iter().copied()).collect();
         let dew = after(&text, &all, 1.5);

@@ -515,9 +515,11 @@ fn air_that_cannot_go_on_breaks_down_with_an_error() {
     assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
 }
 
-/// A built-in scene; its seed is 1.
+/// A built-in scene with drops that are soon seen; its seed is 1.
 fn built_in(name: &str) -> Dew {
-    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+    let changes = [("dew.drops.smallest_radius_m", "5e-6"), ("dew.drops.sites_per_m2", "1e8")];
+    let changes = changes.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let mut scene = Scene::parse(builtin(name).unwrap().text, name, &changes).unwrap();
     scene.resolve_defaults();
     let ModelScene::Dew(written) = &scene.model else { panic!("{name} is no dew") };
     corpuscle_dew::open(written, 1, Path::new("")).unwrap()
