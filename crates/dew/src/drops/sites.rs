@@ -236,13 +236,10 @@ impl Scatter<'_> {
         let is_in_room = (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&position[axis]));
         let depth = 0.1 * self.reach;
         let is_at_edge = || (self.solid.signed_distance(along(position, -depth)) + depth).abs() > 0.1 * depth;
-        (is_in_room && !is_at_edge()).then(|| Place {
-            solid: self.number,
-            position,
-            normal: nearest.normal,
-            nucleates,
-            order,
-        })
+        if !is_in_room || is_at_edge() {
+            return None;
+        }
+        Some(Place { solid: self.number, position, normal: nearest.normal, nucleates, order })
     }
 }
 
