@@ -44,19 +44,17 @@ fn measure() -> Result<Vec<Row>, ModelError> {
         Row::at_most(name, "water_above_dew_point", gauge(&mild, "water.on_solids_kg"), "kg", 0.0),
         Row::at_most(name, "drops_above_dew_point", gauge(&mild, "drops.number"), "", 0.0),
     ];
-    let (mut firsts, mut waters, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut firsts, mut waters) = (Vec::new(), Vec::new());
     for spacing in SPACINGS {
         let mut cold = scene(5.0, spacing)?;
         advance(&mut cold, WATCHED)?;
         firsts.push(gauge(&cold, "drops.first_at_s"));
         waters.push(gauge(&cold, "pane.water_per_area_kg_per_m2"));
-        numbers.push(gauge(&cold, "drops.number"));
     }
     let even = estimate(5.0);
     rows.extend([
         Row::at_most(name, "spread_of_first_drop", spread(&firsts), "", 0.05),
         Row::at_most(name, "spread_of_water", spread(&waters), "", 0.05),
-        Row::at_most(name, "spread_of_number", spread(&numbers), "", 0.05),
         // The areas of random sites are spread as gamma(3.575) (Ferenc & Neda 2007): the largest of 160 is 2 to 4.5 times the mean.
         Row::at_most(name, "first_drop_over_that_of_mean_area", firsts[2] / even, "", 0.25),
         Row::at_least(name, "first_drop_not_before", firsts[2] / even, "", 0.05),
