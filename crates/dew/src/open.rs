@@ -269,7 +269,7 @@ fn sites_per_area(scene: &written::Dew) -> Vec<f64> {
 const SMALLEST: f64 = 1e-5;
 
 /// Sites that a scene has at most where it does not say how small the smallest drops are.
-const SITES: f64 = 2e5;
+const DEFAULT_MAX_SITES: f64 = 2e5;
 
 fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> {
     let with = |smallest_radius: f64| DropLaws { smallest_radius, ..laws_but_smallest(scene) };
@@ -287,10 +287,10 @@ fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> 
         radius
     };
     match scene.drops.smallest_radius_m {
-        None => Ok(with(large_enough(SITES))),
+        None => Ok(with(large_enough(DEFAULT_MAX_SITES))),
         Some(radius) if sites(radius) <= MOST_SITES => Ok(with(radius)),
         Some(radius) => Err(ModelError::Setup(format!(
-            "dew.drops.smallest_radius_m = {radius}: drops could begin at {:.1e} places of the solids, more than the {MOST_SITES:.0e} that can be followed;              give {:.1e} or more, or fewer dew.drops.sites_per_m2",
+            "dew.drops.smallest_radius_m = {radius}: drops could begin at {:.1e} places of the solids, more than the {MOST_SITES:.0e} that can be followed; give {:.1e} or more, or fewer dew.drops.sites_per_m2",
             sites(radius),
             large_enough(MOST_SITES)
         ))),

@@ -176,3 +176,16 @@ fn a_solid_that_nothing_keeps_air_out_of_is_named() {
     let kept = dew(PANE).warnings();
     assert!(!kept.iter().any(|warning| warning.contains("keeps the air out")), "{kept:?}");
 }
+
+#[test]
+fn drops_too_small_for_the_surface_are_refused_with_a_radius_that_works() {
+    let text = |radius: &str| PANE.replace("smallest_radius_m = 1e-5, sites_per_m2 = 1e8", radius);
+    let said = refused(&text("smallest_radius_m = 1e-6"));
+    assert!(said.contains("dew.drops.smallest_radius_m") && !said.contains("  "), "{said}");
+    let radius = said.split("give ").nth(1).unwrap().split(' ').next().unwrap();
+    let works: f64 = radius.parse().unwrap();
+    assert!(works > 1e-6 && works < 1e-4, "{said}");
+    dew(&text(&format!("smallest_radius_m = {}", 4.0 * works)));
+    // Left out, it is as large as the surface needs.
+    dew(&text("friction = 1e-6").replace(", friction = 1e-7", ""));
+}

@@ -69,7 +69,7 @@ impl Drops {
     /// The drops of a patch that are not seen, where it has this share: on what drops that are seen leave of it.
     pub fn unseen_on(&self, patch: usize, share: &Share) -> Unseen {
         let Some(at) = self.patches.get(patch) else { return Unseen::default() };
-        let bare = (1.0 - share.covered / at.area()).max(BARE);
+        let bare = (1.0 - share.covered / at.area()).max(MIN_BARE_PART);
         let thickness = share.unseen / (self.laws.density * at.area() * bare);
         let Unseen { radius, covered } = Unseen::new(thickness, self.per_area[at.solid as usize], self.cap);
         Unseen { radius, covered: bare * covered }
@@ -126,4 +126,4 @@ impl Drops {
 }
 
 /// Least part of a patch on which drops that are not seen are taken to be.
-const BARE: f64 = 0.02;
+const MIN_BARE_PART: f64 = 0.02;

@@ -14,16 +14,16 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Largest part of a plane that disks cover which are put there one after another and do not overlap (Feder 1980).
-const JAMMED: f64 = 0.547;
+const JAMMING_COVERAGE: f64 = 0.547;
 
-/// Positions for each site, by which areas are measured: at least so many, and more, up to `FINER` times as many, where a solid then has fewer than
-/// `TOGETHER`.
-const SAMPLES: f64 = 32.0;
-const FINER: f64 = 12.5;
-const TOGETHER: f64 = 4e5;
+/// Positions for each site, by which areas are measured: at least so many, and more, up to `MAX_SAMPLE_RATIO` times as many, where a solid then has fewer than
+/// `MIN_SAMPLES_PER_SOLID`.
+const SAMPLES_PER_SITE: f64 = 32.0;
+const MAX_SAMPLE_RATIO: f64 = 12.5;
+const MIN_SAMPLES_PER_SOLID: f64 = 4e5;
 
-/// Surfaces with more sites are refused: the smallest drops are too small for them.
-pub const MOST_SITES: f64 = 2e6;
+/// Surfaces with more sites are refused: their positions alone would take more than 1.2 GB while areas are measured.
+pub const MOST_SITES: f64 = 5e5;
 
 /// A nucleation site.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,7 @@ impl Place {
 
 /// Density of the sites that are kept at most, 1/m2, where drops reach so far when they are seen, m.
 pub fn most_per_area(reach: f64) -> f64 {
-    JAMMED / (PI * reach * reach)
+    JAMMING_COVERAGE / (PI * reach * reach)
 }
 
 impl Sites {
@@ -107,15 +107,15 @@ impl Sites {
             Grid::new(sites.iter().map(|site| site.position), &wide)
         };
         let grid = file(&sites, 1.0);
-        let farthest = of_patches.iter().fold(0.0, |most: f64, &reach| most.max(ON_IT * reach));
+        let farthest = of_patches.iter().fold(0.0, |most: f64, &reach| most.max(PATCH_MARGIN * reach));
         let pair = |place: &Place| {
             let patch_at = |at: usize| (patches[at].solid, patches[at].normal, patches[at].position);
             let patch = nearest(&patch_grid, place, farthest, patch_at)?;
-            if distance2(patches[patch].position, place.position) > (ON_IT * of_patches[patch]).powi(2) {
+            if distance2(patches[patch].position, place.position) > (PATCH_MARGIN * of_patches[patch]).powi(2) {
                 return None;
             }
             let site_at = |at: usize| (sites[at].solid, sites[at].normal, sites[at].position);
-            let mut around = (0..FURTHER).map(|times| apart(place.solid) * f64::from(1 << times));
+            let mut around = (0..SITE_SEARCH_DOUBLINGS).map(|times| apart(place.solid) * f64::from(1 << times));
             let site = around.find_map(|around| nearest(&grid, place, around, site_at))?;
             Some((patch as u32, site as u32))
         };
@@ -124,7 +124,7 @@ impl Sites {
         add_bare_patches(&mut pairs, &mut sites, patches);
         let pieces = pieces(&pairs, &mut sites, patches.len());
         // Drops are mostly much larger than sites are apart.
-        let grid = file(&sites, WIDER);
+        let grid = file(&sites, SITE_CELL_RATIO);
         Self { all: sites, grid, pieces }
     }
 }
@@ -206,8 +206,8 @@ impl Scatter<'_> {
 
     /// Density of the positions, 1/m2. It depends on nothing but the solid and its sites.
     fn samples_per_area(&self) -> f64 {
-        let least = SAMPLES * self.per_area.min(most_per_area(self.reach));
-        (TOGETHER / self.solid.area()).clamp(least, FINER * least)
+        let least = SAMPLES_PER_SITE * self.per_area.min(most_per_area(self.reach));
+        (MIN_SAMPLES_PER_SOLID / self.solid.area()).clamp(least, MAX_SAMPLE_RATIO * least)
     }
 
     fn places_in(&self, cube: &Cube, random: &mut ChaCha8Rng) -> Vec<Place> {
@@ -277,13 +277,13 @@ fn nearest(grid: &Grid, place: &Place, within: f64, of: impl Fn(usize) -> (u32, 
 }
 
 /// Sites below drops are looked for in cells so many times wider than sites are apart.
-const WIDER: f64 = 4.0;
+const SITE_CELL_RATIO: f64 = 4.0;
 
 /// A position is on the nearest patch where it is within so many times the distance of its corners.
-const ON_IT: f64 = 1.2;
+const PATCH_MARGIN: f64 = 1.2;
 
 /// The nearest site is looked for within the distance between sites, and up to so many times twice as far.
-const FURTHER: u32 = 4;
+const SITE_SEARCH_DOUBLINGS: u32 = 4;
 
 /// Patches that no position is on, as they are small, gather for the nearest site; where there is none, for one of their own.
 fn add_bare_patches(pairs: &mut Vec<(u32, u32)>, sites: &mut Vec<Site>, patches: &[Patch]) {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// Part of a surface that drops cover which grow and merge: it stays so while their radius grows (Fritter, Knobler & Beysens, Phys. Rev. A 43,
 /// 1991, 2858; 0.55 for hemispheres).
-const COVERED: f64 = 0.55;
+const MERGING_COVERAGE: f64 = 0.55;
 
 /// Drops that are not seen, on an area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,16 +27,16 @@ impl Unseen {
         let unit = cap.volume(1.0);
         let apart = (thickness / (per_area * unit)).cbrt();
         let covered = per_area * PI * apart * apart;
-        if covered <= COVERED {
+        if covered <= MERGING_COVERAGE {
             return Self { radius: apart, covered };
         }
-        Self { radius: PI * thickness / (COVERED * unit), covered: COVERED }
+        Self { radius: PI * thickness / (MERGING_COVERAGE * unit), covered: MERGING_COVERAGE }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{COVERED, Cap, Unseen};
+    use super::{Cap, MERGING_COVERAGE, Unseen};
     use std::f64::consts::PI;
 
     #[test]
@@ -47,7 +47,7 @@ mod tests {
             let Unseen { radius, covered } = of(thickness);
             let number = covered / (PI * radius * radius);
             assert!((number * cap.volume(radius) / thickness - 1.0).abs() < 1e-12);
-            assert!(number <= 1e9 * (1.0 + 1e-12) && covered <= COVERED);
+            assert!(number <= 1e9 * (1.0 + 1e-12) && covered <= MERGING_COVERAGE);
         }
         assert!((of(8e-10).radius / of(1e-10).radius - 2.0).abs() < 1e-12);
         assert!((of(8e-5).radius / of(1e-5).radius - 8.0).abs() < 1e-12);

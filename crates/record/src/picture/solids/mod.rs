@@ -86,16 +86,16 @@ impl SolidsPicture<'_> {
         })
     }
 
-    /// The part of each pixel that films cover.
+    /// The part of each pixel that drops too small to be followed cover.
     fn mist(&self, hits: &[Hit]) -> Vec<f64> {
-        let films = self.surfaces.iter().map(|surface| {
-            let film = surface.scalar("unseen_covered_part").filter(|film| film.iter().any(|&film| film > 0.0))?;
-            Some(Field::new(surface, film))
+        let covered = self.surfaces.iter().map(|surface| {
+            let part = surface.scalar("unseen_covered_part").filter(|part| part.iter().any(|&part| part > 0.0))?;
+            Some(Field::new(surface, part))
         });
-        let films: Vec<Option<Field<'_>>> = films.collect();
+        let parts: Vec<Option<Field<'_>>> = covered.collect();
         let of = |hit: &Hit| {
-            let film = films[hit.solid?].as_ref()?;
-            film.at(hit.place, hit.normal)
+            let part = parts[hit.solid?].as_ref()?;
+            part.at(hit.place, hit.normal)
         };
         hits.par_iter().with_min_len(256).map(|hit| of(hit).unwrap_or(0.0)).collect()
     }
