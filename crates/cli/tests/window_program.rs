@@ -5,7 +5,15 @@ mod tool;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use tool::{Ended, Place};
+
+/// One test at a time: a process that another test starts while this one writes its copy of the program would hold that copy open, and what is open
+/// for writing cannot be started ("Text file busy").
+fn alone() -> MutexGuard<'static, ()> {
+    static LOCK: Mutex<()> = Mutex::new(());
+    LOCK.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A copy of the program in the folder of a test, as if installed there.
 fn installed(place: &Place) -> PathBuf {
@@ -22,6 +30,7 @@ fn view(program: &PathBuf, arguments: &[&str]) -> Ended {
 
 #[test]
 fn without_the_window_program_its_installation_is_told() {
+    let _alone = alone();
     let place = Place::new();
     let ended = view(&installed(&place), &[]).expect_status(2);
     assert!(ended.stderr.contains("corpuscle-window") && ended.stderr.contains("cargo install"), "{}", ended.stderr);
@@ -32,6 +41,7 @@ fn without_the_window_program_its_installation_is_told() {
 #[test]
 fn the_window_program_gets_every_argument_and_its_status_is_returned() {
     use std::os::unix::fs::PermissionsExt;
+    let _alone = alone();
     let place = Place::new();
     let program = installed(&place);
     place.write("corpuscle-window", "#!/bin/sh\nprintf '%s|' \"$@\"\nexit 7\n");
