@@ -75,6 +75,8 @@ pub struct Dew {
     pub(crate) open_sides: Vec<OpenSide>,
     /// The drops on the solids, where water there forms any.
     pub(crate) wetting: Option<Wetting>,
+    /// Part of the evaporation of a wet surface that the water on each particle of the solids lets go: 1 where it is no drops.
+    pub(crate) evaporation: Vec<f64>,
     /// Whether air rises and sinks by its warmth and vapour.
     pub(crate) buoyant: bool,
     /// What a hand can change, as it was set up, once one has changed it.
@@ -186,6 +188,7 @@ impl Dew {
             air: *air,
             room: *room,
             scale,
+            evaporation: vec![1.0; solids.particles.len()],
             solids,
             conduction,
             conductances,

@@ -24,6 +24,8 @@ pub struct Exchange<'a> {
     pub temperatures: &'a [f64],
     /// Water on each of their particles, kg.
     pub water: &'a [f64],
+    /// Part of the evaporation of a wet surface that it lets go.
+    pub evaporation: &'a [f64],
     /// Size of particles.
     pub scale: &'a Scale,
     /// The air.
@@ -85,7 +87,7 @@ struct Flux {
     difference: f64,
     /// Water that condenses, kg/s; evaporation is negative, and goes on only where there is water.
     water: f64,
-    /// Part of the heat at the surface that goes to the solid.
+    /// Part of the heat at the surface that goes to the solid, as if the air were at the reference temperature: how it conducts changes little of it.
     to_solid: f64,
 }
 
@@ -103,22 +105,24 @@ impl Exchange<'_> {
         let factor = normalisation::factor(&air.tensor, self.contact.offset(site, air.position));
         let weight = volume * self.scale.kernels.viscosity_laplacian(r) * factor / self.scale.moment;
         let of_pair = self.scale.volume * weight;
-        let (of_air, of_solid) = (self.air.conductor(), self.solids.material(particle).conductor());
+        let solid_temperature = self.temperatures[particle];
+        let between = 0.5 * (air.temperature + solid_temperature);
+        let (of_air, of_solid) = (self.air.conductor_at(between), self.solids.material(particle).conductor());
         let mean = self.settings.mean;
         let conductance =
             [mean.conductivity(of_air, of_solid), mean.conductivity(of_solid, of_air)].map(|mean| of_pair * mean);
-        let solid_temperature = self.temperatures[particle];
         let difference = air.temperature - solid_temperature;
         // Half way between them, with the same flux of heat on both sides.
-        let to_solid = of_solid.conductivity / (of_solid.conductivity + of_air.conductivity);
+        let to_solid = of_solid.conductivity / (of_solid.conductivity + self.air.conductivity);
         let mut water = 0.0;
         if self.settings.condensation == Condensation::Diffusion && self.solids.particles[particle].normal.is_some() {
             let surface = solid_temperature + (1.0 - to_solid) * difference;
             // The surface is half way: the same factor 2 as the harmonic mean with a perfect conductor.
-            let reach = 2.0 * self.air.density * self.air.vapour_diffusivity * of_pair;
+            let diffusivity = self.air.vapour_diffusivity_at(0.5 * (air.temperature + surface));
+            let reach = 2.0 * self.air.density * diffusivity * of_pair;
             water = reach * (air.vapour - saturation(surface, self.air));
-            if water < 0.0 && self.water[particle] <= 0.0 {
-                water = 0.0;
+            if water < 0.0 {
+                water *= if self.water[particle] > 0.0 { self.evaporation[particle] } else { 0.0 };
             }
         }
         Flux { conductance, difference, water, to_solid }

@@ -100,7 +100,7 @@ impl Fogging {
         // Sums of the radii and of their squares first.
         for drop in drops.drops() {
             let story = &mut self.stories[drop.solid as usize];
-            let radius = drops.covered_radius(drop);
+            let radius = drop.radius;
             story.covered += PI * radius * radius;
             story.drops += 1;
             story.mean_radius += radius;

@@ -108,7 +108,7 @@ impl Dew {
     fn measured_drops(&self) -> Vec<f64> {
         let Some(wetting) = &self.wetting else { return Vec::new() };
         let drops = wetting.drops();
-        let radii = drops.drops().iter().map(|drop| drops.covered_radius(drop));
+        let radii = drops.drops().iter().map(|drop| drop.radius);
         let number = drops.drops().len() as f64;
         let firsts = wetting.stories().iter().filter_map(|story| story.first);
         let first = firsts.min_by(f64::total_cmp).unwrap_or(f64::NAN);
@@ -154,7 +154,7 @@ impl Dew {
 
 /// How many drops there are of each size, in classes half an octave wide; none where there are no drops.
 pub(crate) fn drop_sizes(drops: &Drops) -> Option<Chart> {
-    let radii: Vec<f64> = drops.drops().iter().map(|drop| drops.covered_radius(drop)).collect();
+    let radii: Vec<f64> = drops.drops().iter().map(|drop| drop.radius).collect();
     let class = |radius: f64| (radius.ln() / SQRT_2.ln()).floor() as i32;
     let first = radii.iter().map(|&radius| class(radius)).min()?;
     let last = radii.iter().map(|&radius| class(radius)).max()?;

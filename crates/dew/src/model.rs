@@ -209,6 +209,7 @@ impl Model for Dew {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);
+        self.tell_evaporation();
         self.take_hand()?;
         self.renew_card(self.has_been_touched())
     }

@@ -1,9 +1,9 @@
 //! From a scene to a model.
 
-use crate::air::Properties;
+use crate::air::{Growth, Properties};
 use crate::bodies;
 use crate::dew::{Dew, Setup};
-use crate::drops::{DropLaws, MOST_SITES, WATER_DENSITY, most_per_area, smallest_reach};
+use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
 use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
@@ -195,21 +195,29 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
         low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
         time_factor: scene.time_factor,
         threshold: scene.boundary.colour_threshold,
+        kappa: scene.boundary.kappa,
         ..Settings::new(scene.spacing_m, start.temperature, start.mass_fraction())
     }
 }
 
 fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies::Body]) -> Properties {
     let transport = &scene.transport;
-    Properties {
-        density: start.density(),
-        viscosity: transport.air_viscosity_pa_s / start.density(),
-        conductivity: transport.air_conductivity_w_per_m_k,
-        heat_capacity: transport.air_heat_capacity_j_per_kg_k,
-        vapour_diffusivity: transport.vapour_diffusivity_m2_per_s,
-        pressure: start.pressure,
-        ..Properties::at_room_temperature((SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND))
+    let sound = (SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND);
+    let mut air = Properties::of(start, sound);
+    if scene.scheme == Scheme::Paper {
+        air.growth = Growth::default();
     }
+    // What the scene gives is the same at all temperatures.
+    let tell = |property: &mut f64, growth: &mut f64, told: Option<f64>| {
+        if let Some(told) = told {
+            (*property, *growth) = (told, 0.0);
+        }
+    };
+    tell(&mut air.viscosity, &mut air.growth.viscosity, transport.air_viscosity_pa_s.map(|told| told / air.density));
+    tell(&mut air.conductivity, &mut air.growth.conductivity, transport.air_conductivity_w_per_m_k);
+    tell(&mut air.vapour_diffusivity, &mut air.growth.vapour_diffusivity, transport.vapour_diffusivity_m2_per_s);
+    air.heat_capacity = transport.air_heat_capacity_j_per_kg_k.unwrap_or(air.heat_capacity);
+    air
 }
 
 /// The fastest motion to come, m/s: that of the air at the start, at inlets and at fans, or the speed sqrt(g H dT/T) with which warm
@@ -300,13 +308,23 @@ fn laws(scene: &written::Dew, solids: &[Solid]) -> Result<DropLaws, ModelError> 
 fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
     DropLaws {
         contact_angle: scene.drops.contact_angle_deg.to_radians(),
-        friction: scene.drops.friction,
+        retention: retention(scene),
+        viscosity: if scene.scheme == Scheme::Paper { 0.0 } else { scene.drops.viscosity_pa_s },
         pressure: scene.air.pressure_pa,
         surface_tension: scene.drops.surface_tension_n_per_m,
         gravity: scene.gravity_m_per_s2,
         smallest_radius: SMALLEST,
         density: WATER_DENSITY,
     }
+}
+
+/// Friction that holds a hemisphere of 2 mm on an upright pane.
+const PAPER_FRICTION: f64 = 1.3e-4;
+
+fn retention(scene: &written::Dew) -> Retention {
+    let of_paper = (scene.scheme == Scheme::Paper).then_some(PAPER_FRICTION);
+    let [receding, advancing] = scene.drops.angles_deg().map(f64::to_radians);
+    scene.drops.friction.or(of_paper).map_or(Retention::Hysteresis { receding, advancing }, Retention::Friction)
 }
 
 fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {

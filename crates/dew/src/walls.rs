@@ -178,7 +178,8 @@ impl Push<'_> {
             self.contact.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r) * factor
         };
         let weight = self.contact.of_air(near).iter().map(weight).sum::<f64>() / moment;
-        (0..3).for_each(|axis| rates.acceleration[axis] -= 2.0 * self.air.viscosity * weight * own.velocity[axis]);
+        let viscosity = self.air.viscosity_at(own.temperature);
+        (0..3).for_each(|axis| rates.acceleration[axis] -= 2.0 * viscosity * weight * own.velocity[axis]);
         rates.weights += 2.0 * weight;
     }
 }

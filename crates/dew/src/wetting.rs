@@ -122,6 +122,15 @@ impl Wetting {
         self.drops.dripped() - before
     }
 
+    /// Tells each boundary particle's part of the evaporation of a wet surface: the drops' resistance is in a row with that of air half a `spacing` thick, m.
+    fn tell_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
+        let of_air = 2.0 / spacing;
+        for (patch, (&particle, share)) in self.particles.iter().zip(&self.shares).enumerate() {
+            let of_drops = self.drops.evaporation_on(patch, share);
+            evaporation[particle as usize] = if of_drops.is_finite() { of_drops / (of_drops + of_air) } else { 1.0 };
+        }
+    }
+
     /// Water on the solids, kg: the drops, and what they have not taken over yet.
     pub fn water(&self, water_on: &[f64]) -> f64 {
         let new = self.particles.iter().zip(&self.shares).map(|(&at, share)| water_on[at as usize] - share.water);
@@ -184,19 +193,18 @@ impl Wetting {
     /// The drops as particles: middle and radius of the disk that each covers.
     pub fn set(&self) -> ParticleSet {
         let drops = self.drops.drops();
-        let height = |mass: f64| self.drops.cap().height(mass / self.drops.laws().density);
         ParticleSet {
             name: "drops".into(),
             id: drops.iter().map(|drop| drop.id).collect(),
             position: drops.iter().map(|drop| drop.position).collect(),
             velocity: drops.iter().map(|drop| drop.velocity).collect(),
-            radius: drops.iter().map(|drop| self.drops.covered_radius(drop)).collect(),
+            radius: drops.iter().map(|drop| drop.radius).collect(),
             mass: drops.iter().map(|drop| drop.mass).collect(),
             columns: vec![
                 Column {
                     name: "height",
                     unit: "m",
-                    values: Values::Scalar(drops.iter().map(|drop| height(drop.mass)).collect()),
+                    values: Values::Scalar(drops.iter().map(|drop| self.drops.height(drop)).collect()),
                 },
                 Column {
                     name: "solid",
@@ -238,6 +246,15 @@ impl Dew {
         }
         let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
         self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
+        self.tell_evaporation();
+    }
+
+    /// Drops take over what condensed or was laid on the solids, and move up to now.
+    pub fn take_over_water(&mut self) {
+        let Some(wetting) = self.wetting.as_mut() else { return };
+        let left = wetting.take_over(&mut self.state.water_on, self.state.time);
+        self.state.water.book(-left);
+        self.tell_evaporation();
     }
 
     /// Drops take over what condensed, where it is their turn; there are so many parcels of air.
@@ -245,7 +262,13 @@ impl Dew {
         let step = self.state.steps;
         let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
         wetting.step = step;
-        let left = wetting.take_over(&mut self.state.water_on, self.state.time);
-        self.state.water.book(-left);
+        self.take_over_water();
+    }
+
+    /// What the drops let evaporate, told to the solids' particles.
+    pub(crate) fn tell_evaporation(&mut self) {
+        if let Some(wetting) = &self.wetting {
+            wetting.tell_evaporation(self.scale.spacing, &mut self.evaporation);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Humid air on the graphics card does what it does on the processor.
 
-use corpuscle_dew::air::{Particle, Properties, Role};
+use corpuscle_dew::air::{Growth, Particle, Properties, Role};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{
@@ -28,7 +28,7 @@ fn vapour(temperature: f64, humidity: f64) -> f64 {
 fn room(faces: [[Face; 2]; 3]) -> Setup {
     Setup {
         settings: Settings::new(D, WARM, vapour(WARM, 0.8)),
-        air: Properties::at_room_temperature(0.5),
+        air: Properties::of(&HumidAir::with_relative_humidity(WARM, 101_325.0, 0.8), 0.5),
         // Far from where coordinates begin.
         room: Room { low: [3.0, -2.0, 5.0], high: [3.0 + SIZE[0], -2.0 + SIZE[1], 5.0 + SIZE[2]], faces },
         bodies: Vec::new(),
@@ -193,6 +193,7 @@ fn published_ways_go_as_on_the_processor() {
     for mean in [Mean::Harmonic, Mean::Arithmetic, Mean::Diffusivity] {
         let mut setup = ball(all_faces()[2].1, false);
         setup.settings.mean = mean;
+        setup.air.growth = Growth::default();
         setup.settings.condensation = Condensation::Parcel;
         setup.settings.humidity = Humidity::Relative;
         setup.settings.time_factor = 2.0;
@@ -226,6 +227,20 @@ fn water_that_lies_there_evaporates_as_on_the_processor() {
         dew
     };
     assert_as_on_the_processor("evaporation", [open(), on_card(open(), &gpu)]);
+}
+
+/// Conductivities that are averaged arithmetically, and grow with the temperature, between air and a wall that conducts little.
+#[test]
+fn air_that_conducts_better_where_it_is_warm_does_so_as_on_the_processor() {
+    let Some(gpu) = require_gpu("properties on the card") else { return };
+    for mean in [Mean::Harmonic, Mean::Arithmetic] {
+        let mut setup = ball_on_floor(all_faces()[2].1);
+        setup.settings.mean = mean;
+        // Told far from the temperatures that there are.
+        setup.air.reference_temperature += 40.0;
+        setup.bodies[0].material = Material { conductivity: 0.03, heat_capacity: 1000.0, density: 2000.0 };
+        assert_as_on_the_processor(&format!("{mean:?}"), [stirred(&setup), on_card(stirred(&setup), &gpu)]);
+    }
 }
 
 /// The speed is such that no parcel stands in a face after a whole number of steps, where rounding would tell on which side.

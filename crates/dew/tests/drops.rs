@@ -1,6 +1,6 @@
 //! Drops: nothing of them is lost, what touches is one, and friction holds them up to its bound.
 
-use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Surfaces, WATER_DENSITY};
+use corpuscle_dew::drops::{Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
 use corpuscle_model::ExactSum;
 use corpuscle_solids::{Pose, Shape, Solid};
 use proptest::prelude::*;
@@ -10,7 +10,8 @@ use std::sync::Arc;
 fn laws() -> DropLaws {
     DropLaws {
         contact_angle: 0.5 * PI,
-        friction: 1.3e-4,
+        retention: Retention::Friction(1.3e-4),
+        viscosity: 0.0,
         pressure: 101_325.0,
         surface_tension: 0.0728,
         gravity: [0.0, 0.0, -9.81],
@@ -60,7 +61,7 @@ fn assert_apart(drops: &Drops) {
     for (at, one) in all.iter().enumerate() {
         for other in &all[..at] {
             let away: f64 = (0..3).map(|axis| (one.position[axis] - other.position[axis]).powi(2)).sum();
-            let touch = drops.covered_radius(one) + drops.covered_radius(other);
+            let touch = one.radius + other.radius;
             assert!(away.sqrt() >= touch, "{one:?} touches {other:?}");
         }
     }
@@ -138,7 +139,7 @@ fn a_drop_runs_down_a_ball_and_leaves_where_it_overhangs() {
     let ball = Solid::of_shape(Shape::sphere(0.05).unwrap(), Pose::default());
     let surfaces =
         Surfaces { solids: Arc::from([ball.clone()]), sites_per_area: vec![1e10], patches: Vec::new(), room: ROOM };
-    let mut drops = Drops::new(DropLaws { friction: 1e-5, ..laws() }, surfaces, 1);
+    let mut drops = Drops::new(DropLaws { retention: Retention::Friction(1e-5), ..laws() }, surfaces, 1);
     let mass = half_ball(5e-3);
     drops.add(0, [0.01, 0.0, 0.1], [0.0; 3], mass);
     while let Some(drop) = drops.drops().first() {
@@ -212,7 +213,7 @@ fn sites_do_not_depend_on_patches_and_gather_the_water_of_their_area() {
         }
         let is_inside = |drop: &&Drop| drop.position[1].abs() < 9e-3 && drop.position[2].abs() < 9e-3;
         let inside = drops.drops().iter().filter(is_inside);
-        let radii: Vec<f64> = inside.map(|drop| drops.covered_radius(drop)).collect();
+        let radii: Vec<f64> = inside.map(|drop| drop.radius).collect();
         (first.unwrap(), radii.len() as f64, radii.iter().sum::<f64>() / radii.len() as f64)
     };
     let (a, b) = (grown(coarse, 20), grown(fine, 50));

@@ -14,7 +14,7 @@ size_m = [0.010, 0.012, 0.016]
 spacing_m = 0.002
 time_factor = 100
 air = { temperature_c = 25, relative_humidity = 0.8 }
-drops = { smallest_radius_m = 1e-5, sites_per_m2 = 1e8, friction = 1e-7 }
+drops = { smallest_radius_m = 1e-5, sites_per_m2 = 1e8, friction = 1e-7, viscosity_pa_s = 0 }
 [dew.faces]
 y_min = "periodic"
 y_max = "periodic"

@@ -119,11 +119,13 @@ pub struct Boundary {
     pub treatment: Treatment,
     /// A particle of a solid is a boundary particle where the gradient of colour, times the spacing, is above this.
     pub colour_threshold: f64,
+    /// How dense solids are for the air beside them, over air at rest, in the density correction: 1 where their particles fill them.
+    pub kappa: f64,
 }
 
 impl Default for Boundary {
     fn default() -> Self {
-        Self { treatment: Treatment::default(), colour_threshold: 0.15 }
+        Self { treatment: Treatment::default(), colour_threshold: 0.15, kappa: 1.0 }
     }
 }
 
@@ -143,7 +145,7 @@ pub enum Treatment {
 }
 
 /// How heat and vapour move.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Transport {
     /// Mean of the conductivities (in scheme `paper` diffusivities) of two particles. Left out: as the scheme has it.
@@ -155,30 +157,18 @@ pub struct Transport {
     /// Whether condensation warms. Left out: as the scheme has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latent_heat: Option<bool>,
-    /// Diffusivity of vapour in air, m2/s.
-    pub vapour_diffusivity_m2_per_s: f64,
+    /// Diffusivity of vapour in air, m2/s, the same at all temperatures. Left out: by temperature and pressure, as are the next three.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vapour_diffusivity_m2_per_s: Option<f64>,
     /// Conductivity of air, W/(m K).
-    pub air_conductivity_w_per_m_k: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub air_conductivity_w_per_m_k: Option<f64>,
     /// Heat capacity of air at constant pressure, J/(kg K).
-    pub air_heat_capacity_j_per_kg_k: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub air_heat_capacity_j_per_kg_k: Option<f64>,
     /// Viscosity of air, Pa s.
-    pub air_viscosity_pa_s: f64,
-}
-
-impl Default for Transport {
-    /// Air at 25 °C and 1 atm: vapour after Massman (Atmospheric Environment 32, 1998, 1111), the rest after Incropera &
-    /// DeWitt (2007), table A.4.
-    fn default() -> Self {
-        Self {
-            conductivity_mean: None,
-            humidity: None,
-            latent_heat: None,
-            vapour_diffusivity_m2_per_s: 2.5e-5,
-            air_conductivity_w_per_m_k: 0.026,
-            air_heat_capacity_j_per_kg_k: 1007.0,
-            air_viscosity_pa_s: 1.84e-5,
-        }
-    }
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub air_viscosity_pa_s: Option<f64>,
 }
 
 /// Mean of two conductivities.
@@ -207,8 +197,18 @@ pub enum HumidityTransport {
 pub struct Drops {
     /// Angle between drop and solid, measured inside the drop, degrees.
     pub contact_angle_deg: f64,
-    /// Friction that holds a drop, over the force with which the air presses it on the solid (mu_f).
-    pub friction: f64,
+    /// Contact angle at which a drop recedes, degrees. Left out: below the contact angle by 16 degrees times its sine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub receding_angle_deg: Option<f64>,
+    /// Contact angle at which a drop advances, degrees. Left out: above the contact angle by as much.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub advancing_angle_deg: Option<f64>,
+    /// Friction that holds a drop, over the force with which the air presses it on the solid (mu_f), in place of advancing and receding angles. Left
+    /// out: angles (`physical`), 1.3e-4 (`paper`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// Viscosity of water, Pa s, by which a drop that slides is braked.
+    pub viscosity_pa_s: f64,
     /// Surface tension of water, N/m.
     pub surface_tension_n_per_m: f64,
     /// Radius of the smallest drop that is followed by itself, m. Left out: 1e-5, or more where there would be too many drops.
@@ -218,12 +218,24 @@ pub struct Drops {
     pub sites_per_m2: f64,
 }
 
+impl Drops {
+    /// Receding and advancing angle, degrees: those of the scene, or as far from the contact angle as holds a hemisphere of 2 mm on an upright pane.
+    pub fn angles_deg(&self) -> [f64; 2] {
+        let off = 16.0 * self.contact_angle_deg.to_radians().sin();
+        let receding = self.receding_angle_deg.unwrap_or(self.contact_angle_deg - off);
+        [receding, self.advancing_angle_deg.unwrap_or(self.contact_angle_deg + off)]
+    }
+}
+
 impl Default for Drops {
-    /// Water at 20 °C on clean, not fresh, glass, whose first drops are 10 micrometres apart; friction so that a hemisphere on an upright pane slides from 2 mm on.
+    /// Water at 20 °C on clean, not fresh, glass, whose first drops are 10 micrometres apart; its viscosity after IAPWS (2008).
     fn default() -> Self {
         Self {
             contact_angle_deg: 90.0,
-            friction: 1.3e-4,
+            receding_angle_deg: None,
+            advancing_angle_deg: None,
+            friction: None,
+            viscosity_pa_s: 1.0016e-3,
             surface_tension_n_per_m: 0.0728,
             smallest_radius_m: None,
             sites_per_m2: 1e10,

@@ -199,3 +199,34 @@ fn a_scene_has_one_model() {
     let ground = refuse(&format!("{GOOD}\n[terrain.plane]"));
     assert!(ground.contains("take out [terrain], or [dew]"), "{ground}");
 }
+
+#[test]
+fn what_holds_drops_is_told_once_and_in_order() {
+    let drops = "drops = { contact_angle_deg = 60.0, friction = 1.3e-4 }";
+    for (with, key) in [
+        ("drops = { contact_angle_deg = 60, receding_angle_deg = 61 }", "receding_angle_deg = 61"),
+        ("drops = { contact_angle_deg = 60, receding_angle_deg = 0 }", "receding_angle_deg = 0"),
+        ("drops = { contact_angle_deg = 60, advancing_angle_deg = 59 }", "advancing_angle_deg = 59"),
+        ("drops = { contact_angle_deg = 60, advancing_angle_deg = 180 }", "advancing_angle_deg = 180"),
+        ("drops = { friction = 1e-4, advancing_angle_deg = 120 }", "leave one out"),
+        ("drops = { viscosity_pa_s = -1 }", "viscosity_pa_s = -1"),
+    ] {
+        assert_refused(drops, with, &["dew.drops.", key]);
+    }
+}
+
+#[test]
+fn angles_that_are_left_out_are_about_the_contact_angle() {
+    for contact_angle_deg in [1.0, 60.0, 90.0, 179.0] {
+        let [receding, advancing] =
+            corpuscle_scene::dew::Drops { contact_angle_deg, ..Default::default() }.angles_deg();
+        assert!(0.0 < receding && receding < contact_angle_deg && contact_angle_deg < advancing && advancing < 180.0);
+    }
+}
+
+#[test]
+fn pressures_are_in_pascals() {
+    let air = "air = { temperature_c = 25.0, relative_humidity = 0.6 }";
+    let in_hpa = "air = { temperature_c = 25.0, relative_humidity = 0.6, pressure_pa = 1013 }";
+    assert_refused(air, in_hpa, &["dew.air.pressure_pa = 1013", "hPa"]);
+}

@@ -34,6 +34,11 @@ pub(crate) fn is_reduced() -> bool {
     COARSER.get() > 1.0
 }
 
+/// Of what a case does at several sizes or in several ways, beginning with the smallest, what it does at its reduced size: the first only.
+pub(crate) fn reduced<T>(all: &[T]) -> &[T] {
+    if is_reduced() { &all[..1] } else { all }
+}
+
 /// By how much the case is smaller than at full size.
 pub(crate) fn reduction() -> f64 {
     COARSER.get()

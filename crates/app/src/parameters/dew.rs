@@ -73,6 +73,20 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
             [20.0, 140.0],
             "Flat drops below 90, round ones above",
         )
+        .number(
+            "dew.drops.receding_angle_deg",
+            "Receding angle",
+            "°",
+            [1.0, 140.0],
+            "The larger, up to the contact angle, the smaller the drops that slide",
+        )
+        .number(
+            "dew.drops.advancing_angle_deg",
+            "Advancing angle",
+            "°",
+            [20.0, 179.0],
+            "The smaller, down to the contact angle, the smaller the drops that slide",
+        )
         .scaled("dew.drops.friction", "Friction that holds drops", "", "Less, and smaller drops slide");
     builder
         .group("Method")

@@ -6,10 +6,11 @@ mod pairs;
 mod particle;
 mod properties;
 mod scale;
+pub mod transport;
 
 pub use arrangement::{Arrangement, Entry};
 pub use density::Sums;
 pub use pairs::{Column, Rates, sum as sum_pairs};
 pub use particle::{Particle, Role};
-pub use properties::Properties;
+pub use properties::{Growth, Properties};
 pub use scale::Scale;

@@ -24,8 +24,8 @@ pub struct Column {
     pub vapour: f64,
     /// By which the Laplacian is exact where particles stand as they do.
     pub tensor: Tensor,
-    /// Fills the second row.
-    pub unused: f64,
+    /// Kirchhoff's transform of the temperature, K: see [`Properties::transformed`].
+    pub transformed: f64,
 }
 
 /// What neighbours do to a particle.
@@ -49,7 +49,7 @@ pub struct Rates {
 /// smooth flow does not feel it; without it the noise of air that is fast for its particles' distance grows until it bursts.
 const DAMPING: f64 = 3.0;
 
-/// Sums over all pairs of air. `viscosity` and diffusivities are in m2/s.
+/// Sums over all pairs of air. Viscosity and diffusivity of a pair are those at the mean of its temperatures.
 pub fn sum(arrangement: &Arrangement, columns: &[Column], scale: &Scale, air: &Properties, rates: &mut [Rates]) {
     rates.par_chunks_mut(BLOCK).enumerate().for_each(|(block, rates)| {
         dispatch!(Level::new(), simd => sum_block(simd, arrangement, columns, scale, air, block * BLOCK, rates));
@@ -88,13 +88,15 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let zero = Lanes::splat(simd, 0.0);
     let [limit, sound, per_density] =
         [DAMPING, air.sound_speed, 1.0 / air.density].map(|value| Lanes::splat(simd, value));
+    let [grows_viscous, grows_diffusive] = [air.growth.viscosity, air.growth.vapour_diffusivity];
+    let own_above = 0.5 * own.temperature - air.reference_temperature;
     let [mut ax, mut ay, mut az, mut shear_x, mut shear_y, mut shear_z] = [zero; 6];
     let [mut spread_x, mut spread_y, mut spread_z] = [zero; 3];
     let [mut warming, mut moistening, mut weights] = [zero; 3];
     for index in list.chunks_exact(LANES) {
         let first: [usize; LANES] = std::array::from_fn(|lane| 2 * index[lane] as usize);
         let [x, y, z, u, v, w, pressure, temperature] = gather(simd, rows, first);
-        let [vapour, xx, yy, zz, xy, xz, yz, _] = gather(simd, rows, first.map(|row| row + 1));
+        let [vapour, xx, yy, zz, xy, xz, yz, transformed] = gather(simd, rows, first.map(|row| row + 1));
         let (dx, dy, dz) = (own.position[0] - x, own.position[1] - y, own.position[2] - z);
         let r_squared = dx * dx + dy * dy + dz * dz;
         let r = r_squared.max(nothing).sqrt();
@@ -114,11 +116,14 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         // Of a place to itself, which fills lists up, it is 0.
         let both = [xx + a, yy + b, zz + c, xy + d, xz + e, yz + f];
         let weight = inside * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;
-        shear_x += weight * (u - own.velocity[0]);
-        shear_y += weight * (v - own.velocity[1]);
-        shear_z += weight * (w - own.velocity[2]);
-        warming += weight * (temperature - own.temperature);
-        moistening += weight * (vapour - own.vapour);
+        // Both sides' temperature, from the reference.
+        let above = temperature * 0.5 + own_above;
+        let viscous = weight * (above * grows_viscous + 1.0);
+        shear_x += viscous * (u - own.velocity[0]);
+        shear_y += viscous * (v - own.velocity[1]);
+        shear_z += viscous * (w - own.velocity[2]);
+        warming += weight * (transformed - own.transformed);
+        moistening += weight * (above * grows_diffusive + 1.0) * (vapour - own.vapour);
         weights += weight;
     }
     let acceleration = [(ax, shear_x), (ay, shear_y), (az, shear_z)];

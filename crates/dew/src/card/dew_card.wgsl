@@ -61,7 +61,7 @@ struct Parameters {
     // m2/s, as fast as time goes; and the largest diffusivity.
     heat_diffusivity: f32,
     vapour_diffusivity: f32,
-    diffusivity: f32,
+    largest_diffusivity: f32,
     // Twice density times diffusivity of vapour, kg/(m s).
     vapour_reach: f32,
     // The ambient air, from which temperature, K, and vapour, part of the mass, are counted: also in degrees C; pressure, Pa.
@@ -96,6 +96,12 @@ struct Parameters {
     time_factor: f32,
     // What the ambient air lacks to be saturated, part of the mass.
     lacking: f32,
+    // By how much of themselves viscosity, conductivity and diffusivity of vapour grow, 1/K, from a temperature that is counted from the ambient
+    // air's, K. Twin of `Properties`.
+    grows_viscous: f32,
+    grows_conductive: f32,
+    grows_diffusive: f32,
+    reference: f32,
     // By low and high x, y, z.
     inlets: array<Inlet, 6>,
 }
@@ -115,6 +121,8 @@ const RELATIVE = 32u;
 const TENDS = 64u;
 // No air comes or goes.
 const IS_CLOSED = 128u;
+// Conductivities of air and solid are harmonically averaged; else arithmetically.
+const IS_HARMONIC = 256u;
 
 // Faces.
 const WALL = 0u;
@@ -297,6 +305,11 @@ const FAR = 3.0e38;
 const TURN = 10u;
 
 @group(0) @binding(0) var<uniform> parameters: Parameters;
+
+// Temperature from that at which the air's properties are as told, K.
+fn from_reference(temperature: f32) -> f32 {
+    return temperature - parameters.reference;
+}
 
 fn face(number: u32) -> u32 {
     return parameters.faces[number / 4u][number % 4u];

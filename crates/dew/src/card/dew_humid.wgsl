@@ -48,13 +48,18 @@ struct Flux {
 fn flux(site: Site, surface: Surface, air: Column, offset: vec3f, q: f32) -> Flux {
     let of_pair = parameters.of_pair * site.volume * (1.0 - q) * factor(air.diagonal, air.doubled, offset);
     let difference = air.temperature - surface.temperature;
+    // The air conducts as at the mean of both temperatures.
+    let grown = 1.0 + parameters.grows_conductive * from_reference(0.5 * (air.temperature + surface.temperature));
+    let mean = site.part + (1.0 - site.part) * grown;
+    let conducts = of_pair * select(mean, grown / mean, is_set(IS_HARMONIC));
     var water = 0.0;
     if is_set(DIFFUSES) && (site.flags & BOUNDARY) != 0u {
         let at_surface = surface.temperature + (1.0 - site.part) * difference;
-        water = parameters.vapour_reach * of_pair * (air.vapour - saturation(at_surface).x);
-        if water < 0.0 && surface.water <= 0.0 {
-            water = 0.0;
+        let diffuses = 1.0 + parameters.grows_diffusive * from_reference(0.5 * (air.temperature + at_surface));
+        water = parameters.vapour_reach * diffuses * of_pair * (air.vapour - saturation(at_surface).x);
+        if water < 0.0 {
+            water *= select(0.0, surface.evaporation, surface.water > 0.0);
         }
     }
-    return Flux(of_pair * site.to_air, of_pair * site.to_solid, difference, water);
+    return Flux(conducts * site.to_air, conducts * site.to_solid, difference, water);
 }

@@ -31,7 +31,8 @@ const HELD = 32u;
 // Water on a solid's particle when the host last told, and gained since, kg.
 struct Water {
     told: f32,
-    unused: f32,
+    // Part of the evaporation of a wet surface that it lets go.
+    evaporation: f32,
     gained: Account,
 }
 
@@ -57,7 +58,8 @@ struct Surface {
     all_heat: f32,
     gain: f32,
     conductance: f32,
-    unused: f32,
+    // As of `Water`.
+    evaporation: f32,
 }
 
 // A solid: its particles, what they sum up to, W, 1/s and J, and its rows where the temperature it is held at changes.

@@ -53,7 +53,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let site = own[i];
     let solid = solids[i];
     let water = max(waters[i].told + value(waters[i].gained), 0.0);
-    var surface = Surface(value(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    var surface = Surface(value(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, waters[i].evaporation);
     if (site.flags & NEAR_SURFACE) != 0u {
         let sums = from_air(site, surface);
         let step = parameters.time_factor * status.step;

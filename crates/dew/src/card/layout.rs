@@ -67,7 +67,7 @@ pub(super) struct Parameters {
     pub latent_heat: f32,
     pub heat_diffusivity: f32,
     pub vapour_diffusivity: f32,
-    pub diffusivity: f32,
+    pub largest_diffusivity: f32,
     pub vapour_reach: f32,
     pub ambient: f32,
     pub ambient_vapour: f32,
@@ -91,6 +91,10 @@ pub(super) struct Parameters {
     pub low_after: f32,
     pub time_factor: f32,
     pub lacking: f32,
+    pub grows_viscous: f32,
+    pub grows_conductive: f32,
+    pub grows_diffusive: f32,
+    pub reference: f32,
     pub inlets: [Inlet; 6],
 }
 
@@ -103,6 +107,7 @@ pub(super) const REFUSES_FAST: u32 = 16;
 pub(super) const RELATIVE: u32 = 32;
 pub(super) const TENDS: u32 = 64;
 pub(super) const IS_CLOSED: u32 = 128;
+pub(super) const IS_HARMONIC: u32 = 256;
 
 /// What the faces do.
 pub(super) const WALL: u32 = 0;
@@ -173,7 +178,7 @@ pub(super) const HELD: u32 = 32;
 #[repr(C)]
 pub(super) struct CardWater {
     pub told: f32,
-    pub unused: f32,
+    pub evaporation: f32,
     pub gained: Account,
 }
 

@@ -163,8 +163,8 @@ impl Card {
         self.status.cells
     }
 
-    /// Hands the state over.
-    pub fn send(&mut self, state: &State) {
+    /// Hands the state over, with what part of the evaporation of a wet surface the water on each particle of the solids lets go.
+    pub fn send(&mut self, state: &State, evaporation: &[f64]) {
         let air: Vec<CardParticle> = state.air.iter().map(|particle| self.origin.to_card(particle)).collect();
         let temperature = |temperature: &f64| CardSolid {
             temperature: layout::account(temperature - self.origin.temperature),
@@ -182,7 +182,7 @@ impl Card {
         };
         let rows: Vec<CardRow> = self.held_rows.iter().map(row).collect();
         write(&self.tasks.rows, bytemuck::cast_slice(&rows));
-        self.tell_water(&state.water_on);
+        self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
         let phases = state.inlet_phase.as_flattened();
         self.status = Status {
@@ -202,10 +202,14 @@ impl Card {
         self.ahead = false;
     }
 
-    /// Tells the water on the particles of the solids, kg, where drops have moved.
-    pub fn tell_water(&mut self, water: &[f64]) {
-        let told: Vec<CardWater> =
-            water.iter().map(|&water| CardWater { told: water as f32, ..CardWater::default() }).collect();
+    /// Tells the water on the particles of the solids, kg, where drops have moved, and what part of the evaporation of a wet surface it lets go.
+    pub fn tell_water(&mut self, water: &[f64], evaporation: &[f64]) {
+        let tell = |(&water, &evaporation): (&f64, &f64)| CardWater {
+            told: water as f32,
+            evaporation: evaporation as f32,
+            ..CardWater::default()
+        };
+        let told: Vec<CardWater> = water.iter().zip(evaporation).map(tell).collect();
         self.gpu.queue.write_buffer(&self.tasks.waters, 0, bytemuck::cast_slice(&told));
         self.water_told.clear();
         self.water_told.extend_from_slice(water);

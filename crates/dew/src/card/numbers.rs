@@ -8,7 +8,7 @@ use crate::faces::BEYOND;
 use crate::fan::Fan;
 use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
 use crate::room::Face;
-use crate::settings::{Condensation, Humidity};
+use crate::settings::{Condensation, Humidity, Mean};
 
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
@@ -92,7 +92,7 @@ impl Parameters {
             time_factor: settings.time_factor as f32,
             heat_diffusivity: diffusivities[0] as f32,
             vapour_diffusivity: diffusivities[1] as f32,
-            diffusivity: diffusivities.into_iter().fold(air.viscosity, f64::max) as f32,
+            largest_diffusivity: air.largest_diffusivity_at(air.reference_temperature) as f32,
             vapour_reach: (2.0 * air.density * air.vapour_diffusivity) as f32,
             ambient: settings.ambient_temperature as f32,
             ambient_vapour: settings.ambient_vapour as f32,
@@ -106,6 +106,10 @@ impl Parameters {
             saturated: humid_air::saturation_pressure(settings.ambient_temperature) as f32,
             ambient_pressure: ambient.vapour_pressure as f32,
             lacking: (saturation(settings.ambient_temperature, air) - settings.ambient_vapour) as f32,
+            grows_viscous: air.growth.viscosity as f32,
+            grows_conductive: air.growth.conductivity as f32,
+            grows_diffusive: air.growth.vapour_diffusivity as f32,
+            reference: (air.reference_temperature - settings.ambient_temperature) as f32,
             ..*self
         };
     }
@@ -165,6 +169,7 @@ fn flags(dew: &Dew) -> u32 {
         (settings.humidity == Humidity::Relative, layout::RELATIVE),
         (settings.low_utility.is_some(), layout::TENDS),
         (dew.is_closed(), layout::IS_CLOSED),
+        (settings.mean == Mean::Harmonic, layout::IS_HARMONIC),
     ];
     all.into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag)).sum()
 }

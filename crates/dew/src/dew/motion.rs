@@ -23,15 +23,15 @@ pub(crate) const FARTHEST_SPREAD: f64 = 0.05;
 pub(super) struct Extremes {
     pub speed_squared: f64,
     acceleration_squared: f64,
-    weights: f64,
+    diffusion: f64,
 }
 
 impl Extremes {
-    fn of(particle: &Particle, rates: &Rates) -> Self {
+    fn of(particle: &Particle, rates: &Rates, air: &Properties) -> Self {
         Self {
             speed_squared: particle.speed_squared(),
             acceleration_squared: particle.acceleration.iter().map(|along| along * along).sum(),
-            weights: rates.weights,
+            diffusion: air.largest_diffusivity_at(particle.temperature) * rates.weights,
         }
     }
 
@@ -41,7 +41,7 @@ impl Extremes {
         Self {
             speed_squared: larger(self.speed_squared, other.speed_squared),
             acceleration_squared: larger(self.acceleration_squared, other.acceleration_squared),
-            weights: larger(self.weights, other.weights),
+            diffusion: larger(self.diffusion, other.diffusion),
         }
     }
 }
@@ -123,7 +123,7 @@ impl Dew {
         let spreading = air.spreading * air.sound_speed * air.sound_speed;
         let kicked = state.air.par_iter_mut().zip(rates).with_min_len(1024).map(|(particle, rates)| {
             if particle.role != Role::Inside {
-                return Extremes::of(particle, rates);
+                return Extremes::of(particle, rates, air);
             }
             // Boussinesq: air lighter than the ambient air by its temperature and vapour rises.
             let lightness = virtual_temperature(particle.temperature, particle.vapour)
@@ -142,22 +142,21 @@ impl Dew {
             particle.spreading = rates.spread.map(|along| spreading * along);
             particle.temperature += step * rates.warming + drift[0];
             particle.vapour += step * rates.moistening + drift[1];
-            Extremes::of(particle, rates)
+            Extremes::of(particle, rates, air)
         });
         kicked.reduce(Extremes::default, Extremes::or)
     }
 
     pub(super) fn extremes(&self) -> Extremes {
-        let air = self.state.air.par_iter().zip(&self.rates).with_min_len(4096);
-        air.map(|(particle, rates)| Extremes::of(particle, rates)).reduce(Extremes::default, Extremes::or)
+        let (air, particles) = (&self.air, self.state.air.par_iter().zip(&self.rates).with_min_len(4096));
+        particles.map(|(particle, rates)| Extremes::of(particle, rates, air)).reduce(Extremes::default, Extremes::or)
     }
 
     /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
-        let Properties { sound_speed, viscosity, vapour_diffusivity, .. } = self.air;
-        let diffusivity = viscosity.max(vapour_diffusivity).max(self.air.heat_diffusivity());
+        let sound_speed = self.air.sound_speed;
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
-        let stiffest = stiff.iter().copied().fold(diffusivity * extremes.weights, f64::max);
+        let stiffest = stiff.iter().copied().fold(extremes.diffusion, f64::max);
         let by_sound = self.settings.cfl * self.scale.h() / (sound_speed + speed);
         let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();
         let by_diffusion = DIFFUSION_LIMIT / stiffest.max(1e-30);
@@ -221,7 +220,7 @@ fn fill_columns(
             temperature: particle.temperature,
             vapour: particle.vapour,
             tensor: normalisation::mirrored(tensors[entry.particle as usize], entry.mirrored),
-            unused: 0.0,
+            transformed: air.transformed(particle.temperature),
         }
     };
     arrangement.entries.par_iter().enumerate().with_min_len(1024).map(column).collect_into_vec(columns);

@@ -91,7 +91,7 @@ impl Dew {
 
     fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut card = Card::new(gpu, room, self)?;
-        card.send(&self.state);
+        card.send(&self.state, &self.evaporation);
         card.busy = self.gpu_seconds().unwrap_or(0.0);
         self.card = Some(card);
         Ok(())
@@ -104,7 +104,7 @@ impl Dew {
         match &mut self.card {
             None => Ok(()),
             Some(card) if !anew && card.filling()[1] >= needed => {
-                card.send(&self.state);
+                card.send(&self.state, &self.evaporation);
                 Ok(())
             }
             Some(card) => {
@@ -224,7 +224,7 @@ impl Dew {
         card.fetch_water(&mut self.state.water_on)?;
         self.tend_drops(air);
         if let Some(card) = &mut self.card {
-            card.tell_water(&self.state.water_on);
+            card.tell_water(&self.state.water_on, &self.evaporation);
         }
         Ok(())
     }

@@ -18,6 +18,7 @@ impl Dew {
             solids: &self.solids,
             temperatures: &self.state.temperatures,
             water: &self.state.water_on,
+            evaporation: &self.evaporation,
             scale: &self.scale,
             air: &self.air,
             settings: &self.settings,

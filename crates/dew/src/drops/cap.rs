@@ -27,16 +27,6 @@ impl Cap {
         self.sphere_radius(volume) * self.sin
     }
 
-    /// How far the drop reaches sideways: where it overhangs, farther than it covers.
-    pub fn reach(&self, volume: f64) -> f64 {
-        self.sphere_radius(volume) * if self.cos < 0.0 { 1.0 } else { self.sin }
-    }
-
-    /// Height above the solid.
-    pub fn height(&self, volume: f64) -> f64 {
-        self.sphere_radius(volume) * (1.0 - self.cos)
-    }
-
     /// Volume of the drop that covers a disk of this radius.
     pub fn volume(&self, covered_radius: f64) -> f64 {
         let radius = covered_radius / self.sin;
@@ -44,20 +34,38 @@ impl Cap {
     }
 }
 
+/// Height of a cap of this volume over the disk that it covers: the root of V = pi/6 h (3 a^2 + h^2) (Cardano).
+pub fn height(covered_radius: f64, volume: f64) -> f64 {
+    let (half, square) = (3.0 * volume / PI, covered_radius * covered_radius);
+    let large = (half + half.hypot(square * covered_radius)).cbrt();
+    large - square / large
+}
+
+/// Contact angle of such a cap.
+pub fn angle(covered_radius: f64, volume: f64) -> f64 {
+    2.0 * height(covered_radius, volume).atan2(covered_radius)
+}
+
+/// How far such a cap reaches sideways: where it overhangs, farther than it covers.
+pub fn reach(covered_radius: f64, volume: f64) -> f64 {
+    let height = height(covered_radius, volume);
+    if height > covered_radius { 0.5 * (covered_radius * covered_radius / height + height) } else { covered_radius }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Cap;
+    use super::{Cap, angle, height, reach};
     use std::f64::consts::PI;
 
     #[test]
     fn right_angles_make_half_balls_and_flat_ones_thin_caps() {
         let half = Cap::new(0.5 * PI);
         let volume = 2.0 / 3.0 * PI * 8.0;
-        assert!((half.covered_radius(volume) - 2.0).abs() < 1e-12 && (half.height(volume) - 2.0).abs() < 1e-12);
+        assert!((half.covered_radius(volume) - 2.0).abs() < 1e-12 && (height(2.0, volume) - 2.0).abs() < 1e-12);
         // A thin cap is a paraboloid: V = pi a^2 h / 2, h = a tan(angle / 2).
         let flat = Cap::new(0.01);
         let volume = 0.5 * PI * 0.005;
-        assert!((flat.covered_radius(volume) - 1.0).abs() < 1e-4 && (flat.height(volume) / 0.005 - 1.0).abs() < 1e-4);
+        assert!((flat.covered_radius(volume) - 1.0).abs() < 1e-4 && (height(1.0, volume) / 0.005 - 1.0).abs() < 1e-4);
     }
 
     #[test]
@@ -66,7 +74,8 @@ mod tests {
             let cap = Cap::new(degrees.to_radians());
             let volume = cap.volume(0.7);
             assert!((cap.covered_radius(volume) - 0.7).abs() < 1e-12);
-            assert_eq!(cap.reach(volume) > 0.7 + 1e-9, degrees > 90.0, "{degrees}");
+            assert!((angle(0.7, volume).to_degrees() - degrees).abs() < 1e-6, "{degrees}");
+            assert_eq!(reach(0.7, volume) > 0.7 + 1e-9, degrees > 90.0, "{degrees}");
         }
     }
 }

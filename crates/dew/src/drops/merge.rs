@@ -2,6 +2,18 @@
 
 use super::{Drop, Drops, distance2, dot};
 
+/// Sums over drops that become one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    mass: f64,
+    /// Of mass times place.
+    place: [f64; 3],
+    /// Of mass times velocity.
+    momentum: [f64; 3],
+    /// Of the squares of the covered radii.
+    area: f64,
+}
+
 impl Drops {
     /// Merges drops that touch until none do. Mass and momentum of what merges are those of its parts, and its place is the point
     /// of the surface nearest to their centre of mass.
@@ -41,15 +53,15 @@ impl Drops {
     /// Makes one drop of all that have the same head.
     fn unite(&mut self, heads: &[usize]) {
         let parts = std::mem::take(&mut self.state.drops);
-        // Sums of mass, mass x place and mass x velocity at each head.
-        let mut sums = vec![(0.0, [0.0; 3], [0.0; 3]); parts.len()];
+        let mut sums = vec![Sums::default(); parts.len()];
         let mut largest: Vec<usize> = (0..parts.len()).collect();
         for (at, (part, &head)) in parts.iter().zip(heads).enumerate() {
-            let (mass, place, momentum) = &mut sums[head];
-            *mass += part.mass;
+            let sum = &mut sums[head];
+            sum.mass += part.mass;
+            sum.area += part.radius * part.radius;
             for axis in 0..3 {
-                place[axis] += part.mass * part.position[axis];
-                momentum[axis] += part.mass * part.velocity[axis];
+                sum.place[axis] += part.mass * part.position[axis];
+                sum.momentum[axis] += part.mass * part.velocity[axis];
             }
             if part.mass > parts[largest[head]].mass {
                 largest[head] = at;
@@ -64,9 +76,11 @@ impl Drops {
         self.state.merged += (parts.len() - self.state.drops.len()) as u64;
     }
 
-    fn united(&self, largest: &Drop, (mass, place, momentum): (f64, [f64; 3], [f64; 3])) -> Drop {
+    fn united(&self, largest: &Drop, Sums { mass, place, momentum, area }: Sums) -> Drop {
         let (position, normal) = self.foot(largest.solid, place.map(|sum| sum / mass));
-        Drop { position, normal, mass, velocity: momentum.map(|sum| sum / mass), ..*largest }
+        // The line stays round the area that the parts covered, as far as the angles let it.
+        let radius = self.line.radius(area.sqrt(), mass / self.laws.density);
+        Drop { position, normal, mass, radius, velocity: momentum.map(|sum| sum / mass), ..*largest }
     }
 }
 

@@ -2,10 +2,11 @@
 //!
 //! A drop is a cap of a sphere on the surface of a solid. Water that condenses on a [`Patch`] goes to the nucleation [`Site`]s whose areas
 //! are there: to the drop that covers a site, or else to a drop at the site that is seen once it is of the smallest size. Drops that touch
-//! become one, of their mass and momentum. Friction holds a drop up to the force friction x pressure x covered area (patent CN106650064B);
-//! beyond that it slides and sweeps up what it rolls over. One thread does all of it, in a fixed order.
+//! become one, of their mass and momentum. A drop is held up to a bound, by the hysteresis of its contact angle or by friction; beyond that it slides,
+//! braked by viscosity, and sweeps up what it rolls over. One thread does all of it, in a fixed order.
 
 mod cap;
+mod contact_line;
 mod grid;
 mod map;
 mod merge;
@@ -13,11 +14,13 @@ mod motion;
 mod sites;
 mod unseen;
 
-pub use cap::Cap;
+pub use cap::{Cap, angle, height, reach};
+pub use contact_line::Retention;
 pub use map::{Portion, Share};
 pub use sites::{MOST_SITES, Site, most_per_area};
 pub use unseen::Unseen;
 
+use contact_line::ContactLine;
 use corpuscle_model::ExactSum;
 use corpuscle_solids::Solid;
 use grid::Grid;
@@ -30,8 +33,10 @@ use std::sync::Arc;
 pub struct DropLaws {
     /// Angle between drop and solid, measured inside the drop, between 0 and pi.
     pub contact_angle: f64,
-    /// Friction over the force with which the air presses the drop on the solid (mu_f).
-    pub friction: f64,
+    /// What holds a drop on an inclined solid.
+    pub retention: Retention,
+    /// Viscosity of water, Pa s, by which a sliding drop is braked.
+    pub viscosity: f64,
     /// Pressure of the air, Pa.
     pub pressure: f64,
     /// Surface tension, N/m.
@@ -87,6 +92,9 @@ pub struct Drop {
     pub velocity: [f64; 3],
     /// Mass, kg.
     pub mass: f64,
+    /// Radius of the disk that it covers, m.
+    #[serde(default)]
+    pub radius: f64,
 }
 
 /// What of the drops changes: saved and restored as it is.
@@ -123,6 +131,7 @@ const NONE: u32 = u32::MAX;
 pub struct Drops {
     laws: DropLaws,
     cap: Cap,
+    line: ContactLine,
     solids: Arc<[Solid]>,
     /// Density of nucleation sites on each solid, 1/m2.
     per_area: Vec<f64>,
@@ -166,6 +175,7 @@ impl Drops {
         let count = sites.all.len();
         Self {
             laws,
+            line: ContactLine::new(laws.retention, laws.contact_angle),
             cap,
             solids,
             per_area,
@@ -206,7 +216,8 @@ impl Drops {
         let (position, normal) = self.foot(solid, position);
         let id = self.state.next_id;
         self.state.next_id += 1;
-        self.state.drops.push(Drop { id, solid, position, normal, velocity, mass });
+        let radius = self.cap.covered_radius(mass / self.laws.density);
+        self.state.drops.push(Drop { id, solid, position, normal, velocity, mass, radius });
     }
 
     /// The point of a solid's surface nearest to a place, and the way out there.
@@ -226,19 +237,26 @@ impl Drops {
         &self.laws
     }
 
-    /// Shape of a drop.
-    pub fn cap(&self) -> Cap {
-        self.cap
+    /// Height of a drop above the solid, m.
+    pub fn height(&self, drop: &Drop) -> f64 {
+        height(drop.radius, drop.mass / self.laws.density)
     }
 
-    /// Radius of solid that a drop covers, m.
-    pub fn covered_radius(&self, drop: &Drop) -> f64 {
-        self.cap.covered_radius(drop.mass / self.laws.density)
+    /// Contact angle of a drop.
+    fn angle(&self, drop: &Drop) -> f64 {
+        angle(drop.radius, drop.mass / self.laws.density)
+    }
+
+    /// Lets the contact lines follow what came and went: each stays until its angle leaves the range of hysteresis.
+    fn fit(&mut self) {
+        for drop in &mut self.state.drops {
+            drop.radius = self.line.radius(drop.radius, drop.mass / self.laws.density);
+        }
     }
 
     /// Area that drops cover, m2.
     pub fn covered_area(&self) -> f64 {
-        self.state.drops.iter().map(|drop| std::f64::consts::PI * self.covered_radius(drop).powi(2)).sum()
+        self.state.drops.iter().map(|drop| std::f64::consts::PI * drop.radius.powi(2)).sum()
     }
 
     /// Water on the solids now, in drops that are seen or not, kg.
@@ -265,6 +283,7 @@ impl Drops {
     /// Takes back what [`Drops::state`] gave.
     pub fn restore(&mut self, state: DropState) {
         self.state = state;
+        self.fit();
         self.file();
         self.find_covered();
     }
@@ -303,6 +322,7 @@ impl Drops {
     /// leave at edges, from overhangs and out of the room.
     pub fn advance(&mut self, time: f64) {
         self.state.drops.retain(|drop| drop.mass > 0.0);
+        self.fit();
         self.merge();
         self.slide(time);
         self.find_covered();
@@ -329,7 +349,7 @@ impl Drops {
 
     /// The sites that a drop covers; some come twice.
     fn sites_under(&self, drop: &Drop, mut found: impl FnMut(usize)) {
-        let covered = self.covered_radius(drop);
+        let covered = drop.radius;
         self.sites.grid.near(drop.position, covered, 0.0, |at| {
             let site = &self.sites.all[at];
             let is_under = distance2(site.position, drop.position) < covered * covered
@@ -343,7 +363,7 @@ impl Drops {
 
     /// Files the drops by place and reach.
     fn file(&mut self) {
-        let reach = |drop: &Drop| self.cap.reach(drop.mass / self.laws.density);
+        let reach = |drop: &Drop| reach(drop.radius, drop.mass / self.laws.density);
         self.reach = self.state.drops.iter().map(reach).collect();
         self.grid = Grid::new(self.state.drops.iter().map(|drop| drop.position), &self.reach);
     }
@@ -357,7 +377,7 @@ fn smallest_mass(laws: &DropLaws) -> f64 {
 /// How far the smallest drop that is seen reaches sideways, m.
 pub fn smallest_reach(laws: &DropLaws) -> f64 {
     let cap = Cap::new(laws.contact_angle);
-    cap.reach(cap.volume(laws.smallest_radius))
+    reach(laws.smallest_radius, cap.volume(laws.smallest_radius))
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

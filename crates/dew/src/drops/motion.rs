@@ -1,6 +1,6 @@
 //! Drops that stay, slide and leave.
 
-use super::{Drop, Drops, dot, without};
+use super::{Drop, Drops, Retention, contact_line, dot, without};
 use std::f64::consts::PI;
 
 /// A drop moves by at most this part of the radius that it covers before it is looked for what it met.
@@ -35,6 +35,7 @@ impl Drops {
             let mut swept = 0.0;
             self.sites_under(drop, |site| swept += std::mem::take(&mut unseen[site]));
             drop.mass += swept;
+            drop.radius = self.line.radius(drop.radius, drop.mass / self.laws.density);
         }
         (self.state.drops, self.state.unseen) = (drops, unseen);
     }
@@ -58,43 +59,72 @@ impl Drops {
     /// Whether a drop falls from an overhang: its weight is more than surface tension holds at its rim,
     /// 2 pi a gamma sin(angle) (Tate 1864, with the contact angle at the solid).
     fn falls(&self, drop: &Drop) -> bool {
-        let rim = 2.0 * PI * self.covered_radius(drop);
+        let rim = 2.0 * PI * drop.radius;
         drop.mass * dot(self.laws.gravity, drop.normal)
             > rim * self.laws.surface_tension * self.laws.contact_angle.sin()
     }
 
-    /// Deceleration by friction at its bound, friction x pressure x covered area / mass (patent CN106650064B).
-    fn friction(&self, drop: &Drop) -> f64 {
-        self.laws.friction * self.laws.pressure * PI * self.covered_radius(drop).powi(2) / drop.mass
+    /// The largest deceleration by what holds a drop, m/s2: see [`Retention`].
+    fn retention(&self, drop: &Drop) -> f64 {
+        let force = match self.laws.retention {
+            Retention::Hysteresis { receding, advancing } => {
+                2.0 * drop.radius * self.laws.surface_tension * (receding.cos() - advancing.cos())
+            }
+            Retention::Friction(friction) => friction * self.laws.pressure * PI * drop.radius.powi(2),
+        };
+        force / drop.mass
+    }
+
+    /// Rate at which viscosity brakes a drop, 1/s.
+    fn braking(&self, drop: &Drop) -> f64 {
+        contact_line::drag(drop.radius, self.angle(drop), self.laws.viscosity) / drop.mass
     }
 
     /// The time in which a drop moves by [`LONGEST_WAY`], s; without end where it stays.
     fn longest_step(&self, drop: &Drop) -> f64 {
         let along = without(self.laws.gravity, drop.normal);
         let speed = dot(drop.velocity, drop.velocity).sqrt();
-        let faster = (dot(along, along).sqrt() - self.friction(drop)).max(0.0);
+        let faster = (dot(along, along).sqrt() - self.retention(drop)).max(0.0);
         if speed == 0.0 && faster == 0.0 {
             return f64::INFINITY;
         }
-        let way = LONGEST_WAY * self.covered_radius(drop);
-        2.0 * way / (speed + (speed * speed + 2.0 * faster * way).sqrt())
+        let way = LONGEST_WAY * drop.radius;
+        let unbraked = 2.0 * way / (speed + (speed * speed + 2.0 * faster * way).sqrt());
+        // It comes to no more than its final speed.
+        let fastest = speed.max(faster / self.braking(drop));
+        if fastest.is_finite() { unbraked.max(way / fastest) } else { unbraked }
     }
 
-    /// Velocity of a drop after a time: friction works against it, and at rest against what would move the drop, up to its bound.
-    fn velocity_after(&self, drop: &Drop, time: f64) -> [f64; 3] {
+    /// Velocity of a drop after a time, and its mean until then, m/s: what holds the drop works against its motion, and at rest against what would move it,
+    /// up to its bound; viscosity brakes it. Exact where it goes on straight.
+    fn velocity_after(&self, drop: &Drop, time: f64) -> [[f64; 3]; 2] {
         let along = without(self.laws.gravity, drop.normal);
-        let free: [f64; 3] = std::array::from_fn(|axis| drop.velocity[axis] + time * along[axis]);
-        let (speed, held) = (dot(free, free).sqrt(), time * self.friction(drop));
-        if speed <= held { [0.0; 3] } else { free.map(|x| x * (1.0 - held / speed)) }
+        let braked = time * self.braking(drop);
+        // Means of exp(-b t) over the time, and of its integral over the time: without cancellation where hardly anything is braked.
+        let [first, second] = if braked > 1e-4 {
+            let first = -(-braked).exp_m1() / braked;
+            [first, (1.0 - first) / braked]
+        } else {
+            [1.0 - 0.5 * braked, 0.5 - braked / 6.0]
+        };
+        let left = (-braked).exp();
+        let free: [f64; 3] = std::array::from_fn(|axis| left * drop.velocity[axis] + first * time * along[axis]);
+        let (speed, held) = (dot(free, free).sqrt(), self.retention(drop));
+        if speed <= first * time * held {
+            return [[0.0; 3]; 2];
+        }
+        let faster: [f64; 3] = std::array::from_fn(|axis| along[axis] - held * free[axis] / speed);
+        let after = std::array::from_fn(|axis| left * drop.velocity[axis] + first * time * faster[axis]);
+        let mean = std::array::from_fn(|axis| first * drop.velocity[axis] + second * time * faster[axis]);
+        [after, mean]
     }
 
     /// The drop after a step along the surface; none where it leaves at an edge or out of the room.
     fn moved(&self, drop: Drop, step: f64) -> Option<Drop> {
-        let velocity = self.velocity_after(&drop, step);
+        let [velocity, mean] = self.velocity_after(&drop, step);
         if velocity == [0.0; 3] {
             return Some(Drop { velocity, ..drop });
         }
-        let mean: [f64; 3] = std::array::from_fn(|axis| 0.5 * (drop.velocity[axis] + velocity[axis]));
         let ahead = std::array::from_fn(|axis| drop.position[axis] + step * mean[axis]);
         // A solid that stands in the way takes the drop over.
         let mut others = (0..self.solids.len() as u32).filter(|&other| other != drop.solid);

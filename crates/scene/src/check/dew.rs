@@ -13,6 +13,10 @@ const ABSOLUTE_ZERO: f64 = -273.15;
 const COLDEST_AIR: f64 = -100.0;
 const WARMEST_AIR: f64 = 100.0;
 
+/// Pressures at which air conducts heat the same whatever its pressure, and vapour diffuses as 1/p, Pa.
+const LEAST_PRESSURE: f64 = 1e4;
+const LARGEST_PRESSURE: f64 = 1e6;
+
 /// More particles than this do not fit in the memory of usual machines.
 const MOST_PARTICLES: f64 = 1e8;
 
@@ -35,6 +39,7 @@ impl Check {
         self.faces(dew)?;
         dew.fan.iter().enumerate().try_for_each(|(row, fan)| self.fan(&format!("dew.fan.{row}"), fan, dew))?;
         self.above("dew.boundary.colour_threshold", dew.boundary.colour_threshold, 0.0)?;
+        self.above("dew.boundary.kappa", dew.boundary.kappa, 0.0)?;
         self.transport(&dew.transport)?;
         self.drops(&dew.drops)?;
         if let Some(low_utility) = &dew.low_utility {
@@ -52,7 +57,11 @@ impl Check {
         ];
         self.exactly_one("dew.air", &given)?;
         self.humidity("dew.air", air.temperature_c, [air.relative_humidity, air.dew_point_c, air.mixing_ratio])?;
-        self.above("dew.air.pressure_pa", air.pressure_pa, 0.0)
+        self.require("dew.air.pressure_pa", (LEAST_PRESSURE..=LARGEST_PRESSURE).contains(&air.pressure_pa), || {
+            format!(
+                "must be from {LEAST_PRESSURE} to {LARGEST_PRESSURE}: it is in Pa, not in hPa; beyond, the laws of how air conducts do not hold"
+            )
+        })
     }
 
     /// A temperature is one that can be.
@@ -150,9 +159,13 @@ impl Check {
             ("air_heat_capacity_j_per_kg_k", transport.air_heat_capacity_j_per_kg_k),
         ];
         for (name, value) in above_zero {
-            self.above(&format!("dew.transport.{name}"), value, 0.0)?;
+            if let Some(value) = value {
+                self.above(&format!("dew.transport.{name}"), value, 0.0)?;
+            }
         }
-        self.at_least("dew.transport.air_viscosity_pa_s", transport.air_viscosity_pa_s, 0.0)
+        transport
+            .air_viscosity_pa_s
+            .map_or(Ok(()), |value| self.at_least("dew.transport.air_viscosity_pa_s", value, 0.0))
     }
 
     fn drops(&self, drops: &Drops) -> Checked {
@@ -160,7 +173,19 @@ impl Check {
         self.require("dew.drops.contact_angle_deg", angle > 0.0 && angle < 180.0, || {
             "must be between 0 and 180, both excluded".into()
         })?;
-        self.at_least("dew.drops.friction", drops.friction, 0.0)?;
+        let [receding, advancing] = drops.angles_deg();
+        self.require("dew.drops.receding_angle_deg", receding > 0.0 && receding <= angle, || {
+            format!("must be above 0 and at most contact_angle_deg, {angle}: a drop recedes at a smaller angle than it rests at")
+        })?;
+        self.require("dew.drops.advancing_angle_deg", advancing < 180.0 && advancing >= angle, || {
+            format!("must be at least contact_angle_deg, {angle}, and below 180: a drop advances at a larger angle than it rests at")
+        })?;
+        let are_given = drops.receding_angle_deg.is_some() || drops.advancing_angle_deg.is_some();
+        self.require("dew.drops.friction", drops.friction.is_none() || !are_given, || {
+            "stands beside receding_angle_deg or advancing_angle_deg: a drop is held by friction or by its angles; leave one out".into()
+        })?;
+        drops.friction.map_or(Ok(()), |friction| self.at_least("dew.drops.friction", friction, 0.0))?;
+        self.at_least("dew.drops.viscosity_pa_s", drops.viscosity_pa_s, 0.0)?;
         self.above("dew.drops.surface_tension_n_per_m", drops.surface_tension_n_per_m, 0.0)?;
         self.above("dew.drops.sites_per_m2", drops.sites_per_m2, 0.0)?;
         drops.smallest_radius_m.map_or(Ok(()), |radius| self.above("dew.drops.smallest_radius_m", radius, 0.0))

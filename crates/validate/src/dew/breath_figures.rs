@@ -88,15 +88,13 @@ fn grow(seed: u64, patches: u32) -> Grown {
 
 /// Part of the plate that the drops cover which began first: the later ones between them are much smaller than the mean.
 fn covered_by_first(drops: &Drops, mean: f64) -> f64 {
-    let radii = drops.drops().iter().map(|drop| drops.covered_radius(drop));
+    let radii = drops.drops().iter().map(|drop| drop.radius);
     radii.filter(|&radius| radius > LATER * mean).map(|radius| PI * radius * radius).sum::<f64>() / (SIDE * SIDE)
 }
 
 /// Mean radius of the water's drops, weighted by their mass, m; 0 where none is seen.
 fn mean_radius(drops: &Drops) -> f64 {
-    let (sum, mass) = drops
-        .drops()
-        .iter()
-        .fold((0.0, 0.0), |(sum, mass), drop| (sum + drop.mass * drops.covered_radius(drop), mass + drop.mass));
+    let (sum, mass) =
+        drops.drops().iter().fold((0.0, 0.0), |(sum, mass), drop| (sum + drop.mass * drop.radius, mass + drop.mass));
     if mass > 0.0 { sum / mass } else { 0.0 }
 }

@@ -25,7 +25,7 @@ spacing_m = 0.002
 time_factor = 40
 buoyancy = false
 air = { temperature_c = 25, relative_humidity = 0.8, velocity_m_per_s = [0, 0, -0.07] }
-drops = { smallest_radius_m = 1.5e-5, sites_per_m2 = 2e7, friction = 2e-6 }
+drops = { smallest_radius_m = 1.5e-5, sites_per_m2 = 2e7, friction = 2e-6, viscosity_pa_s = 2e-5 }
 [dew.faces]
 y_min = "periodic"
 y_max = "periodic"

@@ -6,12 +6,14 @@ mod boundaries;
 mod breath_figures;
 mod cavity;
 mod dew_point;
+mod evaporation;
 mod fick;
 mod film;
 mod ledger;
 mod low_utility;
 mod packings;
 mod pane;
+mod properties;
 mod slide;
 mod two_slabs;
 
@@ -28,8 +30,10 @@ pub(crate) const CASES: &[Case] = &[
     fick::FICK,
     film::FILM,
     packings::PACKINGS,
+    properties::PROPERTIES,
     cavity::CAVITY,
     adiabatic::ADIABATIC,
+    evaporation::EVAPORATION,
     ledger::LEDGER,
     boundaries::BOUNDARIES,
     slide::SLIDE,
