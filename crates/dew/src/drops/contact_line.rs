@@ -52,7 +52,7 @@ const MOLECULE: f64 = 1e-9;
 
 /// Force that brakes a sliding drop over its speed, N s/m: viscous stress in the wedge at its contact line, 2 sin^2 / (angle - sin cos) viscosity U ln(a / l) for
 /// a length of line (Huh & Scriven, Journal of Colloid and Interface Science 35, 1971, 85; for small angles 3 / angle, de Gennes 1985), along the
-/// way it slides and round a circle. Kim, Lee & Kang (Journal of Colloid and Interface Science 247, 2002, 372) found speeds to go by it.
+/// way it slides and round a circle. So Kim, Lee & Kang (Journal of Colloid and Interface Science 247, 2002, 372) balance weight, retention and drag.
 pub(super) fn drag(radius: f64, angle: f64, viscosity: f64) -> f64 {
     let (sin, cos) = angle.sin_cos();
     let wedge = 2.0 * sin * sin / (angle - sin * cos);
@@ -60,7 +60,7 @@ pub(super) fn drag(radius: f64, angle: f64, viscosity: f64) -> f64 {
 }
 
 /// Vapour that leaves a drop, over diffusivity, difference of density and covered radius (Hu & Larson, Journal of Physical Chemistry B 106, 2002, 1334,
-/// equation 19, fitted up to a right angle).
+/// fitted up to a right angle).
 pub(super) fn evaporation(angle: f64) -> f64 {
     PI * (0.27 * angle * angle + 1.30)
 }
