@@ -64,27 +64,31 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
         let hint = "Gravity along x or y tilts the box: drops slide that way, and air sinks that way where it may";
         builder.number(&*path, &format!("Gravity along {name}"), "m/s²", [-9.81, 9.81], hint).live(&path, tilt);
     }
+    // Where a scene gives them, the contact angle stays between the other two.
+    let contact = dew.drops.contact_angle_deg;
+    let [receding, advancing] =
+        [dew.drops.receding_angle_deg.unwrap_or(20.0), dew.drops.advancing_angle_deg.unwrap_or(140.0)];
     builder
         .group("Drops")
         .number(
             "dew.drops.contact_angle_deg",
             "Contact angle",
             "°",
-            [20.0, 140.0],
+            [receding, advancing],
             "Flat drops below 90, round ones above",
         )
         .number(
             "dew.drops.receding_angle_deg",
             "Receding angle",
             "°",
-            [1.0, 140.0],
+            [0.1 * contact, contact],
             "The larger, up to the contact angle, the smaller the drops that slide",
         )
         .number(
             "dew.drops.advancing_angle_deg",
             "Advancing angle",
             "°",
-            [20.0, 179.0],
+            [contact, 0.5 * (contact + 180.0)],
             "The smaller, down to the contact angle, the smaller the drops that slide",
         )
         .scaled("dew.drops.friction", "Friction that holds drops", "", "Less, and smaller drops slide");

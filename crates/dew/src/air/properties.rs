@@ -32,7 +32,7 @@ pub struct Properties {
     pub spreading: f64,
 }
 
-/// By how much of themselves properties grow per kelvin, 1/K. A straight line is within one percent of the laws of [`transport`] up to 60 K off.
+/// By how much of themselves properties grow per kelvin, 1/K. A straight line is within half a percent of the laws of [`transport`] up to 40 K off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     /// Of the viscosity.
@@ -139,7 +139,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn straight_lines_are_near_the_laws(celsius in 0.0..40.0, off in -60.0..60.0, humidity in 0.0..1.0, pressure in 6e4..1.1e5) {
+        fn straight_lines_are_near_the_laws(celsius in 0.0..40.0, off in -40.0..40.0, humidity in 0.0..1.0, pressure in 6e4..1.1e5) {
             let air = HumidAir::with_relative_humidity(ZERO_CELSIUS + celsius, pressure, humidity);
             let there = air.temperature + off;
             let properties = Properties::of(&air, 1.0);
@@ -150,7 +150,7 @@ mod tests {
                 properties.vapour_diffusivity_at(there) / diffuses,
             ];
             for error in errors {
-                prop_assert!((error - 1.0).abs() < 0.01, "{error}");
+                prop_assert!((error - 1.0).abs() < 0.005, "{error}");
             }
         }
 
