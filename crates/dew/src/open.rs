@@ -1,6 +1,6 @@
 //! From a scene to a model.
 
-use crate::air::{Growth, Properties};
+use crate::air::{Properties, TemperatureCoefficients};
 use crate::bodies;
 use crate::dew::{Dew, Setup};
 use crate::drops::{DropLaws, MOST_SITES, Retention, WATER_DENSITY, most_per_area, smallest_reach};
@@ -205,17 +205,21 @@ fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bod
     let sound = (SOUND_OVER_MOTION * fastest(scene, start, room, bodies)).max(LEAST_SOUND);
     let mut air = Properties::of(start, sound);
     if scene.scheme == Scheme::Paper {
-        air.growth = Growth::default();
+        air.coefficients = TemperatureCoefficients::default();
     }
     // What the scene gives is the same at all temperatures.
-    let tell = |property: &mut f64, growth: &mut f64, told: Option<f64>| {
+    let tell = |property: &mut f64, coefficient: &mut f64, told: Option<f64>| {
         if let Some(told) = told {
-            (*property, *growth) = (told, 0.0);
+            (*property, *coefficient) = (told, 0.0);
         }
     };
-    tell(&mut air.viscosity, &mut air.growth.viscosity, transport.air_viscosity_pa_s.map(|told| told / air.density));
-    tell(&mut air.conductivity, &mut air.growth.conductivity, transport.air_conductivity_w_per_m_k);
-    tell(&mut air.vapour_diffusivity, &mut air.growth.vapour_diffusivity, transport.vapour_diffusivity_m2_per_s);
+    tell(
+        &mut air.viscosity,
+        &mut air.coefficients.viscosity,
+        transport.air_viscosity_pa_s.map(|told| told / air.density),
+    );
+    tell(&mut air.conductivity, &mut air.coefficients.conductivity, transport.air_conductivity_w_per_m_k);
+    tell(&mut air.vapour_diffusivity, &mut air.coefficients.vapour_diffusivity, transport.vapour_diffusivity_m2_per_s);
     air.heat_capacity = transport.air_heat_capacity_j_per_kg_k.unwrap_or(air.heat_capacity);
     air
 }
@@ -322,7 +326,8 @@ fn laws_but_smallest(scene: &written::Dew) -> DropLaws {
 const PAPER_FRICTION: f64 = 1.3e-4;
 
 fn retention(scene: &written::Dew) -> Retention {
-    let of_paper = (scene.scheme == Scheme::Paper).then_some(PAPER_FRICTION);
+    let has_angles = scene.drops.receding_angle_deg.is_some() || scene.drops.advancing_angle_deg.is_some();
+    let of_paper = (scene.scheme == Scheme::Paper && !has_angles).then_some(PAPER_FRICTION);
     let [receding, advancing] = scene.drops.angles_deg().map(f64::to_radians);
     scene.drops.friction.or(of_paper).map_or(Retention::Hysteresis { receding, advancing }, Retention::Friction)
 }
@@ -360,4 +365,32 @@ fn warnings(scene: &written::Dew, bodies: &[bodies::Body]) -> Vec<String> {
         warnings.push(format!("treatment = \"none\": nothing keeps the air out of the solid \"{}\"", solid.name));
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_scene::Scene;
+
+    fn held(scheme: &str, drops: &str) -> Retention {
+        let text = format!(
+            "run.until_s = 1\n[dew]\nsize_m = [0.01, 0.01, 0.01]\nspacing_m = 0.002\nscheme = \"{scheme}\"\n\
+             air = {{ temperature_c = 25, relative_humidity = 0.5 }}\ndrops = {{ {drops} }}\n"
+        );
+        retention(Scene::parse(&text, "test", &[]).unwrap().dew().unwrap())
+    }
+
+    #[test]
+    fn drops_are_held_as_the_scene_says_or_else_the_scheme() {
+        let by_angles = |receding: f64, advancing: f64| Retention::Hysteresis {
+            receding: receding.to_radians(),
+            advancing: advancing.to_radians(),
+        };
+        assert_eq!(held("physical", ""), by_angles(74.0, 106.0));
+        assert_eq!(held("paper", ""), Retention::Friction(PAPER_FRICTION));
+        for scheme in ["physical", "paper"] {
+            assert_eq!(held(scheme, "friction = 1e-4"), Retention::Friction(1e-4));
+            assert_eq!(held(scheme, "receding_angle_deg = 80, advancing_angle_deg = 95"), by_angles(80.0, 95.0));
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Humid air on the graphics card does what it does on the processor.
 
-use corpuscle_dew::air::{Growth, Particle, Properties, Role};
+use corpuscle_dew::air::{Particle, Properties, Role, TemperatureCoefficients};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{
@@ -193,7 +193,7 @@ fn published_ways_go_as_on_the_processor() {
     for mean in [Mean::Harmonic, Mean::Arithmetic, Mean::Diffusivity] {
         let mut setup = ball(all_faces()[2].1, false);
         setup.settings.mean = mean;
-        setup.air.growth = Growth::default();
+        setup.air.coefficients = TemperatureCoefficients::default();
         setup.settings.condensation = Condensation::Parcel;
         setup.settings.humidity = Humidity::Relative;
         setup.settings.time_factor = 2.0;

@@ -12,5 +12,5 @@ pub use arrangement::{Arrangement, Entry};
 pub use density::Sums;
 pub use pairs::{Column, Rates, sum as sum_pairs};
 pub use particle::{Particle, Role};
-pub use properties::{Growth, Properties};
+pub use properties::{Properties, TemperatureCoefficients};
 pub use scale::Scale;

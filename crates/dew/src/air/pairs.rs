@@ -88,7 +88,8 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let zero = Lanes::splat(simd, 0.0);
     let [limit, sound, per_density] =
         [DAMPING, air.sound_speed, 1.0 / air.density].map(|value| Lanes::splat(simd, value));
-    let [grows_viscous, grows_diffusive] = [air.growth.viscosity, air.growth.vapour_diffusivity];
+    let [viscosity_per_kelvin, diffusivity_per_kelvin] =
+        [air.coefficients.viscosity, air.coefficients.vapour_diffusivity];
     let own_above = 0.5 * own.temperature - air.reference_temperature;
     let [mut ax, mut ay, mut az, mut shear_x, mut shear_y, mut shear_z] = [zero; 6];
     let [mut spread_x, mut spread_y, mut spread_z] = [zero; 3];
@@ -118,12 +119,12 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         let weight = inside * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;
         // Both sides' temperature, from the reference.
         let above = temperature * 0.5 + own_above;
-        let viscous = weight * (above * grows_viscous + 1.0);
+        let viscous = weight * (above * viscosity_per_kelvin + 1.0);
         shear_x += viscous * (u - own.velocity[0]);
         shear_y += viscous * (v - own.velocity[1]);
         shear_z += viscous * (w - own.velocity[2]);
         warming += weight * (transformed - own.transformed);
-        moistening += weight * (above * grows_diffusive + 1.0) * (vapour - own.vapour);
+        moistening += weight * (above * diffusivity_per_kelvin + 1.0) * (vapour - own.vapour);
         weights += weight;
     }
     let acceleration = [(ax, shear_x), (ay, shear_y), (az, shear_z)];

@@ -20,8 +20,8 @@ pub struct Properties {
     pub vapour_diffusivity: f64,
     /// Temperature at which these hold, K.
     pub reference_temperature: f64,
-    /// How they grow from there.
-    pub growth: Growth,
+    /// How they change from there.
+    pub coefficients: TemperatureCoefficients,
     /// Pressure, Pa.
     pub pressure: f64,
     /// Artificial speed of sound, m/s: about ten times the fastest motion keeps the density within a percent (Monaghan 1994).
@@ -32,9 +32,9 @@ pub struct Properties {
     pub spreading: f64,
 }
 
-/// By how much of themselves properties grow per kelvin, 1/K. A straight line is within half a percent of the laws of [`transport`] up to 40 K off.
+/// Temperature coefficients of properties, 1/K. A straight line is within half a percent of the laws of [`transport`] up to 40 K off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Growth {
+pub struct TemperatureCoefficients {
     /// Of the viscosity.
     pub viscosity: f64,
     /// Of the conductivity of heat.
@@ -54,7 +54,7 @@ impl Properties {
             heat_capacity: 1007.0,
             vapour_diffusivity: 2.5e-5,
             reference_temperature: ZERO_CELSIUS + 25.0,
-            growth: Growth::default(),
+            coefficients: TemperatureCoefficients::default(),
             pressure: 101_325.0,
             sound_speed,
             spreading: 1.0,
@@ -73,10 +73,10 @@ impl Properties {
             heat_capacity: transport::heat_capacity(air.mass_fraction()),
             vapour_diffusivity: diffuses(temperature),
             reference_temperature: temperature,
-            growth: Growth {
-                viscosity: transport::growth(transport::viscosity, temperature),
-                conductivity: transport::growth(transport::conductivity, temperature),
-                vapour_diffusivity: transport::growth(diffuses, temperature),
+            coefficients: TemperatureCoefficients {
+                viscosity: transport::temperature_coefficient(transport::viscosity, temperature),
+                conductivity: transport::temperature_coefficient(transport::conductivity, temperature),
+                vapour_diffusivity: transport::temperature_coefficient(diffuses, temperature),
             },
             pressure,
             sound_speed,
@@ -91,22 +91,22 @@ impl Properties {
 
     /// Conductivity of heat at a temperature, W/(m K).
     pub fn conductivity_at(&self, temperature: f64) -> f64 {
-        self.conductivity * self.grown(self.growth.conductivity, temperature)
+        self.conductivity * self.factor(self.coefficients.conductivity, temperature)
     }
 
     /// Diffusivity of vapour at a temperature, m2/s.
     pub fn vapour_diffusivity_at(&self, temperature: f64) -> f64 {
-        self.vapour_diffusivity * self.grown(self.growth.vapour_diffusivity, temperature)
+        self.vapour_diffusivity * self.factor(self.coefficients.vapour_diffusivity, temperature)
     }
 
     /// Kinematic viscosity at a temperature, m2/s.
     pub fn viscosity_at(&self, temperature: f64) -> f64 {
-        self.viscosity * self.grown(self.growth.viscosity, temperature)
+        self.viscosity * self.factor(self.coefficients.viscosity, temperature)
     }
 
     /// The largest of viscosity and diffusivities at a temperature, m2/s.
     pub fn largest_diffusivity_at(&self, temperature: f64) -> f64 {
-        let heat = self.heat_diffusivity() * self.grown(self.growth.conductivity, temperature);
+        let heat = self.heat_diffusivity() * self.factor(self.coefficients.conductivity, temperature);
         self.viscosity_at(temperature).max(self.vapour_diffusivity_at(temperature)).max(heat)
     }
 
@@ -114,11 +114,11 @@ impl Properties {
     /// by its differences (Carslaw & Jaeger 1959, section 1.6).
     pub fn transformed(&self, temperature: f64) -> f64 {
         let above = temperature - self.reference_temperature;
-        above * (1.0 + 0.5 * self.growth.conductivity * above)
+        above * (1.0 + 0.5 * self.coefficients.conductivity * above)
     }
 
-    fn grown(&self, growth: f64, temperature: f64) -> f64 {
-        1.0 + growth * (temperature - self.reference_temperature)
+    fn factor(&self, coefficient: f64, temperature: f64) -> f64 {
+        1.0 + coefficient * (temperature - self.reference_temperature)
     }
 
     /// What matters for conduction at a temperature, K.

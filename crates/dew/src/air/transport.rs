@@ -26,8 +26,8 @@ pub fn heat_capacity(vapour: f64) -> f64 {
     1006.0 * (1.0 - vapour) + 1860.0 * vapour
 }
 
-/// By how much of itself a property grows with temperature, 1/K: (df/dT)/f.
-pub fn growth(property: impl Fn(f64) -> f64, temperature: f64) -> f64 {
+/// Temperature coefficient of a property, 1/K: (df/dT)/f.
+pub fn temperature_coefficient(property: impl Fn(f64) -> f64, temperature: f64) -> f64 {
     let step = 0.1;
     (property(temperature + step) - property(temperature - step)) / (2.0 * step * property(temperature))
 }
@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn growth_is_that_of_a_power() {
-        assert!((growth(|t| t.powf(1.81), 300.0) - 1.81 / 300.0).abs() < 1e-8);
+    fn the_coefficient_of_a_power_is_its_exponent_over_the_temperature() {
+        assert!((temperature_coefficient(|t| t.powf(1.81), 300.0) - 1.81 / 300.0).abs() < 1e-8);
     }
 }

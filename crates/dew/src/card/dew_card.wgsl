@@ -96,11 +96,11 @@ struct Parameters {
     time_factor: f32,
     // What the ambient air lacks to be saturated, part of the mass.
     lacking: f32,
-    // By how much of themselves viscosity, conductivity and diffusivity of vapour grow, 1/K, from a temperature that is counted from the ambient
-    // air's, K. Twin of `Properties`.
-    grows_viscous: f32,
-    grows_conductive: f32,
-    grows_diffusive: f32,
+    // Temperature coefficients of viscosity, conductivity and diffusivity of vapour, 1/K, from a reference temperature that is counted from the
+    // ambient air's, K. Twin of `Properties`.
+    viscosity_per_kelvin: f32,
+    conductivity_per_kelvin: f32,
+    diffusivity_per_kelvin: f32,
     reference: f32,
     // By low and high x, y, z.
     inlets: array<Inlet, 6>,

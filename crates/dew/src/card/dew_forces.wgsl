@@ -65,10 +65,10 @@ fn of_air(i: u32, own: Column) -> Rates {
                     let even = factor(own.diagonal + near.diagonal, doubled, away);
                     let weight = (1.0 - q) * even * parameters.of_laplacian;
                     let above = from_reference(0.5 * (near.temperature + own.temperature));
-                    shear += weight * (1.0 + parameters.grows_viscous * above) * (velocity - own.velocity);
+                    shear += weight * (1.0 + parameters.viscosity_per_kelvin * above) * (velocity - own.velocity);
                     // Differences of Kirchhoff's transforms, without losing the digits of small ones.
-                    warming += weight * (1.0 + parameters.grows_conductive * above) * (near.temperature - own.temperature);
-                    moistening += weight * (1.0 + parameters.grows_diffusive * above) * (near.humidity - own.humidity);
+                    warming += weight * (1.0 + parameters.conductivity_per_kelvin * above) * (near.temperature - own.temperature);
+                    moistening += weight * (1.0 + parameters.diffusivity_per_kelvin * above) * (near.humidity - own.humidity);
                     weights += weight;
                 }
             }
@@ -161,7 +161,7 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
     // Air at a wall is at rest: viscosity against a wall half way between the air and the site.
     let weight = 2.0 * parameters.of_laplacian * stuck;
     (*rates).acceleration += pressed(own, corrected) + pressed(own, ghostly) + repelled
-        - 2.0 * parameters.viscosity * (1.0 + parameters.grows_viscous * from_reference(own.temperature)) * weight * own.velocity;
+        - 2.0 * parameters.viscosity * (1.0 + parameters.viscosity_per_kelvin * from_reference(own.temperature)) * weight * own.velocity;
     (*rates).spread += corrected + ghostly;
     (*rates).weights += 2.0 * weight;
     return given;
@@ -222,9 +222,9 @@ fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial
     }
     let speed = dot((*particle).velocity, (*particle).velocity);
     let acceleration = dot((*particle).acceleration, (*particle).acceleration);
-    let grows = max(max(parameters.grows_viscous, parameters.grows_conductive), parameters.grows_diffusive);
-    let grown = max(1.0 + grows * from_reference(own.temperature), 1.0);
-    let stiffest = max(parameters.largest_diffusivity * grown * rates.weights, given.stiffness);
+    let steepest = max(max(parameters.viscosity_per_kelvin, parameters.conductivity_per_kelvin), parameters.diffusivity_per_kelvin);
+    let warmer = max(1.0 + steepest * from_reference(own.temperature), 1.0);
+    let stiffest = max(parameters.largest_diffusivity * warmer * rates.weights, given.stiffness);
     if (*particle).role == INSIDE && is_set(SATURATES) {
         fogged = saturate(particle);
     }

@@ -49,13 +49,13 @@ fn flux(site: Site, surface: Surface, air: Column, offset: vec3f, q: f32) -> Flu
     let of_pair = parameters.of_pair * site.volume * (1.0 - q) * factor(air.diagonal, air.doubled, offset);
     let difference = air.temperature - surface.temperature;
     // The air conducts as at the mean of both temperatures.
-    let grown = 1.0 + parameters.grows_conductive * from_reference(0.5 * (air.temperature + surface.temperature));
-    let mean = site.part + (1.0 - site.part) * grown;
-    let conducts = of_pair * select(mean, grown / mean, is_set(IS_HARMONIC));
+    let warmer = 1.0 + parameters.conductivity_per_kelvin * from_reference(0.5 * (air.temperature + surface.temperature));
+    let mean = site.part + (1.0 - site.part) * warmer;
+    let conducts = of_pair * select(mean, warmer / mean, is_set(IS_HARMONIC));
     var water = 0.0;
     if is_set(DIFFUSES) && (site.flags & BOUNDARY) != 0u {
         let at_surface = surface.temperature + (1.0 - site.part) * difference;
-        let diffuses = 1.0 + parameters.grows_diffusive * from_reference(0.5 * (air.temperature + at_surface));
+        let diffuses = 1.0 + parameters.diffusivity_per_kelvin * from_reference(0.5 * (air.temperature + at_surface));
         water = parameters.vapour_reach * diffuses * of_pair * (air.vapour - saturation(at_surface).x);
         if water < 0.0 {
             water *= select(0.0, surface.evaporation, surface.water > 0.0);

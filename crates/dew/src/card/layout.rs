@@ -91,9 +91,9 @@ pub(super) struct Parameters {
     pub low_after: f32,
     pub time_factor: f32,
     pub lacking: f32,
-    pub grows_viscous: f32,
-    pub grows_conductive: f32,
-    pub grows_diffusive: f32,
+    pub viscosity_per_kelvin: f32,
+    pub conductivity_per_kelvin: f32,
+    pub diffusivity_per_kelvin: f32,
     pub reference: f32,
     pub inlets: [Inlet; 6],
 }

@@ -106,9 +106,9 @@ impl Parameters {
             saturated: humid_air::saturation_pressure(settings.ambient_temperature) as f32,
             ambient_pressure: ambient.vapour_pressure as f32,
             lacking: (saturation(settings.ambient_temperature, air) - settings.ambient_vapour) as f32,
-            grows_viscous: air.growth.viscosity as f32,
-            grows_conductive: air.growth.conductivity as f32,
-            grows_diffusive: air.growth.vapour_diffusivity as f32,
+            viscosity_per_kelvin: air.coefficients.viscosity as f32,
+            conductivity_per_kelvin: air.coefficients.conductivity as f32,
+            diffusivity_per_kelvin: air.coefficients.vapour_diffusivity as f32,
             reference: (air.reference_temperature - settings.ambient_temperature) as f32,
             ..*self
         };

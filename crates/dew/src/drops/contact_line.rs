@@ -43,7 +43,8 @@ impl ContactLine {
 
     /// Covered radius of a drop that has this volume now and covered `radius` before, m.
     pub fn radius(&self, radius: f64, volume: f64) -> f64 {
-        radius.clamp(self.advancing.covered_radius(volume), self.receding.covered_radius(volume))
+        // Not by `clamp`: rounding may turn round angles that are all but the same.
+        radius.max(self.advancing.covered_radius(volume)).min(self.receding.covered_radius(volume))
     }
 }
 
@@ -80,6 +81,16 @@ mod tests {
         );
         let one = ContactLine::new(Retention::Friction(1.0), 1.5);
         assert_eq!([0.0, 9.0].map(|r| one.radius(r, 1.0)), [Cap::new(1.5).covered_radius(1.0); 2]);
+    }
+
+    #[test]
+    fn angles_that_are_all_but_the_same_are_no_trouble() {
+        for step in 1..200 {
+            let receding = f64::from(step) / 64.0;
+            let line = ContactLine::new(Retention::Hysteresis { receding, advancing: receding.next_up() }, receding);
+            let radius = line.radius(1.0, 1.0);
+            assert!((radius / Cap::new(receding).covered_radius(1.0) - 1.0).abs() < 1e-12, "{receding}");
+        }
     }
 
     #[test]

@@ -14,12 +14,13 @@ mod motion;
 mod sites;
 mod unseen;
 
-pub use cap::{Cap, angle, height, reach};
+pub use cap::Cap;
 pub use contact_line::Retention;
 pub use map::{Portion, Share};
 pub use sites::{MOST_SITES, Site, most_per_area};
 pub use unseen::Unseen;
 
+use cap::{angle, height, reach};
 use contact_line::ContactLine;
 use corpuscle_model::ExactSum;
 use corpuscle_solids::Solid;
@@ -93,7 +94,6 @@ pub struct Drop {
     /// Mass, kg.
     pub mass: f64,
     /// Radius of the disk that it covers, m.
-    #[serde(default)]
     pub radius: f64,
 }
 
@@ -283,7 +283,6 @@ impl Drops {
     /// Takes back what [`Drops::state`] gave.
     pub fn restore(&mut self, state: DropState) {
         self.state = state;
-        self.fit();
         self.file();
         self.find_covered();
     }
