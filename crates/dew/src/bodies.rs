@@ -1,9 +1,10 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
 use crate::humid_air::ZERO_CELSIUS;
+use crate::solids::sources::{HeatSources, Surroundings};
 use corpuscle_model::ModelError;
 use corpuscle_scene::dew::{self, Dew, Shape};
-use corpuscle_scene::{SceneError, Table};
+use corpuscle_scene::{SceneError, Series, Table};
 use corpuscle_solids::{
     self as solids, Depth, MATERIALS, Material, Mesh, Pose, Profile, Samples, Solid, SolidError, WineGlass,
 };
@@ -24,6 +25,8 @@ pub struct Body {
     pub held: bool,
     /// How it keeps air out, where not as all do.
     pub treatment: Option<dew::Treatment>,
+    /// What heats and cools it beside the air and other solids.
+    pub(crate) sources: HeatSources,
     /// The particles that stand for it.
     pub samples: Samples,
     /// What was put right in its mesh, and where it is too thin for its particles, in sentences.
@@ -58,6 +61,31 @@ pub enum BodyError {
         row: usize,
         /// The lowest temperature, °C.
         celsius: f64,
+    },
+    /// Power or temperature over time, from a file, that cannot be.
+    #[error("the solid \"{name}\" (dew.solid.{row}.{key}): {what}")]
+    Source {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// The key.
+        key: &'static str,
+        /// What is wrong.
+        what: String,
+    },
+    /// A solid that has something outside and does not reach there.
+    #[error(
+        "the solid \"{name}\" (dew.solid.{row}.outside): it does not reach the side {side} of the box: move it there by position_m, or leave \
+         outside out"
+    )]
+    NotAtSide {
+        /// Its name.
+        name: String,
+        /// Its row in the scene, counted from 0.
+        row: usize,
+        /// Name of the side.
+        side: &'static str,
     },
     /// A name of no material.
     #[error(
@@ -148,7 +176,72 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
         return Err(BodyError::TooCold { name, row, celsius });
     }
     let (material, held, treatment) = (material(row, written)?, written.held, written.treatment);
-    Ok(Body { material, temperature, held, treatment, name, solid, samples, notes })
+    let sources = sources(row, written, folder)?;
+    refuse_away_from_side(dew, row, &name, &solid, &sources)?;
+    Ok(Body { material, temperature, held, treatment, name, solid, sources, samples, notes })
+}
+
+/// What heats and cools a solid, with its files read.
+fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<HeatSources, BodyError> {
+    let load = |key: &'static str, series: &Series, least: f64, what: &str| {
+        let table = series.load(folder)?;
+        let smallest = table.rows().iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
+        if smallest < least {
+            let what = format!("{what} goes down to {smallest} over time; it must be at least {least}");
+            return Err(BodyError::Source { name: written.name.clone(), row, key, what });
+        }
+        Ok(table)
+    };
+    let temperature = |key, series| load(key, series, -ZERO_CELSIUS, "the temperature in °C");
+    let power =
+        |series: &Option<Series>| series.as_ref().map(|series| load("heater", series, 0.0, "the power")).transpose();
+    let heater = match &written.heater {
+        Some(heater) => {
+            let [whole, per_area] = [power(&heater.power_w)?, power(&heater.power_w_per_m2)?];
+            whole.map(|table| (table, false)).or(per_area.map(|table| (table, true)))
+        }
+        None => None,
+    };
+    let outside = match &written.outside {
+        Some(outside) => {
+            let air = temperature("outside.temperature_c", &outside.temperature_c)?;
+            let seen = outside.surroundings_c.as_ref().map(|seen| temperature("outside.surroundings_c", seen));
+            let seen = seen.transpose()?.unwrap_or_else(|| air.clone());
+            let surroundings =
+                Surroundings { transfer: outside.h_w_per_m2_k, air, emissivity: outside.emissivity, seen };
+            Some((outside.side.axis_and_end(), surroundings))
+        }
+        None => None,
+    };
+    let radiation = match &written.radiation {
+        Some(radiation) => {
+            let seen = temperature("radiation.surroundings_c", &radiation.surroundings_c)?;
+            let emissivity = radiation.emissivity;
+            Some(Surroundings { transfer: 0.0, air: seen.clone(), emissivity, seen })
+        }
+        None => None,
+    };
+    Ok(HeatSources { heater, outside, radiation })
+}
+
+/// A solid with something outside reaches the side, or is within this of it, over the spacing.
+const AT_SIDE: f64 = 0.05;
+
+fn refuse_away_from_side(
+    dew: &Dew,
+    row: usize,
+    name: &str,
+    solid: &Solid,
+    sources: &HeatSources,
+) -> Result<(), BodyError> {
+    let Some(([axis, end], _)) = sources.outside else { return Ok(()) };
+    let [low, high] = solid.bounds();
+    let away = [low[axis], dew.size_m[axis] - high[axis]][end];
+    if away > AT_SIDE * dew.spacing_m {
+        let side = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]][axis][end];
+        return Err(BodyError::NotAtSide { name: name.into(), row, side });
+    }
+    Ok(())
 }
 
 /// What to know of a solid many of whose particles fill less than half a cell.

@@ -24,6 +24,7 @@ use crate::layer::Layer;
 use crate::normalisation::Tensor;
 use crate::room::Room;
 use crate::settings::Settings;
+use crate::solids::sources::Sources;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
@@ -41,6 +42,8 @@ pub struct Dew {
     pub(crate) scale: Scale,
     pub(crate) solids: Solids,
     pub(crate) conduction: Conduction,
+    /// What heats and cools the solids beside the air and each other.
+    pub(crate) sources: Sources,
     /// Sums of the solids' conductances, W/K.
     conductances: Vec<f64>,
     /// Heat of condensation, J/kg.
@@ -104,6 +107,8 @@ pub(crate) struct State {
     pub fogged: ExactSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
     pub held_heat: Vec<ExactSum>,
+    /// Heat that each solid has got from its heater, from outside and by radiation, J.
+    pub supplied: Vec<[ExactSum; 3]>,
     /// Heat that each solid takes from the air through its surface, W, in the last step.
     pub heat_flow: Vec<f64>,
     /// When it was last looked for air that no longer matters, s.
@@ -174,6 +179,7 @@ impl Dew {
             water_on: vec![0.0; solids.particles.len()],
             fogged: ExactSum::default(),
             held_heat: vec![ExactSum::default(); bodies.len()],
+            supplied: vec![Default::default(); bodies.len()],
             heat_flow: vec![0.0; bodies.len()],
             utility_seen: 0.0,
             inlet_phase: [[0.0; 2]; 3],
@@ -191,6 +197,7 @@ impl Dew {
             evaporation: vec![1.0; solids.particles.len()],
             solids,
             conduction,
+            sources: Sources::default(),
             conductances,
             rest_density: air.density,
             state,
@@ -379,6 +386,11 @@ impl Dew {
     /// Heat that has come from a body held at a temperature, J; negative where it took it.
     pub fn heat_from(&self, body: usize) -> f64 {
         self.state.held_heat[body].value()
+    }
+
+    /// Heat that a body has got from its heater, from outside the box and by radiation, J; negative where it lost it.
+    pub fn heat_supplied(&self, body: usize) -> [f64; 3] {
+        [0, 1, 2].map(|kind| self.state.supplied[body][kind].value())
     }
 
     /// Water on a body, kg.

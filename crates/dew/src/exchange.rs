@@ -71,6 +71,8 @@ pub struct Work {
     pub share_of: Vec<f64>,
     /// Heat that each particle of the solids gets, W.
     pub heat: Vec<f64>,
+    /// Heat that each solid gets from its heater, from outside and by radiation, W.
+    pub supplied: Vec<[f64; 3]>,
     /// How stiff diffusion was, 1/s, for the air near sites, then for the particles of the solids.
     pub stiff: Vec<f64>,
     /// What each parcel of air has beyond saturation, part of the mass.
@@ -91,9 +93,10 @@ struct Flux {
     to_solid: f64,
 }
 
-/// Part of the mass that is vapour in saturated air.
+/// Part of the mass that is vapour in saturated air; all of it where water boils.
 pub fn saturation(temperature: f64, air: &Properties) -> f64 {
-    HumidAir::with_relative_humidity(temperature, air.pressure, 1.0).mass_fraction()
+    let saturated = HumidAir::with_relative_humidity(temperature, air.pressure, 1.0);
+    HumidAir { vapour_pressure: saturated.vapour_pressure.min(air.pressure), ..saturated }.mass_fraction()
 }
 
 impl Exchange<'_> {

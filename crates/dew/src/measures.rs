@@ -49,6 +49,8 @@ impl Dew {
                 column(name, "heat_given", "J"),
                 column(name, "heat_flow", "W"),
             ]);
+            let named = self.sources_of(body).map(|(quantity, _)| column(name, quantity, "J"));
+            columns.extend(named);
             if self.wetting.is_some() {
                 columns.extend([
                     column(name, "water_per_area", "kg_per_m2"),
@@ -125,6 +127,7 @@ impl Dew {
     fn measured_of(&self, body: usize) -> Vec<f64> {
         let [water, temperature] = self.totals_of(body);
         let mut row = vec![water, temperature, self.heat_from(body), self.state.heat_flow[body]];
+        row.extend(self.sources_of(body).map(|(_, joules)| joules));
         if let Some(wetting) = &self.wetting {
             let (story, area) = (wetting.stories()[body], wetting.open_area(body));
             let or_none = |value: f64| if story.drops > 0 { value } else { f64::NAN };
@@ -137,6 +140,15 @@ impl Dew {
             row.extend([found.nearest, found.gap, found.pairs]);
         }
         row
+    }
+
+    /// Names of the heats that a body gets from sources that it has, and how much it has got, J.
+    fn sources_of(&self, body: usize) -> impl Iterator<Item = (&'static str, f64)> {
+        let sources = self.sources.bodies.get(body);
+        let has = sources.map_or([false; 3], |of| [of.heater.is_some(), of.outside.is_some(), of.radiation.is_some()]);
+        let all =
+            ["heat_from_heater", "heat_from_outside", "heat_by_radiation"].into_iter().zip(self.heat_supplied(body));
+        all.zip(has).filter_map(|(heat, has)| has.then_some(heat))
     }
 
     /// Water on a body, kg, and its mean temperature, K.

@@ -195,6 +195,7 @@ impl Model for Dew {
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         if state.held_heat.len() != self.state.held_heat.len()
             || state.heat_flow.len() != self.state.heat_flow.len()
+            || state.supplied.len() != self.state.supplied.len()
             || state.temperatures.len() != self.state.temperatures.len()
             || state.water_on.len() != self.state.water_on.len()
         {

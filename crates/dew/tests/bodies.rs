@@ -97,3 +97,16 @@ fn meshes_are_read_and_refused() {
     assert!((bodies[0].solid.volume() - 0.05_f64.powi(3) / 6.0).abs() < 1e-15);
     assert!(bodies[0].notes[0].contains("a.obj: 1 triangles of 4 were wound"), "{:?}", bodies[0].notes);
 }
+
+#[test]
+fn a_solid_with_something_outside_reaches_there() {
+    let pane = |x: f64| {
+        format!(
+            "{{ name = \"pane\", shape = {{ box = {{ size_m = [0.02, 0.1, 0.1] }} }}, position_m = [{x}, 0.05, 0.1], temperature_c = 5, \
+             outside = {{ side = \"x_min\", temperature_c = 0, h_w_per_m2_k = 10 }} }}"
+        )
+    };
+    assert!(made(&pane(0.01)).is_ok());
+    let error = made(&pane(0.05)).unwrap_err();
+    assert!(["pane", "dew.solid.0.outside", "x_min"].iter().all(|word| error.contains(word)), "{error}");
+}

@@ -321,6 +321,47 @@ fn temperatures_held_change_as_on_the_processor() {
 }
 
 /// A wind, faster above, that leads over the edge between two open sides: what crosses both in one step is taken out.
+/// A pane that is heated in turns, loses heat to changing air and sky outside, and radiates, beside a warm ball that radiates too; and a floor without.
+fn heated(factor: f64) -> Dew {
+    let text = format!(
+        "run.until_s = 1\n[dew]\nsize_m = [0.018, 0.012, 0.016]\nspacing_m = 0.002\ntime_factor = {factor}\n\
+         air = {{ temperature_c = 25, relative_humidity = 0.8 }}\ndrops.smallest_radius_m = 3e-4\n\
+         [[dew.solid]]\nname = \"pane\"\nshape = {{ box = {{ size_m = [0.004, 0.012, 0.012] }} }}\nposition_m = [0.002, 0.006, 0.008]\ntemperature_c = 5\n\
+         heater = {{ power_w = [[0, 3], [0.03, 3], [0.03, 0], [0.05, 1]] }}\n\
+         outside = {{ side = \"x_min\", temperature_c = [[0, -10], [0.1, 0]], h_w_per_m2_k = 40, emissivity = 0.9, surroundings_c = -40 }}\n\
+         radiation = {{ emissivity = 0.8, surroundings_c = [[0, 60], [0.2, 20]] }}\n\
+         [[dew.solid]]\nname = \"floor\"\nshape = {{ box = {{ size_m = [0.014, 0.012, 0.002] }} }}\nposition_m = [0.011, 0.006, 0.001]\ntemperature_c = 10\nheld = true\n\
+         [[dew.solid]]\nname = \"ball\"\nmaterial = \"oak\"\nshape = {{ sphere = {{ radius_m = 0.003 }} }}\nposition_m = [0.0113, 0.0061, 0.0092]\ntemperature_c = 90\n\
+         heater = {{ power_w_per_m2 = 500 }}\nradiation = {{ emissivity = 0.9, surroundings_c = 25 }}\n"
+    );
+    let scene = Scene::parse(&text, "test", &[]).unwrap();
+    corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap()
+}
+
+#[test]
+fn solids_are_heated_and_cooled_as_on_the_processor() {
+    let Some(gpu) = require_gpu("heaters on the card") else { return };
+    for factor in [1.0, 5.0] {
+        let [mut host, mut card] = [heated(factor), on_card(heated(factor), &gpu)];
+        for (time, most) in [(0.01, 1e-5), (0.1, 1e-3)] {
+            go(&mut host, time);
+            go(&mut card, time);
+            let [temperature, _] = differences_of_solids(&host, &card);
+            assert!(temperature < most, "after {time} s by {factor}: {temperature}");
+            for body in 0..3 {
+                let (host, card) = (host.heat_supplied(body), card.heat_supplied(body));
+                assert!((0..3).all(|kind| near(host[kind], card[kind], 1e-4)), "{body}: {host:?} {card:?}");
+            }
+            for dew in [&host, &card] {
+                assert!(dew.heat_supplied(0).iter().all(|heat| heat.abs() > 1e-4), "{:?}", dew.heat_supplied(0));
+                for balance in dew.ledger().balances {
+                    assert!(balance.relative_error().abs() < 2e-6, "{balance:?}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn air_leaves_by_edges_as_on_the_processor() {
     let Some(gpu) = require_gpu("edges on the card") else { return };

@@ -230,3 +230,29 @@ fn pressures_are_in_pascals() {
     let in_hpa = "air = { temperature_c = 25.0, relative_humidity = 0.6, pressure_pa = 1013 }";
     assert_refused(air, in_hpa, &["dew.air.pressure_pa = 1013", "hPa"]);
 }
+
+#[test]
+fn sources_of_heat_that_cannot_be_are_refused_by_name() {
+    let copper = "material = \"copper\"";
+    let with = |source: &str, words: &[&str]| assert_refused(copper, source, words);
+    let key = |name: &str| format!("dew.solid.3.{name}");
+    with("heater = {}", &[&key("heater"), "exactly one of power_w, power_w_per_m2"]);
+    with("heater = { power_w = -2 }", &[&key("heater.power_w = -2"), "at least 0"]);
+    with("heater = { power_w_per_m2 = [[0, 1], [2, -1]] }", &[&key("heater.power_w_per_m2.1"), "at least 0"]);
+    with("radiation = { emissivity = 1.2, surroundings_c = 20 }", &[&key("radiation.emissivity = 1.2"), "from 0 to 1"]);
+    with(
+        "radiation = { emissivity = 0.9, surroundings_c = -300 }",
+        &[&key("radiation.surroundings_c"), "absolute zero"],
+    );
+    with(
+        "outside = { side = \"z_min\", temperature_c = 5, h_w_per_m2_k = -1 }",
+        &[&key("outside.h_w_per_m2_k = -1"), "at least 0"],
+    );
+    with(
+        "outside = { side = \"z_max\", temperature_c = 5, h_w_per_m2_k = 1 }",
+        &[&key("outside.side"), "is no wall", "faces.z_max"],
+    );
+    let held = "heater = { power_w = 1 }\nheld = true";
+    assert_refused("held = true", held, &["dew.solid.0.heater", "prescribed"]);
+    with("outside = { side = \"left\", temperature_c = 5, h_w_per_m2_k = 1 }", &["left", "x_min"]);
+}

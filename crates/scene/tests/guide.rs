@@ -302,6 +302,15 @@ fn full_dew() -> Scene {
         temperature_c: Series::Constant(1.0),
         held: true,
         layers: Some(1),
+        heater: Some(dew::Heater { power_w: Some(Series::Constant(1.0)), power_w_per_m2: Some(Series::Constant(1.0)) }),
+        outside: Some(dew::Outside {
+            side: dew::Side::XMin,
+            temperature_c: Series::Constant(1.0),
+            h_w_per_m2_k: 1.0,
+            emissivity: 0.5,
+            surroundings_c: Some(Series::Constant(1.0)),
+        }),
+        radiation: Some(dew::Radiation { emissivity: 0.5, surroundings_c: Series::Constant(1.0) }),
         treatment: Some(dew::Treatment::VirtualForce),
         sites_per_m2: Some(1.0),
     };

@@ -1,6 +1,7 @@
 // What the particles of each solid sum up to in a step, and to what they are brought where the temperature that they are held at changes: a
 // group for each solid. The latter is the twin of `hold` in `dew.rs` and of `Table::at`.
 #import dew_solids
+#import dew_rows
 
 @group(0) @binding(1) var<storage, read_write> solids: array<Solid>;
 @group(0) @binding(2) var<storage, read_write> bodies: array<Body>;
@@ -14,34 +15,11 @@ fn joined(a: vec4f, b: vec4f) -> vec4f {
     return vec4f(a.xyz + b.xyz, max(a.w, b.w));
 }
 
-// From one time to another, s.
-fn between(a: Account, b: Account) -> f32 {
-    return (b.sum - a.sum) - (b.lacking - a.lacking);
-}
-
-// The temperature at a time, by the rows of a body, of which there is one at least; at a jump the one after it.
-fn held_at(body: Body, time: Account) -> f32 {
-    var temperature = rows[body.first_row].temperature;
-    for (var k = body.first_row; k < body.end_row; k++) {
-        let since = between(rows[k].time, time);
-        if since < 0.0 {
-            break;
-        }
-        temperature = rows[k].temperature;
-        if k + 1u < body.end_row {
-            let whole = between(rows[k].time, rows[k + 1u].time);
-            let part = select(1.0, min(since / whole, 1.0), whole > 0.0);
-            temperature += part * (rows[k + 1u].temperature - temperature);
-        }
-    }
-    return temperature;
-}
-
 fn hold(body: Body, thread: u32) {
     if body.first_row >= body.end_row {
         return;
     }
-    let temperature = held_at(body, add(status.time, status.step));
+    let temperature = value_at(body.first_row, body.end_row, add(status.time, status.step));
     for (var i = body.first + thread; i < body.end; i += 256u) {
         solids[i].temperature = Account(temperature, 0.0);
     }

@@ -22,9 +22,9 @@ fn saturation_pressure(temperature: f32) -> f32 {
     return parameters.saturated * exp_less_one(B * C * temperature / (ambient * (ambient + temperature)));
 }
 
-// Part of the mass that is vapour in saturated air, less that of the ambient air, and its slope over temperature, 1/K.
+// Part of the mass that is vapour in saturated air, less that of the ambient air, and its slope over temperature, 1/K. Where water boils it is all of it.
 fn saturation(temperature: f32) -> vec2f {
-    let higher = saturation_pressure(temperature);
+    let higher = min(saturation_pressure(temperature), parameters.air_pressure - parameters.saturated);
     let pressure = parameters.saturated + higher;
     let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
     let at_ambient = parameters.air_pressure - (1.0 - MASS_RATIO) * parameters.saturated;

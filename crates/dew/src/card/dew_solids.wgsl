@@ -75,10 +75,3 @@ struct Body {
     water: f32,
     unused: f32,
 }
-
-// A temperature at which a solid is held, K from the ambient air's, and when, s since the state was sent.
-struct Row {
-    time: Account,
-    temperature: f32,
-    unused: f32,
-}

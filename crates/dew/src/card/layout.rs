@@ -208,12 +208,12 @@ pub(super) struct CardBody {
     pub unused: f32,
 }
 
-/// A temperature at which a solid is held, and when.
+/// A value over time: see `dew_rows.wgsl`.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct CardRow {
     pub time: Account,
-    pub temperature: f32,
+    pub value: f32,
     pub unused: f32,
 }
 

@@ -13,6 +13,7 @@ mod numbers;
 mod origin;
 mod seen;
 mod solids;
+mod sources;
 mod tasks;
 
 pub(crate) use layout::MOST_FANS;
@@ -29,6 +30,7 @@ use layout::{
 use origin::Origin;
 use seen::Seen;
 use solids::CardSolids;
+use sources::CardSources;
 use std::sync::OnceLock;
 use std::time::Instant;
 use tasks::Tasks;
@@ -38,6 +40,8 @@ use tasks::Tasks;
 pub(crate) struct Card {
     gpu: Gpu,
     tasks: Tasks,
+    /// Where solids have any.
+    sources: Option<CardSources>,
     origin: Origin,
     bodies: Vec<CardBody>,
     /// Times, s, and temperatures, K, at which solids are held where they change.
@@ -89,6 +93,8 @@ pub(crate) struct Progress {
     pub fogged: f64,
     /// Heat that came from each solid held at a temperature, J.
     pub held_heat: Vec<f64>,
+    /// Heat that each solid got from its heater, from outside and by radiation, J; none where no solid has any.
+    pub supplied: Vec<[f64; 3]>,
     pub inlet_phase: [[f64; 2]; 3],
     /// When it was last looked for air of low utility, s.
     pub utility_seen: f64,
@@ -118,12 +124,15 @@ impl Card {
         let field = field::tell_field(&mut parameters, dew, origin);
         let solids = CardSolids::new(&gpu, dew, origin, &parameters)?;
         let outside: Vec<OutsideColumn> = dew.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
-        let tasks = Tasks::new(&gpu, room, &parameters, &numbers::card_fans(dew, origin), &solids, &outside, &field)?;
+        let sources = CardSources::new(&gpu, dew, origin)?;
+        let fans = numbers::card_fans(dew, origin);
+        let tasks = Tasks::new(&gpu, room, &parameters, &fans, &solids, sources.as_ref(), &outside, &field)?;
         let cells = parameters.cells.iter().product::<u32>() + 1;
         let held_before = vec![0.0; solids.bodies.len()];
         Ok(Self {
             gpu,
             tasks,
+            sources,
             origin,
             bodies: solids.bodies,
             held_rows: solids.rows,
@@ -149,7 +158,7 @@ impl Card {
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
-        self.tasks.bytes
+        self.tasks.bytes + self.sources.as_ref().map_or(0, CardSources::bytes)
     }
 
     /// Parcels that there are, and that there is room for.
@@ -177,11 +186,14 @@ impl Card {
         write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
         let row = |&[time, kelvin]: &[f64; 2]| CardRow {
             time: layout::account(time - state.time),
-            temperature: (kelvin - self.origin.temperature) as f32,
+            value: (kelvin - self.origin.temperature) as f32,
             unused: 0.0,
         };
         let rows: Vec<CardRow> = self.held_rows.iter().map(row).collect();
         write(&self.tasks.rows, bytemuck::cast_slice(&rows));
+        if let Some(sources) = &mut self.sources {
+            sources.send(&self.gpu, state.time);
+        }
         self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
         let phases = state.inlet_phase.as_flattened();
@@ -281,10 +293,11 @@ impl Card {
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        let supplied = self.sources.as_mut().map(|sources| sources.given(&self.gpu)).transpose()?.unwrap_or_default();
         self.busy += began.elapsed().as_secs_f64();
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;
-        Ok(self.progress(&bodies))
+        Ok(self.progress(&bodies, supplied))
     }
 
     /// Loses the device where it is time.
@@ -297,7 +310,7 @@ impl Card {
         }
     }
 
-    fn progress(&mut self, bodies: &[CardBody]) -> Progress {
+    fn progress(&mut self, bodies: &[CardBody], supplied: Vec<[f64; 3]>) -> Progress {
         let Status { steps, particle_steps: [low, high], step, halted, fastest, .. } = self.status;
         let held: Vec<f64> = bodies.iter().map(|body| layout::value(body.held)).collect();
         let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
@@ -313,6 +326,7 @@ impl Card {
             diffused: self.status.diffused.values(),
             fogged: layout::value(self.status.fogged),
             held_heat,
+            supplied,
             drift: self.status.drift.map(f64::from),
             utility_seen: self.sent_at + layout::value(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),

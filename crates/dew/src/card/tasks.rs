@@ -5,6 +5,7 @@ use super::layout::{
     MOST_FANS, OutsideColumn, Parameters, Partial, Status, Surface,
 };
 use super::solids::{CardSolids, filled};
+use super::sources::CardSources;
 use corpuscle_gpu::{
     CellSort, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
 };
@@ -17,6 +18,7 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),
     ("dew_humid", include_str!("dew_humid.wgsl")),
     ("dew_normalisation", include_str!("dew_normalisation.wgsl")),
+    ("dew_rows", include_str!("dew_rows.wgsl")),
     ("dew_saturate", include_str!("dew_saturate.wgsl")),
     ("dew_solids", include_str!("dew_solids.wgsl")),
     ("dew_utility", include_str!("dew_utility.wgsl")),
@@ -54,6 +56,8 @@ pub(super) struct Tasks {
     density: Task,
     /// What solids exchange with the air, where there are any: before the forces, and after.
     surfaces: Option<Task>,
+    /// Heat from elsewhere, where there is any.
+    sources: Option<Task>,
     forces: Task,
     take_up: Option<[Task; 2]>,
     finish: Task,
@@ -70,6 +74,7 @@ impl Tasks {
         parameters: &Parameters,
         fans: &[CardFan; MOST_FANS],
         solids: &CardSolids,
+        sources: Option<&CardSources>,
         outside: &[OutsideColumn],
         field: &[f32],
     ) -> Result<Self, GpuError> {
@@ -134,6 +139,9 @@ impl Tasks {
             surfaces: has_solids.then(|| {
                 shader!("dew_surfaces", [all, status, sort.start, columns, *own, states, surfaces, *pairs, waters])
             }),
+            sources: sources.map(|of| {
+                shader!("dew_sources", [all, status, states, surfaces, bodies, of.shares, of.rows, of.sources])
+            }),
             forces: shader!(
                 "dew_forces",
                 [all, status, sort.start, columns, particles, *site_start, *sites, surfaces, partials, fans]
@@ -183,6 +191,9 @@ impl Tasks {
         self.density.run_as_told(pass, groups, SLOTS.particles);
         if let Some(surfaces) = &self.surfaces {
             surfaces.run_as_told(pass, groups, SOLIDS);
+        }
+        if let Some(sources) = &self.sources {
+            sources.run_as_told(pass, groups, BODIES);
         }
         self.forces.run_as_told(pass, groups, SLOTS.particles);
         if let Some([take_up, bodies]) = &self.take_up {

@@ -245,7 +245,7 @@ impl Dew {
     fn book_progress(&mut self, progress: &Progress) {
         let mass = self.particle_mass();
         let (heat_capacity, latent_heat) = (self.air.heat_capacity, self.latent_heat);
-        let State { water, energy, held_heat, .. } = &mut self.state;
+        let State { water, energy, held_heat, supplied, .. } = &mut self.state;
         let mut book = |crossed: &Crossed, sign: f64| {
             water.book(sign * mass * (crossed.vapour + crossed.fog));
             energy.book(sign * mass * (heat_capacity * crossed.temperature + latent_heat * crossed.vapour));
@@ -259,6 +259,10 @@ impl Dew {
         energy.book(-energy_out);
         for (held, &heat) in held_heat.iter_mut().zip(&progress.held_heat) {
             held.add(heat);
+            energy.book(heat);
+        }
+        for (sum, &heat) in supplied.as_flattened_mut().iter_mut().zip(progress.supplied.as_flattened()) {
+            sum.add(heat);
             energy.book(heat);
         }
         let state = &mut self.state;

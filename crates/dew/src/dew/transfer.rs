@@ -29,7 +29,8 @@ impl Dew {
     /// Heat and vapour between air and solids, and through solids, in a step.
     pub(super) fn exchange(&mut self, step: f64) {
         let mut work = std::mem::take(&mut self.work);
-        let Work { to_solids, to_air, share_of, heat, stiff, .. } = &mut work;
+        let Work { to_solids, to_air, share_of, heat, stiff, supplied, .. } = &mut work;
+        supplied.resize(self.state.supplied.len(), [0.0; 3]);
         let exchange = self.at_surfaces();
         let factor = self.settings.time_factor;
         exchange.to_solids(factor * step, to_solids);
@@ -51,6 +52,14 @@ impl Dew {
         }
         exchange.to_air(share_of, to_air);
         self.state.heat_flow.fill(0.0);
+        let middle = self.state.time + 0.5 * step;
+        self.sources.give(middle, &self.solids, &self.state.temperatures, heat, of_solids, supplied);
+        for (sums, given) in self.state.supplied.iter_mut().zip(&*supplied) {
+            for (sum, &watts) in sums.iter_mut().zip(given) {
+                sum.add(factor * step * watts);
+                self.state.energy.book(factor * step * watts);
+            }
+        }
         let mut taken = Taken::default();
         for (site, given) in real {
             taken.add(step * given.heat, step * given.water);

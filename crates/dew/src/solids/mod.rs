@@ -3,6 +3,7 @@
 mod boundary;
 mod conduction;
 mod ghosts;
+pub(crate) mod sources;
 
 pub use boundary::THRESHOLD;
 pub use conduction::Conduction;

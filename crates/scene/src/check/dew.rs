@@ -1,5 +1,6 @@
 //! Checks of `[dew]`.
 
+mod heat;
 mod solids;
 
 use super::{Check, Checked, SIDES};

@@ -29,12 +29,87 @@ pub struct Solid {
     /// Layers of particles below its surface. Left out: it is filled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layers: Option<u32>,
+    /// A heater in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heater: Option<Heater>,
+    /// What is outside, where the solid reaches a side of the box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Outside>,
+    /// Radiation between its surface in the box and what surrounds it. Left out: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radiation: Option<Radiation>,
     /// How air is kept out of it. Left out: as of all, by `boundary.treatment`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub treatment: Option<super::Treatment>,
     /// Density of nucleation sites on it, 1/m2. Left out: as on all, by `drops.sites_per_m2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sites_per_m2: Option<f64>,
+}
+
+/// A heater, which warms all of a solid evenly. Give exactly one of `power_w` and `power_w_per_m2`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Heater {
+    /// Power in what of the solid is in the box, W, constant or over time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power_w: Option<Series>,
+    /// Power for each area of the solid's surface in the box, W/m2, constant or over time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power_w_per_m2: Option<Series>,
+}
+
+/// What is outside a side of the box, for a solid that reaches it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outside {
+    /// The side of the box, a wall.
+    pub side: Side,
+    /// Temperature of the air outside, °C, constant or over time.
+    pub temperature_c: Series,
+    /// Heat transfer coefficient of the air outside, W/(m2 K).
+    pub h_w_per_m2_k: f64,
+    /// Emissivity of the solid's outer surface.
+    #[serde(default)]
+    pub emissivity: f64,
+    /// Temperature of what its outer surface sees, °C, constant or over time, as of the sky. Left out: that of the air outside.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surroundings_c: Option<Series>,
+}
+
+/// Radiation between a grey surface and what surrounds it, much larger than the solid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Radiation {
+    /// Emissivity of the surface.
+    pub emissivity: f64,
+    /// Temperature of what surrounds it, °C, constant or over time.
+    pub surroundings_c: Series,
+}
+
+/// A side of the box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// At x = 0.
+    XMin,
+    /// At the largest x.
+    XMax,
+    /// At y = 0.
+    YMin,
+    /// At the largest y.
+    YMax,
+    /// At z = 0.
+    ZMin,
+    /// At the largest z.
+    ZMax,
+}
+
+impl Side {
+    /// Number of its axis, and 0 at the lower or 1 at the upper end of it.
+    pub fn axis_and_end(self) -> [usize; 2] {
+        let number = self as usize;
+        [number / 2, number % 2]
+    }
 }
 
 /// The form of a solid, in its own coordinates.

@@ -9,6 +9,7 @@ mod dew_point;
 mod evaporation;
 mod fick;
 mod film;
+mod heat_sources;
 mod ledger;
 mod low_utility;
 mod packings;
@@ -34,6 +35,7 @@ pub(crate) const CASES: &[Case] = &[
     cavity::CAVITY,
     adiabatic::ADIABATIC,
     evaporation::EVAPORATION,
+    heat_sources::HEAT_SOURCES,
     ledger::LEDGER,
     boundaries::BOUNDARIES,
     slide::SLIDE,

@@ -4,8 +4,8 @@ use crate::check::{Check, Checked};
 use crate::dew::{Dew, Material, Shape, Solid, WineGlass};
 use crate::{Problem, Series};
 
-/// A solid hotter than this glows, and radiation is not modelled, °C.
-const HOTTEST: f64 = 1000.0;
+/// A solid hotter than this glows: most of its heat is light, °C.
+pub(super) const HOTTEST: f64 = 1000.0;
 
 impl Check {
     pub(super) fn solids(&self, dew: &Dew) -> Checked {
@@ -22,6 +22,7 @@ impl Check {
             self.require(&format!("{key}.layers"), solid.layers != Some(0), || {
                 "must be at least 1; leave it out to fill the solid".into()
             })?;
+            self.heat_sources(&key, dew, solid)?;
             solid.sites_per_m2.map_or(Ok(()), |sites| self.above(&format!("{key}.sites_per_m2"), sites, 0.0))?;
         }
         Ok(())
@@ -83,18 +84,14 @@ impl Check {
 
     fn solid_temperature(&self, key: &str, solid: &Solid) -> Checked {
         self.series(key, &solid.temperature_c)?;
-        let possible = |key: &str, celsius: f64| {
+        self.each_value(key, &solid.temperature_c, |key, celsius| {
             self.not_below_absolute_zero(key, celsius)?;
             self.require(key, celsius <= HOTTEST, || {
                 format!("must be at most {HOTTEST}: a hotter solid radiates more than it conducts")
             })
-        };
-        match &solid.temperature_c {
-            Series::Constant(celsius) => return possible(key, *celsius),
-            Series::Table(rows) => {
-                rows.iter().enumerate().try_for_each(|(row, at)| possible(&format!("{key}.{row}"), at[1]))?;
-            }
-            Series::File { .. } => {}
+        })?;
+        if matches!(solid.temperature_c, Series::Constant(_)) {
+            return Ok(());
         }
         self.require(key, solid.held, || {
             "a temperature over time must be held: give held = true, or the temperature at the start alone".into()
