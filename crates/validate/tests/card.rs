@@ -30,7 +30,7 @@ const FLOODS: [(&str, f64); 21] = [
 ];
 
 /// Of dew those that have a reduced size.
-const DEW: [(&str, f64); 7] = [
+const DEW: [(&str, f64); 8] = [
     ("dew/two-slabs", 0.05),
     ("dew/boundaries", 0.1),
     ("dew/cavity", 0.02),
@@ -38,6 +38,7 @@ const DEW: [(&str, f64); 7] = [
     ("dew/properties", 0.05),
     ("dew/adiabatic", 0.05),
     ("dew/evaporation", 0.05),
+    ("dew/heat-sources", 0.05),
 ];
 
 /// Of dew those that are small, with as many measures that have bounds.

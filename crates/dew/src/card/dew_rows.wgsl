@@ -1,4 +1,5 @@
-// Values over time, in an array `rows` of who imports this. Twin of `Table::at`.
+// Values over time. Twin of `Table::at`.
+#import dew_card
 
 // A value, and when, s since the state was sent.
 struct Row {
@@ -7,6 +8,8 @@ struct Row {
     value: f32,
     unused: f32,
 }
+
+@group(0) @binding(4) var<storage, read> rows: array<Row>;
 
 // From one time to another, s.
 fn between(a: Account, b: Account) -> f32 {

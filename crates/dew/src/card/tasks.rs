@@ -140,7 +140,7 @@ impl Tasks {
                 shader!("dew_surfaces", [all, status, sort.start, columns, *own, states, surfaces, *pairs, waters])
             }),
             sources: sources.map(|of| {
-                shader!("dew_sources", [all, status, states, surfaces, bodies, of.shares, of.rows, of.sources])
+                shader!("dew_sources", [all, status, states, surfaces, of.rows, of.shares, bodies, of.sources])
             }),
             forces: shader!(
                 "dew_forces",
