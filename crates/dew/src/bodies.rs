@@ -1,7 +1,7 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{HeatSources, Surroundings};
+use crate::solids::sources::{BodySources, Surroundings};
 use corpuscle_model::ModelError;
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Series, Table};
@@ -25,8 +25,8 @@ pub struct Body {
     pub held: bool,
     /// How it keeps air out, where not as all do.
     pub treatment: Option<dew::Treatment>,
-    /// What heats and cools it beside the air and other solids.
-    pub(crate) sources: HeatSources,
+    /// Its heater, the outside, radiation.
+    pub(crate) sources: BodySources,
     /// The particles that stand for it.
     pub samples: Samples,
     /// What was put right in its mesh, and where it is too thin for its particles, in sentences.
@@ -177,12 +177,12 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
     }
     let (material, held, treatment) = (material(row, written)?, written.held, written.treatment);
     let sources = sources(row, written, folder)?;
-    refuse_away_from_side(dew, row, &name, &solid, &sources)?;
+    refuse_away_from_side(dew, row, written, &solid)?;
     Ok(Body { material, temperature, held, treatment, name, solid, sources, samples, notes })
 }
 
-/// What heats and cools a solid, with its files read.
-fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<HeatSources, BodyError> {
+/// Heat sources of a solid, with their files read.
+fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<BodySources, BodyError> {
     let load = |key: &'static str, series: &Series, least: f64, what: &str| {
         let table = series.load(folder)?;
         let smallest = table.rows().iter().map(|row| row[1]).fold(f64::INFINITY, f64::min);
@@ -205,41 +205,42 @@ fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<HeatSource
     let outside = match &written.outside {
         Some(outside) => {
             let air = temperature("outside.temperature_c", &outside.temperature_c)?;
-            let seen = outside.surroundings_c.as_ref().map(|seen| temperature("outside.surroundings_c", seen));
-            let seen = seen.transpose()?.unwrap_or_else(|| air.clone());
-            let surroundings =
-                Surroundings { transfer: outside.h_w_per_m2_k, air, emissivity: outside.emissivity, seen };
+            let radiant = outside.surroundings_c.as_ref().map(|series| temperature("outside.surroundings_c", series));
+            let surroundings = Surroundings {
+                transfer_coefficient: outside.h_w_per_m2_k,
+                emissivity: outside.emissivity,
+                radiant_temperature: radiant.transpose()?.unwrap_or_else(|| air.clone()),
+                air_temperature: air,
+            };
             Some((outside.side.axis_and_end(), surroundings))
         }
         None => None,
     };
     let radiation = match &written.radiation {
         Some(radiation) => {
-            let seen = temperature("radiation.surroundings_c", &radiation.surroundings_c)?;
-            let emissivity = radiation.emissivity;
-            Some(Surroundings { transfer: 0.0, air: seen.clone(), emissivity, seen })
+            let radiant = temperature("radiation.surroundings_c", &radiation.surroundings_c)?;
+            Some(Surroundings {
+                transfer_coefficient: 0.0,
+                air_temperature: radiant.clone(),
+                emissivity: radiation.emissivity,
+                radiant_temperature: radiant,
+            })
         }
         None => None,
     };
-    Ok(HeatSources { heater, outside, radiation })
+    Ok(BodySources { heater, outside, radiation })
 }
 
 /// A solid with something outside reaches the side, or is within this of it, over the spacing.
 const AT_SIDE: f64 = 0.05;
 
-fn refuse_away_from_side(
-    dew: &Dew,
-    row: usize,
-    name: &str,
-    solid: &Solid,
-    sources: &HeatSources,
-) -> Result<(), BodyError> {
-    let Some(([axis, end], _)) = sources.outside else { return Ok(()) };
+fn refuse_away_from_side(dew: &Dew, row: usize, written: &dew::Solid, solid: &Solid) -> Result<(), BodyError> {
+    let Some(outside) = &written.outside else { return Ok(()) };
+    let [axis, end] = outside.side.axis_and_end();
     let [low, high] = solid.bounds();
     let away = [low[axis], dew.size_m[axis] - high[axis]][end];
     if away > AT_SIDE * dew.spacing_m {
-        let side = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]][axis][end];
-        return Err(BodyError::NotAtSide { name: name.into(), row, side });
+        return Err(BodyError::NotAtSide { name: written.name.clone(), row, side: outside.side.key() });
     }
     Ok(())
 }

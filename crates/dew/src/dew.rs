@@ -24,7 +24,7 @@ use crate::layer::Layer;
 use crate::normalisation::Tensor;
 use crate::room::Room;
 use crate::settings::Settings;
-use crate::solids::sources::Sources;
+use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
@@ -42,8 +42,8 @@ pub struct Dew {
     pub(crate) scale: Scale,
     pub(crate) solids: Solids,
     pub(crate) conduction: Conduction,
-    /// What heats and cools the solids beside the air and each other.
-    pub(crate) sources: Sources,
+    /// Heaters, the outside, radiation.
+    pub(crate) sources: HeatSources,
     /// Sums of the solids' conductances, W/K.
     conductances: Vec<f64>,
     /// Heat of condensation, J/kg.
@@ -197,7 +197,7 @@ impl Dew {
             evaporation: vec![1.0; solids.particles.len()],
             solids,
             conduction,
-            sources: Sources::default(),
+            sources: HeatSources::default(),
             conductances,
             rest_density: air.density,
             state,

@@ -9,7 +9,7 @@ use crate::humid_air::{HumidAir, ZERO_CELSIUS, is_frost};
 use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
 use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
-use crate::solids::sources::Sources;
+use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Material, Surface};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Axis;
@@ -48,7 +48,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
     dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
-    dew.sources = Sources::new(&bodies, &dew.solids, &room, scene.spacing_m);
+    dew.sources = HeatSources::new(&bodies, &dew.solids, &room, scene.spacing_m);
     dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
     dew.buoyant = scene.buoyancy;
     dew.shows = scene.output.clone();
@@ -236,7 +236,7 @@ fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies
     });
     let of_solids = bodies.iter().flat_map(|body| body.temperature.rows().iter().map(|row| row[1] + ZERO_CELSIUS));
     let temperatures =
-        of_solids.chain(inlets.clone().map(|inflow| inflow.temperature)).chain(Sources::temperatures(bodies));
+        of_solids.chain(inlets.clone().map(|inflow| inflow.temperature)).chain(HeatSources::temperatures(bodies));
     let contrast = temperatures.map(|other| (other / start.temperature - 1.0).abs()).fold(0.0, f64::max);
     let gravity = if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] };
     let fall: f64 = (0..3).map(|axis| gravity[axis].abs() * scene.size_m[axis]).sum();

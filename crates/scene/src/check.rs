@@ -12,7 +12,7 @@ use toml::Value;
 type Checked = Result<(), Box<Problem>>;
 
 /// The sides of a box by name, for each axis.
-const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+pub(crate) const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
 
 impl Scene {
     /// Checks every value: finite, in range, names unique, exactly one kind given where one is meant.

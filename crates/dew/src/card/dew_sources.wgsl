@@ -1,5 +1,5 @@
-// Heat that solids get from their heaters, from outside the box and by radiation: a group for each solid. Twin of `Sources::give` and `Seen::heat` in
-// `solids/sources/mod.rs`.
+// Heat that solids get from their heaters, from outside the box and by radiation: a group for each solid. Twin of `HeatSources::add_heat` and
+// `Conditions::flux` in `solids/sources/mod.rs`.
 #import dew_solids
 #import dew_rows
 
@@ -9,7 +9,7 @@ struct Part {
     resistance: f32,
 }
 
-// What a particle has of its solid's sources: part of the heater's power; what of it is in a side of the box, and in the box.
+// Share of a particle in its solid's heat sources: part of the heater's power; its surface in a side of the box, and in the box.
 struct Share {
     heater: f32,
     unused: f32,
@@ -17,34 +17,34 @@ struct Share {
     radiation: Part,
 }
 
-// What a surface exchanges heat with: W/(m2 K); emissivity times the Stefan-Boltzmann constant, W/(m2 K4); rows of the temperature of the air and
-// of what is seen.
+// Surroundings of a surface: heat transfer coefficient, W/(m2 K); emissivity times the Stefan-Boltzmann constant, W/(m2 K4); rows of the temperature of the
+// air and of the mean radiant temperature.
 struct Surroundings {
-    transfer: f32,
-    radiance: f32,
+    transfer_coefficient: f32,
+    emissivity_sigma: f32,
     air_first: u32,
     air_end: u32,
-    seen_first: u32,
-    seen_end: u32,
+    radiant_first: u32,
+    radiant_end: u32,
 }
 
-// Sources of a solid: power over the numbers in its rows, and those rows; and the heat that came from each kind, J.
+// Heat sources of a solid: factor and rows of the heater's power; and the heat that each kind has supplied, J.
 struct Source {
-    heated: f32,
+    power_factor: f32,
     unused: f32,
     power_first: u32,
     power_end: u32,
     outside: Surroundings,
     radiation: Surroundings,
-    given: array<Account, 3>,
+    supplied: array<Account, 3>,
 }
 
-// What a surface sees now; temperatures from the ambient air's, K.
-struct Seen {
-    transfer: f32,
-    radiance: f32,
-    air: f32,
-    seen: f32,
+// Surroundings at a time; temperatures from the ambient air's, K.
+struct Conditions {
+    transfer_coefficient: f32,
+    emissivity_sigma: f32,
+    air_temperature: f32,
+    radiant_temperature: f32,
 }
 
 @group(0) @binding(1) var<storage, read> status: Status;
@@ -57,8 +57,8 @@ struct Seen {
 const ITERATIONS = 5u;
 
 var<workgroup> power: f32;
-var<workgroup> outside: Seen;
-var<workgroup> radiation: Seen;
+var<workgroup> outside: Conditions;
+var<workgroup> radiation: Conditions;
 var<workgroup> sums: array<vec3f, 256>;
 
 fn value_of(first: u32, end: u32, time: Account) -> f32 {
@@ -68,30 +68,32 @@ fn value_of(first: u32, end: u32, time: Account) -> f32 {
     return value_at(first, end, time);
 }
 
-fn seen_at(around: Surroundings, time: Account) -> Seen {
+fn conditions_at(around: Surroundings, time: Account) -> Conditions {
     let air = value_of(around.air_first, around.air_end, time);
-    return Seen(around.transfer, around.radiance, air, value_of(around.seen_first, around.seen_end, time));
+    let radiant = value_of(around.radiant_first, around.radiant_end, time);
+    return Conditions(around.transfer_coefficient, around.emissivity_sigma, air, radiant);
 }
 
-// Heat into a surface of that temperature, W/m2, and how much less it is for each K more.
-fn heat_at(seen: Seen, surface: f32) -> vec2f {
-    let a = parameters.ambient + seen.seen;
+// Heat flux into a surface of that temperature, W/m2, and by how much it falls with the temperature, W/(m2 K).
+fn flux_at(conditions: Conditions, surface: f32) -> vec2f {
+    let a = parameters.ambient + conditions.radiant_temperature;
     let b = parameters.ambient + surface;
-    let radiated = seen.radiance * (seen.seen - surface) * (a + b) * (a * a + b * b);
-    return vec2f(seen.transfer * (seen.air - surface) + radiated, seen.transfer + 4.0 * seen.radiance * b * b * b);
+    let radiation = conditions.emissivity_sigma * (conditions.radiant_temperature - surface) * (a + b) * (a * a + b * b);
+    let slope = conditions.transfer_coefficient + 4.0 * conditions.emissivity_sigma * b * b * b;
+    return vec2f(conditions.transfer_coefficient * (conditions.air_temperature - surface) + radiation, slope);
 }
 
 // Heat, W, and conductance, W/K, of a part of the surface before a particle.
-fn heat(seen: Seen, part: Part, temperature: f32) -> vec2f {
+fn heat(conditions: Conditions, part: Part, temperature: f32) -> vec2f {
     if part.area <= 0.0 {
         return vec2f(0.0);
     }
-    var warmer = 0.0;
+    var difference = 0.0;
     for (var k = 0u; k < ITERATIONS; k++) {
-        let flux = heat_at(seen, temperature + warmer);
-        warmer += (part.resistance * flux.x - warmer) / (1.0 + part.resistance * flux.y);
+        let flux = flux_at(conditions, temperature + difference);
+        difference += (part.resistance * flux.x - difference) / (1.0 + part.resistance * flux.y);
     }
-    let flux = heat_at(seen, temperature + warmer);
+    let flux = flux_at(conditions, temperature + difference);
     return part.area * vec2f(flux.x, flux.y / (1.0 + part.resistance * flux.y));
 }
 
@@ -101,9 +103,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     if thread == 0u {
         let middle = add(status.time, 0.5 * status.step);
         let source = sources[group.x];
-        power = source.heated * value_of(source.power_first, source.power_end, middle);
-        outside = seen_at(source.outside, middle);
-        radiation = seen_at(source.radiation, middle);
+        power = source.power_factor * value_of(source.power_first, source.power_end, middle);
+        outside = conditions_at(source.outside, middle);
+        radiation = conditions_at(source.radiation, middle);
     }
     workgroupBarrier();
     var own = vec3f(0.0);
@@ -126,9 +128,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         workgroupBarrier();
     }
     if thread == 0u {
-        let given = parameters.time_factor * status.step * sums[0];
+        let supplied = parameters.time_factor * status.step * sums[0];
         for (var kind = 0u; kind < 3u; kind++) {
-            sources[group.x].given[kind] = add(sources[group.x].given[kind], given[kind]);
+            sources[group.x].supplied[kind] = add(sources[group.x].supplied[kind], supplied[kind]);
         }
     }
 }

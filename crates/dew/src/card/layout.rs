@@ -217,6 +217,13 @@ pub(super) struct CardRow {
     pub unused: f32,
 }
 
+impl CardRow {
+    /// A value less `zero` at a time, counted from `start`, s.
+    pub fn new([time, value]: [f64; 2], start: f64, zero: f64) -> Self {
+        Self { time: account(time - start), value: (value - zero) as f32, unused: 0.0 }
+    }
+}
+
 /// A column of air outside an open side: see `dew_columns.wgsl`.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]

@@ -184,15 +184,11 @@ impl Card {
         write(&self.tasks.particles, bytemuck::cast_slice(&air));
         write(&self.tasks.solids, bytemuck::cast_slice(&solids));
         write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
-        let row = |&[time, kelvin]: &[f64; 2]| CardRow {
-            time: layout::account(time - state.time),
-            value: (kelvin - self.origin.temperature) as f32,
-            unused: 0.0,
-        };
+        let row = |&row: &[f64; 2]| CardRow::new(row, state.time, self.origin.temperature);
         let rows: Vec<CardRow> = self.held_rows.iter().map(row).collect();
         write(&self.tasks.rows, bytemuck::cast_slice(&rows));
         if let Some(sources) = &mut self.sources {
-            sources.send(&self.gpu, state.time);
+            sources.upload(&self.gpu, state.time);
         }
         self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
@@ -293,7 +289,8 @@ impl Card {
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
-        let supplied = self.sources.as_mut().map(|sources| sources.given(&self.gpu)).transpose()?.unwrap_or_default();
+        let supplied =
+            self.sources.as_mut().map(|sources| sources.download_supplied(&self.gpu)).transpose()?.unwrap_or_default();
         self.busy += began.elapsed().as_secs_f64();
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;

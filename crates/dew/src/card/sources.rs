@@ -1,11 +1,11 @@
-//! Sources of heat of solids as the shaders see them: see `dew_sources.wgsl`.
+//! Heat sources of solids on the GPU: layouts and buffers of `dew_sources.wgsl`.
 
 use super::layout::{self, Account, CardRow};
 use super::origin::Origin;
 use super::solids::filled;
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{HeatSources, Part, STEFAN_BOLTZMANN, Share, Surroundings};
+use crate::solids::sources::{BodySources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_gpu::{Gpu, GpuError, read, storage, wgpu};
 use corpuscle_scene::Table;
@@ -14,25 +14,25 @@ use corpuscle_scene::Table;
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 struct CardSurroundings {
-    transfer: f32,
-    radiance: f32,
+    transfer_coefficient: f32,
+    emissivity_sigma: f32,
     air_first: u32,
     air_end: u32,
-    seen_first: u32,
-    seen_end: u32,
+    radiant_first: u32,
+    radiant_end: u32,
 }
 
 /// Twin of `Source`.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 struct CardSource {
-    heated: f32,
+    power_factor: f32,
     unused: f32,
     power_first: u32,
     power_end: u32,
     outside: CardSurroundings,
     radiation: CardSurroundings,
-    given: [Account; 3],
+    supplied: [Account; 3],
 }
 
 /// Twin of `Share`.
@@ -51,10 +51,11 @@ pub(super) struct CardSources {
     pub shares: wgpu::Buffer,
     pub rows: wgpu::Buffer,
     pub sources: wgpu::Buffer,
-    told: Vec<CardSource>,
+    /// Of each solid, before it has supplied anything.
+    initial: Vec<CardSource>,
     /// Times, s, and values: W or K from the ambient air's temperature.
     values: Vec<[f64; 2]>,
-    /// Heat given until the last batch, J.
+    /// Heat supplied until the last batch, J.
     before: Vec<[f64; 3]>,
 }
 
@@ -65,8 +66,8 @@ impl CardSources {
         if sources.shares.is_empty() {
             return Ok(None);
         }
-        let part = |part: Part| [part.area as f32, part.resistance as f32];
-        let share = |share: &Share| CardShare {
+        let part = |part: SurfacePart| [part.area as f32, part.resistance as f32];
+        let share = |share: &ParticleShare| CardShare {
             heater: share.heater as f32,
             unused: 0.0,
             outside: part(share.outside),
@@ -74,40 +75,38 @@ impl CardSources {
         };
         let shares: Vec<CardShare> = sources.shares.iter().map(share).collect();
         let mut values = Vec::new();
-        let told: Vec<CardSource> = sources
+        let initial: Vec<CardSource> = sources
             .bodies
             .iter()
-            .zip(&sources.heated)
-            .map(|(of, &heated)| source(of, heated, origin, &mut values))
+            .zip(&sources.power_factors)
+            .map(|(of, &factor)| source(of, factor, origin, &mut values))
             .collect();
         Ok(Some(Self {
             shares: filled(gpu, "shares of sources", &shares)?,
             rows: storage::<CardRow>(gpu, "rows of sources", values.len())?,
-            sources: filled(gpu, "sources of heat", &told)?,
-            before: vec![[0.0; 3]; told.len()],
-            told,
+            sources: filled(gpu, "sources of heat", &initial)?,
+            before: vec![[0.0; 3]; initial.len()],
+            initial,
             values,
         }))
     }
 
-    /// Tells when, counted from the time of a state, s, and forgets what was given.
-    pub fn send(&mut self, gpu: &Gpu, time: f64) {
-        let row =
-            |&[at, value]: &[f64; 2]| CardRow { time: layout::account(at - time), value: value as f32, unused: 0.0 };
-        let rows: Vec<CardRow> = self.values.iter().map(row).collect();
+    /// Uploads the rows, counted from the time of a state, s, and sets what was supplied to nothing.
+    pub fn upload(&mut self, gpu: &Gpu, time: f64) {
+        let rows: Vec<CardRow> = self.values.iter().map(|&row| CardRow::new(row, time, 0.0)).collect();
         gpu.queue.write_buffer(&self.rows, 0, bytemuck::cast_slice(&rows));
-        gpu.queue.write_buffer(&self.sources, 0, bytemuck::cast_slice(&self.told));
+        gpu.queue.write_buffer(&self.sources, 0, bytemuck::cast_slice(&self.initial));
         self.before.fill([0.0; 3]);
     }
 
-    /// Heat that each solid got since the last time, J.
-    pub fn given(&mut self, gpu: &Gpu) -> Result<Vec<[f64; 3]>, GpuError> {
-        let now: Vec<CardSource> = read(gpu, &self.sources, self.told.len())?;
-        let now: Vec<[f64; 3]> = now.iter().map(|source| source.given.map(layout::value)).collect();
+    /// Downloads the heat that each solid got since the last time, J.
+    pub fn download_supplied(&mut self, gpu: &Gpu) -> Result<Vec<[f64; 3]>, GpuError> {
+        let now: Vec<CardSource> = read(gpu, &self.sources, self.initial.len())?;
+        let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(layout::value)).collect();
         let since = |(now, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|kind| now[kind] - before[kind]);
-        let given = now.iter().zip(&self.before).map(since).collect();
+        let supplied = now.iter().zip(&self.before).map(since).collect();
         self.before = now;
-        Ok(given)
+        Ok(supplied)
     }
 
     /// Bytes held on the device.
@@ -123,8 +122,8 @@ fn append(table: &Table, zero: f64, values: &mut Vec<[f64; 2]>) -> [u32; 2] {
     [first, values.len() as u32]
 }
 
-fn source(of: &HeatSources, heated: f64, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSource {
-    let mut source = CardSource { heated: heated as f32, ..CardSource::default() };
+fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSource {
+    let mut source = CardSource { power_factor: factor as f32, ..CardSource::default() };
     if let Some((table, _)) = &of.heater {
         [source.power_first, source.power_end] = append(table, 0.0, values);
     }
@@ -139,8 +138,14 @@ fn source(of: &HeatSources, heated: f64, origin: Origin, values: &mut Vec<[f64; 
 
 fn surroundings(around: &Surroundings, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSurroundings {
     let zero = origin.temperature - ZERO_CELSIUS;
-    let [air_first, air_end] = append(&around.air, zero, values);
-    let [seen_first, seen_end] = append(&around.seen, zero, values);
-    let radiance = (around.emissivity * STEFAN_BOLTZMANN) as f32;
-    CardSurroundings { transfer: around.transfer as f32, radiance, air_first, air_end, seen_first, seen_end }
+    let [air_first, air_end] = append(&around.air_temperature, zero, values);
+    let [radiant_first, radiant_end] = append(&around.radiant_temperature, zero, values);
+    CardSurroundings {
+        transfer_coefficient: around.transfer_coefficient as f32,
+        emissivity_sigma: (around.emissivity * STEFAN_BOLTZMANN) as f32,
+        air_first,
+        air_end,
+        radiant_first,
+        radiant_end,
+    }
 }

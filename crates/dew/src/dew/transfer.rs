@@ -53,9 +53,9 @@ impl Dew {
         exchange.to_air(share_of, to_air);
         self.state.heat_flow.fill(0.0);
         let middle = self.state.time + 0.5 * step;
-        self.sources.give(middle, &self.solids, &self.state.temperatures, heat, of_solids, supplied);
-        for (sums, given) in self.state.supplied.iter_mut().zip(&*supplied) {
-            for (sum, &watts) in sums.iter_mut().zip(given) {
+        self.sources.add_heat(middle, &self.solids, &self.state.temperatures, heat, of_solids, supplied);
+        for (sums, watts) in self.state.supplied.iter_mut().zip(&*supplied) {
+            for (sum, &watts) in sums.iter_mut().zip(watts) {
                 sum.add(factor * step * watts);
                 self.state.energy.book(factor * step * watts);
             }

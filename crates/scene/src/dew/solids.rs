@@ -71,7 +71,7 @@ pub struct Outside {
     /// Emissivity of the solid's outer surface.
     #[serde(default)]
     pub emissivity: f64,
-    /// Temperature of what its outer surface sees, °C, constant or over time, as of the sky. Left out: that of the air outside.
+    /// Mean radiant temperature outside, °C, constant or over time, as of the sky. Left out: that of the air outside.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings_c: Option<Series>,
 }
@@ -82,7 +82,7 @@ pub struct Outside {
 pub struct Radiation {
     /// Emissivity of the surface.
     pub emissivity: f64,
-    /// Temperature of what surrounds it, °C, constant or over time.
+    /// Mean radiant temperature, °C, constant or over time.
     pub surroundings_c: Series,
 }
 
@@ -109,6 +109,12 @@ impl Side {
     pub fn axis_and_end(self) -> [usize; 2] {
         let number = self as usize;
         [number / 2, number % 2]
+    }
+
+    /// Its key in `[dew.faces]`.
+    pub fn key(self) -> &'static str {
+        let [axis, end] = self.axis_and_end();
+        crate::check::SIDES[axis][end]
     }
 }
 

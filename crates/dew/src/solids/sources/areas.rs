@@ -13,14 +13,11 @@ const DIVISIONS_IN_SIDE: f64 = 24.0;
 /// Rays are followed in steps of the distance to the surface, or, where that is smaller, of so small a part of what is between rays: what is thinner is not seen.
 const STEPS_BETWEEN_RAYS: f64 = 16.0;
 
-/// Halvings of a step that find where it meets the surface.
-const HALVINGS: usize = 24;
-
 /// Particles are looked for as far as this from their surface, in spacings.
 const SEARCHED: f64 = 2.0;
 
-/// A solid whose areas are measured.
-pub struct Measured<'a> {
+/// Surface areas of a solid, by rays through it.
+pub struct AreaSampler<'a> {
     solid: &'a Solid,
     room: &'a Room,
     spacing: f64,
@@ -28,7 +25,7 @@ pub struct Measured<'a> {
     count: usize,
 }
 
-impl<'a> Measured<'a> {
+impl<'a> AreaSampler<'a> {
     /// The solid with this number.
     pub fn new(solids: &Solids, number: u32, solid: &'a Solid, room: &'a Room, spacing: f64) -> Self {
         let sites = solids.sites(room, 0.0, |particle| particle.body == number);
@@ -42,14 +39,14 @@ impl<'a> Measured<'a> {
     pub fn in_box(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.count];
         for axis in 0..3 {
-            self.across(axis, DIVISIONS, |place, area| self.meet(axis, place, area, &mut areas));
+            self.for_each_ray(axis, DIVISIONS, |position, area| self.add_crossings(axis, position, area, &mut areas));
         }
         areas
     }
 
     /// Calls `each` for rays along an axis with their first positions and the areas between them, m2. They fill the box round the solid, so that faces along its axes are
     /// met exactly.
-    fn across(&self, axis: usize, divisions: f64, mut each: impl FnMut([f64; 3], f64)) {
+    fn for_each_ray(&self, axis: usize, divisions: f64, mut each: impl FnMut([f64; 3], f64)) {
         let [low, high] = self.bounds();
         let beside = [(axis + 1) % 3, (axis + 2) % 3];
         let lengths = beside.map(|axis| high[axis] - low[axis]);
@@ -57,39 +54,34 @@ impl<'a> Measured<'a> {
         let between = [0, 1].map(|k| lengths[k] / counts[k]);
         for i in 0..counts[0] as usize {
             for j in 0..counts[1] as usize {
-                let mut place = low;
-                place[beside[0]] += (i as f64 + 0.5) * between[0];
-                place[beside[1]] += (j as f64 + 0.5) * between[1];
-                each(place, between[0] * between[1]);
+                let mut position = low;
+                position[beside[0]] += (i as f64 + 0.5) * between[0];
+                position[beside[1]] += (j as f64 + 0.5) * between[1];
+                each(position, between[0] * between[1]);
             }
         }
     }
 
-    /// Follows a ray and adds the areas where it meets the surface.
-    fn meet(&self, axis: usize, mut place: [f64; 3], area: f64, areas: &mut [f64]) {
+    /// Follows a ray and adds the areas at its crossings with the surface.
+    fn add_crossings(&self, axis: usize, mut position: [f64; 3], area: f64, areas: &mut [f64]) {
         let shortest = self.spacing / DIVISIONS / STEPS_BETWEEN_RAYS;
         // From before the solid to beyond it, and within the box: a surface in the plane of a side is not met.
         let [low, high] = self.solid.bounds();
         let within = 1e-3 * shortest;
-        place[axis] = (low[axis] - shortest).max(self.room.low[axis] + within);
+        position[axis] = (low[axis] - shortest).max(self.room.low[axis] + within);
         let end = (high[axis] + shortest).min(self.room.high[axis] - within);
-        let mut before = self.solid.signed_distance(place);
-        while place[axis] < end {
-            let from = place[axis];
+        let mut before = self.solid.signed_distance(position);
+        while position[axis] < end {
+            let from = position[axis];
             // The surface is at least as far away as the distance.
-            place[axis] = (from + before.abs().max(shortest)).min(end);
-            let after = self.solid.signed_distance(place);
+            position[axis] = (from + before.abs().max(shortest)).min(end);
+            let after = self.solid.signed_distance(position);
             if (before < 0.0) != (after < 0.0) {
-                let mut ends = if before < 0.0 { [from, place[axis]] } else { [place[axis], from] };
-                let mut at = place;
-                for _ in 0..HALVINGS {
-                    at[axis] = 0.5 * (ends[0] + ends[1]);
-                    ends[usize::from(self.solid.signed_distance(at) >= 0.0)] = at[axis];
-                }
-                // Seen from outside a place before a face has the normal of that face, however near an edge is.
-                at[axis] = ends[1];
-                if let Some(particle) = self.nearest_particle(at) {
-                    areas[particle] += area * self.solid.nearest(at).normal[axis].abs();
+                // Seen from outside, the nearest face is that which the ray crosses, however near an edge is.
+                let mut outside = position;
+                outside[axis] = if before < 0.0 { position[axis] } else { from };
+                if let Some(particle) = self.nearest_particle(outside) {
+                    areas[particle] += area * self.solid.nearest(outside).normal[axis].abs();
                 }
             }
             before = after;
@@ -100,11 +92,11 @@ impl<'a> Measured<'a> {
     pub fn in_side(&self, [axis, end]: [usize; 2]) -> Vec<f64> {
         let cell = self.spacing / DIVISIONS_IN_SIDE;
         let mut areas = vec![0.0; self.count];
-        self.across(axis, DIVISIONS_IN_SIDE, |mut place, area| {
-            place[axis] = [self.room.low[axis] + 0.5 * cell, self.room.high[axis] - 0.5 * cell][end];
-            let part = (0.5 - self.solid.signed_distance(place) / cell).clamp(0.0, 1.0);
+        self.for_each_ray(axis, DIVISIONS_IN_SIDE, |mut position, area| {
+            position[axis] = [self.room.low[axis] + 0.5 * cell, self.room.high[axis] - 0.5 * cell][end];
+            let part = (0.5 - self.solid.signed_distance(position) / cell).clamp(0.0, 1.0);
             if part > 0.0
-                && let Some(particle) = self.nearest_particle(place)
+                && let Some(particle) = self.nearest_particle(position)
             {
                 areas[particle] += part * area;
             }
@@ -121,16 +113,16 @@ impl<'a> Measured<'a> {
         ]
     }
 
-    fn nearest_particle(&self, place: [f64; 3]) -> Option<usize> {
-        let near = self.particles.near(place, SEARCHED * self.spacing);
-        let distance = |site: &crate::solids::Site| distance_squared(site.position, place);
+    fn nearest_particle(&self, position: [f64; 3]) -> Option<usize> {
+        let near = self.particles.near(position, SEARCHED * self.spacing);
+        let distance = |site: &crate::solids::Site| distance_squared(site.position, position);
         near.map(|(site, _)| site).min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|site| site.particle as usize)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Measured;
+    use super::AreaSampler;
     use crate::air::Scale;
     use crate::room::{Face, Room};
     use crate::solids::{Body, Material, Solids};
@@ -147,7 +139,7 @@ mod tests {
         let kept: Vec<usize> = (0..body.positions.len()).filter(|&at| is_inside(&body.positions[at])).collect();
         body.positions = kept.iter().map(|&at| body.positions[at]).collect();
         let solids = Solids::new(&[body], &room, &Scale::new(spacing), 0.15);
-        let measured = Measured::new(&solids, 0, &solid, &room, spacing);
+        let measured = AreaSampler::new(&solids, 0, &solid, &room, spacing);
         [measured.in_box(), measured.in_side([2, 0])].map(|areas| areas.iter().sum())
     }
 

@@ -6,7 +6,7 @@ use super::Solids;
 use crate::bodies::Body;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::room::Room;
-use areas::Measured;
+use areas::AreaSampler;
 use corpuscle_scene::Table;
 
 /// Stefan-Boltzmann constant, W/(m2 K4) (CODATA 2018).
@@ -23,81 +23,81 @@ pub(crate) const OUTSIDE: usize = 1;
 /// By radiation of the surface in the box.
 pub(crate) const RADIATION: usize = 2;
 
-/// What a surface exchanges heat with.
+/// Surroundings of a surface: conditions of a heat flux by convection and radiation.
 #[derive(Debug, Clone)]
 pub(crate) struct Surroundings {
     /// Heat transfer coefficient, W/(m2 K).
-    pub transfer: f64,
+    pub transfer_coefficient: f64,
     /// Temperature of the air, °C, over time.
-    pub air: Table,
+    pub air_temperature: Table,
     /// Emissivity of the surface.
     pub emissivity: f64,
-    /// Temperature of what the surface sees, °C, over time.
-    pub seen: Table,
+    /// Mean radiant temperature, °C, over time.
+    pub radiant_temperature: Table,
 }
 
-/// What heats and cools a body.
+/// Heat sources of a body.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct HeatSources {
+pub(crate) struct BodySources {
     /// Power of its heater over time, and whether in W/m2; else in W.
     pub heater: Option<(Table, bool)>,
-    /// The side of the box in which it is, by axis and end, and what is outside.
+    /// The side of the box that it reaches, by axis and end, and the surroundings beyond.
     pub outside: Option<([usize; 2], Surroundings)>,
-    /// What the surface in the box sees.
+    /// Surroundings of the surface in the box, which radiate.
     pub radiation: Option<Surroundings>,
 }
 
-/// A part of a surface.
+/// Part of a surface that a particle stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Part {
+pub(crate) struct SurfacePart {
     /// Area, m2.
     pub area: f64,
-    /// Resistance to heat between the particle and the surface, m2 K/W: the distance over the conductivity.
+    /// Thermal resistance between the particle and the surface, m2 K/W: the distance over the conductivity.
     pub resistance: f64,
 }
 
-/// What a particle has of its body's sources.
+/// Share of a particle in the heat sources of its body.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Share {
+pub(crate) struct ParticleShare {
     /// Part of the heater's power.
     pub heater: f64,
     /// In the side of the box.
-    pub outside: Part,
+    pub outside: SurfacePart,
     /// Of the surface in the box.
-    pub radiation: Part,
+    pub radiation: SurfacePart,
 }
 
-/// What heats and cools the solids, with what each of their particles has of it. Nothing is in the lists where no body has any source.
+/// Heat sources of all bodies, with the share of each particle. The lists are empty where no body has any.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sources {
+pub(crate) struct HeatSources {
     /// Of each body.
-    pub bodies: Vec<HeatSources>,
-    /// Power of each body's heater over the numbers of its table, 1 or m2.
-    pub heated: Vec<f64>,
+    pub bodies: Vec<BodySources>,
+    /// Factor of the numbers in each body's table of power: 1, or its area where they are in W/m2.
+    pub power_factors: Vec<f64>,
     /// Of each particle of the solids.
-    pub shares: Vec<Share>,
+    pub shares: Vec<ParticleShare>,
 }
 
-/// What a surface sees at a time.
+/// Surroundings at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Seen {
-    /// W/(m2 K).
-    pub transfer: f64,
-    /// K.
-    pub air: f64,
+pub(crate) struct Conditions {
+    /// Heat transfer coefficient, W/(m2 K).
+    pub transfer_coefficient: f64,
+    /// Temperature of the air, K.
+    pub air_temperature: f64,
     /// Emissivity times the Stefan-Boltzmann constant, W/(m2 K4).
-    pub radiance: f64,
-    /// K.
-    pub seen: f64,
+    pub emissivity_sigma: f64,
+    /// Mean radiant temperature, K.
+    pub radiant_temperature: f64,
 }
 
 impl Surroundings {
-    fn at(&self, time: f64) -> Seen {
-        Seen {
-            transfer: self.transfer,
-            air: self.air.at(time) + ZERO_CELSIUS,
-            radiance: self.emissivity * STEFAN_BOLTZMANN,
-            seen: self.seen.at(time) + ZERO_CELSIUS,
+    fn at(&self, time: f64) -> Conditions {
+        Conditions {
+            transfer_coefficient: self.transfer_coefficient,
+            air_temperature: self.air_temperature.at(time) + ZERO_CELSIUS,
+            emissivity_sigma: self.emissivity * STEFAN_BOLTZMANN,
+            radiant_temperature: self.radiant_temperature.at(time) + ZERO_CELSIUS,
         }
     }
 }
@@ -105,100 +105,104 @@ impl Surroundings {
 /// Iterations of Newton's method for the temperature of a surface: enough for one that glowing surroundings warm by hundreds of K.
 const ITERATIONS: usize = 5;
 
-impl Seen {
-    /// Heat into the surface, W/m2, and how much less it is for each K that the particle behind it is warmer, W/(m2 K).
+impl Conditions {
+    /// Heat flux into the surface, W/m2, and by how much it falls with the temperature of the particle behind it, W/(m2 K).
     ///
     /// Newton's law of cooling and grey radiation, q = h (T_a - T_s) + e sigma (T_r^4 - T_s^4) (Incropera & DeWitt 2002, equations 1.3a and
     /// 1.7), where the surface's temperature T_s is that of the particle and q times the resistance between them.
-    fn heat(&self, temperature: f64, resistance: f64) -> [f64; 2] {
+    fn flux(&self, temperature: f64, resistance: f64) -> [f64; 2] {
         let at = |surface: f64| {
-            let (a, b) = (self.seen, surface);
-            let flux = self.transfer * (self.air - b) + self.radiance * (a - b) * (a + b) * (a * a + b * b);
-            [flux, self.transfer + 4.0 * self.radiance * b.powi(3)]
+            let (a, b) = (self.radiant_temperature, surface);
+            let radiation = self.emissivity_sigma * (a - b) * (a + b) * (a * a + b * b);
+            let slope = self.transfer_coefficient + 4.0 * self.emissivity_sigma * b.powi(3);
+            [self.transfer_coefficient * (self.air_temperature - b) + radiation, slope]
         };
-        let mut warmer = 0.0;
+        let mut difference = 0.0;
         for _ in 0..ITERATIONS {
-            let [flux, slope] = at(temperature + warmer);
-            warmer += (resistance * flux - warmer) / (1.0 + resistance * slope);
+            let [flux, slope] = at(temperature + difference);
+            difference += (resistance * flux - difference) / (1.0 + resistance * slope);
         }
-        let [flux, slope] = at(temperature + warmer);
+        let [flux, slope] = at(temperature + difference);
         [flux, slope / (1.0 + resistance * slope)]
     }
 }
 
-impl Sources {
-    /// Of bodies as told by a scene.
+impl HeatSources {
+    /// Heat sources of the bodies of a scene.
     pub fn new(bodies: &[Body], solids: &Solids, room: &Room, spacing: f64) -> Self {
-        let sources: Vec<HeatSources> = bodies.iter().map(|body| body.sources.clone()).collect();
-        if sources.iter().all(HeatSources::is_none) {
+        if bodies.iter().all(|body| body.sources.is_none()) {
             return Self::default();
         }
-        let mut shares = vec![Share::default(); solids.particles.len()];
-        let mut heated = vec![0.0; bodies.len()];
-        for (number, (body, sources)) in bodies.iter().zip(&sources).enumerate().filter(|(_, (_, of))| !of.is_none()) {
-            let measured = Measured::new(solids, number as u32, &body.solid, room, spacing);
-            let conductivity = body.material.conductivity;
-            let of_body = |i: &usize| solids.particles[*i].body as usize == number;
-            let own: Vec<usize> = (0..shares.len()).filter(of_body).collect();
-            let in_box = measured.in_box();
-            if let Some((_, is_per_area)) = sources.heater {
-                let volume: f64 = own.iter().map(|&i| solids.particles[i].volume).sum();
-                own.iter().for_each(|&i| shares[i].heater = solids.particles[i].volume / volume);
-                heated[number] = if is_per_area { in_box.iter().sum() } else { 1.0 };
-            }
-            if let Some((side, _)) = sources.outside {
-                let in_side = measured.in_side(side);
-                let [axis, end] = side;
-                let plane = [room.low, room.high][end][axis];
-                for &i in &own {
-                    let away = (solids.particles[i].position[axis] - plane).abs();
-                    shares[i].outside = Part { area: in_side[i], resistance: away / conductivity };
-                }
-            }
-            if sources.radiation.is_some() {
-                for &i in &own {
-                    let below = -body.solid.signed_distance(solids.particles[i].position);
-                    shares[i].radiation = Part { area: in_box[i], resistance: below.max(0.0) / conductivity };
-                }
-            }
+        let mut sources = Self {
+            bodies: bodies.iter().map(|body| body.sources.clone()).collect(),
+            power_factors: vec![0.0; bodies.len()],
+            shares: vec![ParticleShare::default(); solids.particles.len()],
+        };
+        for (number, body) in bodies.iter().enumerate().filter(|(_, body)| !body.sources.is_none()) {
+            sources.share(number, body, solids, room, spacing);
         }
-        Self { bodies: sources, heated, shares }
+        sources
     }
 
-    /// Adds to the heat that each particle gets, W, and to the sums of its conductances, W/K, what sources give at a time; and gives what of it each
-    /// body gets, W, in `given`.
-    pub fn give(
+    /// Divides the heat sources of a body among its particles.
+    fn share(&mut self, number: usize, body: &Body, solids: &Solids, room: &Room, spacing: f64) {
+        let BodySources { heater, outside, radiation } = &body.sources;
+        let areas = AreaSampler::new(solids, number as u32, &body.solid, room, spacing);
+        let conductivity = body.material.conductivity;
+        let particles = || solids.particles.iter().enumerate().filter(|(_, particle)| particle.body as usize == number);
+        let is_per_area = heater.as_ref().is_some_and(|(_, is_per_area)| *is_per_area);
+        let in_box = if is_per_area || radiation.is_some() { areas.in_box() } else { Vec::new() };
+        if heater.is_some() {
+            let volume: f64 = particles().map(|(_, particle)| particle.volume).sum();
+            particles().for_each(|(i, particle)| self.shares[i].heater = particle.volume / volume);
+            self.power_factors[number] = if is_per_area { in_box.iter().sum() } else { 1.0 };
+        }
+        if let Some(([axis, end], _)) = *outside {
+            let in_side = areas.in_side([axis, end]);
+            let plane = [room.low, room.high][end][axis];
+            for (i, particle) in particles() {
+                let depth = (particle.position[axis] - plane).abs();
+                self.shares[i].outside = SurfacePart { area: in_side[i], resistance: depth / conductivity };
+            }
+        }
+        if radiation.is_some() {
+            for (i, particle) in particles() {
+                let depth = -body.solid.signed_distance(particle.position);
+                self.shares[i].radiation = SurfacePart { area: in_box[i], resistance: depth.max(0.0) / conductivity };
+            }
+        }
+    }
+
+    /// Adds what the sources supply at a time to the heat that each particle gets, W, and to the sums of its conductances, W/K. Stores in `supplied` what each
+    /// body gets of each kind, W.
+    pub fn add_heat(
         &self,
         time: f64,
         solids: &Solids,
         temperatures: &[f64],
         heat: &mut [f64],
         conductances: &mut [f64],
-        given: &mut [[f64; 3]],
+        supplied: &mut [[f64; 3]],
     ) {
-        given.fill([0.0; 3]);
-        if self.shares.is_empty() {
-            return;
-        }
-        let mut now = (usize::MAX, Now::default());
+        supplied.fill([0.0; 3]);
+        let mut current = (usize::MAX, BodyConditions::default());
         for (i, share) in self.shares.iter().enumerate() {
             let body = solids.particles[i].body as usize;
-            if now.0 != body {
-                now = (body, self.bodies[body].at(time, self.heated[body]));
+            if current.0 != body {
+                current = (body, self.bodies[body].at(time, self.power_factors[body]));
             }
-            let (now, temperature) = (&now.1, temperatures[i]);
-            let mut from = |kind: usize, watts: f64, conductance: f64| {
+            let BodyConditions { power, outside, radiation } = current.1;
+            let mut add = |kind: usize, watts: f64, conductance: f64| {
                 heat[i] += watts;
                 conductances[i] += conductance;
-                given[body][kind] += watts;
+                supplied[body][kind] += watts;
             };
-            from(HEATER, share.heater * now.power, 0.0);
-            for (kind, part, seen) in
-                [(OUTSIDE, share.outside, &now.outside), (RADIATION, share.radiation, &now.radiation)]
+            add(HEATER, share.heater * power, 0.0);
+            for (kind, part, conditions) in [(OUTSIDE, share.outside, outside), (RADIATION, share.radiation, radiation)]
             {
-                if let Some(seen) = seen.as_ref().filter(|_| part.area > 0.0) {
-                    let [flux, conductance] = seen.heat(temperature, part.resistance);
-                    from(kind, part.area * flux, part.area * conductance);
+                if let Some(conditions) = conditions.filter(|_| part.area > 0.0) {
+                    let [flux, slope] = conditions.flux(temperatures[i], part.resistance);
+                    add(kind, part.area * flux, part.area * slope);
                 }
             }
         }
@@ -208,63 +212,67 @@ impl Sources {
     pub fn temperatures(bodies: &[Body]) -> impl Iterator<Item = f64> + '_ {
         let largest = |table: &Table| table.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
         bodies.iter().flat_map(move |body| {
-            let HeatSources { heater, outside, radiation } = &body.sources;
-            let surroundings = outside.iter().map(|(_, seen)| seen).chain(radiation);
-            let tables = surroundings.flat_map(|seen| [(seen.transfer, &seen.air), (seen.emissivity, &seen.seen)]);
-            let seen = tables.filter(|(strength, _)| *strength > 0.0).flat_map(|(_, table)| table.rows());
+            let BodySources { heater, outside, radiation } = &body.sources;
+            let surroundings = outside.iter().map(|(_, surroundings)| surroundings).chain(radiation);
+            let tables = surroundings.flat_map(|of| {
+                [(of.transfer_coefficient, &of.air_temperature), (of.emissivity, &of.radiant_temperature)]
+            });
+            let ambient = tables.filter(|(factor, _)| *factor > 0.0).flat_map(|(_, table)| table.rows());
             let area = body.solid.area();
             let heated = heater.iter().map(move |(table, is_per_area)| {
                 let flux = largest(table) / if *is_per_area { 1.0 } else { area };
                 body.temperature.at(0.0) + flux / USUAL_TRANSFER
             });
-            seen.map(|row| row[1]).chain(heated).map(|celsius| celsius + ZERO_CELSIUS)
+            ambient.map(|row| row[1]).chain(heated).map(|celsius| celsius + ZERO_CELSIUS)
         })
     }
 }
 
-/// What a body's sources are at a time.
+/// Heat sources of a body at a time.
 #[derive(Debug, Clone, Copy, Default)]
-struct Now {
-    /// W.
+struct BodyConditions {
+    /// Power of the heater, W.
     power: f64,
-    outside: Option<Seen>,
-    radiation: Option<Seen>,
+    outside: Option<Conditions>,
+    radiation: Option<Conditions>,
 }
 
-impl HeatSources {
+impl BodySources {
     /// Whether there is no source.
     pub fn is_none(&self) -> bool {
         self.heater.is_none() && self.outside.is_none() && self.radiation.is_none()
     }
 
-    fn at(&self, time: f64, heated: f64) -> Now {
-        Now {
-            power: self.heater.as_ref().map_or(0.0, |(table, _)| heated * table.at(time)),
-            outside: self.outside.as_ref().map(|(_, seen)| seen.at(time)),
-            radiation: self.radiation.as_ref().map(|seen| seen.at(time)),
+    fn at(&self, time: f64, power_factor: f64) -> BodyConditions {
+        BodyConditions {
+            power: self.heater.as_ref().map_or(0.0, |(table, _)| power_factor * table.at(time)),
+            outside: self.outside.as_ref().map(|(_, surroundings)| surroundings.at(time)),
+            radiation: self.radiation.as_ref().map(|surroundings| surroundings.at(time)),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{STEFAN_BOLTZMANN, Seen};
+    use super::{Conditions, STEFAN_BOLTZMANN};
     use proptest::prelude::*;
 
     proptest! {
-        /// What flows into the surface flows on to the particle, and the slope is that of the heat.
+        /// The flux into the surface is that from the surface to the particle, and the slope is its derivative.
         #[test]
-        fn the_surface_passes_on_what_it_gets(
-            transfer in 0.0..200.0_f64, air in 230.0..330.0_f64, emissivity in 0.0..1.0_f64, seen in 150.0..1200.0_f64,
-            temperature in 240.0..600.0_f64, resistance in 0.0..0.02_f64,
+        fn flux_is_the_same_on_both_sides_of_the_surface(
+            transfer_coefficient in 0.0..200.0_f64, air_temperature in 230.0..330.0_f64, emissivity in 0.0..1.0_f64,
+            radiant_temperature in 150.0..1200.0_f64, temperature in 240.0..600.0_f64, resistance in 0.0..0.02_f64,
         ) {
-            let around = Seen { transfer, air, radiance: emissivity * STEFAN_BOLTZMANN, seen };
-            let [heat, slope] = around.heat(temperature, resistance);
-            let surface = temperature + resistance * heat;
-            let law = transfer * (air - surface) + around.radiance * (seen.powi(4) - surface.powi(4));
-            prop_assert!((heat - law).abs() <= 1e-4 * heat.abs() + 1e-3, "{heat} for {law}");
-            let warmer = around.heat(temperature + 0.01, resistance)[0];
-            prop_assert!(((heat - warmer) / 0.01 - slope).abs() < 0.01 * slope + 1e-6, "{slope}");
+            let emissivity_sigma = emissivity * STEFAN_BOLTZMANN;
+            let conditions = Conditions { transfer_coefficient, air_temperature, emissivity_sigma, radiant_temperature };
+            let [flux, slope] = conditions.flux(temperature, resistance);
+            let surface = temperature + resistance * flux;
+            let radiation = emissivity_sigma * (radiant_temperature.powi(4) - surface.powi(4));
+            let law = transfer_coefficient * (air_temperature - surface) + radiation;
+            prop_assert!((flux - law).abs() <= 1e-4 * flux.abs() + 1e-3, "{flux} for {law}");
+            let warmer = conditions.flux(temperature + 0.01, resistance)[0];
+            prop_assert!(((flux - warmer) / 0.01 - slope).abs() < 0.01 * slope + 1e-6, "{slope}");
         }
     }
 }

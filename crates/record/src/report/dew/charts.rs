@@ -13,7 +13,7 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
     let of_solids = |quantity: &str| -> Vec<(String, &str)> {
         dew.solid.iter().map(|solid| (format!("{}.{quantity}", solid.name), solid.name.as_str())).collect()
     };
-    let kinds: [Kind<'_>; 11] = [
+    let kinds: [Kind<'_>; 14] = [
         ("covered", "Part of the surface that drops cover", "%", 1e2, of_solids("covered_part")),
         ("water_per_area", "Water on the solids", "g/m²", 1e3, of_solids("water_per_area_kg_per_m2")),
         ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
@@ -21,6 +21,9 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
         ("heat_flow", "Heat that the solids take from the air", "W", 1.0, of_solids("heat_flow_W")),
         ("water_left", "Water that ran off", "mg", 1e6, one("drops.left_kg")),
         ("heat_given", "Heat that held solids gave", "J", 1.0, of_solids("heat_given_J")),
+        ("heat_from_heater", "Heat from heaters", "J", 1.0, of_solids("heat_from_heater_J")),
+        ("heat_from_outside", "Heat from outside (below 0 it is lost)", "J", 1.0, of_solids("heat_from_outside_J")),
+        ("heat_by_radiation", "Heat by radiation (below 0 it is lost)", "J", 1.0, of_solids("heat_by_radiation_J")),
         ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_solids("mean_temperature_K")),
         ("nearest_air", "Nearest air (below 0 it is inside)", "mm", 1e3, of_solids("nearest_air_m")),
         ("gap", "Vacuum before the surface", "mm", 1e3, of_solids("gap_m")),

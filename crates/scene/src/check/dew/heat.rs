@@ -1,7 +1,7 @@
 //! Checks of what heats and cools solids: `heater`, `outside` and `radiation` of `[[dew.solid]]`.
 
 use super::solids::HOTTEST;
-use crate::check::{Check, Checked, SIDES};
+use crate::check::{Check, Checked};
 use crate::dew::{Dew, Face, Heater, Outside, Solid};
 use crate::{Axis, Series};
 
@@ -50,7 +50,7 @@ impl Check {
         self.require(&format!("{key}.side"), is_wall, || {
             format!(
                 "is no wall: what is beyond it is air of the scene; give faces.{} = \"wall\", or another side",
-                SIDES[axis][end]
+                outside.side.key()
             )
         })?;
         self.temperature_of_surroundings(&format!("{key}.temperature_c"), &outside.temperature_c)?;
