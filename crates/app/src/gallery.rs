@@ -215,6 +215,7 @@ const PICTURES: &[(&str, &[u8])] = pictures![
     "gas-million",
     "dew-pane",
     "dew-lens",
+    "dew-windscreen",
     "dew-glassware",
     "dew-three-boundaries",
 ];

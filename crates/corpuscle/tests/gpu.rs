@@ -27,9 +27,10 @@ const FLOODS: [(&str, f64, f64); 8] = [
 ];
 
 /// Scenes, the time from which they are compared, and a distance of parcels, m, at which software in place of a card does hundred steps in seconds.
-const DEW: [(&str, f64, &str); 4] = [
+const DEW: [(&str, f64, &str); 5] = [
     ("dew/pane", 0.15, "0.003"),
     ("dew/lens", 0.1, "0.003"),
+    ("dew/windscreen", 0.1, "0.0025"),
     ("dew/three-boundaries", 0.003, "0.00225"),
     ("dew/glassware", 0.01, "0.006"),
 ];

@@ -58,6 +58,8 @@ pub struct ToAir {
     pub moistening: f64,
     /// Its part of the diagonal of the diffusion matrix, 1/s.
     pub stiffness: f64,
+    /// Warming, K/s, and moistening, 1/s, by images beyond sides that air passes.
+    pub from_beyond: [f64; 2],
 }
 
 /// Room for what is found in a step, kept from step to step.
@@ -165,11 +167,15 @@ impl Exchange<'_> {
         let mut sum = ToAir::default();
         for pair in self.contact.of_air(near) {
             let flux = self.flux(pair.other as usize, place, pair.r);
-            let particle = self.contact.sites[pair.other as usize].particle as usize;
-            let water = limited(flux.water, share_of[particle]);
+            let site = &self.contact.sites[pair.other as usize];
+            let water = limited(flux.water, share_of[site.particle as usize]);
             let released = (1.0 - flux.to_solid) * self.latent_heat * water;
-            sum.warming += (released - flux.conductance[0] * flux.difference) / capacity;
+            let warming = (released - flux.conductance[0] * flux.difference) / capacity;
+            sum.warming += warming;
             sum.moistening -= water / mass;
+            if site.beyond {
+                sum.from_beyond = [sum.from_beyond[0] + warming, sum.from_beyond[1] - water / mass];
+            }
             sum.stiffness += flux.conductance[0] / capacity;
         }
         sum
@@ -179,9 +185,10 @@ impl Exchange<'_> {
     /// parts, in `shares`. Empty where none is near.
     pub fn shares(&self, near: &Near, shares: &mut Vec<(u32, f64)>) {
         let part = |pair: &Pair| {
-            let particle = self.contact.sites[pair.other as usize].particle;
+            let Site { particle, beyond, .. } = self.contact.sites[pair.other as usize];
             let weight = self.contact.volumes[pair.other as usize] * self.scale.kernels.poly6(pair.r * pair.r);
-            (self.solids.particles[particle as usize].normal.is_some() && weight > 0.0).then_some((particle, weight))
+            let is_boundary = self.solids.particles[particle as usize].normal.is_some();
+            (is_boundary && !beyond && weight > 0.0).then_some((particle, weight))
         };
         shares.clear();
         shares.extend(self.contact.of_air(near).iter().filter_map(part));

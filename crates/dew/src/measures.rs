@@ -3,6 +3,7 @@
 use crate::air::Particle;
 use crate::dew::Dew;
 use crate::drops::Drops;
+use crate::fogging::Cover;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
 use std::f64::consts::SQRT_2;
 
@@ -17,6 +18,14 @@ pub(crate) struct Totals {
     pub fog: f64,
     /// The largest speed, m/s.
     pub fastest: f64,
+}
+
+/// Times that are told of a surface.
+const COVER: [&str; 3] = ["fogged_at", "clear_at", "time_to_clear"];
+
+/// They, s; not numbers where they are not known yet.
+fn times(cover: &Cover) -> [f64; 3] {
+    [cover.fogged, cover.clear, cover.time_to_clear()].map(|time| time.unwrap_or(f64::NAN))
 }
 
 impl Dew {
@@ -59,9 +68,17 @@ impl Dew {
                     column(name, "drop_radius", "m"),
                     column(name, "polydispersity", ""),
                     column(name, "first_drop_at", "s"),
-                    column(name, "clear_at", "s"),
-                    column(name, "time_to_clear", "s"),
                 ]);
+                columns.extend(COVER.map(|quantity| column(name, quantity, "s")));
+            }
+            for (face, _) in self.wetting.iter().flat_map(|wetting| wetting.faces_of(body)) {
+                let name = format!("{name}.{}", face.name);
+                columns.extend([
+                    column(&name, "mean_temperature", "K"),
+                    column(&name, "water_per_area", "kg_per_m2"),
+                    column(&name, "covered_part", ""),
+                ]);
+                columns.extend(COVER.map(|quantity| column(&name, quantity, "s")));
             }
             if self.layers[body].is_some() {
                 columns.extend([
@@ -133,7 +150,13 @@ impl Dew {
             let or_none = |value: f64| if story.drops > 0 { value } else { f64::NAN };
             row.extend([water / area, story.covered / area, story.drops as f64]);
             row.extend([or_none(story.mean_radius), or_none(story.polydispersity)]);
-            row.extend([story.first, story.clear, story.time_to_clear()].map(|time| time.unwrap_or(f64::NAN)));
+            row.push(story.first.unwrap_or(f64::NAN));
+            row.extend(times(&story.cover));
+            for (face, cover) in wetting.faces_of(body) {
+                let [water, temperature] = wetting.water_and_temperature(face, &self.state.temperatures);
+                row.extend([temperature, water, cover.part]);
+                row.extend(times(cover));
+            }
         }
         if let Some(layer) = &self.layers[body] {
             let found = layer.find(self);

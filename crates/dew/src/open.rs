@@ -57,7 +57,26 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let solids: Vec<Solid> = bodies.into_iter().map(|body| body.solid).collect();
     let laws = laws(scene, &solids)?;
     dew.lay_drops(laws, Arc::from(solids), sites_per_area(scene), seed);
+    measure_faces(scene, &mut dew)?;
     Ok(dew)
+}
+
+fn measure_faces(scene: &written::Dew, dew: &mut Dew) -> Result<(), ModelError> {
+    let Some(wetting) = &mut dew.wetting else { return Ok(()) };
+    for (row, solid) in scene.solid.iter().enumerate() {
+        for (at, face) in solid.face.iter().enumerate() {
+            if !wetting.measure_face(row, &face.name, face.side.axis_and_end()) {
+                return Err(ModelError::Setup(format!(
+                    "the face \"{}\" of the solid \"{}\" (dew.solid.{row}.face.{at}): no surface of the solid in the box faces {}, by its own axes before it \
+                     is turned; give another side, or leave this face out",
+                    face.name,
+                    solid.name,
+                    face.side.key()
+                )));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What scenes can say and this version cannot do, by the name of the key.
@@ -95,11 +114,10 @@ fn refuse_solids_at_inlets(bodies: &[bodies::Body], room: &Room, spacing: f64) -
             for side in 0..2 {
                 if matches!(room.faces[axis][side], Face::Inlet(_)) && gaps[side] < BEFORE_INLET * spacing {
                     return Err(ModelError::Setup(format!(
-                        "the solid \"{}\" stands in a side of the box where air comes in (dew.faces.{}_{}): leave at least {} m, {} \
+                        "the solid \"{}\" stands in a side of the box where air comes in (dew.faces.{}): leave at least {} m, {} \
                          spacings, between them",
                         body.name,
-                        ["x", "y", "z"][axis],
-                        ["min", "max"][side],
+                        key_of_side(axis, side),
                         BEFORE_INLET * spacing,
                         BEFORE_INLET
                     )));
@@ -108,6 +126,10 @@ fn refuse_solids_at_inlets(bodies: &[bodies::Body], room: &Room, spacing: f64) -
         }
     }
     Ok(())
+}
+
+fn key_of_side(axis: usize, side: usize) -> String {
+    format!("{}_{}", ["x", "y", "z"][axis], ["min", "max"][side])
 }
 
 fn humidity_transport(scene: &written::Dew) -> HumidityTransport {
@@ -247,16 +269,10 @@ fn fastest(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bodies
         .fold(length(scene.air.velocity_m_per_s).max((contrast * fall).sqrt()), f64::max)
 }
 
-/// The particles of a solid that are in the room, or beyond a face that air passes.
+/// The particles of a solid that are in the room.
 fn particles(body: &bodies::Body, room: &Room) -> Body {
-    let is_open = |axis: usize, side: usize| room.faces[axis][side].is_passed();
-    let counts = |place: &[f64; 3]| {
-        (0..3).all(|axis| {
-            (place[axis] >= room.low[axis] || is_open(axis, 0)) && (place[axis] < room.high[axis] || is_open(axis, 1))
-        })
-    };
     let samples = &body.samples;
-    let kept: Vec<usize> = (0..samples.positions.len()).filter(|&at| counts(&samples.positions[at])).collect();
+    let kept: Vec<usize> = (0..samples.positions.len()).filter(|&at| room.contains(samples.positions[at])).collect();
     let solid = body.solid.clone();
     let surface: Surface = Arc::new(move |place| solid.signed_distance(place));
     Body {

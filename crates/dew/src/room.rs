@@ -53,7 +53,12 @@ pub struct Image {
     pub position: [f64; 3],
     /// The axes along which it is mirrored: what moves along them moves the other way.
     pub mirrored: [bool; 3],
+    /// Whether it is mirrored at a face that air passes.
+    pub beyond: bool,
 }
+
+/// How far beyond each face, by axis and end, mirror images are wanted, m, where they are.
+pub type Mirrors = [[Option<f64>; 2]; 3];
 
 impl Room {
     /// Lengths of the sides, m.
@@ -85,6 +90,21 @@ impl Room {
         faces().all(Face::is_passed) && (faces().any(|face| *face == Face::Open) || beyond.nth(1).is_none())
     }
 
+    /// A place that is beyond faces for which `mirrors` has a reach, mirrored back.
+    pub(crate) fn mirrored_back(&self, place: [f64; 3], mirrors: &Mirrors) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            let (at, low, high) = (place[axis], self.low[axis], self.high[axis]);
+            let [below, above] = mirrors[axis].map(|reach| reach.is_some());
+            if at < low && below {
+                2.0 * low - at
+            } else if at >= high && above {
+                2.0 * high - at
+            } else {
+                at
+            }
+        })
+    }
+
     /// The faces that a place is beyond: axis and side.
     fn faces_before(&self, place: [f64; 3]) -> impl Iterator<Item = (usize, usize)> + Clone {
         let (low, high) = (self.low, self.high);
@@ -99,22 +119,30 @@ impl Room {
     }
 
     /// Calls `found` with every image of a place that is within `reach` of the room, beyond periodic faces and walls.
-    pub fn images(&self, place: [f64; 3], reach: f64, mut found: impl FnMut(Image)) {
-        let near = |axis: usize| place[axis] - self.low[axis] < reach || self.high[axis] - place[axis] < reach;
+    pub fn images(&self, place: [f64; 3], reach: f64, found: impl FnMut(Image)) {
+        self.images_beyond(place, &[[None; 2]; 3], reach, found);
+    }
+
+    /// The same, and mirror images within a reach of their own beyond those of the other faces, by axis and end, for which `mirrors` has one.
+    pub fn images_beyond(&self, place: [f64; 3], mirrors: &Mirrors, reach: f64, mut found: impl FnMut(Image)) {
+        let farthest = mirrors.iter().flatten().flatten().copied().fold(reach, f64::max);
+        let near = |axis: usize| place[axis] - self.low[axis] < farthest || self.high[axis] - place[axis] < farthest;
         if !(0..3).any(near) {
             return;
         }
         // Along each axis the place itself comes first, then its images.
-        let mut along = [[(0.0, false); 3]; 3];
+        let mut along = [[(0.0, false, false); 3]; 3];
         let mut count = [1; 3];
         for axis in 0..3 {
             let (low, high, at) = (self.low[axis], self.high[axis], place[axis]);
-            along[axis][0] = (at, false);
+            along[axis][0] = (at, false, false);
             for side in 0..2 {
-                let image = match self.faces[axis][side] {
-                    Face::Periodic => (at + [low - high, high - low][side], false),
-                    Face::Wall => (2.0 * [low, high][side] - at, true),
-                    Face::Inlet(_) | Face::Outlet | Face::Open => continue,
+                let mirrored = |beyond: bool| (2.0 * [low, high][side] - at, true, beyond);
+                let (image, reach) = match (self.faces[axis][side], mirrors[axis][side]) {
+                    (Face::Periodic, _) => ((at + [low - high, high - low][side], false, false), reach),
+                    (Face::Wall, _) => (mirrored(false), reach),
+                    (Face::Inlet(_) | Face::Outlet | Face::Open, Some(reach)) => (mirrored(true), reach),
+                    (Face::Inlet(_) | Face::Outlet | Face::Open, None) => continue,
                 };
                 if image.0 > low - reach && image.0 < high + reach {
                     along[axis][count[axis]] = image;
@@ -127,7 +155,11 @@ impl Room {
             for &y in &along[1][..count[1]] {
                 for &x in &along[0][..count[0]] {
                     if !std::mem::take(&mut itself) {
-                        found(Image { position: [x.0, y.0, z.0], mirrored: [x.1, y.1, z.1] });
+                        found(Image {
+                            position: [x.0, y.0, z.0],
+                            mirrored: [x.1, y.1, z.1],
+                            beyond: x.2 || y.2 || z.2,
+                        });
                     }
                 }
             }
@@ -204,7 +236,7 @@ mod tests {
         let mut images = Vec::new();
         walls.images([0.1, 0.1, 2.9], 0.2, |image| images.push(image));
         assert_eq!(images.len(), 7);
-        assert!(images.contains(&Image { position: [-0.1, -0.1, 0.1 + 3.0], mirrored: [true; 3] }));
+        assert!(images.contains(&Image { position: [-0.1, -0.1, 0.1 + 3.0], mirrored: [true; 3], beyond: false }));
         let mut one = Vec::new();
         room([[Face::Periodic; 2]; 3]).images([0.5, 1.9, 1.0], 0.2, |image| one.push(image.position));
         assert_eq!(one.len(), 1);

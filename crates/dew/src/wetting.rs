@@ -5,7 +5,8 @@
 
 use crate::dew::Dew;
 use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces};
-use crate::fogging::{Fogging, Story, open_area};
+use crate::fogging::{Cover, Fogging, Story, SurfaceFace, open_area};
+use crate::solids::SolidParticle;
 use corpuscle_model::{Column, ExactSum, ParticleSet, SolidShape, Surface, Values};
 use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
@@ -32,6 +33,8 @@ pub(crate) struct Wetting {
     fogging: Fogging,
     /// Area of each solid on which water can condense, m2.
     open_areas: Vec<f64>,
+    /// Parts of surfaces that are measured by themselves, in the order of their solids.
+    faces: Vec<SurfaceFace>,
 }
 
 /// What of it changes.
@@ -49,6 +52,7 @@ impl Wetting {
         let mut wetting = Self {
             fogging: Fogging::new(particles.len(), solids),
             open_areas: (0..solids).map(|solid| open_area(drops.patches(), solid)).collect(),
+            faces: Vec::new(),
             drops,
             particles,
             shares: Vec::new(),
@@ -102,6 +106,37 @@ impl Wetting {
         self.open_areas[solid]
     }
 
+    /// Measures a part of a solid's surface by itself from here on: where it faces along an axis of the solid's own more than along any other. False where
+    /// no air is before such a part.
+    pub fn measure_face(&mut self, solid: usize, name: &str, axis_and_end: [usize; 2]) -> bool {
+        let form = &self.drops.solids()[solid];
+        let is_of_it = |patch: &Patch| patch.solid as usize == solid && form.axis_and_end(patch.normal) == axis_and_end;
+        let all = self.drops.patches().iter().enumerate().filter(|(_, patch)| is_of_it(patch));
+        let patches: Vec<u32> = all.clone().map(|(number, _)| number as u32).collect();
+        let area: f64 = all.map(|(_, patch)| patch.area()).sum();
+        let is_any = area > 0.0;
+        if is_any {
+            self.faces.push(SurfaceFace { solid, name: name.into(), patches, area });
+            self.fogging.faces.push(Cover::default());
+        }
+        is_any
+    }
+
+    /// Faces of a solid, and what was seen of each.
+    pub fn faces_of(&self, solid: usize) -> impl Iterator<Item = (&SurfaceFace, &Cover)> {
+        self.faces.iter().zip(&self.fogging.faces).filter(move |(face, _)| face.solid == solid)
+    }
+
+    /// Water per area of a face, kg/m2, and its mean temperature, K, of particles of the solids with these temperatures.
+    pub fn water_and_temperature(&self, face: &SurfaceFace, temperatures: &[f64]) -> [f64; 2] {
+        let [water, heat] = face.patches.iter().fold([0.0; 2], |[water, heat], &patch| {
+            let temperature = temperatures[self.particles[patch as usize] as usize];
+            let area = self.drops.patches()[patch as usize].area();
+            [water + self.shares[patch as usize].water, heat + area * temperature]
+        });
+        [water / face.area, heat / face.area]
+    }
+
     /// The drops take over what condensed on and evaporated from the boundary particles, and move up to `time`. Gives the water
     /// that left the solids as drops, kg.
     fn take_over(&mut self, water_on: &mut [f64], time: f64) -> f64 {
@@ -115,7 +150,7 @@ impl Wetting {
         self.drops.advance(step);
         self.since = time;
         self.share();
-        self.fogging.see(&self.drops, &self.shares, time, step);
+        self.fogging.see(&self.drops, &self.shares, &self.faces, &self.open_areas, time, step);
         for (&particle, share) in self.particles.iter().zip(&self.shares) {
             water_on[particle as usize] = share.water;
         }
@@ -145,7 +180,8 @@ impl Wetting {
     pub fn restore(&mut self, state: WettingState) -> bool {
         let fits = state.drops.unseen.len() == self.drops.sites().len()
             && state.fogging.spots.len() == self.particles.len()
-            && state.fogging.stories.len() == self.open_areas.len();
+            && state.fogging.stories.len() == self.open_areas.len()
+            && state.fogging.faces.len() == self.faces.len();
         if !fits {
             return false;
         }
@@ -168,6 +204,7 @@ impl Wetting {
         let spot = |patch: usize| self.fogging.spots[patch];
         let unseen = |patch: usize| self.drops.unseen_on(patch, &self.shares[patch]);
         let covered = |patch: usize| self.shares[patch].covered / area(patch) + unseen(patch).covered;
+        let or_none = |time: Option<f64>| time.unwrap_or(f64::NAN);
         let shape = self.drops.solids()[solid].clone();
         Surface {
             name: name.into(),
@@ -182,7 +219,9 @@ impl Wetting {
                 column("unseen_covered_part", "", &|patch| unseen(patch).covered),
                 column("unseen_radius_m", "m", &|patch| unseen(patch).radius),
                 column("most_water_kg_per_m2", "kg/m2", &|patch| spot(patch).most_water / area(patch)),
-                column("first_drop_at_s", "s", &|patch| spot(patch).first.unwrap_or(f64::NAN)),
+                column("first_drop_at_s", "s", &|patch| or_none(spot(patch).first)),
+                column("fogged_at_s", "s", &|patch| or_none(spot(patch).cover.fogged)),
+                column("clear_at_s", "s", &|patch| or_none(spot(patch).cover.clear)),
                 column("wet_for_s", "s", &|patch| spot(patch).wet_for),
                 column("temperature_k", "K", &|patch| temperatures[self.particles[patch] as usize]),
             ],
@@ -232,21 +271,26 @@ impl Dew {
         let (mut particles, mut patches) = (Vec::new(), Vec::new());
         for (number, particle) in self.solids.particles.iter().enumerate() {
             let Some(normal) = particle.normal.filter(|_| particle.area > 0.0) else { continue };
-            // The surface is looked for from outside: next to a side of the box where the solid goes on, the nearest is the cut.
-            let outside = [0, 1, 2].map(|axis| particle.position[axis] + self.scale.spacing * normal[axis]);
-            let nearest = solids[particle.body as usize].nearest(outside);
-            let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
             particles.push(number as u32);
-            patches.push(Patch {
-                solid: particle.body,
-                position: [0, 1, 2].map(foot),
-                normal: nearest.normal,
-                half_width: 0.5 * area_in_cell(nearest.normal, self.scale.spacing).sqrt(),
-            });
+            patches.push(self.patch_of(particle, normal, &solids[particle.body as usize]));
         }
         let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
         self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
         self.tell_evaporation();
+    }
+
+    /// The surface at a boundary particle with an outward normal.
+    fn patch_of(&self, particle: &SolidParticle, normal: [f64; 3], solid: &Solid) -> Patch {
+        // The surface is looked for from outside: next to a side of the box where the solid goes on, the nearest is the cut.
+        let outside = [0, 1, 2].map(|axis| particle.position[axis] + self.scale.spacing * normal[axis]);
+        let nearest = solid.nearest(outside);
+        let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
+        Patch {
+            solid: particle.body,
+            position: [0, 1, 2].map(foot),
+            normal: nearest.normal,
+            half_width: 0.5 * area_in_cell(nearest.normal, self.scale.spacing).sqrt(),
+        }
     }
 
     /// Drops take over what condensed or was laid on the solids, and move up to now.

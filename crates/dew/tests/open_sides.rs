@@ -167,3 +167,52 @@ fn what_is_saved_between_open_sides_goes_on_to_the_same_bits() {
     advance(&mut resumed, 0.2);
     assert_eq!(dew.save(), resumed.save());
 }
+
+/// A cold wall along an open box, which ends so far beyond its lower and upper sides, m.
+fn wall(beyond: f64) -> String {
+    let long = 0.05 + 2.0 * beyond;
+    format!(
+        "run.until_s = 1\n[dew]\nsize_m = [0.02, 0.0125, 0.05]\nspacing_m = 0.0025\nair = {{ temperature_c = 25, relative_humidity = 0.7 }}\n\
+         drops.smallest_radius_m = 5e-4\n[dew.faces]\nx_max = \"open\"\ny_min = \"periodic\"\ny_max = \"periodic\"\nz_min = \"open\"\nz_max = \"open\"\n\
+         [[dew.solid]]\nname = \"wall\"\nshape = {{ box = {{ size_m = [0.005, 0.0125, {long}] }} }}\nposition_m = [0.0025, 0.00625, 0.025]\n\
+         temperature_c = 5\nheld = true\n"
+    )
+}
+
+fn opened(text: &str) -> Result<Dew, String> {
+    let scene = corpuscle_scene::Scene::parse(text, "test.toml", &[]).unwrap();
+    corpuscle_dew::open(scene.dew().unwrap(), 3, std::path::Path::new(".")).map_err(|error| error.to_string())
+}
+
+/// Boundary layer at an upright plate (Ostrach, NACA Report 1111, 1953): with Pr 0.7 the fastest air has 0.55 sqrt(g x dT/T), x from where it begins.
+#[test]
+fn air_sinks_along_a_cold_wall_as_fast_as_it_should() {
+    let mut dew = opened(&wall(0.02)).unwrap();
+    advance(&mut dew, 1.5);
+    // Layers along the wall, 0.9 of the way down.
+    let mut layers = [[0.0_f64; 2]; 6];
+    for particle in inside(&dew).filter(|particle| particle.position[2] < 0.0125) {
+        let layer = ((particle.position[0] - 0.005) / 0.0025) as usize;
+        let [sum, count] = &mut layers[layer.min(5)];
+        (*sum, *count) = (*sum - particle.velocity[2], *count + 1.0);
+    }
+    let fastest = layers.iter().map(|[sum, count]| sum / count).fold(0.0, f64::max);
+    let expected = 0.55 * (9.81_f64 * 0.044 * 20.0 / 298.0).sqrt();
+    // Layers are as thick as a sixth of the boundary layer, and the box is open just beyond it.
+    assert!((0.75..1.1).contains(&(fastest / expected)), "{fastest} of {expected} m/s");
+}
+
+/// A solid that reaches an open side goes on beyond it, whether the scene makes it longer or not.
+#[test]
+fn a_solid_at_an_open_side_is_the_same_however_long_it_is() {
+    let [mut ends, mut goes_on] = [0.0, 0.02].map(|beyond| opened(&wall(beyond)).unwrap());
+    assert_eq!(ends.solids().particles.len(), goes_on.solids().particles.len());
+    for dew in [&mut ends, &mut goes_on] {
+        advance(dew, 0.1);
+        let beyond = dew.air().iter().filter(|particle| particle.role != Role::Inside);
+        assert!(beyond.clone().count() > 100);
+        assert!(beyond.clone().all(|particle| particle.position[0] > 0.005), "air stands behind the wall");
+    }
+    let [one, other] = [&ends, &goes_on].map(|dew| dew.water_on_body(0));
+    assert!(one > 0.0 && (one / other - 1.0).abs() < 1e-6, "{one} {other}");
+}

@@ -40,6 +40,7 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "gas/million",
     "dew/pane",
     "dew/lens",
+    "dew/windscreen",
     "dew/glassware",
     "dew/three-boundaries",
 ];

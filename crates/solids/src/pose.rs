@@ -28,6 +28,11 @@ impl Pose {
     pub fn turn(&self, direction: [f64; 3]) -> [f64; 3] {
         self.0.transform_vector(Vector::from(direction)).into()
     }
+
+    /// Turns a direction from the scene's coordinates to the solid's own.
+    pub fn turn_back(&self, direction: [f64; 3]) -> [f64; 3] {
+        self.0.inverse_transform_vector(Vector::from(direction)).into()
+    }
 }
 
 impl Default for Pose {
@@ -48,6 +53,8 @@ mod tests {
         let expected = [1.0, 2.0, 4.0];
         assert!((0..3).all(|axis| (placed[axis] - expected[axis]).abs() < 1e-14), "{placed:?}");
         let back = pose.unplace(placed);
+        assert!((0..3).all(|axis| (back[axis] - [0.0, 1.0, 0.0][axis]).abs() < 1e-14), "{back:?}");
+        let back = pose.turn_back([0.0, 0.0, 1.0]);
         assert!((0..3).all(|axis| (back[axis] - [0.0, 1.0, 0.0][axis]).abs() < 1e-14), "{back:?}");
     }
 }

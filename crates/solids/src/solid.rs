@@ -37,6 +37,14 @@ impl Solid {
         self.nearest_of_its_own(self.pose.unplace(point)).distance
     }
 
+    /// The axis of its own, and 0 for its negative or 1 for its positive end, along which a direction of the scene points most; the first of those that
+    /// are equal.
+    pub fn axis_and_end(&self, direction: [f64; 3]) -> [usize; 2] {
+        let own = self.pose.turn_back(direction);
+        let axis = (1..3).fold(0, |best, axis| if own[axis].abs() > own[best].abs() { axis } else { best });
+        [axis, usize::from(own[axis] > 0.0)]
+    }
+
     /// Smallest and largest coordinates of the box round the solid's own box: never too small, where the solid is turned
     /// often larger than need be.
     pub fn bounds(&self) -> [[f64; 3]; 2] {

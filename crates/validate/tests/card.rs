@@ -2,6 +2,7 @@
 
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_validate::{Options, Row, cases};
+use std::time::Instant;
 
 /// Cases of floods, and how far what the card finds may be from what the processor does, over the larger of that and its bound: a twentieth where
 /// water follows an exact solution, more where it is a thin film, whirls or falls, so that one particle here or there decides.
@@ -91,7 +92,9 @@ fn compare(gpu: Gpu, cases: &[(&str, f64)]) {
     let (host, card) = (options(), on_card(gpu));
     let mut apart = Vec::new();
     for (name, share) in cases {
+        let start = Instant::now();
         let both = [rows(name, &host), rows(name, &card)];
+        eprintln!("{name}: {:.1} s", start.elapsed().as_secs_f64());
         assert!(!both[0].is_empty() && both[0].len() == both[1].len(), "{both:?}");
         let [host, card] = both;
         let pairs = host.into_iter().zip(card);

@@ -105,6 +105,8 @@ struct Given {
     warming: f32,
     moistening: f32,
     stiffness: f32,
+    // Warming and moistening by images beyond sides that air passes.
+    from_beyond: vec2f,
 }
 
 // Adds what one site gives to a parcel.
@@ -114,14 +116,16 @@ fn give(given: ptr<function, Given>, site: Site, own: Column, away: vec3f, q: f3
     let water = select(flux.water, surface.share * flux.water, flux.water < 0.0);
     let capacity = parameters.mass * parameters.heat_capacity;
     let released = (1.0 - site.part) * parameters.latent_heat * water;
-    (*given).warming += (released - flux.to_air * flux.difference) / capacity;
-    (*given).moistening -= water / parameters.mass;
+    let rates = vec2f((released - flux.to_air * flux.difference) / capacity, -water / parameters.mass);
+    (*given).warming += rates.x;
+    (*given).moistening += rates.y;
+    (*given).from_beyond += select(vec2f(0.0), rates, (site.flags & IMAGE_BEYOND) != 0u);
     (*given).stiffness += flux.to_air / capacity;
 }
 
 // Adds what solids do to the motion; what they give.
 fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
-    var given = Given(0.0, 0.0, 0.0);
+    var given = Given(0.0, 0.0, 0.0, vec2f(0.0));
     // By the density correction, by ghost samples, and by virtual forces.
     var corrected = vec3f(0.0);
     var ghostly = vec3f(0.0);
@@ -208,11 +212,12 @@ fn longest_step(speed_squared: f32, acceleration_squared: f32, stiffest: f32) ->
 fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial {
     var rates = air;
     let given = of_solids(own, &rates);
-    var diffused = -vec2f(given.warming, given.moistening);
+    // What passes between air and images beyond is not of the solids.
+    var diffused = given.from_beyond - vec2f(given.warming, given.moistening);
     var fogged = 0.0;
     (*particle).deposit = 0.0;
     if (*particle).role == INSIDE {
-        diffused = vec2f(rates.warming, rates.moistening);
+        diffused = vec2f(rates.warming, rates.moistening) + given.from_beyond;
         let step = status.step;
         (*particle).acceleration = rates.acceleration + driving(*particle);
         (*particle).velocity += 0.5 * step * (*particle).acceleration;

@@ -27,6 +27,8 @@ const JOINS_DENSITY = 4u;
 const REPELS = 8u;
 const GHOST = 16u;
 const HELD = 32u;
+// An image beyond a side that air passes.
+const IMAGE_BEYOND = 64u;
 
 // Water on a solid's particle when the host last told, and gained since, kg.
 struct Water {

@@ -172,6 +172,7 @@ pub(super) const JOINS_DENSITY: u32 = 4;
 pub(super) const REPELS: u32 = 8;
 pub(super) const GHOST: u32 = 16;
 pub(super) const HELD: u32 = 32;
+pub(super) const IMAGE_BEYOND: u32 = 64;
 
 /// Water on a particle of a solid.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]

@@ -38,8 +38,7 @@ impl CardSolids {
             let first = pairs.len() as u32;
             let of_it = dew.conduction.pairs(number);
             pairs.extend(of_it.map(|(other, conductance)| [other as u32, (conductance as f32).to_bits()]));
-            let site =
-                Site { position: particle.position, particle: number as u32, image: false, mirrored: [false; 3] };
+            let site = Site::itself(number as u32, particle.position);
             let end = pairs.len() as u32;
             own.push(CardSite { first, end, ..card_site(dew, origin, &site, particle.volume) });
         }
@@ -113,7 +112,8 @@ fn card_site(dew: &Dew, origin: Origin, site: &Site, volume: f64) -> CardSite {
         part: (of_solid.conductivity / (of_solid.conductivity + of_air.conductivity)) as f32,
         flags: flag(particle.normal.is_some(), layout::BOUNDARY)
             | flag(particle.near_surface, layout::NEAR_SURFACE)
-            | flag(dew.solids.is_held(number), layout::HELD),
+            | flag(dew.solids.is_held(number), layout::HELD)
+            | flag(site.beyond, layout::IMAGE_BEYOND),
         particle: site.particle,
         capacity: dew.solids.heat_capacity(number) as f32,
         ..CardSite::default()

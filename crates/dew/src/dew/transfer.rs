@@ -91,7 +91,7 @@ impl Dew {
     }
 
     /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
-    /// from beyond; and what solids give to air beyond has left.
+    /// from beyond; what solids give to air beyond has left, and what air in the room gets from images of solids beyond has come from there.
     fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
         let State { air, water, energy, .. } = &mut self.state;
         if air.iter().all(|particle| particle.role == Role::Inside) {
@@ -107,9 +107,14 @@ impl Dew {
         let gained: ExactSum = inside().map(|(_, rates)| energy_of(rates.warming, rates.moistening)).collect();
         energy.book(gained.value());
         for (near, given) in self.contact.near.iter().zip(to_air) {
-            if air[near.particle as usize].role != Role::Inside {
-                water.book(-mass * step * given.moistening);
-                energy.book(-energy_of(given.warming, given.moistening));
+            let [warming, moistening] = given.from_beyond;
+            let [warming, moistening] = match air[near.particle as usize].role {
+                Role::Inside => [warming, moistening],
+                _ => [warming - given.warming, moistening - given.moistening],
+            };
+            if [warming, moistening] != [0.0; 2] {
+                water.book(mass * step * moistening);
+                energy.book(energy_of(warming, moistening));
             }
         }
     }

@@ -37,6 +37,11 @@ impl Grid {
         grid
     }
 
+    /// The smallest reach of what is filed; infinite where nothing is.
+    pub fn smallest(&self) -> f64 {
+        self.smallest
+    }
+
     /// The first level whose cells are wide enough for a drop of this reach.
     fn level(&self, reach: f64) -> u32 {
         (reach / self.smallest).log2().ceil().max(0.0) as u32

@@ -104,14 +104,14 @@ impl Drops {
         };
         for portion in portions {
             let mass = &mut self.state.drops[portion.drop as usize].mass;
-            *mass = (*mass - lost(portion.patch) * portion.water).max(0.0);
+            *mass = a_molecule_or_more(*mass - lost(portion.patch) * portion.water);
         }
         self.gains.fill(0.0);
         for piece in &self.sites.pieces {
             self.gains[piece.site as usize] += piece.of_site * lost(piece.patch);
         }
         for (unseen, lost) in self.state.unseen.iter_mut().zip(&self.gains) {
-            *unseen = (*unseen * (1.0 - lost)).max(0.0);
+            *unseen = a_molecule_or_more(*unseen * (1.0 - lost));
         }
     }
 
@@ -139,6 +139,14 @@ impl Drops {
         let of_all = || nearest(&mut (0..self.patches.len()).filter(|&patch| self.patches[patch].solid == drop.solid));
         found.or_else(of_all).into_iter().collect()
     }
+}
+
+/// Mass of a molecule of water, kg.
+const MOLECULE: f64 = 2.99e-26;
+
+/// Less than a molecule is what rounding leaves of water that has evaporated.
+fn a_molecule_or_more(mass: f64) -> f64 {
+    if mass < MOLECULE { 0.0 } else { mass }
 }
 
 /// Least part of a patch on which drops that are not seen are taken to be.

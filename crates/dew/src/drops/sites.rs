@@ -11,6 +11,7 @@ use corpuscle_solids::Solid;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 /// Largest part of a plane that disks cover which are put there one after another and do not overlap (Feder 1980).
@@ -245,27 +246,60 @@ impl Scatter<'_> {
 
 /// Of the places that nucleate, one after another, those that no kept one is nearer to than `apart`, m.
 fn kept(places: &[Place], apart: f64) -> Vec<Site> {
-    let candidates: Vec<&Place> = places.iter().filter(|place| place.nucleates).collect();
-    let grid = Grid::new(candidates.iter().map(|place| place.position), &vec![0.5 * apart; candidates.len()]);
-    let mut is_kept = vec![false; candidates.len()];
-    for (at, place) in candidates.iter().enumerate() {
-        let mut is_free = true;
-        grid.near(place.position, 0.5 * apart, 0.0, |other| {
-            let near = candidates[other];
-            is_free &= !is_kept[other]
-                || distance2(near.position, place.position) >= apart * apart
-                || !place.is_beside(near.solid, near.normal);
-        });
-        is_kept[at] = is_free;
+    let mut cells = Cells::new(apart);
+    for place in places.iter().filter(|place| place.nucleates) {
+        let is_near = |other: &Site| {
+            distance2(other.position, place.position) < apart * apart && place.is_beside(other.solid, other.normal)
+        };
+        if !cells.around(place.position).any(is_near) {
+            let Place { solid, position, normal, .. } = *place;
+            cells.add(Site { solid, position, normal, patch: 0 });
+        }
     }
-    let site = |place: &Place| Site { solid: place.solid, position: place.position, normal: place.normal, patch: 0 };
-    candidates.iter().zip(is_kept).filter(|(_, kept)| *kept).map(|(place, _)| site(place)).collect()
+    cells.sites
+}
+
+/// Sites filed by cells one by one, to be found within a distance of half a cell.
+struct Cells {
+    /// Side of a cell, m.
+    side: f64,
+    sites: Vec<Site>,
+    /// The last site of each cell, and of each site the one before it in its cell.
+    last: HashMap<[i64; 3], u32>,
+    before: Vec<Option<u32>>,
+}
+
+impl Cells {
+    fn new(within: f64) -> Self {
+        Self { side: 2.0 * within, sites: Vec::new(), last: HashMap::new(), before: Vec::new() }
+    }
+
+    fn cell(&self, place: [f64; 3]) -> [i64; 3] {
+        place.map(|x| (x / self.side).floor() as i64)
+    }
+
+    fn add(&mut self, site: Site) {
+        let number = self.sites.len() as u32;
+        let cell = self.cell(site.position);
+        self.before.push(self.last.insert(cell, number));
+        self.sites.push(site);
+    }
+
+    /// Sites, among them all that are as near to a place as half a cell.
+    fn around(&self, place: [f64; 3]) -> impl Iterator<Item = &Site> {
+        let [x, y, z] = self.cell(place.map(|x| x - 0.5 * self.side));
+        let near = (0..8_i64).map(move |at| [x + at % 2, y + at / 2 % 2, z + at / 4]);
+        let lasts = near.filter_map(|cell| self.last.get(&cell).copied());
+        let numbers = lasts.flat_map(|last| std::iter::successors(Some(last), |&number| self.before[number as usize]));
+        numbers.map(|number| &self.sites[number as usize])
+    }
 }
 
 /// The nearest within a distance on the same side of the same solid, where `of` gives solid, normal and position of each in `grid`.
 fn nearest(grid: &Grid, place: &Place, within: f64, of: impl Fn(usize) -> (u32, [f64; 3], [f64; 3])) -> Option<usize> {
     let mut best: Option<(f64, usize)> = None;
-    grid.near(place.position, within, 0.0, |at| {
+    // What is filed reaches out itself.
+    grid.near(place.position, (within - grid.smallest()).max(0.0), 0.0, |at| {
         let (solid, normal, position) = of(at);
         let away = distance2(position, place.position);
         let is_near = away <= within * within && place.is_beside(solid, normal);

@@ -9,7 +9,7 @@ pub(crate) use open::deepest as deepest_outside;
 
 use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
-use crate::room::{Face, Room};
+use crate::room::{Face, Mirrors, Room};
 use crate::solids::{Body, Searched, Solids, Surface};
 
 /// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
@@ -26,7 +26,9 @@ const CLEARANCE: f64 = 0.25;
 /// Where air can start: outside of solids and not too near to their surfaces.
 pub(crate) struct Free {
     solids: Searched,
-    surfaces: Vec<Surface>,
+    /// Surfaces of the bodies, and where each goes on as its mirror image.
+    surfaces: Vec<(Surface, Mirrors)>,
+    room: Room,
     /// Least distance from the particles of solids, m.
     nearest: f64,
     /// Least distance from surfaces, m.
@@ -43,15 +45,18 @@ impl Free {
     ) -> Self {
         let sites = solids.sites(room, scale.h(), |_| true);
         let bodies = surfaces.len();
-        let surfaces: Vec<Surface> = surfaces.flatten().collect();
+        let with_mirrors = surfaces.zip(&solids.mirrors);
+        let surfaces: Vec<_> = with_mirrors.filter_map(|(surface, mirrors)| Some((surface?, *mirrors))).collect();
         let nearest = if surfaces.len() == bodies { 0.5 } else { 0.75 } * scale.spacing;
-        Self { solids: Searched::new(&sites, scale.h()), surfaces, nearest, clearance: CLEARANCE * scale.spacing }
+        let solids = Searched::new(&sites, scale.h());
+        Self { solids, surfaces, room: *room, nearest, clearance: CLEARANCE * scale.spacing }
     }
 
     /// Whether air can start at a place.
     pub(crate) fn holds(&self, place: [f64; 3]) -> bool {
+        let away = |(surface, mirrors): &(Surface, Mirrors)| surface(self.room.mirrored_back(place, mirrors));
         self.solids.near(place, self.nearest).next().is_none()
-            && self.surfaces.iter().all(|surface| surface(place) > self.clearance)
+            && self.surfaces.iter().all(|surface| away(surface) > self.clearance)
     }
 }
 

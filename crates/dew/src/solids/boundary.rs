@@ -24,8 +24,7 @@ impl Solids {
             }
             let steepness = gradient.iter().map(|along| along * along).sum::<f64>().sqrt();
             let is_steep = steepness * scale.spacing > threshold;
-            let normal = is_steep.then(|| gradient.map(|along| -along / steepness))?;
-            within_open_faces(normal, position, room, scale.spacing)
+            is_steep.then(|| gradient.map(|along| -along / steepness))
         };
         let normals: Vec<_> = self.particles.par_iter().map(|particle| normal(particle.position)).collect();
         self.particles.iter_mut().zip(normals).for_each(|(particle, normal)| particle.normal = normal);
@@ -34,22 +33,6 @@ impl Solids {
             self.particles.par_iter().map(|particle| boundary.near(particle.position, h).next().is_some()).collect();
         self.particles.iter_mut().zip(near).for_each(|(particle, near)| particle.near_surface = near);
     }
-}
-
-/// A solid's end in a face that air passes is no surface: no air is beyond it. Gives the normal without what points out there; none
-/// where little is left.
-fn within_open_faces(mut normal: [f64; 3], position: [f64; 3], room: &Room, spacing: f64) -> Option<[f64; 3]> {
-    for axis in 0..3 {
-        let outside = position[axis] + spacing * normal[axis].signum();
-        let side = usize::from(normal[axis] > 0.0);
-        let is_beyond = outside < room.low[axis] || outside >= room.high[axis];
-        let is_inside = (room.low[axis]..room.high[axis]).contains(&position[axis]);
-        if is_beyond && is_inside && room.faces[axis][side].is_passed() {
-            normal[axis] = 0.0;
-        }
-    }
-    let length = normal.iter().map(|along| along * along).sum::<f64>().sqrt();
-    (length > 0.5).then(|| normal.map(|along| along / length))
 }
 
 #[cfg(test)]

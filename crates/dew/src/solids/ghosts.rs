@@ -36,7 +36,7 @@ pub(crate) fn ghost_contact(
     seed: u64,
 ) -> Result<Contact, ModelError> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut places = Vec::new();
+    let (mut places, mut of_body) = (Vec::new(), Vec::new());
     let ghostly = |number: &usize| walls[*number] == WallTreatment::Ghosts;
     for (number, body) in bodies.iter().enumerate().filter(|(number, _)| ghostly(number)) {
         let Some(surface) = &body.surface else {
@@ -50,13 +50,14 @@ pub(crate) fn ghost_contact(
         samples.fill(body, scale.spacing, &mut random);
         samples.relax(&mut random);
         places.append(&mut samples.places);
+        of_body.resize(places.len(), number);
     }
     let mut sites = Vec::new();
     for (number, &position) in places.iter().enumerate() {
-        let site = Site { position, particle: number as u32, image: false, mirrored: [false; 3] };
+        let site = Site::itself(number as u32, position);
         sites.push(site);
-        room.images(position, scale.h(), |image| {
-            sites.push(Site { position: image.position, image: true, mirrored: image.mirrored, ..site });
+        room.images_beyond(position, &solids.mirrors[of_body[number]], scale.h(), |image| {
+            sites.push(site.image(image));
         });
     }
     let particles = solids.sites(room, scale.h(), |particle| ghostly(&(particle.body as usize)));

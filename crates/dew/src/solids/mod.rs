@@ -10,7 +10,8 @@ pub use conduction::Conduction;
 pub(crate) use ghosts::ghost_contact;
 
 use crate::air::Scale;
-use crate::room::Room;
+use crate::faces::BEYOND;
+use crate::room::{Face, Image, Mirrors, Room};
 use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
@@ -83,6 +84,8 @@ pub struct Solids {
     pub particles: Vec<SolidParticle>,
     /// What each body is made of and whether its temperature is held.
     pub bodies: Vec<(Material, bool)>,
+    /// Sides that air passes beyond which each body goes on as its mirror image.
+    pub mirrors: Vec<Mirrors>,
 }
 
 /// Where a particle of a solid or its image stands.
@@ -96,6 +99,21 @@ pub struct Site {
     pub image: bool,
     /// The axes along which the image is mirrored.
     pub mirrored: [bool; 3],
+    /// Whether it is an image beyond a side that air passes: what air gives it has left the room.
+    pub beyond: bool,
+}
+
+impl Site {
+    /// Where a particle itself stands.
+    pub fn itself(particle: u32, position: [f64; 3]) -> Self {
+        Self { position, particle, image: false, mirrored: [false; 3], beyond: false }
+    }
+
+    /// An image of it.
+    pub fn image(self, image: Image) -> Self {
+        let Image { position, mirrored, beyond } = image;
+        Self { position, image: true, mirrored, beyond, ..self }
+    }
 }
 
 impl Body {
@@ -127,7 +145,9 @@ impl Solids {
                 particles.push(SolidParticle { position, volume, area, body, normal: None, near_surface: false });
             }
         }
-        let mut solids = Self { particles, bodies: bodies.iter().map(|body| (body.material, body.held)).collect() };
+        let mirrors = bodies.iter().map(|body| mirrors(body, room, scale)).collect();
+        let of_bodies = bodies.iter().map(|body| (body.material, body.held)).collect();
+        let mut solids = Self { particles, bodies: of_bodies, mirrors };
         solids.find_boundary(room, scale, threshold);
         solids
     }
@@ -157,15 +177,32 @@ impl Solids {
     pub fn sites(&self, room: &Room, reach: f64, wanted: impl Fn(&SolidParticle) -> bool) -> Vec<Site> {
         let mut sites = Vec::new();
         for (number, particle) in self.particles.iter().enumerate().filter(|(_, particle)| wanted(particle)) {
-            let site =
-                Site { position: particle.position, particle: number as u32, image: false, mirrored: [false; 3] };
+            let site = Site::itself(number as u32, particle.position);
             sites.push(site);
-            room.images(particle.position, reach, |image| {
-                sites.push(Site { position: image.position, image: true, mirrored: image.mirrored, ..site });
+            room.images_beyond(particle.position, &self.mirrors[particle.body as usize], reach, |image| {
+                sites.push(site.image(image));
             });
         }
         sites
     }
+}
+
+/// A body's outermost particles are this near to a side of the room that it reaches, over the spacing: wherever a layer is beyond, one is as near as that.
+const AT_SIDE: f64 = 1.001;
+
+/// A body that reaches a side of the room that air passes, and of which there is nothing beyond, goes on there as its mirror image as far as there is air.
+fn mirrors(body: &Body, room: &Room, scale: &Scale) -> Mirrors {
+    let depth = |axis: usize, side: usize| {
+        let depths = body.positions.iter().map(|&place| room.depth_beyond(place, axis, side));
+        depths.fold(f64::NEG_INFINITY, f64::max)
+    };
+    [0, 1, 2].map(|axis| {
+        [0, 1].map(|side| {
+            let goes_on = matches!(room.faces[axis][side], Face::Outlet | Face::Open)
+                && (-AT_SIDE * scale.spacing..0.0).contains(&depth(axis, side));
+            goes_on.then_some(BEYOND * scale.h())
+        })
+    })
 }
 
 /// Sites in the order of their cells, to be searched.

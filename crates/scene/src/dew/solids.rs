@@ -44,6 +44,19 @@ pub struct Solid {
     /// Density of nucleation sites on it, 1/m2. Left out: as on all, by `drops.sites_per_m2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sites_per_m2: Option<f64>,
+    /// Parts of its surface that are measured by themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub face: Vec<SolidFace>,
+}
+
+/// A part of a solid's surface that is measured by itself: where the surface faces one way more than any other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SolidFace {
+    /// Name, unique among the faces of the solid.
+    pub name: String,
+    /// The way that it faces, by the solid's own axes, before it is turned.
+    pub side: Side,
 }
 
 /// A heater, which warms all of a solid evenly. Give exactly one of `power_w` and `power_w_per_m2`.
@@ -86,7 +99,7 @@ pub struct Radiation {
     pub surroundings_c: Series,
 }
 
-/// A side of the box.
+/// A side of the box, or of a solid by its own axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {

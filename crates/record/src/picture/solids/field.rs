@@ -25,10 +25,11 @@ impl<'a> Field<'a> {
         Self { surface, values, side, cells }
     }
 
-    /// The mean of the patches near that face alike, the nearest most; none where none is near.
+    /// The mean of the patches near that face alike, the nearest most; none where none is near, or the nearest has no value.
     pub(super) fn at(&self, place: Vector, normal: Vector) -> Option<f64> {
         let middle = cell(place, self.side);
         let (mut sum, mut weights) = (0.0, 0.0);
+        let (mut largest, mut nearest_has_value) = (0.0, false);
         for which in 0..27_i64 {
             let offset = [which % 3 - 1, which / 3 % 3 - 1, which / 9 - 1];
             let cell = std::array::from_fn(|axis| middle[axis] + offset[axis]);
@@ -36,14 +37,20 @@ impl<'a> Field<'a> {
                 let away: Vector = std::array::from_fn(|axis| place[axis] - self.surface.position[patch][axis]);
                 let part = 1.0 - dot(away, away) / (REACH * self.surface.half_width[patch]).powi(2);
                 let alike = dot(normal, self.surface.normal[patch]);
-                if part > 0.0 && alike > 0.3 && self.values[patch].is_finite() {
-                    let weight = part * part * alike;
+                if part <= 0.0 || alike <= 0.3 {
+                    continue;
+                }
+                let (weight, has_value) = (part * part * alike, self.values[patch].is_finite());
+                if weight > largest {
+                    (largest, nearest_has_value) = (weight, has_value);
+                }
+                if has_value {
                     sum += weight * self.values[patch];
                     weights += weight;
                 }
             }
         }
-        (weights > 0.0).then(|| sum / weights)
+        nearest_has_value.then(|| sum / weights)
     }
 }
 

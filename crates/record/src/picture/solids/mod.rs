@@ -82,7 +82,13 @@ impl SolidsPicture<'_> {
             svg.text([0.0, top + 16.0], Anchor::Start, "text", title);
             let bar = bar_below(width, top, 24.0);
             scale_bar(svg, 1.0 / (screen.pixel * FINENESS), "m", bar);
-            value_bar(svg, [0.0, most], of_part, [14.0, (top + 24.0).max(bar[1] + 30.0)], (0.7 * width).min(300.0))
+            value_bar(
+                svg,
+                [0.0, most],
+                of_part,
+                [14.0, (top + 24.0).max(bar[1] + 30.0)],
+                (0.7 * width).clamp(150.0, 300.0),
+            )
         })
     }
 

@@ -10,12 +10,16 @@ type Kind<'a> = (&'a str, &'a str, &'a str, f64, Vec<(String, &'a str)>);
 /// Charts of what changes.
 pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
     let one = |header: &str| vec![(header.to_owned(), "")];
-    let of_solids = |quantity: &str| -> Vec<(String, &str)> {
-        dew.solid.iter().map(|solid| (format!("{}.{quantity}", solid.name), solid.name.as_str())).collect()
+    let names = solids_and_faces(dew);
+    let of = |all: bool, quantity: &str| -> Vec<(String, &str)> {
+        let wanted = names.iter().filter(|(_, is_face)| all || !is_face);
+        wanted.map(|(name, _)| (format!("{name}.{quantity}"), name.as_str())).collect()
     };
+    let of_solids = |quantity: &str| of(false, quantity);
+    let of_faces_too = |quantity: &str| of(true, quantity);
     let kinds: [Kind<'_>; 14] = [
-        ("covered", "Part of the surface that drops cover", "%", 1e2, of_solids("covered_part")),
-        ("water_per_area", "Water on the solids", "g/m²", 1e3, of_solids("water_per_area_kg_per_m2")),
+        ("covered", "Part of the surface that drops cover", "%", 1e2, of_faces_too("covered_part")),
+        ("water_per_area", "Water on the solids", "g/m²", 1e3, of_faces_too("water_per_area_kg_per_m2")),
         ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
         ("largest_drop", "Radius of the largest drop", "mm", 1e3, one("drops.largest_radius_m")),
         ("heat_flow", "Heat that the solids take from the air", "W", 1.0, of_solids("heat_flow_W")),
@@ -24,12 +28,21 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
         ("heat_from_heater", "Heat from heaters", "J", 1.0, of_solids("heat_from_heater_J")),
         ("heat_from_outside", "Heat from outside (below 0 it is lost)", "J", 1.0, of_solids("heat_from_outside_J")),
         ("heat_by_radiation", "Heat by radiation (below 0 it is lost)", "J", 1.0, of_solids("heat_by_radiation_J")),
-        ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_solids("mean_temperature_K")),
+        ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_faces_too("mean_temperature_K")),
         ("nearest_air", "Nearest air (below 0 it is inside)", "mm", 1e3, of_solids("nearest_air_m")),
         ("gap", "Vacuum before the surface", "mm", 1e3, of_solids("gap_m")),
         ("wall_pairs", "Pairs of air and wall in a step: the cost", "", 1.0, of_solids("wall_pairs")),
     ];
     kinds.into_iter().filter_map(|kind| chart(table, kind)).collect()
+}
+
+/// Names of the solids, each followed by those of its faces as gauges have them, and whether it is that of a face.
+fn solids_and_faces(dew: &Dew) -> Vec<(String, bool)> {
+    let of_solid = |solid: &corpuscle_scene::dew::Solid| {
+        let faces: Vec<_> = solid.face.iter().map(|face| (format!("{}.{}", solid.name, face.name), true)).collect();
+        std::iter::once((solid.name.clone(), false)).chain(faces)
+    };
+    dew.solid.iter().flat_map(of_solid).collect()
 }
 
 /// None where nothing changes.

@@ -23,11 +23,17 @@ pub(super) fn key_figures(table: &GaugeTable, summary: &Summary, dew: &Dew) -> V
         figure("Covered", format!("{} mm²", number(1e6 * last("solids.covered_area_m2"))), "by drops, at the end"),
         figure("On the solids", format!("{} mg", number(1e6 * last("water.on_solids_kg"))), "water, at the end"),
     ];
-    // Of the solid that was clear again last.
-    let cleared = dew.solid.iter().map(|solid| (solid, last(&format!("{}.clear_at_s", solid.name))));
-    if let Some((solid, at)) = cleared.filter(|(_, at)| at.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1)) {
-        let took = last(&format!("{}.time_to_clear_s", solid.name));
-        figures.push(figure("Clear again", time(at), &format!("{}, {} after it was wettest", solid.name, time(took))));
+    // Of the solid that was fogged first, and of that which was clear again last.
+    let times = |quantity: &str| -> Vec<(&str, f64)> {
+        let all = dew.solid.iter().map(|solid| (solid.name.as_str(), last(&format!("{}.{quantity}", solid.name))));
+        all.filter(|(_, at)| at.is_finite()).collect()
+    };
+    if let Some((name, at)) = times("fogged_at_s").into_iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
+        figures.push(figure("Fogged", time(at), &format!("{name}, a tenth covered")));
+    }
+    if let Some((name, at)) = times("clear_at_s").into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        let took = last(&format!("{name}.time_to_clear_s"));
+        figures.push(figure("Clear again", time(at), &format!("{name}, {} after it was wettest", time(took))));
     }
     if let Some(water) = summary.ledger.get("water_kg") {
         figures.push(figure("Water error", number(water.relative_error.abs()), "relative"));

@@ -56,7 +56,7 @@ pub(super) fn maps(model: &dyn Model) -> Result<Vec<(String, Figure)>, String> {
     Ok(maps.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
 }
 
-fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<[(String, Figure); 2], String> {
+fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<Vec<(String, Figure)>, String> {
     let column = |name: &str| surface.scalar(name).unwrap_or_default().to_vec();
     let most = column("most_water_kg_per_m2");
     let view = View::square_on(surface, &most);
@@ -78,7 +78,16 @@ fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<[(String, Figure); 2]
         ]
     };
     let file = name.replace(' ', "_");
-    Ok([(format!("{file}_water"), first), (format!("{file}_covered"), second)])
+    let mut maps = vec![(format!("{file}_water"), first), (format!("{file}_covered"), second)];
+    let times = [("fogged_at", "when drops covered a tenth first, s"), ("clear_at", "when it was clear again, s")];
+    for (which, title) in times {
+        let times = column(&format!("{which}_s"));
+        // Where nothing happened there is no time.
+        if times.iter().any(|time| time.is_finite()) {
+            maps.push((format!("{file}_{which}"), picture.field(&times, &format!("{name}: {title}"))?));
+        }
+    }
+    Ok(maps)
 }
 
 fn most_water(surface: &Surface) -> f64 {

@@ -23,7 +23,23 @@ impl Check {
                 "must be at least 1; leave it out to fill the solid".into()
             })?;
             self.heat_sources(&key, dew, solid)?;
+            self.solid_faces(&key, solid)?;
             solid.sites_per_m2.map_or(Ok(()), |sites| self.above(&format!("{key}.sites_per_m2"), sites, 0.0))?;
+        }
+        Ok(())
+    }
+
+    fn solid_faces(&self, key: &str, solid: &Solid) -> Checked {
+        for (row, face) in solid.face.iter().enumerate() {
+            let key = format!("{key}.face.{row}");
+            self.name(&format!("{key}.name"), &face.name)?;
+            let before = &solid.face[..row];
+            self.require(&format!("{key}.name"), before.iter().all(|other| other.name != face.name), || {
+                "is the name of another face of this solid too; names must be unique".into()
+            })?;
+            self.require(&format!("{key}.side"), before.iter().all(|other| other.side != face.side), || {
+                "is the side of another face of this solid too; give each side once".into()
+            })?;
         }
         Ok(())
     }
