@@ -212,6 +212,9 @@ fn a_solid_at_an_open_side_is_the_same_however_long_it_is() {
         let beyond = dew.air().iter().filter(|particle| particle.role != Role::Inside);
         assert!(beyond.clone().count() > 100);
         assert!(beyond.clone().all(|particle| particle.position[0] > 0.005), "air stands behind the wall");
+        for balance in dew.ledger().balances {
+            assert!(balance.relative_error().abs() < 1e-12, "{balance:?}: {:e}", balance.relative_error());
+        }
     }
     let [one, other] = [&ends, &goes_on].map(|dew| dew.water_on_body(0));
     assert!(one > 0.0 && (one / other - 1.0).abs() < 1e-6, "{one} {other}");

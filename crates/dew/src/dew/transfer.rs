@@ -4,6 +4,7 @@ use super::accelerated::Taken;
 use super::{Dew, State};
 use crate::air::{Particle, Role};
 use crate::exchange::{Exchange, ToAir, Work, excess};
+use crate::room::Face;
 use crate::settings::Condensation;
 use corpuscle_model::ExactSum;
 use rayon::prelude::*;
@@ -93,10 +94,11 @@ impl Dew {
     /// Books what diffuses across open faces. Between particles in the room all cancels, so what they gain together has come
     /// from beyond; what solids give to air beyond has left, and what air in the room gets from images of solids beyond has come from there.
     fn book_open_faces(&mut self, step: f64, to_air: &[ToAir]) {
-        let State { air, water, energy, .. } = &mut self.state;
-        if air.iter().all(|particle| particle.role == Role::Inside) {
+        // Even where no air is beyond, images of solids may be.
+        if !self.room.faces.iter().flatten().any(Face::is_passed) {
             return;
         }
+        let State { air, water, energy, .. } = &mut self.state;
         let mass = self.air.density * self.scale.volume;
         let energy_of = |warming: f64, moistening: f64| {
             mass * step * (self.air.heat_capacity * warming + self.latent_heat * moistening)
