@@ -180,12 +180,32 @@ impl Room {
                     place[axis] = if shifted < high { shifted } else { low };
                 }
                 Face::Wall => {
-                    place[axis] = (2.0 * [low, high][side] - place[axis]).clamp(low, high.next_down());
+                    place[axis] = self.mirrored_inside(place[axis], axis, side);
                     velocity[axis] = -velocity[axis];
                 }
                 Face::Inlet(_) | Face::Outlet | Face::Open => {}
             }
         }
+    }
+
+    /// Brings back air of the room that was pushed out by an inlet: there it moves as what comes in.
+    pub fn hold_at_inlets(&self, place: &mut [f64; 3], velocity: &mut [f64; 3]) {
+        for axis in 0..3 {
+            for side in 0..2 {
+                if let Face::Inlet(inflow) = self.faces[axis][side]
+                    && [place[axis] < self.low[axis], place[axis] >= self.high[axis]][side]
+                {
+                    place[axis] = self.mirrored_inside(place[axis], axis, side);
+                    velocity[axis] = inflow.velocity[axis];
+                }
+            }
+        }
+    }
+
+    /// A coordinate beyond a side, mirrored at it, but not beyond the opposite side.
+    fn mirrored_inside(&self, at: f64, axis: usize, side: usize) -> f64 {
+        let (low, high) = (self.low[axis], self.high[axis]);
+        (2.0 * [low, high][side] - at).clamp(low, high.next_down())
     }
 
     /// Brings what has gone beyond the rim of a face back at the opposite rim: air before an inlet is the same everywhere.

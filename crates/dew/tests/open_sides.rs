@@ -101,6 +101,31 @@ fn wind_may_come_in_aslant() {
     assert!((698..742).contains(&count), "{count} of 720 parcels");
 }
 
+/// What evens out the places of air pushes some of it back to the inlet that it came by, most where a solid stands before it: none of it goes out there.
+#[test]
+fn as_much_comes_in_as_an_inlet_says() {
+    let (size, speed) = ([20.0 * D, 6.0 * D, 12.0 * D], 0.1);
+    let shape = Shape::sphere(2.5 * D).unwrap();
+    let solid = Solid::of_shape(shape, Pose::new([5.0 * D, 3.0 * D, 6.0 * D], [0.0; 3]));
+    let material = Material { conductivity: 1.0, heat_capacity: 1000.0, density: 2000.0 };
+    for side in 0..2 {
+        let velocity = [[speed, -speed][side], 0.02, 0.0];
+        let mut along = [Face::Outlet; 2];
+        along[side] = Face::Inlet(Inflow { velocity, temperature: WARM, vapour: 0.01 });
+        let mut setup = setup(size, [along, [Face::Periodic; 2], [Face::Wall; 2]], 1.5);
+        setup.bodies = vec![Body::sampled(solid.clone(), D, material, WARM, true).unwrap()];
+        let mut dew = Dew::new(&setup, |_| [WARM, 0.0]).unwrap();
+        // None of it has come to the outlet yet.
+        advance(&mut dew, 12.0 * D / speed);
+        // The first layer stands half a spacing before the inlet.
+        let layers = (speed * dew.stepped_until() / D + 0.5).floor();
+        let expected = layers * 6.0 * 12.0 * dew.particle_mass() * 0.01;
+        let water = dew.ledger().balances.swap_remove(0);
+        assert!((water.inflow / expected - 1.0).abs() < 1e-9, "{water:?}, {expected} kg in by side {side}");
+        assert!(water.outflow == 0.0, "{water:?}: out by side {side}");
+    }
+}
+
 #[test]
 fn a_fan_drives_air_round() {
     let size = [20.0 * D, 6.0 * D, 6.0 * D];

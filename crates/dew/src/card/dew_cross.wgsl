@@ -65,9 +65,28 @@ fn booked(particle: Particle) -> vec4f {
     return vec4f(1.0, value(particle.temperature), value(particle.vapour), particle.fog);
 }
 
+// Twin of `Room::hold_at_inlets`.
+fn hold_at_inlets(particle: ptr<function, Particle>) {
+    for (var number = 0u; number < 6u; number++) {
+        let axis = number / 2u;
+        let low = parameters.low[axis];
+        let high = parameters.high[axis];
+        let at = (*particle).place[axis];
+        if face(number) == INLET && select(at >= high, at < low, number % 2u == 0u) {
+            // The largest number below the high side.
+            let last = bitcast<f32>(bitcast<u32>(high) - 1u);
+            (*particle).place[axis] = clamp(2.0 * select(high, low, number % 2u == 0u) - at, low, last);
+            (*particle).velocity[axis] = parameters.inlets[number].velocity[axis];
+        }
+    }
+}
+
 // Whether it has gone for good.
 fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
     let role = (*particle).role & ROLE_MASK;
+    if role == INSIDE {
+        hold_at_inlets(particle);
+    }
     let beyond = beyond((*particle).place);
     let number = beyond.number;
     let held = booked(*particle);

@@ -116,6 +116,9 @@ impl Dew {
 
     /// Gives a parcel the role of where it is now, and books what comes and goes; beyond outlets it goes on, faster by `before`.
     fn cross(&mut self, particle: &mut Particle, before: &[[f64; 2]; 3]) {
+        if particle.role == Role::Inside {
+            self.room.hold_at_inlets(&mut particle.position, &mut particle.velocity);
+        }
         match (particle.role, self.room.beyond(particle.position)) {
             (Role::Inside | Role::Idle, Some((axis, side))) => {
                 // What no longer mattered is booked as gone.
