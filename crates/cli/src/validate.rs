@@ -72,7 +72,7 @@ fn each(
     mut take: impl FnMut(&Case, Done) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
     let threads = rayon::current_num_threads();
-    let beside = if with.gpu.is_some() { 1 } else { (threads as f64).sqrt().ceil() as usize };
+    let beside = if with.gpu.is_some() { 1 } else { ((threads as f64).sqrt().ceil() as usize).min(cases.len()).max(1) };
     let next = AtomicUsize::new(0);
     let (tell, told) = channel();
     std::thread::scope(|scope| {

@@ -31,10 +31,11 @@ const FLOODS: [(&str, f64); 21] = [
 ];
 
 /// Of dew those that have a reduced size.
-const DEW: [(&str, f64); 8] = [
+const DEW: [(&str, f64); 9] = [
     ("dew/two-slabs", 0.05),
     ("dew/boundaries", 0.1),
     ("dew/cavity", 0.02),
+    ("dew/plate", 0.02),
     ("dew/packings", 0.05),
     ("dew/properties", 0.05),
     ("dew/adiabatic", 0.05),

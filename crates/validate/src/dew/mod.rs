@@ -14,6 +14,7 @@ mod ledger;
 mod low_utility;
 mod packings;
 mod pane;
+mod plate;
 mod properties;
 mod slide;
 mod two_slabs;
@@ -42,6 +43,7 @@ pub(crate) const CASES: &[Case] = &[
     breath_figures::BREATH_FIGURES,
     low_utility::CASE,
     pane::PANE,
+    plate::PLATE,
 ];
 
 /// Moves air on to a time.
