@@ -571,8 +571,7 @@ fn air_that_cannot_go_on_breaks_down_with_an_error() {
     assert!(matches!(error, ModelError::Breakdown { .. }), "{error}");
 }
 
-/// A built-in scene with drops that are soon seen; its seed is 1. Its air moves at first, so that the time step is another: with that of the scenes a layer of air that comes in
-/// stands in the side of the box to rounding after ten steps.
+/// A built-in scene with drops that are soon seen; its seed is 1. In the pane's a layer of air that comes in stands in the side of the box to rounding after ten steps.
 fn built_in(name: &str) -> Dew {
     let changes = [("dew.drops.smallest_radius_m", "5e-6"), ("dew.drops.sites_per_m2", "1e8")];
     let changes = changes.map(|(key, value)| (key.to_owned(), value.to_owned()));

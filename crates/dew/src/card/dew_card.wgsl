@@ -315,6 +315,15 @@ fn face(number: u32) -> u32 {
     return parameters.faces[number / 4u][number % 4u];
 }
 
+// A coordinate beyond a side, mirrored at it, but not beyond the opposite side. Twin of `Room::mirrored_inside`.
+fn mirrored_inside(at: f32, number: u32) -> f32 {
+    let low = parameters.low[number / 2u];
+    let high = parameters.high[number / 2u];
+    // The largest number below the high side.
+    let last = bitcast<f32>(bitcast<u32>(high) - 1u);
+    return clamp(2.0 * select(high, low, number % 2u == 0u) - at, low, last);
+}
+
 fn is_set(flag: u32) -> bool {
     return (parameters.flags & flag) != 0u;
 }

@@ -69,13 +69,9 @@ fn booked(particle: Particle) -> vec4f {
 fn hold_at_inlets(particle: ptr<function, Particle>) {
     for (var number = 0u; number < 6u; number++) {
         let axis = number / 2u;
-        let low = parameters.low[axis];
-        let high = parameters.high[axis];
         let at = (*particle).place[axis];
-        if face(number) == INLET && select(at >= high, at < low, number % 2u == 0u) {
-            // The largest number below the high side.
-            let last = bitcast<f32>(bitcast<u32>(high) - 1u);
-            (*particle).place[axis] = clamp(2.0 * select(high, low, number % 2u == 0u) - at, low, last);
+        if face(number) == INLET && select(at >= parameters.high[axis], at < parameters.low[axis], number % 2u == 0u) {
+            (*particle).place[axis] = mirrored_inside(at, number);
             (*particle).velocity[axis] = parameters.inlets[number].velocity[axis];
         }
     }

@@ -31,9 +31,7 @@ fn keep(particle: ptr<function, Particle>) {
         if rule == PERIODIC || (is_coming && axis != inlet / 2u) {
             (*particle).place[axis] = wrapped(at, low, high);
         } else if rule == WALL {
-            // The largest number below the high side.
-            let last = bitcast<f32>(bitcast<u32>(high) - 1u);
-            (*particle).place[axis] = clamp(2.0 * select(high, low, side == 0u) - at, low, last);
+            (*particle).place[axis] = mirrored_inside(at, 2u * axis + side);
             (*particle).velocity[axis] = -(*particle).velocity[axis];
         }
     }
