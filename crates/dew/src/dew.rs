@@ -122,6 +122,9 @@ pub(crate) struct State {
     /// What all air of a closed room is still to gain for accelerated time: temperature, K, and vapour, part of the mass.
     #[serde(default)]
     pub drift: [f64; 2],
+    /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
+    #[serde(default)]
+    pub excess_beyond: [[f64; 2]; 3],
 }
 
 /// Zero of the energy's temperature, K.
@@ -187,6 +190,7 @@ impl Dew {
             energy: Account::default(),
             hand: None,
             drift: [0.0; 2],
+            excess_beyond: [[0.0; 2]; 3],
         };
         let mut dew = Self {
             latent_heat: humid_air::latent_heat(settings.ambient_temperature),

@@ -219,11 +219,12 @@ impl Room {
         }
     }
 
-    /// Whether a place in the room is nearer than `reach` to an outlet.
-    pub fn is_before_outlet(&self, place: [f64; 3], reach: f64) -> bool {
-        (0..3).any(|axis| {
+    /// The first outlet to which a place in the room is nearer than `reach`: axis and side.
+    pub fn outlet_near(&self, place: [f64; 3], reach: f64) -> Option<(usize, usize)> {
+        (0..3).find_map(|axis| {
             let to = [place[axis] - self.low[axis], self.high[axis] - place[axis]];
-            (0..2).any(|side| to[side] < reach && self.faces[axis][side] == Face::Outlet)
+            let side = (0..2).find(|&side| to[side] < reach && self.faces[axis][side] == Face::Outlet)?;
+            Some((axis, side))
         })
     }
 

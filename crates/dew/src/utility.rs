@@ -40,7 +40,7 @@ impl Dew {
             match (particle.role, utility) {
                 (Role::Inside, Utility::Low) => {
                     self.book(particle, -1.0);
-                    (particle.role, particle.idle) = (Role::Idle, 0.0);
+                    (particle.role, particle.idle, particle.spreading) = (Role::Idle, 0.0, [0.0; 3]);
                 }
                 (Role::Idle, Utility::Matters) => {
                     particle.role = Role::Inside;

@@ -280,6 +280,10 @@ struct Status {
     phase: array<Account, 6>,
     // What air beyond each outlet is faster by, m/s.
     before: array<f32, 6>,
+    // The mean `spreading` nearest to each outlet along its axis, m/s2; and by how much the air beyond it is denser than at rest, over its
+    // density at rest.
+    spreading_before: array<f32, 6>,
+    excess_beyond: array<f32, 6>,
     // When it was last looked for air of low utility, s since the state was sent; and the number of the batch's first step, from one that is
     // a multiple of `TURN`.
     seen: Account,

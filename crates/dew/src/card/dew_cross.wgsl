@@ -96,6 +96,8 @@ fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
             (*particle).role = OUTSIDE | (number << FACE_BITS);
         } else {
             leave(particle, number, (*particle).velocity[number / 2u]);
+            (*particle).spreading = vec3f(0.0);
+            (*particle).spreading[number / 2u] = status.spreading_before[number];
         }
     } else if role == LEAVING {
         let left = (*particle).role >> FACE_BITS;
@@ -141,6 +143,7 @@ fn tend(particle: ptr<function, Particle>, thread: u32) -> bool {
         went[thread] += booked(*particle);
         (*particle).role = IDLE;
         (*particle).idle = 0.0;
+        (*particle).spreading = vec3f(0.0);
     } else if role == IDLE && utility == MATTERS {
         came[thread] += booked(*particle);
         (*particle).role = INSIDE;

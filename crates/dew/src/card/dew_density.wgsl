@@ -77,24 +77,29 @@ fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
     return filling;
 }
 
-// Twin of `Room::is_before_outlet`.
-fn is_before_outlet(place: vec3f) -> bool {
+const NO_OUTLET = 6u;
+
+// Twin of `Room::outlet_near`.
+fn outlet_near(place: vec3f) -> u32 {
     for (var number = 0u; number < 6u; number++) {
         let axis = number / 2u;
         let to = select(parameters.high[axis] - place[axis], place[axis] - parameters.low[axis], number % 2u == 0u);
         if to < parameters.h && face(number) == OUTLET {
-            return true;
+            return number;
         }
     }
-    return false;
+    return NO_OUTLET;
 }
 
 fn density_of(particle: Particle, filling: f32) -> f32 {
     let density = parameters.density * filling;
     let role = particle.role & ROLE_MASK;
-    if role == LEAVING || role == STILL || role == IDLE {
-        // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
+    if role == STILL || role == IDLE {
+        // Where it no longer matters, the air is as it is at rest.
         return parameters.rest_density;
+    }
+    if role == LEAVING {
+        return parameters.rest_density * (1.0 + status.excess_beyond[particle.role >> FACE_BITS]);
     }
     if role == OUTSIDE {
         // What comes in has come from rest (Bernoulli).
@@ -103,9 +108,10 @@ fn density_of(particle: Particle, filling: f32) -> f32 {
         let inward = max(select(-velocity, velocity, number % 2u == 0u), 0.0) / parameters.sound;
         return parameters.rest_density * (1.0 - 0.5 * inward * inward);
     }
-    if is_before_outlet(particle.place) {
+    let outlet = outlet_near(particle.place);
+    if outlet != NO_OUTLET {
         // Where air would flow back in there is none beyond: that must not suck.
-        return max(density, parameters.rest_density);
+        return max(density, parameters.rest_density * (1.0 + status.excess_beyond[outlet]));
     }
     return density;
 }

@@ -1,13 +1,16 @@
-// Half a kick with the old acceleration, then on by a whole step; and how the air before outlets is accelerated. Twin of `drift` in
-// `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `acceleration_before` in `faces/mod.rs`.
+// Half a kick with the old acceleration, then on by a whole step; and what the air before outlets does. Twin of `drift` in
+// `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `before_outlet` in `faces/mod.rs`.
 #import dew_card
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-// Sum of the accelerations before each face, m/s2, and number.
-@group(0) @binding(3) var<storage, read_write> before: array<array<vec2f, 6>>;
+// Before each face: sum of the accelerations along its axis, m/s2, and number; sum of `spreading` along it nearest to it, m/s2, and number.
+@group(0) @binding(3) var<storage, read_write> before: array<array<vec4f, 6>>;
 
-var<workgroup> sums: array<vec2f, 256>;
+var<workgroup> sums: array<vec4f, 256>;
+
+// Twin of the constant in `faces/mod.rs`.
+const NEAREST = 0.25;
 
 fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     let size = high - low;
@@ -38,11 +41,14 @@ fn keep(particle: ptr<function, Particle>) {
 }
 
 // What a parcel adds to the mean before a face.
-fn counted(particle: Particle, number: u32) -> vec2f {
+fn counted(particle: Particle, number: u32) -> vec4f {
     let axis = number / 2u;
     let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);
-    let is_near = particle.role == INSIDE && abs(particle.place[axis] - at_face) < parameters.h;
-    return select(vec2f(0.0), vec2f(particle.acceleration[axis], 1.0), is_near);
+    let distance = abs(particle.place[axis] - at_face);
+    let is_near = particle.role == INSIDE && distance < parameters.h;
+    let is_nearest = is_near && distance < NEAREST * parameters.h;
+    let faster = select(vec2f(0.0), vec2f(particle.acceleration[axis], 1.0), is_near);
+    return vec4f(faster, select(vec2f(0.0), vec2f(particle.spreading[axis], 1.0), is_nearest));
 }
 
 @compute @workgroup_size(256)
@@ -70,7 +76,7 @@ fn main(
         if face(number) != OUTLET {
             continue;
         }
-        sums[thread] = vec2f(0.0);
+        sums[thread] = vec4f(0.0);
         if is_there {
             sums[thread] = counted(particle, number);
         }

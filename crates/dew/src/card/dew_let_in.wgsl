@@ -1,17 +1,17 @@
-// What air beyond outlets is faster by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs` and of
-// `acceleration_before` in `faces/mod.rs`.
+// What air beyond outlets is faster and denser by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs`, and of
+// `before_outlet` and `swell_beyond` in `faces/mod.rs`.
 #import dew_card
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(3) var<storage, read> before: array<array<vec2f, 6>>;
+@group(0) @binding(3) var<storage, read> before: array<array<vec4f, 6>>;
 @group(0) @binding(4) var<storage, read_write> groups: array<u32>;
 
-var<workgroup> sums: array<vec2f, 256>;
+var<workgroup> sums: array<vec4f, 256>;
 
-// The mean acceleration before a face, by all threads together.
-fn mean_before(number: u32, count: u32, thread: u32) -> f32 {
-    var own = vec2f(0.0);
+// The mean acceleration and `spreading` before a face, by all threads together.
+fn mean_before(number: u32, count: u32, thread: u32) -> vec2f {
+    var own = vec4f(0.0);
     for (var group = thread; group < count; group += 256u) {
         own += before[group][number];
     }
@@ -25,7 +25,7 @@ fn mean_before(number: u32, count: u32, thread: u32) -> f32 {
     }
     let all = sums[0];
     workgroupBarrier();
-    return all.x / max(all.y, 1.0);
+    return all.xz / max(all.yw, vec2f(1.0));
 }
 
 // A layer of air `behind` an inlet, its parcels numbered from `first`.
@@ -62,10 +62,17 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     let step = select(0.0, status.step, is_going);
     var phases = status.phase;
     var faster = array<f32, 6>();
+    var spreading = array<f32, 6>();
+    var excess = status.excess_beyond;
     for (var number = 0u; number < 6u; number++) {
         let rule = face(number);
         if rule == OUTLET {
-            faster[number] = step * mean_before(number, (old + 255u) / 256u, thread);
+            let mean = mean_before(number, (old + 255u) / 256u, thread);
+            faster[number] = step * mean.x;
+            spreading[number] = mean.y;
+            let outward = select(1.0, -1.0, number % 2u == 0u);
+            let length = parameters.high[number / 2u] - parameters.low[number / 2u];
+            excess[number] = (excess[number] + outward * faster[number] / parameters.sound) / (1.0 + step * parameters.sound / length);
         } else if rule == INLET {
             let axis = number / 2u;
             let apart = parameters.apart[axis];
@@ -84,6 +91,8 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     if thread == 0u && is_going {
         status.phase = phases;
         status.before = faster;
+        status.spreading_before = spreading;
+        status.excess_beyond = excess;
         status.particles = min(count, arrayLength(&particles));
         status.next_id = id + count - old;
         groups[0] = (status.particles + 255u) / 256u;

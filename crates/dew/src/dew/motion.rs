@@ -96,7 +96,19 @@ impl Dew {
         walls::add_density(ghosts, arrangement, scale, 1.0, sums, push);
         walls::add_moments(contact, arrangement, scale, sums, push);
         arrangement.normalise(sums, tensors);
-        fill_columns(arrangement, sums, tensors, columns, &mut state.air, air, *rest_density, ahead, room, scale.h());
+        fill_columns(
+            arrangement,
+            sums,
+            tensors,
+            columns,
+            &mut state.air,
+            air,
+            *rest_density,
+            ahead,
+            room,
+            scale.h(),
+            &state.excess_beyond,
+        );
         rates.resize(state.air.len(), Rates::default());
         let relative = settings.humidity == Humidity::Relative;
         let saturated = humid_air::saturation_pressure(settings.ambient_temperature);
@@ -186,18 +198,21 @@ fn fill_columns(
     ahead: f64,
     room: &Room,
     reach: f64,
+    excess_beyond: &[[f64; 2]; 3],
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
-        if matches!(particle.role, Role::Leaving(..) | Role::Still | Role::Idle) {
-            // Beyond an outlet, and where it no longer matters, the air is as it is at rest.
+        if matches!(particle.role, Role::Still | Role::Idle) {
+            // Where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
+        } else if let Role::Leaving(axis, side) = particle.role {
+            particle.density = rest_density * (1.0 + excess_beyond[usize::from(axis)][usize::from(side)]);
         } else if let Role::Outside(axis, side) = particle.role {
             let inward = [1.0, -1.0][usize::from(side)] * particle.velocity[usize::from(axis)];
             particle.density = rest_density * (1.0 - 0.5 * (inward.max(0.0) / air.sound_speed).powi(2));
-        } else if room.is_before_outlet(particle.position, reach) {
+        } else if let Some((axis, side)) = room.outlet_near(particle.position, reach) {
             // Where air would flow back in there is none beyond: that must not suck.
-            particle.density = particle.density.max(rest_density);
+            particle.density = particle.density.max(rest_density * (1.0 + excess_beyond[axis][side]));
         }
     });
     let particles = &*particles;

@@ -97,10 +97,11 @@ impl Dew {
             return;
         }
         let far = BEYOND * self.scale.h();
-        let before = [0, 1, 2].map(|axis| [0, 1].map(|side| step * self.acceleration_before(axis, side)));
+        let before = [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side)));
+        self.swell_beyond(step, &before);
         let mut air = std::mem::take(&mut self.state.air);
         air.retain_mut(|particle| {
-            self.cross(particle, &before);
+            self.cross(particle, step, &before);
             match particle.role {
                 Role::Leaving(axis, side) | Role::Outside(axis, side) => {
                     self.room.depth_beyond(particle.position, usize::from(axis), usize::from(side)) < far
@@ -114,8 +115,8 @@ impl Dew {
         self.move_outside();
     }
 
-    /// Gives a parcel the role of where it is now, and books what comes and goes; beyond outlets it goes on, faster by `before`.
-    fn cross(&mut self, particle: &mut Particle, before: &[[f64; 2]; 3]) {
+    /// Gives a parcel the role of where it is now, and books what comes and goes; beyond outlets it goes on, as much faster as the air before them.
+    fn cross(&mut self, particle: &mut Particle, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
         if particle.role == Role::Inside {
             self.room.hold_at_inlets(&mut particle.position, &mut particle.velocity);
         }
@@ -131,11 +132,15 @@ impl Dew {
                     particle.role = Role::Outside(axis as u8, side as u8);
                 } else {
                     particle.leave(axis, side, particle.velocity[axis], self.slowest());
+                    // Kept by each parcel for itself, what evened it out last would go on for ever, and stir the air beyond.
+                    particle.spreading = [0.0; 3];
+                    particle.spreading[axis] = before[axis][side].spreading;
                 }
             }
             (Role::Leaving(axis, side), _) => {
                 let (axis, side) = (usize::from(axis), usize::from(side));
-                particle.leave(axis, side, particle.velocity[axis] + before[axis][side], self.slowest());
+                let along = particle.velocity[axis] + step * before[axis][side].acceleration;
+                particle.leave(axis, side, along, self.slowest());
             }
             (Role::Coming(..) | Role::Outside(..), None) => {
                 particle.role = Role::Inside;
@@ -150,17 +155,36 @@ impl Dew {
         SLOWEST * self.air.sound_speed
     }
 
-    /// Mean acceleration along its axis of the air within a smoothing length of an outlet, m/s2, with which air beyond goes
-    /// on: each parcel keeps what it is faster or slower by, and a flow that swells or ebbs meets no plug.
-    fn acceleration_before(&self, axis: usize, side: usize) -> f64 {
+    /// The air before an outlet, with which the air beyond goes on: each parcel keeps what it is faster or slower by, and a flow that swells or ebbs
+    /// meets no plug.
+    fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
         if self.room.faces[axis][side] != Face::Outlet {
-            return 0.0;
+            return BeforeOutlet::default();
         }
         let face = [self.room.low, self.room.high][side][axis];
-        let near = self.inside().filter(|particle| (particle.position[axis] - face).abs() < self.scale.h());
-        let (sum, count) =
-            near.fold((0.0, 0_u32), |(sum, count), particle| (sum + particle.acceleration[axis], count + 1));
-        sum / f64::from(count.max(1))
+        let mean = |reach: f64, of: fn(&Particle) -> [f64; 3]| {
+            let near = self.inside().filter(|particle| (particle.position[axis] - face).abs() < reach);
+            let (sum, count) = near.fold((0.0, 0_u32), |(sum, count), particle| (sum + of(particle)[axis], count + 1));
+            sum / f64::from(count.max(1))
+        };
+        BeforeOutlet {
+            acceleration: mean(self.scale.h(), |particle| particle.acceleration),
+            spreading: mean(NEAREST * self.scale.h(), |particle| particle.spreading),
+        }
+    }
+
+    /// The pressure p beyond outlets lets sound out: dp/dt = rho c du/dt - (c / L) p, with u the speed outwards and L the length of the room (Rudy &
+    /// Strikwerda, Journal of Computational Physics 36, 1980, 55).
+    fn swell_beyond(&mut self, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
+        let sound = self.air.sound_speed;
+        for axis in 0..3 {
+            let fading = 1.0 + step * sound / (self.room.high[axis] - self.room.low[axis]);
+            for side in 0..2 {
+                let faster = step * [-1.0, 1.0][side] * before[axis][side].acceleration;
+                let excess = &mut self.state.excess_beyond[axis][side];
+                *excess = (*excess + faster / sound) / fading;
+            }
+        }
     }
 
     pub(crate) fn book(&mut self, particle: &Particle, sign: f64) {
@@ -169,6 +193,19 @@ impl Dew {
         self.state.water.book(sign * water);
         self.state.energy.book(sign * energy);
     }
+}
+
+/// How near an outlet air is of which the air beyond takes over how it is evened out, in smoothing lengths: what stands in one layer only, so that a
+/// layer takes with it what moves it as a whole, or the air beyond would feed sound.
+const NEAREST: f64 = 0.25;
+
+/// What air before an outlet does along the outlet's axis, in the mean.
+#[derive(Debug, Clone, Copy, Default)]
+struct BeforeOutlet {
+    /// Within a smoothing length, m/s2.
+    acceleration: f64,
+    /// [`Particle::spreading`] within [`NEAREST`], m/s2.
+    spreading: f64,
 }
 
 /// Least speed of air beyond an outlet, over the speed of sound.
