@@ -125,6 +125,9 @@ pub(crate) struct State {
     /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
     #[serde(default)]
     pub excess_beyond: [[f64; 2]; 3],
+    /// Velocity along its axis of the air before each outlet, as it lasts: without what is faster than sound crosses the room, m/s.
+    #[serde(default)]
+    pub lasting_before: [[f64; 2]; 3],
 }
 
 /// Zero of the energy's temperature, K.
@@ -191,6 +194,7 @@ impl Dew {
             hand: None,
             drift: [0.0; 2],
             excess_beyond: [[0.0; 2]; 3],
+            lasting_before: [[0.0; 2]; 3],
         };
         let mut dew = Self {
             latent_heat: humid_air::latent_heat(settings.ambient_temperature),
@@ -372,6 +376,7 @@ impl Dew {
                 _ => {}
             }
         }
+        self.state.lasting_before = [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side).velocity));
         self.move_outside();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());

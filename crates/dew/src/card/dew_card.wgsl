@@ -254,6 +254,14 @@ struct Partial {
     fastest: f32,
 }
 
+// Sums over the air before a face, along the face's axis.
+struct BeforeOutlet {
+    // Within a smoothing length: acceleration, m/s2, velocity, m/s, and number.
+    near: vec3f,
+    // Nearest to it: `spreading`, m/s2, and number.
+    nearest: vec2f,
+}
+
 struct Status {
     // These two first: the sort reads them.
     particles: u32,
@@ -280,15 +288,16 @@ struct Status {
     phase: array<Account, 6>,
     // What air beyond each outlet is faster by, m/s.
     before: array<f32, 6>,
-    // The mean `spreading` nearest to each outlet along its axis, m/s2; and by how much the air beyond it is denser than at rest, over its
-    // density at rest.
+    // The mean `spreading` nearest to each outlet along its axis, m/s2; by how much the air beyond it is denser than at rest, over its
+    // density at rest; and the velocity along its axis of the air before it, as it lasts, m/s.
     spreading_before: array<f32, 6>,
     excess_beyond: array<f32, 6>,
+    lasting_before: array<f32, 6>,
     // When it was last looked for air of low utility, s since the state was sent; and the number of the batch's first step, from one that is
     // a multiple of `TURN`.
     seen: Account,
     turn: u32,
-    spare: u32,
+    spare: array<u32, 3>,
     // What all air of a closed room gains in the next step for accelerated time: temperature, K, and vapour, part of the mass.
     drift: vec2f,
     // How long the steps were, s.

@@ -4,13 +4,14 @@
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-// Before each face: sum of the accelerations along its axis, m/s2, and number; sum of `spreading` along it nearest to it, m/s2, and number.
-@group(0) @binding(3) var<storage, read_write> before: array<array<vec4f, 6>>;
+// By group and face.
+@group(0) @binding(3) var<storage, read_write> before: array<array<BeforeOutlet, 6>>;
 
-var<workgroup> sums: array<vec4f, 256>;
+var<workgroup> near: array<vec3f, 256>;
+var<workgroup> nearest: array<vec2f, 256>;
 
 // Twin of the constant in `faces/mod.rs`.
-const NEAREST = 0.25;
+const NEAREST = 0.2;
 
 fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     let size = high - low;
@@ -40,15 +41,17 @@ fn keep(particle: ptr<function, Particle>) {
     }
 }
 
-// What a parcel adds to the mean before a face.
-fn counted(particle: Particle, number: u32) -> vec4f {
+// What a parcel adds to the sums before a face.
+fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     let axis = number / 2u;
     let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);
     let distance = abs(particle.place[axis] - at_face);
     let is_near = particle.role == INSIDE && distance < parameters.h;
     let is_nearest = is_near && distance < NEAREST * parameters.h;
-    let faster = select(vec2f(0.0), vec2f(particle.acceleration[axis], 1.0), is_near);
-    return vec4f(faster, select(vec2f(0.0), vec2f(particle.spreading[axis], 1.0), is_nearest));
+    return BeforeOutlet(
+        select(vec3f(0.0), vec3f(particle.acceleration[axis], particle.velocity[axis], 1.0), is_near),
+        select(vec2f(0.0), vec2f(particle.spreading[axis], 1.0), is_nearest),
+    );
 }
 
 @compute @workgroup_size(256)
@@ -76,19 +79,22 @@ fn main(
         if face(number) != OUTLET {
             continue;
         }
-        sums[thread] = vec4f(0.0);
+        var own = BeforeOutlet();
         if is_there {
-            sums[thread] = counted(particle, number);
+            own = counted(particle, number);
         }
+        near[thread] = own.near;
+        nearest[thread] = own.nearest;
         workgroupBarrier();
         for (var half = 128u; half > 0u; half /= 2u) {
             if thread < half {
-                sums[thread] += sums[thread + half];
+                near[thread] += near[thread + half];
+                nearest[thread] += nearest[thread + half];
             }
             workgroupBarrier();
         }
         if thread == 0u {
-            before[group.x][number] = sums[0];
+            before[group.x][number] = BeforeOutlet(near[0], nearest[0]);
         }
         workgroupBarrier();
     }

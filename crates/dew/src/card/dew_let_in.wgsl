@@ -4,28 +4,32 @@
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(3) var<storage, read> before: array<array<vec4f, 6>>;
+@group(0) @binding(3) var<storage, read> before: array<array<BeforeOutlet, 6>>;
 @group(0) @binding(4) var<storage, read_write> groups: array<u32>;
 
-var<workgroup> sums: array<vec4f, 256>;
+var<workgroup> near: array<vec3f, 256>;
+var<workgroup> nearest: array<vec2f, 256>;
 
-// The mean acceleration and `spreading` before a face, by all threads together.
-fn mean_before(number: u32, count: u32, thread: u32) -> vec2f {
-    var own = vec4f(0.0);
+// The mean acceleration, velocity and `spreading` before a face, by all threads together.
+fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
+    var own = BeforeOutlet();
     for (var group = thread; group < count; group += 256u) {
-        own += before[group][number];
+        own.near += before[group][number].near;
+        own.nearest += before[group][number].nearest;
     }
-    sums[thread] = own;
+    near[thread] = own.near;
+    nearest[thread] = own.nearest;
     workgroupBarrier();
     for (var half = 128u; half > 0u; half /= 2u) {
         if thread < half {
-            sums[thread] += sums[thread + half];
+            near[thread] += near[thread + half];
+            nearest[thread] += nearest[thread + half];
         }
         workgroupBarrier();
     }
-    let all = sums[0];
+    let all = BeforeOutlet(near[0], nearest[0]);
     workgroupBarrier();
-    return all.xz / max(all.yw, vec2f(1.0));
+    return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
 
 // A layer of air `behind` an inlet, its parcels numbered from `first`.
@@ -63,16 +67,18 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var phases = status.phase;
     var faster = array<f32, 6>();
     var spreading = array<f32, 6>();
-    var excess = status.excess_beyond;
+    var excess = array<f32, 6>();
+    var lasting = status.lasting_before;
     for (var number = 0u; number < 6u; number++) {
         let rule = face(number);
         if rule == OUTLET {
             let mean = mean_before(number, (old + 255u) / 256u, thread);
             faster[number] = step * mean.x;
-            spreading[number] = mean.y;
+            spreading[number] = mean.z;
+            let crossed = step * parameters.sound / (parameters.high[number / 2u] - parameters.low[number / 2u]);
+            lasting[number] += crossed / (1.0 + crossed) * (mean.y - lasting[number]);
             let outward = select(1.0, -1.0, number % 2u == 0u);
-            let length = parameters.high[number / 2u] - parameters.low[number / 2u];
-            excess[number] = (excess[number] + outward * faster[number] / parameters.sound) / (1.0 + step * parameters.sound / length);
+            excess[number] = outward * (mean.y - lasting[number]) / parameters.sound;
         } else if rule == INLET {
             let axis = number / 2u;
             let apart = parameters.apart[axis];
@@ -93,6 +99,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         status.before = faster;
         status.spreading_before = spreading;
         status.excess_beyond = excess;
+        status.lasting_before = lasting;
         status.particles = min(count, arrayLength(&particles));
         status.next_id = id + count - old;
         groups[0] = (status.particles + 255u) / 256u;

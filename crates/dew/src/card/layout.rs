@@ -240,7 +240,7 @@ pub(super) type BeforeColumn = [u32; 3];
 pub(super) type Column = [f32; 16];
 pub(super) type Surface = [f32; 8];
 pub(super) type Partial = [f32; 16];
-pub(super) type Before = [[f32; 4]; 6];
+pub(super) type Before = [[f32; 8]; 6];
 
 /// Sums of four numbers.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
@@ -296,9 +296,10 @@ pub(super) struct Status {
     pub before: [f32; 6],
     pub spreading_before: [f32; 6],
     pub excess_beyond: [f32; 6],
+    pub lasting_before: [f32; 6],
     pub seen: Account,
     pub turn: u32,
-    pub spare: u32,
+    pub spare: [u32; 3],
     pub drift: [f32; 2],
     pub lengths: [f32; MOST_STEPS],
 }

@@ -98,6 +98,8 @@ pub(crate) struct Progress {
     pub inlet_phase: [[f64; 2]; 3],
     /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
     pub excess_beyond: [[f64; 2]; 3],
+    /// Velocity along its axis of the air before each outlet, as it lasts, m/s.
+    pub lasting_before: [[f64; 2]; 3],
     /// When it was last looked for air of low utility, s.
     pub utility_seen: f64,
     /// What all air of a closed room gains in the next step: temperature, K, and vapour, part of the mass.
@@ -194,7 +196,8 @@ impl Card {
         }
         self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
-        let (phases, excess) = (state.inlet_phase.as_flattened(), state.excess_beyond.as_flattened());
+        let phases = state.inlet_phase.as_flattened();
+        let narrow = |by_face: [[f64; 2]; 3]| std::array::from_fn(|number| by_face.as_flattened()[number] as f32);
         self.status = Status {
             cells: self.status.cells,
             particles: air.len() as u32,
@@ -204,7 +207,8 @@ impl Card {
             turn: (state.steps % u64::from(TURN)) as u32,
             drift: state.drift.map(|gain| gain as f32),
             phase: std::array::from_fn(|number| layout::account(phases[number])),
-            excess_beyond: std::array::from_fn(|number| excess[number] as f32),
+            excess_beyond: narrow(state.excess_beyond),
+            lasting_before: narrow(state.lasting_before),
             ..Status::zeroed()
         };
         // Who draws before the first step reads it too.
@@ -276,6 +280,7 @@ impl Card {
             next_id: self.status.next_id,
             phase: self.status.phase,
             excess_beyond: self.status.excess_beyond,
+            lasting_before: self.status.lasting_before,
             time: self.status.time,
             seen: self.status.seen,
             turn: (self.status.turn + self.status.steps) % TURN,
@@ -317,7 +322,7 @@ impl Card {
         let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
         self.held_before = held;
         let phase = |axis: usize, side: usize| layout::value(self.status.phase[2 * axis + side]);
-        let excess = |axis: usize, side: usize| f64::from(self.status.excess_beyond[2 * axis + side]);
+        let wide = |by_face: [f32; 6]| [0, 1, 2].map(|axis| [0, 1].map(|side| f64::from(by_face[2 * axis + side])));
         Progress {
             lengths: self.status.lengths[..steps as usize].iter().map(|&step| f64::from(step)).collect(),
             particle_steps: (u64::from(high) << 32) + u64::from(low),
@@ -332,7 +337,8 @@ impl Card {
             drift: self.status.drift.map(f64::from),
             utility_seen: self.sent_at + layout::value(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
-            excess_beyond: [0, 1, 2].map(|axis| [excess(axis, 0), excess(axis, 1)]),
+            excess_beyond: wide(self.status.excess_beyond),
+            lasting_before: wide(self.status.lasting_before),
             fastest: f64::from(fastest).sqrt(),
             broken: halted == layout::BROKEN,
             full: halted == layout::FULL,

@@ -274,6 +274,7 @@ impl Dew {
         state.next_id = progress.next_id;
         state.inlet_phase = progress.inlet_phase;
         state.excess_beyond = progress.excess_beyond;
+        state.lasting_before = progress.lasting_before;
         state.drift = progress.drift;
         if self.settings.low_utility.is_some() {
             state.utility_seen = progress.utility_seen;

@@ -157,7 +157,7 @@ impl Dew {
 
     /// The air before an outlet, with which the air beyond goes on: each parcel keeps what it is faster or slower by, and a flow that swells or ebbs
     /// meets no plug.
-    fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
+    pub(crate) fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
         if self.room.faces[axis][side] != Face::Outlet {
             return BeforeOutlet::default();
         }
@@ -169,20 +169,22 @@ impl Dew {
         };
         BeforeOutlet {
             acceleration: mean(self.scale.h(), |particle| particle.acceleration),
+            velocity: mean(self.scale.h(), |particle| particle.velocity),
             spreading: mean(NEAREST * self.scale.h(), |particle| particle.spreading),
         }
     }
 
     /// The pressure p beyond outlets lets sound out: dp/dt = rho c du/dt - (c / L) p, with u the speed outwards and L the length of the room (Rudy &
-    /// Strikwerda, Journal of Computational Physics 36, 1980, 55).
+    /// Strikwerda, Journal of Computational Physics 36, 1980, 55). Then p = rho c (u - v), with dv/dt = (c / L) (u - v).
     fn swell_beyond(&mut self, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
         let sound = self.air.sound_speed;
         for axis in 0..3 {
-            let fading = 1.0 + step * sound / (self.room.high[axis] - self.room.low[axis]);
+            let crossed = step * sound / (self.room.high[axis] - self.room.low[axis]);
             for side in 0..2 {
-                let faster = step * [-1.0, 1.0][side] * before[axis][side].acceleration;
-                let excess = &mut self.state.excess_beyond[axis][side];
-                *excess = (*excess + faster / sound) / fading;
+                let (outward, speed) = ([-1.0, 1.0][side], before[axis][side].velocity);
+                let lasting = &mut self.state.lasting_before[axis][side];
+                *lasting += crossed / (1.0 + crossed) * (speed - *lasting);
+                self.state.excess_beyond[axis][side] = outward * (speed - *lasting) / sound;
             }
         }
     }
@@ -197,13 +199,15 @@ impl Dew {
 
 /// How near an outlet air is of which the air beyond takes over how it is evened out, in smoothing lengths: what stands in one layer only, so that a
 /// layer takes with it what moves it as a whole, or the air beyond would feed sound.
-const NEAREST: f64 = 0.25;
+const NEAREST: f64 = 0.2;
 
 /// What air before an outlet does along the outlet's axis, in the mean.
 #[derive(Debug, Clone, Copy, Default)]
-struct BeforeOutlet {
+pub(crate) struct BeforeOutlet {
     /// Within a smoothing length, m/s2.
     acceleration: f64,
+    /// Within a smoothing length, m/s.
+    pub velocity: f64,
     /// [`Particle::spreading`] within [`NEAREST`], m/s2.
     spreading: f64,
 }
