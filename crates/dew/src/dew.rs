@@ -123,11 +123,9 @@ pub(crate) struct State {
     #[serde(default)]
     pub drift: [f64; 2],
     /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
-    #[serde(default)]
-    pub excess_beyond: [[f64; 2]; 3],
-    /// Velocity along its axis of the air before each outlet, as it lasts: without what is faster than sound crosses the room, m/s.
-    #[serde(default)]
-    pub lasting_before: [[f64; 2]; 3],
+    pub density_excess_beyond: [[f64; 2]; 3],
+    /// Running mean, over the time in which sound crosses the room, of the velocity along its axis of the air before each outlet, m/s.
+    pub running_mean_before: [[f64; 2]; 3],
 }
 
 /// Zero of the energy's temperature, K.
@@ -193,8 +191,8 @@ impl Dew {
             energy: Account::default(),
             hand: None,
             drift: [0.0; 2],
-            excess_beyond: [[0.0; 2]; 3],
-            lasting_before: [[0.0; 2]; 3],
+            density_excess_beyond: [[0.0; 2]; 3],
+            running_mean_before: [[0.0; 2]; 3],
         };
         let mut dew = Self {
             latent_heat: humid_air::latent_heat(settings.ambient_temperature),
@@ -376,7 +374,8 @@ impl Dew {
                 _ => {}
             }
         }
-        self.state.lasting_before = [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side).velocity));
+        self.state.running_mean_before =
+            [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side).velocity));
         self.move_outside();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());

@@ -289,10 +289,10 @@ struct Status {
     // What air beyond each outlet is faster by, m/s.
     before: array<f32, 6>,
     // The mean `spreading` nearest to each outlet along its axis, m/s2; by how much the air beyond it is denser than at rest, over its
-    // density at rest; and the velocity along its axis of the air before it, as it lasts, m/s.
+    // density at rest; and the running mean of the velocity along its axis of the air before it, m/s.
     spreading_before: array<f32, 6>,
-    excess_beyond: array<f32, 6>,
-    lasting_before: array<f32, 6>,
+    density_excess_beyond: array<f32, 6>,
+    running_mean_before: array<f32, 6>,
     // When it was last looked for air of low utility, s since the state was sent; and the number of the batch's first step, from one that is
     // a multiple of `TURN`.
     seen: Account,

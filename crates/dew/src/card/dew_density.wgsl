@@ -99,7 +99,7 @@ fn density_of(particle: Particle, filling: f32) -> f32 {
         return parameters.rest_density;
     }
     if role == LEAVING {
-        return parameters.rest_density * (1.0 + status.excess_beyond[particle.role >> FACE_BITS]);
+        return parameters.rest_density * (1.0 + status.density_excess_beyond[particle.role >> FACE_BITS]);
     }
     if role == OUTSIDE {
         // What comes in has come from rest (Bernoulli).
@@ -111,7 +111,7 @@ fn density_of(particle: Particle, filling: f32) -> f32 {
     let outlet = outlet_near(particle.place);
     if outlet != NO_OUTLET {
         // Where air would flow back in there is none beyond: that must not suck.
-        return max(density, parameters.rest_density * (1.0 + status.excess_beyond[outlet]));
+        return max(density, parameters.rest_density * (1.0 + status.density_excess_beyond[outlet]));
     }
     return density;
 }

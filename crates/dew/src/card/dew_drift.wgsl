@@ -11,7 +11,7 @@ var<workgroup> near: array<vec3f, 256>;
 var<workgroup> nearest: array<vec2f, 256>;
 
 // Twin of the constant in `faces/mod.rs`.
-const NEAREST = 0.2;
+const OUTLET_LAYER = 0.2;
 
 fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     let size = high - low;
@@ -47,7 +47,7 @@ fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);
     let distance = abs(particle.place[axis] - at_face);
     let is_near = particle.role == INSIDE && distance < parameters.h;
-    let is_nearest = is_near && distance < NEAREST * parameters.h;
+    let is_nearest = is_near && distance < OUTLET_LAYER * parameters.h;
     return BeforeOutlet(
         select(vec3f(0.0), vec3f(particle.acceleration[axis], particle.velocity[axis], 1.0), is_near),
         select(vec2f(0.0), vec2f(particle.spreading[axis], 1.0), is_nearest),

@@ -1,5 +1,5 @@
 // What air beyond outlets is faster and denser by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs`, and of
-// `before_outlet` and `swell_beyond` in `faces/mod.rs`.
+// `before_outlet` and `update_outlet_pressure` in `faces/mod.rs`.
 #import dew_card
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
@@ -68,7 +68,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var faster = array<f32, 6>();
     var spreading = array<f32, 6>();
     var excess = array<f32, 6>();
-    var lasting = status.lasting_before;
+    var running_mean = status.running_mean_before;
     for (var number = 0u; number < 6u; number++) {
         let rule = face(number);
         if rule == OUTLET {
@@ -76,9 +76,9 @@ fn main(@builtin(local_invocation_index) thread: u32) {
             faster[number] = step * mean.x;
             spreading[number] = mean.z;
             let crossed = step * parameters.sound / (parameters.high[number / 2u] - parameters.low[number / 2u]);
-            lasting[number] += crossed / (1.0 + crossed) * (mean.y - lasting[number]);
+            running_mean[number] += crossed / (1.0 + crossed) * (mean.y - running_mean[number]);
             let outward = select(1.0, -1.0, number % 2u == 0u);
-            excess[number] = outward * (mean.y - lasting[number]) / parameters.sound;
+            excess[number] = outward * (mean.y - running_mean[number]) / parameters.sound;
         } else if rule == INLET {
             let axis = number / 2u;
             let apart = parameters.apart[axis];
@@ -98,8 +98,8 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         status.phase = phases;
         status.before = faster;
         status.spreading_before = spreading;
-        status.excess_beyond = excess;
-        status.lasting_before = lasting;
+        status.density_excess_beyond = excess;
+        status.running_mean_before = running_mean;
         status.particles = min(count, arrayLength(&particles));
         status.next_id = id + count - old;
         groups[0] = (status.particles + 255u) / 256u;

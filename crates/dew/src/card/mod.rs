@@ -97,9 +97,9 @@ pub(crate) struct Progress {
     pub supplied: Vec<[f64; 3]>,
     pub inlet_phase: [[f64; 2]; 3],
     /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
-    pub excess_beyond: [[f64; 2]; 3],
-    /// Velocity along its axis of the air before each outlet, as it lasts, m/s.
-    pub lasting_before: [[f64; 2]; 3],
+    pub density_excess_beyond: [[f64; 2]; 3],
+    /// Running mean of the velocity along its axis of the air before each outlet, m/s.
+    pub running_mean_before: [[f64; 2]; 3],
     /// When it was last looked for air of low utility, s.
     pub utility_seen: f64,
     /// What all air of a closed room gains in the next step: temperature, K, and vapour, part of the mass.
@@ -207,8 +207,8 @@ impl Card {
             turn: (state.steps % u64::from(TURN)) as u32,
             drift: state.drift.map(|gain| gain as f32),
             phase: std::array::from_fn(|number| layout::account(phases[number])),
-            excess_beyond: narrow(state.excess_beyond),
-            lasting_before: narrow(state.lasting_before),
+            density_excess_beyond: narrow(state.density_excess_beyond),
+            running_mean_before: narrow(state.running_mean_before),
             ..Status::zeroed()
         };
         // Who draws before the first step reads it too.
@@ -279,8 +279,8 @@ impl Card {
             until: until as f32,
             next_id: self.status.next_id,
             phase: self.status.phase,
-            excess_beyond: self.status.excess_beyond,
-            lasting_before: self.status.lasting_before,
+            density_excess_beyond: self.status.density_excess_beyond,
+            running_mean_before: self.status.running_mean_before,
             time: self.status.time,
             seen: self.status.seen,
             turn: (self.status.turn + self.status.steps) % TURN,
@@ -337,8 +337,8 @@ impl Card {
             drift: self.status.drift.map(f64::from),
             utility_seen: self.sent_at + layout::value(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
-            excess_beyond: wide(self.status.excess_beyond),
-            lasting_before: wide(self.status.lasting_before),
+            density_excess_beyond: wide(self.status.density_excess_beyond),
+            running_mean_before: wide(self.status.running_mean_before),
             fastest: f64::from(fastest).sqrt(),
             broken: halted == layout::BROKEN,
             full: halted == layout::FULL,

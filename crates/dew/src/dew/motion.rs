@@ -107,7 +107,7 @@ impl Dew {
             ahead,
             room,
             scale.h(),
-            &state.excess_beyond,
+            &state.density_excess_beyond,
         );
         rates.resize(state.air.len(), Rates::default());
         let relative = settings.humidity == Humidity::Relative;
@@ -198,7 +198,7 @@ fn fill_columns(
     ahead: f64,
     room: &Room,
     reach: f64,
-    excess_beyond: &[[f64; 2]; 3],
+    density_excess_beyond: &[[f64; 2]; 3],
 ) {
     particles.par_iter_mut().zip(&arrangement.place_of).with_min_len(1024).for_each(|(particle, &place)| {
         particle.density = air.density * sums[place as usize].filling;
@@ -206,13 +206,13 @@ fn fill_columns(
             // Where it no longer matters, the air is as it is at rest.
             particle.density = rest_density;
         } else if let Role::Leaving(axis, side) = particle.role {
-            particle.density = rest_density * (1.0 + excess_beyond[usize::from(axis)][usize::from(side)]);
+            particle.density = rest_density * (1.0 + density_excess_beyond[usize::from(axis)][usize::from(side)]);
         } else if let Role::Outside(axis, side) = particle.role {
             let inward = [1.0, -1.0][usize::from(side)] * particle.velocity[usize::from(axis)];
             particle.density = rest_density * (1.0 - 0.5 * (inward.max(0.0) / air.sound_speed).powi(2));
         } else if let Some((axis, side)) = room.outlet_near(particle.position, reach) {
             // Where air would flow back in there is none beyond: that must not suck.
-            particle.density = particle.density.max(rest_density * (1.0 + excess_beyond[axis][side]));
+            particle.density = particle.density.max(rest_density * (1.0 + density_excess_beyond[axis][side]));
         }
     });
     let particles = &*particles;

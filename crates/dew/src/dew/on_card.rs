@@ -273,8 +273,8 @@ impl Dew {
         state.time_step = progress.step;
         state.next_id = progress.next_id;
         state.inlet_phase = progress.inlet_phase;
-        state.excess_beyond = progress.excess_beyond;
-        state.lasting_before = progress.lasting_before;
+        state.density_excess_beyond = progress.density_excess_beyond;
+        state.running_mean_before = progress.running_mean_before;
         state.drift = progress.drift;
         if self.settings.low_utility.is_some() {
             state.utility_seen = progress.utility_seen;

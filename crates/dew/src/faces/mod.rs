@@ -98,7 +98,7 @@ impl Dew {
         }
         let far = BEYOND * self.scale.h();
         let before = [0, 1, 2].map(|axis| [0, 1].map(|side| self.before_outlet(axis, side)));
-        self.swell_beyond(step, &before);
+        self.update_outlet_pressure(step, &before);
         let mut air = std::mem::take(&mut self.state.air);
         air.retain_mut(|particle| {
             self.cross(particle, step, &before);
@@ -162,29 +162,35 @@ impl Dew {
             return BeforeOutlet::default();
         }
         let face = [self.room.low, self.room.high][side][axis];
-        let mean = |reach: f64, of: fn(&Particle) -> [f64; 3]| {
-            let near = self.inside().filter(|particle| (particle.position[axis] - face).abs() < reach);
-            let (sum, count) = near.fold((0.0, 0_u32), |(sum, count), particle| (sum + of(particle)[axis], count + 1));
-            sum / f64::from(count.max(1))
-        };
+        // Sums and number.
+        let (mut near, mut layer) = ([0.0; 3], [0.0; 2]);
+        for particle in self.inside() {
+            let distance = (particle.position[axis] - face).abs();
+            if distance < self.scale.h() {
+                near = [near[0] + particle.acceleration[axis], near[1] + particle.velocity[axis], near[2] + 1.0];
+            }
+            if distance < OUTLET_LAYER * self.scale.h() {
+                layer = [layer[0] + particle.spreading[axis], layer[1] + 1.0];
+            }
+        }
         BeforeOutlet {
-            acceleration: mean(self.scale.h(), |particle| particle.acceleration),
-            velocity: mean(self.scale.h(), |particle| particle.velocity),
-            spreading: mean(NEAREST * self.scale.h(), |particle| particle.spreading),
+            acceleration: near[0] / near[2].max(1.0),
+            velocity: near[1] / near[2].max(1.0),
+            spreading: layer[0] / layer[1].max(1.0),
         }
     }
 
     /// The pressure p beyond outlets lets sound out: dp/dt = rho c du/dt - (c / L) p, with u the speed outwards and L the length of the room (Rudy &
     /// Strikwerda, Journal of Computational Physics 36, 1980, 55). Then p = rho c (u - v), with dv/dt = (c / L) (u - v).
-    fn swell_beyond(&mut self, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
+    fn update_outlet_pressure(&mut self, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
         let sound = self.air.sound_speed;
         for axis in 0..3 {
             let crossed = step * sound / (self.room.high[axis] - self.room.low[axis]);
             for side in 0..2 {
                 let (outward, speed) = ([-1.0, 1.0][side], before[axis][side].velocity);
-                let lasting = &mut self.state.lasting_before[axis][side];
-                *lasting += crossed / (1.0 + crossed) * (speed - *lasting);
-                self.state.excess_beyond[axis][side] = outward * (speed - *lasting) / sound;
+                let running_mean = &mut self.state.running_mean_before[axis][side];
+                *running_mean += crossed / (1.0 + crossed) * (speed - *running_mean);
+                self.state.density_excess_beyond[axis][side] = outward * (speed - *running_mean) / sound;
             }
         }
     }
@@ -197,9 +203,9 @@ impl Dew {
     }
 }
 
-/// How near an outlet air is of which the air beyond takes over how it is evened out, in smoothing lengths: what stands in one layer only, so that a
-/// layer takes with it what moves it as a whole, or the air beyond would feed sound.
-const NEAREST: f64 = 0.2;
+/// Thickness of the layer before an outlet whose mean particle shift the air beyond takes over, in smoothing lengths: less than one layer of particles,
+/// so that a layer keeps the shift that moves it as a whole; without it sound between an inlet and the outlet grows.
+const OUTLET_LAYER: f64 = 0.2;
 
 /// What air before an outlet does along the outlet's axis, in the mean.
 #[derive(Debug, Clone, Copy, Default)]
@@ -208,7 +214,7 @@ pub(crate) struct BeforeOutlet {
     acceleration: f64,
     /// Within a smoothing length, m/s.
     pub velocity: f64,
-    /// [`Particle::spreading`] within [`NEAREST`], m/s2.
+    /// [`Particle::spreading`] within [`OUTLET_LAYER`], m/s2.
     spreading: f64,
 }
 
