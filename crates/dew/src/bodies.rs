@@ -1,7 +1,8 @@
 //! The solids of a scene, made ready: where they are, what they are made of, and the particles that stand for them.
 
 use crate::humid_air::ZERO_CELSIUS;
-use crate::solids::sources::{BodySources, Surroundings};
+use crate::solids::sources::{BodySources, Outside, Surroundings};
+use crate::solids::wall::WallLayer;
 use corpuscle_model::ModelError;
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Series, Table};
@@ -89,13 +90,13 @@ pub enum BodyError {
     },
     /// A name of no material.
     #[error(
-        "the solid \"{name}\" (dew.solid.{row}): there is no material \"{material}\"; there are {known}, or give its numbers"
+        "the solid \"{name}\" (dew.solid.{place}): there is no material \"{material}\"; there are {known}, or give its numbers"
     )]
     Material {
         /// Name of the solid.
         name: String,
-        /// Its row in the scene, counted from 0.
-        row: usize,
+        /// Where in `dew.solid` of the scene: its row, counted from 0, and the key of a layer behind it.
+        place: String,
         /// Name of the material.
         material: String,
         /// All that there are.
@@ -175,7 +176,8 @@ fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Bo
     if celsius < -ZERO_CELSIUS {
         return Err(BodyError::TooCold { name, row, celsius });
     }
-    let (material, held, treatment) = (material(row, written)?, written.held, written.treatment);
+    let material = material(&row.to_string(), &name, &written.material)?;
+    let (held, treatment) = (written.held, written.treatment);
     let sources = sources(row, written, folder)?;
     refuse_away_from_side(dew, row, written, &solid)?;
     Ok(Body { material, temperature, held, treatment, name, solid, sources, samples, notes })
@@ -212,7 +214,8 @@ fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<BodySource
                 radiant_temperature: radiant.transpose()?.unwrap_or_else(|| air.clone()),
                 air_temperature: air,
             };
-            Some((outside.side.axis_and_end(), surroundings))
+            let layers = wall_layers(row, &written.name, &outside.layers)?;
+            Some(Outside { side: outside.side.axis_and_end(), layers, surroundings })
         }
         None => None,
     };
@@ -229,6 +232,17 @@ fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<BodySource
         None => None,
     };
     Ok(BodySources { heater, outside, radiation })
+}
+
+fn wall_layers(row: usize, solid: &str, layers: &[dew::WallLayer]) -> Result<Vec<WallLayer>, BodyError> {
+    let layer = |(at, layer): (usize, &dew::WallLayer)| match (&layer.material, layer.thickness_m) {
+        (Some(written), Some(thickness)) => {
+            let place = format!("{row}.outside.layers.{at}");
+            Ok(WallLayer::Solid(material(&place, solid, written)?.into(), thickness))
+        }
+        _ => Ok(WallLayer::Gap(layer.resistance_m2_k_per_w.unwrap_or(0.0))),
+    };
+    layers.iter().enumerate().map(layer).collect()
 }
 
 /// A solid with something outside reaches the side, or is within this of it, over the spacing.
@@ -284,11 +298,12 @@ fn wine_glass(glass: &dew::WineGlass) -> WineGlass {
     }
 }
 
-fn material(row: usize, written: &dew::Solid) -> Result<Material, BodyError> {
-    match &written.material {
+/// The material of a solid or of a layer, at `place` in `dew.solid`.
+fn material(place: &str, solid: &str, written: &dew::Material) -> Result<Material, BodyError> {
+    match written {
         dew::Material::Named(material) => solids::material(material).copied().ok_or_else(|| BodyError::Material {
-            name: written.name.clone(),
-            row,
+            name: solid.into(),
+            place: place.into(),
             material: material.clone(),
             known: MATERIALS.iter().map(|material| material.name).collect::<Vec<_>>().join(", "),
         }),

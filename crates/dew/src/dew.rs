@@ -99,7 +99,7 @@ pub(crate) struct State {
     pub time_step: f64,
     pub next_id: u64,
     pub air: Vec<Particle>,
-    /// Temperature of each particle of the solids, K.
+    /// Temperature of each particle of the solids, then of each cell of the walls behind them, K.
     pub temperatures: Vec<f64>,
     /// Water on each particle of the solids, kg.
     pub water_on: Vec<f64>,
@@ -107,7 +107,7 @@ pub(crate) struct State {
     pub fogged: ExactSum,
     /// Heat that has come from each solid held at a temperature, J; negative where it took it.
     pub held_heat: Vec<ExactSum>,
-    /// Heat that each solid has got from its heater, from outside and by radiation, J.
+    /// Heat that each solid, then each wall, has got from its heater, from outside and by radiation, J.
     pub supplied: Vec<[ExactSum; 3]>,
     /// Heat that each solid takes from the air through its surface, W, in the last step.
     pub heat_flow: Vec<f64>,
@@ -239,6 +239,16 @@ impl Dew {
         Ok(dew)
     }
 
+    /// Makes room for all that conducts heat, and counts its energy from here on, after something has been added to it.
+    pub(crate) fn renew_heat_network(&mut self) {
+        let groups = self.solids.groups();
+        self.conductances = (0..self.solids.nodes()).map(|i| self.conduction.sum(i)).collect();
+        self.state.held_heat.resize(groups, ExactSum::default());
+        self.state.supplied.resize(groups, Default::default());
+        self.state.heat_flow.resize(groups, 0.0);
+        self.state.energy.initial = self.energy();
+    }
+
     /// Mass of an air particle, kg.
     pub fn particle_mass(&self) -> f64 {
         self.air.density * self.scale.volume
@@ -350,7 +360,7 @@ impl Dew {
 
     /// Energy of the air and of the solids that are free to warm, J.
     pub(crate) fn energy(&self) -> f64 {
-        let free = (0..self.solids.particles.len()).filter(|&i| !self.solids.is_held(i));
+        let free = (0..self.solids.nodes()).filter(|&i| !self.solids.is_held(i));
         let solids = free.map(|i| self.solids.heat_capacity(i) * (self.state.temperatures[i] - COLD));
         self.inside()
             .map(|particle| self.energy_of(particle))
@@ -396,9 +406,11 @@ impl Dew {
         self.state.held_heat[body].value()
     }
 
-    /// Heat that a body has got from its heater, from outside the box and by radiation, J; negative where it lost it.
+    /// Heat that a body and the wall behind it have got from a heater, from outside the box and by radiation, J; negative where they lost it.
     pub fn heat_supplied(&self, body: usize) -> [f64; 3] {
-        [0, 1, 2].map(|kind| self.state.supplied[body][kind].value())
+        let supplied = |group: usize, kind: usize| self.state.supplied[group][kind].value();
+        let wall = self.solids.wall_behind(body);
+        [0, 1, 2].map(|kind| supplied(body, kind) + wall.map_or(0.0, |wall| supplied(wall, kind)))
     }
 
     /// Water on a body, kg.
@@ -419,7 +431,7 @@ impl Dew {
 
     /// Temperature of each particle of the solids, K.
     pub fn temperatures(&self) -> &[f64] {
-        &self.state.temperatures
+        &self.state.temperatures[..self.solids.particles.len()]
     }
 
     /// Water on each particle of the solids, kg.

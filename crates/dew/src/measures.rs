@@ -60,6 +60,8 @@ impl Dew {
             ]);
             let named = self.sources_of(body).map(|(quantity, _)| column(name, quantity, "J"));
             columns.extend(named);
+            let of_layer = |(layer, _)| column(&format!("{name}.outside.{layer}"), "mean_temperature", "K");
+            columns.extend(self.layer_temperatures(body).into_iter().map(of_layer));
             if self.wetting.is_some() {
                 columns.extend([
                     column(name, "water_per_area", "kg_per_m2"),
@@ -145,6 +147,7 @@ impl Dew {
         let [water, temperature] = self.totals_of(body);
         let mut row = vec![water, temperature, self.heat_from(body), self.state.heat_flow[body]];
         row.extend(self.sources_of(body).map(|(_, joules)| joules));
+        row.extend(self.layer_temperatures(body).into_iter().map(|(_, kelvin)| kelvin));
         if let Some(wetting) = &self.wetting {
             let (story, area) = (wetting.stories()[body], wetting.open_area(body));
             let or_none = |value: f64| if story.drops > 0 { value } else { f64::NAN };
@@ -168,7 +171,9 @@ impl Dew {
     /// Names of the heats that a body gets from sources that it has, and how much it has got, J.
     fn sources_of(&self, body: usize) -> impl Iterator<Item = (&'static str, f64)> {
         let sources = self.sources.bodies.get(body);
-        let has = sources.map_or([false; 3], |of| [of.heater.is_some(), of.outside.is_some(), of.radiation.is_some()]);
+        let has_wall = self.solids.wall_behind(body).is_some();
+        let has = sources
+            .map_or([false; 3], |of| [of.heater.is_some(), has_wall || of.outside.is_some(), of.radiation.is_some()]);
         let all =
             ["heat_from_heater", "heat_from_outside", "heat_by_radiation"].into_iter().zip(self.heat_supplied(body));
         all.zip(has).filter_map(|(heat, has)| has.then_some(heat))

@@ -59,7 +59,7 @@ impl Dew {
             radius: particles.iter().map(|particle| 0.5 * particle.volume.cbrt()).collect(),
             mass: (0..particles.len()).map(|i| self.solids().material(i).density * particles[i].volume).collect(),
             columns: vec![
-                Column { name: "temperature", unit: "K", values: Values::Scalar(self.state.temperatures.clone()) },
+                Column { name: "temperature", unit: "K", values: Values::Scalar(self.temperatures().to_vec()) },
                 Column { name: "water", unit: "kg", values: Values::Scalar(self.state.water_on.clone()) },
                 Column { name: "area", unit: "m2", values: Values::Scalar(particles.iter().map(area).collect()) },
                 Column {

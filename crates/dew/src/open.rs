@@ -10,7 +10,7 @@ use crate::layer::Layer;
 use crate::room::{Face, Inflow, Room};
 use crate::settings::{Condensation, Humidity, LowUtility, Mean, Settings, WallTreatment};
 use crate::solids::sources::HeatSources;
-use crate::solids::{Body, Material, Surface};
+use crate::solids::{Body, Surface};
 use corpuscle_model::ModelError;
 use corpuscle_scene::Axis;
 use corpuscle_scene::dew::{self as written, HumidityTransport, Scheme, Treatment};
@@ -48,6 +48,7 @@ pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, Model
     let layer = |body: &Body| body.walls.and_then(|_| Layer::new(body, &dew));
     dew.layers = setup.bodies.iter().map(layer).collect();
     dew.names = bodies.iter().map(|body| body.name.clone()).collect();
+    dew.add_walls(&bodies);
     dew.sources = HeatSources::new(&bodies, &dew.solids, &room, scene.spacing_m);
     dew.held_to = bodies.iter().map(|body| body.held.then(|| body.temperature.clone())).collect();
     dew.buoyant = scene.buoyancy;
@@ -279,11 +280,7 @@ fn particles(body: &bodies::Body, room: &Room) -> Body {
         positions: kept.iter().map(|&at| samples.positions[at]).collect(),
         volumes: kept.iter().map(|&at| samples.volumes[at]).collect(),
         areas: kept.iter().map(|&at| samples.areas[at]).collect(),
-        material: Material {
-            conductivity: body.material.conductivity,
-            heat_capacity: body.material.heat_capacity,
-            density: body.material.density,
-        },
+        material: body.material.into(),
         temperature: body.temperature.at(0.0) + ZERO_CELSIUS,
         held: body.held,
         surface: Some(surface),

@@ -338,7 +338,8 @@ fn heated(factor: f64) -> Dew {
          air = {{ temperature_c = 25, relative_humidity = 0.8 }}\ndrops.smallest_radius_m = 3e-4\n\
          [[dew.solid]]\nname = \"pane\"\nshape = {{ box = {{ size_m = [0.004, 0.012, 0.012] }} }}\nposition_m = [0.002, 0.006, 0.008]\ntemperature_c = 5\n\
          heater = {{ power_w = [[0, 3], [0.03, 3], [0.03, 0], [0.05, 1]] }}\n\
-         outside = {{ side = \"x_min\", temperature_c = [[0, -10], [0.1, 0]], h_w_per_m2_k = 40, emissivity = 0.9, surroundings_c = -40 }}\n\
+         outside = {{ side = \"x_min\", temperature_c = [[0, -10], [0.1, 0]], h_w_per_m2_k = 40, emissivity = 0.9, surroundings_c = -40, \
+         layers = [{{ resistance_m2_k_per_w = 0.01 }}, {{ material = \"aluminium\", thickness_m = 0.001 }}, {{ material = \"polycarbonate\", thickness_m = 0.002 }}] }}\n\
          radiation = {{ emissivity = 0.8, surroundings_c = [[0, 60], [0.2, 20]] }}\n\
          [[dew.solid]]\nname = \"floor\"\nshape = {{ box = {{ size_m = [0.014, 0.012, 0.002] }} }}\nposition_m = [0.011, 0.006, 0.001]\ntemperature_c = 10\nheld = true\n\
          [[dew.solid]]\nname = \"ball\"\nmaterial = \"oak\"\nshape = {{ sphere = {{ radius_m = 0.003 }} }}\nposition_m = [0.0113, 0.0061, 0.0092]\ntemperature_c = 90\n\
@@ -361,6 +362,13 @@ fn solids_are_heated_and_cooled_as_on_the_processor() {
             for body in 0..3 {
                 let (host, card) = (host.heat_supplied(body), card.heat_supplied(body));
                 assert!((0..3).all(|kind| near(host[kind], card[kind], 1e-4)), "{body}: {host:?} {card:?}");
+            }
+            for header in ["pane.outside.1.mean_temperature_K", "pane.outside.2.mean_temperature_K"] {
+                let [host, card] = [&host, &card].map(|dew| {
+                    let at = dew.gauge_columns().iter().position(|column| column.header() == header).unwrap();
+                    dew.gauge_row()[at]
+                });
+                assert!((host - card).abs() < 40.0 * most, "{header}: {host} {card}");
             }
             for dew in [&host, &card] {
                 assert!(dew.heat_supplied(0).iter().all(|heat| heat.abs() > 1e-4), "{:?}", dew.heat_supplied(0));

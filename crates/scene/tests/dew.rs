@@ -252,6 +252,24 @@ fn sources_of_heat_that_cannot_be_are_refused_by_name() {
         "outside = { side = \"z_max\", temperature_c = 5, h_w_per_m2_k = 1 }",
         &[&key("outside.side"), "is no wall", "faces.z_max"],
     );
+    let layer = |layer: &str, words: &[&str]| {
+        let key = key("outside.layers.1");
+        let words: Vec<String> = words.iter().map(|word| word.replace("KEY", &key)).collect();
+        let wall = format!(
+            "outside = {{ side = \"z_min\", temperature_c = 5, h_w_per_m2_k = 1, layers = [{{ resistance_m2_k_per_w = 0.17 }}, {layer}] }}"
+        );
+        with(&wall, &words.iter().map(String::as_str).collect::<Vec<_>>());
+    };
+    layer("{ material = \"glass\" }", &["KEY", "thickness_m"]);
+    layer("{ thickness_m = 0.004 }", &["KEY", "material"]);
+    layer("{}", &["KEY", "resistance_m2_k_per_w"]);
+    layer("{ material = \"glass\", thickness_m = 0.004, resistance_m2_k_per_w = 1 }", &["KEY", "either"]);
+    layer("{ material = \"glass\", thickness_m = -0.004 }", &["KEY.thickness_m = -0.004", "larger than 0"]);
+    layer("{ resistance_m2_k_per_w = 0 }", &["KEY.resistance_m2_k_per_w = 0", "larger than 0"]);
+    layer(
+        "{ material = { conductivity_w_per_m_k = 0, heat_capacity_j_per_kg_k = 1, density_kg_per_m3 = 1 }, thickness_m = 1 }",
+        &["KEY.material.conductivity_w_per_m_k = 0"],
+    );
     let held = "heater = { power_w = 1 }\nheld = true";
     assert_refused("held = true", held, &["dew.solid.0.heater", "prescribed"]);
     with("outside = { side = \"left\", temperature_c = 5, h_w_per_m2_k = 1 }", &["left", "x_min"]);

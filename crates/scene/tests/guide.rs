@@ -309,6 +309,11 @@ fn full_dew() -> Scene {
             h_w_per_m2_k: 1.0,
             emissivity: 0.5,
             surroundings_c: Some(Series::Constant(1.0)),
+            layers: vec![dew::WallLayer {
+                material: Some(Material::default()),
+                thickness_m: Some(1.0),
+                resistance_m2_k_per_w: Some(1.0),
+            }],
         }),
         radiation: Some(dew::Radiation { emissivity: 0.5, surroundings_c: Series::Constant(1.0) }),
         treatment: Some(dew::Treatment::VirtualForce),

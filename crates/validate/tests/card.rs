@@ -32,7 +32,7 @@ const FLOODS: [(&str, f64); 21] = [
 
 /// Of dew those that have a reduced size. Air along a plate is rough, and every rounding makes another run of it: eight seeds on the processor differ by a
 /// standard deviation of 1.58 % of the Sherwood number, so two runs by at most 6.7 %, three standard deviations of their difference; 0.13 of the bound.
-const DEW: [(&str, f64); 9] = [
+const DEW: [(&str, f64); 10] = [
     ("dew/two-slabs", 0.05),
     ("dew/boundaries", 0.1),
     ("dew/cavity", 0.02),
@@ -42,6 +42,7 @@ const DEW: [(&str, f64); 9] = [
     ("dew/adiabatic", 0.05),
     ("dew/evaporation", 0.05),
     ("dew/heat-sources", 0.05),
+    ("dew/walls", 0.05),
 ];
 
 /// Of dew those that are small, with as many measures that have bounds.

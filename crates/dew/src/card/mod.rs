@@ -255,7 +255,7 @@ impl Card {
 
     /// Brings back what changes of the solids.
     fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
-        let solids: Vec<CardSolid> = read(&self.gpu, &self.tasks.solids, self.water_told.len())?;
+        let solids: Vec<CardSolid> = read(&self.gpu, &self.tasks.solids, state.temperatures.len())?;
         let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
         self.fetch_water(&mut state.water_on)?;
         let temperature = |solid: &CardSolid| layout::value(solid.temperature) + self.origin.temperature;

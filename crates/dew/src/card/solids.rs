@@ -17,13 +17,13 @@ pub(super) struct CardSolids {
     pub start: wgpu::Buffer,
     /// Sites that air comes near: particles, images and ghost samples.
     pub sites: wgpu::Buffer,
-    /// The particles themselves, in order.
+    /// The particles themselves, in order, then the cells of the walls behind solids.
     pub own: wgpu::Buffer,
     /// Pairs between which heat goes.
     pub pairs: wgpu::Buffer,
-    /// Particles.
+    /// Particles and cells.
     pub count: usize,
-    /// The solids, by their ranges of particles and of rows.
+    /// The solids, then the walls, by their ranges of particles or cells and of rows.
     pub bodies: Vec<CardBody>,
     /// Times, s, and temperatures, K, at which solids are held where they change.
     pub rows: Vec<[f64; 2]>,
@@ -34,13 +34,16 @@ impl CardSolids {
         let particles = &dew.solids.particles;
         let mut pairs = Vec::new();
         let mut own = Vec::new();
-        for (number, particle) in particles.iter().enumerate() {
+        for node in 0..dew.solids.nodes() {
             let first = pairs.len() as u32;
-            let of_it = dew.conduction.pairs(number);
+            let of_it = dew.conduction.pairs(node);
             pairs.extend(of_it.map(|(other, conductance)| [other as u32, (conductance as f32).to_bits()]));
-            let site = Site::itself(number as u32, particle.position);
             let end = pairs.len() as u32;
-            own.push(CardSite { first, end, ..card_site(dew, origin, &site, particle.volume) });
+            let of_cell = || CardSite { capacity: dew.solids.heat_capacity(node) as f32, ..CardSite::default() };
+            let site = particles.get(node).map_or_else(of_cell, |particle| {
+                card_site(dew, origin, &Site::itself(node as u32, particle.position), particle.volume)
+            });
+            own.push(CardSite { first, end, ..site });
         }
         let mut sites = of_contact(dew, origin, &dew.contact);
         sites.extend(dew.ghosts.sites.iter().zip(&dew.ghosts.volumes).map(|(site, volume)| CardSite {
@@ -54,13 +57,14 @@ impl CardSolids {
         let cells = parameters.cells.iter().product::<u32>();
         let first = |wanted: u32| sites.partition_point(|site| cell(site) < wanted) as u32;
         let start: Vec<u32> = (0..=cells).map(first).collect();
-        let of_body = |body: u32| particles.partition_point(|particle| particle.body < body) as u32;
+        let groups: Vec<usize> = (0..own.len()).map(|node| dew.solids.group(node)).collect();
+        let before = |group: usize| groups.partition_point(|of| *of < group) as u32;
         let mut rows = Vec::new();
-        let bodies = (0..dew.solids.bodies.len() as u32)
-            .map(|body| {
+        let bodies = (0..dew.solids.groups())
+            .map(|group| {
                 let first_row = rows.len() as u32;
-                rows.extend(changes(dew, body as usize));
-                let (first, end, end_row) = (of_body(body), of_body(body + 1), rows.len() as u32);
+                rows.extend(changes(dew, group));
+                let (first, end, end_row) = (before(group), before(group + 1), rows.len() as u32);
                 CardBody { first, end, first_row, end_row, ..CardBody::default() }
             })
             .collect();

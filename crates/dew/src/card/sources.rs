@@ -127,8 +127,8 @@ fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 
     if let Some((table, _)) = &of.heater {
         [source.power_first, source.power_end] = append(table, 0.0, values);
     }
-    if let Some((_, around)) = &of.outside {
-        source.outside = surroundings(around, origin, values);
+    if let Some(outside) = &of.outside {
+        source.outside = surroundings(&outside.surroundings, origin, values);
     }
     if let Some(around) = &of.radiation {
         source.radiation = surroundings(around, origin, values);

@@ -178,7 +178,7 @@ impl Dew {
     fn bring_to(&mut self, solid: usize, celsius: f64) -> Result<(), ModelError> {
         let held = self.solids.bodies.get(solid).ok_or_else(|| refuse(format!("there is no solid {solid}")))?.1;
         let State { temperatures, energy, .. } = &mut self.state;
-        for i in (0..temperatures.len()).filter(|&i| self.solids.particles[i].body as usize == solid) {
+        for i in (0..self.solids.particles.len()).filter(|&i| self.solids.particles[i].body as usize == solid) {
             let before = std::mem::replace(&mut temperatures[i], celsius + COLD);
             if !held {
                 energy.book(self.solids.heat_capacity(i) * (temperatures[i] - before));

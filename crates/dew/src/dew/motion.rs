@@ -164,12 +164,16 @@ impl Dew {
         particles.map(|(particle, rates)| Extremes::of(particle, rates, air)).reduce(Extremes::default, Extremes::or)
     }
 
+    /// The longest step, s, in which sound does not cross a smoothing length in air of a speed, m/s.
+    pub(crate) fn step_by_sound(&self, speed: f64) -> f64 {
+        self.settings.cfl * self.scale.h() / (self.air.sound_speed + speed)
+    }
+
     /// The largest sound time step: sound must not cross a smoothing length, nor diffusion overshoot.
     pub(super) fn next_step(&self, stiff: &[f64], extremes: Extremes) -> f64 {
-        let sound_speed = self.air.sound_speed;
         let [speed, acceleration] = [extremes.speed_squared, extremes.acceleration_squared].map(f64::sqrt);
         let stiffest = stiff.iter().copied().fold(extremes.diffusion, f64::max);
-        let by_sound = self.settings.cfl * self.scale.h() / (sound_speed + speed);
+        let by_sound = self.step_by_sound(speed);
         let by_force = ACCELERATION_LIMIT * (self.scale.spacing / acceleration.max(1e-30)).sqrt();
         let by_diffusion = DIFFUSION_LIMIT / stiffest.max(1e-30);
         // What is not a number must not be lost in a minimum.

@@ -39,7 +39,7 @@ impl Dew {
         share_of.clear();
         share_of.resize(particles, 1.0);
         let conducted = |i| self.conduction.heat(i, &self.state.temperatures);
-        (0..particles).into_par_iter().with_min_len(1024).map(conducted).collect_into_vec(heat);
+        (0..self.solids.nodes()).into_par_iter().with_min_len(1024).map(conducted).collect_into_vec(heat);
         stiff.clear();
         stiff.resize(self.contact.near.len(), 0.0);
         stiff.extend_from_slice(&self.conductances);

@@ -8,7 +8,7 @@ use crate::settings::Mean;
 use corpuscle_sph::BLOCK;
 use rayon::prelude::*;
 
-/// Conductances of all pairs of solid particles within reach of each other.
+/// Conductances of all pairs of solid particles within reach of each other, and of the cells of walls behind solids.
 #[derive(Debug, Clone, Default)]
 pub struct Conduction {
     start: Vec<u32>,
@@ -59,6 +59,28 @@ impl Conduction {
             }
         }
         conduction
+    }
+
+    /// Adds conductances, W/K, between pairs of `nodes` in all.
+    pub(crate) fn connect(&mut self, nodes: usize, links: &[(u32, u32, f64)]) {
+        let both = links.iter().flat_map(|&(a, b, conductance)| [(a, b, conductance), (b, a, conductance)]);
+        let mut added: Vec<(u32, u32, f64)> = both.collect();
+        added.sort_by_key(|&(node, other, _)| (node, other));
+        let before = std::mem::replace(self, Self { start: vec![0], ..Self::default() });
+        let mut added = added.into_iter().peekable();
+        for node in 0..nodes {
+            if node + 1 < before.start.len() {
+                for (other, conductance) in before.pairs(node) {
+                    self.other.push(other as u32);
+                    self.conductance.push(conductance);
+                }
+            }
+            while let Some((_, other, conductance)) = added.next_if(|&(of, ..)| of as usize == node) {
+                self.other.push(other);
+                self.conductance.push(conductance);
+            }
+            self.start.push(self.other.len() as u32);
+        }
     }
 
     /// The particles that are near one, and the conductances to them, W/K.

@@ -4,6 +4,7 @@ mod boundary;
 mod conduction;
 mod ghosts;
 pub(crate) mod sources;
+pub(crate) mod wall;
 
 pub use boundary::THRESHOLD;
 pub use conduction::Conduction;
@@ -17,6 +18,7 @@ use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
 use corpuscle_sph::space::Cells;
 use std::sync::Arc;
+use wall::WallCell;
 
 /// What a solid is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +35,13 @@ impl Material {
     /// What matters for conduction.
     pub fn conductor(&self) -> Conductor {
         Conductor { conductivity: self.conductivity, capacity: self.heat_capacity * self.density }
+    }
+}
+
+impl From<corpuscle_solids::Material> for Material {
+    fn from(material: corpuscle_solids::Material) -> Self {
+        let corpuscle_solids::Material { conductivity, heat_capacity, density, .. } = material;
+        Self { conductivity, heat_capacity, density }
     }
 }
 
@@ -86,6 +95,10 @@ pub struct Solids {
     pub bodies: Vec<(Material, bool)>,
     /// Sides that air passes beyond which each body goes on as its mirror image.
     pub mirrors: Vec<Mirrors>,
+    /// Cells of the walls behind solids. Heat goes through them as through particles, whose numbers theirs follow.
+    pub(crate) cells: Vec<WallCell>,
+    /// The body in front of each wall.
+    pub(crate) walls: Vec<u32>,
 }
 
 /// Where a particle of a solid or its image stands.
@@ -147,7 +160,7 @@ impl Solids {
         }
         let mirrors = bodies.iter().map(|body| mirrors(body, room, scale)).collect();
         let of_bodies = bodies.iter().map(|body| (body.material, body.held)).collect();
-        let mut solids = Self { particles, bodies: of_bodies, mirrors };
+        let mut solids = Self { particles, bodies: of_bodies, mirrors, cells: Vec::new(), walls: Vec::new() };
         solids.find_boundary(room, scale, threshold);
         solids
     }
@@ -157,15 +170,40 @@ impl Solids {
         &self.bodies[self.particles[particle].body as usize].0
     }
 
-    /// Whether a particle's temperature is held.
-    pub fn is_held(&self, particle: usize) -> bool {
-        self.bodies[self.particles[particle].body as usize].1
+    /// Particles and cells of walls.
+    pub(crate) fn nodes(&self) -> usize {
+        self.particles.len() + self.cells.len()
     }
 
-    /// Heat capacity of a particle, J/K.
-    pub fn heat_capacity(&self, particle: usize) -> f64 {
-        let Material { heat_capacity, density, .. } = *self.material(particle);
-        heat_capacity * density * self.particles[particle].volume
+    /// Bodies and walls.
+    pub(crate) fn groups(&self) -> usize {
+        self.bodies.len() + self.walls.len()
+    }
+
+    /// The body of a particle, or the wall of a cell, which are numbered after the bodies.
+    pub(crate) fn group(&self, node: usize) -> usize {
+        self.particles.get(node).map_or_else(
+            || self.bodies.len() + self.cells[node - self.particles.len()].wall as usize,
+            |particle| particle.body as usize,
+        )
+    }
+
+    /// The wall behind a body, as a group, where there is one.
+    pub(crate) fn wall_behind(&self, body: usize) -> Option<usize> {
+        let wall = self.walls.iter().position(|&front| front as usize == body)?;
+        Some(self.bodies.len() + wall)
+    }
+
+    /// Whether the temperature of a particle is held; that of a wall's cell never is.
+    pub fn is_held(&self, node: usize) -> bool {
+        self.particles.get(node).is_some_and(|particle| self.bodies[particle.body as usize].1)
+    }
+
+    /// Heat capacity of a particle or of a wall's cell, J/K.
+    pub fn heat_capacity(&self, node: usize) -> f64 {
+        let Some(particle) = self.particles.get(node) else { return self.cells[node - self.particles.len()].capacity };
+        let Material { heat_capacity, density, .. } = *self.material(node);
+        heat_capacity * density * particle.volume
     }
 
     /// Boundary particles.

@@ -87,6 +87,24 @@ pub struct Outside {
     /// Mean radiant temperature outside, °C, constant or over time, as of the sky. Left out: that of the air outside.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings_c: Option<Series>,
+    /// Layers of the wall between the solid and the air outside, from the solid outwards. Left out: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<WallLayer>,
+}
+
+/// A layer of a wall. Give either `material` and `thickness_m`, or `resistance_m2_k_per_w`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallLayer {
+    /// What it is made of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<Material>,
+    /// Its thickness, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness_m: Option<f64>,
+    /// Thermal resistance of a layer that holds no heat, as of a gap with air, m2 K/W.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resistance_m2_k_per_w: Option<f64>,
 }
 
 /// Radiation between a grey surface and what surrounds it, much larger than the solid.

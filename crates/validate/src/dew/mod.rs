@@ -18,6 +18,7 @@ mod plate;
 mod properties;
 mod slide;
 mod two_slabs;
+mod walls;
 
 use crate::Case;
 use crate::device::{card, rounding, rows};
@@ -37,6 +38,7 @@ pub(crate) const CASES: &[Case] = &[
     adiabatic::ADIABATIC,
     evaporation::EVAPORATION,
     heat_sources::HEAT_SOURCES,
+    walls::WALLS,
     ledger::LEDGER,
     boundaries::BOUNDARIES,
     slide::SLIDE,

@@ -3,6 +3,7 @@
 mod areas;
 
 use super::Solids;
+use super::wall::{self, WallLayer};
 use crate::bodies::Body;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::room::Room;
@@ -36,13 +37,24 @@ pub(crate) struct Surroundings {
     pub radiant_temperature: Table,
 }
 
+/// What is beyond a side of the box.
+#[derive(Debug, Clone)]
+pub(crate) struct Outside {
+    /// The side, by axis and end.
+    pub side: [usize; 2],
+    /// Between the solid and the air outside.
+    pub layers: Vec<WallLayer>,
+    /// The air outside.
+    pub surroundings: Surroundings,
+}
+
 /// Heat sources of a body.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BodySources {
     /// Power of its heater over time, and whether in W/m2; else in W.
     pub heater: Option<(Table, bool)>,
-    /// The side of the box that it reaches, by axis and end, and the surroundings beyond.
-    pub outside: Option<([usize; 2], Surroundings)>,
+    /// What is beyond a side of the box that it reaches.
+    pub outside: Option<Outside>,
     /// Surroundings of the surface in the box, which radiate.
     pub radiation: Option<Surroundings>,
 }
@@ -67,14 +79,14 @@ pub(crate) struct ParticleShare {
     pub radiation: SurfacePart,
 }
 
-/// Heat sources of all bodies, with the share of each particle. The lists are empty where no body has any.
+/// Heat sources of all bodies and of the walls behind them, with the share of each particle and cell. The lists are empty where no body has any.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeatSources {
-    /// Of each body.
+    /// Of each body, then of each wall.
     pub bodies: Vec<BodySources>,
-    /// Factor of the numbers in each body's table of power: 1, or its area where they are in W/m2.
+    /// Factor of the numbers in each table of power: 1, or the body's area where they are in W/m2.
     pub power_factors: Vec<f64>,
-    /// Of each particle of the solids.
+    /// Of each particle of the solids, then of each cell of walls.
     pub shares: Vec<ParticleShare>,
 }
 
@@ -92,7 +104,7 @@ pub(crate) struct Conditions {
 }
 
 impl Surroundings {
-    fn at(&self, time: f64) -> Conditions {
+    pub(super) fn at(&self, time: f64) -> Conditions {
         Conditions {
             transfer_coefficient: self.transfer_coefficient,
             air_temperature: self.air_temperature.at(time) + ZERO_CELSIUS,
@@ -110,7 +122,7 @@ impl Conditions {
     ///
     /// Newton's law of cooling and grey radiation, q = h (T_a - T_s) + e sigma (T_r^4 - T_s^4) (Incropera & DeWitt 2002, equations 1.3a and
     /// 1.7), where the surface's temperature T_s is that of the particle and q times the resistance between them.
-    fn flux(&self, temperature: f64, resistance: f64) -> [f64; 2] {
+    pub(super) fn flux(&self, temperature: f64, resistance: f64) -> [f64; 2] {
         let at = |surface: f64| {
             let (a, b) = (self.radiant_temperature, surface);
             let radiation = self.emissivity_sigma * (a - b) * (a + b) * (a * a + b * b);
@@ -135,13 +147,38 @@ impl HeatSources {
         }
         let mut sources = Self {
             bodies: bodies.iter().map(|body| body.sources.clone()).collect(),
-            power_factors: vec![0.0; bodies.len()],
-            shares: vec![ParticleShare::default(); solids.particles.len()],
+            power_factors: vec![0.0; solids.groups()],
+            shares: vec![ParticleShare::default(); solids.nodes()],
         };
         for (number, body) in bodies.iter().enumerate().filter(|(_, body)| !body.sources.is_none()) {
             sources.share(number, body, solids, room, spacing);
         }
+        // The air outside is beyond the wall.
+        for &body in &solids.walls {
+            let outside = sources.bodies[body as usize].outside.take();
+            sources.bodies.push(BodySources { outside, ..BodySources::default() });
+        }
+        let of_cells = &mut sources.shares[solids.particles.len()..];
+        of_cells.iter_mut().zip(&solids.cells).for_each(|(share, cell)| share.outside = cell.outer);
         sources
+    }
+
+    /// The particles of a body that lie in the side of the box that it reaches, with the part of the side before each.
+    pub(super) fn parts_in_side(
+        number: usize,
+        body: &Body,
+        solids: &Solids,
+        room: &Room,
+        spacing: f64,
+    ) -> Vec<(u32, SurfacePart)> {
+        let Some(Outside { side: [axis, end], .. }) = body.sources.outside else { return Vec::new() };
+        let areas = AreaSampler::new(solids, number as u32, &body.solid, room, spacing).in_side([axis, end]);
+        let plane = [room.low, room.high][end][axis];
+        let part = |(particle, area): (usize, f64)| {
+            let depth = (solids.particles[particle].position[axis] - plane).abs();
+            (particle as u32, SurfacePart { area, resistance: depth / body.material.conductivity })
+        };
+        areas.into_iter().enumerate().filter(|(_, area)| *area > 0.0).map(part).collect()
     }
 
     /// Divides the heat sources of a body among its particles.
@@ -157,12 +194,11 @@ impl HeatSources {
             particles().for_each(|(i, particle)| self.shares[i].heater = particle.volume / volume);
             self.power_factors[number] = if is_per_area { in_box.iter().sum() } else { 1.0 };
         }
-        if let Some(([axis, end], _)) = *outside {
-            let in_side = areas.in_side([axis, end]);
-            let plane = [room.low, room.high][end][axis];
-            for (i, particle) in particles() {
-                let depth = (particle.position[axis] - plane).abs();
-                self.shares[i].outside = SurfacePart { area: in_side[i], resistance: depth / conductivity };
+        if let Some(outside) = outside.as_ref().filter(|outside| !wall::holds_heat(&outside.layers)) {
+            let of_gaps = wall::resistance_of_gaps(&outside.layers);
+            for (i, part) in Self::parts_in_side(number, body, solids, room, spacing) {
+                let resistance = part.resistance + of_gaps;
+                self.shares[i as usize].outside = SurfacePart { resistance, ..part };
             }
         }
         if radiation.is_some() {
@@ -187,7 +223,7 @@ impl HeatSources {
         supplied.fill([0.0; 3]);
         let mut current = (usize::MAX, BodyConditions::default());
         for (i, share) in self.shares.iter().enumerate() {
-            let body = solids.particles[i].body as usize;
+            let body = solids.group(i);
             if current.0 != body {
                 current = (body, self.bodies[body].at(time, self.power_factors[body]));
             }
@@ -213,7 +249,7 @@ impl HeatSources {
         let largest = |table: &Table| table.rows().iter().map(|row| row[1]).fold(0.0, f64::max);
         bodies.iter().flat_map(move |body| {
             let BodySources { heater, outside, radiation } = &body.sources;
-            let surroundings = outside.iter().map(|(_, surroundings)| surroundings).chain(radiation);
+            let surroundings = outside.iter().map(|outside| &outside.surroundings).chain(radiation);
             let tables = surroundings.flat_map(|of| {
                 [(of.transfer_coefficient, &of.air_temperature), (of.emissivity, &of.radiant_temperature)]
             });
@@ -246,7 +282,7 @@ impl BodySources {
     fn at(&self, time: f64, power_factor: f64) -> BodyConditions {
         BodyConditions {
             power: self.heater.as_ref().map_or(0.0, |(table, _)| power_factor * table.at(time)),
-            outside: self.outside.as_ref().map(|(_, surroundings)| surroundings.at(time)),
+            outside: self.outside.as_ref().map(|outside| outside.surroundings.at(time)),
             radiation: self.radiation.as_ref().map(|surroundings| surroundings.at(time)),
         }
     }

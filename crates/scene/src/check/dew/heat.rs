@@ -2,7 +2,7 @@
 
 use super::solids::HOTTEST;
 use crate::check::{Check, Checked};
-use crate::dew::{Dew, Face, Heater, Outside, Solid};
+use crate::dew::{Dew, Face, Heater, Outside, Solid, WallLayer};
 use crate::{Axis, Series};
 
 impl Check {
@@ -56,10 +56,33 @@ impl Check {
         self.temperature_of_surroundings(&format!("{key}.temperature_c"), &outside.temperature_c)?;
         self.at_least(&format!("{key}.h_w_per_m2_k"), outside.h_w_per_m2_k, 0.0)?;
         self.emissivity(key, outside.emissivity)?;
+        for (row, layer) in outside.layers.iter().enumerate() {
+            self.wall_layer(&format!("{key}.layers.{row}"), layer)?;
+        }
         outside
             .surroundings_c
             .as_ref()
             .map_or(Ok(()), |series| self.temperature_of_surroundings(&format!("{key}.surroundings_c"), series))
+    }
+
+    fn wall_layer(&self, key: &str, layer: &WallLayer) -> Checked {
+        let WallLayer { material, thickness_m, resistance_m2_k_per_w } = layer;
+        let is_whole = match resistance_m2_k_per_w {
+            None => material.is_some() && thickness_m.is_some(),
+            Some(_) => material.is_none() && thickness_m.is_none(),
+        };
+        self.require(key, is_whole, || {
+            "must have either material and thickness_m, or resistance_m2_k_per_w alone (a gap with air)".into()
+        })?;
+        if let Some(material) = material {
+            self.material(&format!("{key}.material"), material)?;
+        }
+        for (name, value) in [("thickness_m", thickness_m), ("resistance_m2_k_per_w", resistance_m2_k_per_w)] {
+            if let Some(value) = *value {
+                self.above(&format!("{key}.{name}"), value, 0.0)?;
+            }
+        }
+        Ok(())
     }
 
     fn emissivity(&self, key: &str, emissivity: f64) -> Checked {

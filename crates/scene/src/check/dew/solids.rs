@@ -89,7 +89,7 @@ impl Check {
         lengths.into_iter().try_for_each(|(name, value)| self.above(&format!("{key}.{name}"), value, 0.0))
     }
 
-    fn material(&self, key: &str, material: &Material) -> Checked {
+    pub(super) fn material(&self, key: &str, material: &Material) -> Checked {
         let Material::Own { conductivity_w_per_m_k, heat_capacity_j_per_kg_k, density_kg_per_m3 } = material else {
             return Ok(());
         };
