@@ -34,6 +34,12 @@ impl From<Dew> for ByHand {
     }
 }
 
+impl From<corpuscle_dew::SourceByHand> for ByHand {
+    fn from(change: corpuscle_dew::SourceByHand) -> Self {
+        Self::Dew(Dew::Source(change))
+    }
+}
+
 impl ByHand {
     pub(crate) fn change(self, model: &mut dyn Model) -> Result<(), ModelError> {
         match self {

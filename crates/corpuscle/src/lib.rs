@@ -32,7 +32,7 @@ mod schedule;
 mod simulation;
 mod sink;
 
-pub use corpuscle_dew::ByHand as DewByHand;
+pub use corpuscle_dew::{ByHand as DewByHand, SourceByHand as DewSourceByHand};
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
 #[cfg(feature = "film")]

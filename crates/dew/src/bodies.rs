@@ -211,7 +211,7 @@ fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<BodySource
             let surroundings = Surroundings {
                 transfer_coefficient: outside.h_w_per_m2_k,
                 emissivity: outside.emissivity,
-                radiant_temperature: radiant.transpose()?.unwrap_or_else(|| air.clone()),
+                radiant_temperature: radiant.transpose()?,
                 air_temperature: air,
             };
             let layers = wall_layers(row, &written.name, &outside.layers)?;
@@ -224,9 +224,9 @@ fn sources(row: usize, written: &dew::Solid, folder: &Path) -> Result<BodySource
             let radiant = temperature("radiation.surroundings_c", &radiation.surroundings_c)?;
             Some(Surroundings {
                 transfer_coefficient: 0.0,
-                air_temperature: radiant.clone(),
+                air_temperature: radiant,
                 emissivity: radiation.emissivity,
-                radiant_temperature: radiant,
+                radiant_temperature: None,
             })
         }
         None => None,

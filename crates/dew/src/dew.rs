@@ -7,12 +7,14 @@ mod motion;
 mod on_card;
 mod scatter;
 mod settle;
+mod sources_by_hand;
 mod transfer;
 
 pub use by_hand::ByHand;
 #[cfg(feature = "gpu")]
 pub(crate) use motion::FARTHEST_SPREAD;
 pub use scatter::Scatter;
+pub use sources_by_hand::SourceByHand;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;

@@ -211,7 +211,7 @@ impl Model for Dew {
         }
         (self.shown, self.state) = (shown, state);
         self.tell_evaporation();
-        self.take_hand()?;
+        self.take_hand();
         self.renew_card(self.has_been_touched())
     }
 }

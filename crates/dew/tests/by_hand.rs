@@ -1,7 +1,7 @@
 //! What a hand changes of dew while it runs.
 
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
-use corpuscle_dew::{ByHand, Dew, open};
+use corpuscle_dew::{ByHand, Dew, SourceByHand, open};
 use corpuscle_model::Model;
 use corpuscle_scene::Scene;
 use std::path::Path;
@@ -218,4 +218,73 @@ fn what_cannot_be_is_refused_and_changes_nothing() {
     }
     assert!(dew.save() == state);
     assert!(ByHand::TimeFactor(2.0).change(&mut 5_u8).is_err());
+}
+
+/// The pane, free, with a heater over time, a wall and something outside, and radiation.
+fn heated() -> String {
+    closed()
+        + "heater = { power_w_per_m2 = [[0, 100], [0.5, 200]] }\nradiation = { emissivity = 0.9, surroundings_c = 25 }\n\
+           outside = { side = \"x_min\", temperature_c = 0, h_w_per_m2_k = 25, emissivity = 0.9, layers = [{ material = \"steel\", thickness_m = 0.001 }] }\n"
+}
+
+/// Heat that the pane gets from its heater, from outside and by radiation from 0.2 s to 0.4 s, J, after changes at 0.2 s; it is the same where the run goes on from a
+/// checkpoint at 0.3 s.
+fn supplied(changes: &[SourceByHand]) -> [f64; 3] {
+    let text = heated().replace("position_m = [0.0,", "position_m = [0.003,");
+    let mut dew = scene(&text);
+    go(&mut dew, 0.2);
+    let before = dew.heat_supplied(0);
+    changes.iter().for_each(|&change| ByHand::Source(change).change(&mut dew).unwrap());
+    go(&mut dew, 0.3);
+    let mut resumed = scene(&text);
+    resumed.restore(&dew.save()).unwrap();
+    go(&mut dew, 0.4);
+    go(&mut resumed, 0.4);
+    energy(&dew);
+    assert_eq!(dew.save(), resumed.save());
+    let after = dew.heat_supplied(0);
+    [0, 1, 2].map(|kind| after[kind] - before[kind])
+}
+
+#[test]
+fn heaters_the_outside_and_surroundings_are_changed_by_hand() {
+    let solid = 0;
+    let left = supplied(&[]);
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.02;
+    let off = SourceByHand::HeaterTimes { solid, times: 0.0 };
+    let twice = SourceByHand::HeaterTimes { solid, times: 2.0 };
+    // So many times what the scene says, whatever it was before.
+    let doubled = supplied(&[off, twice])[0];
+    assert!((doubled / left[0] - 2.0).abs() < 1e-4, "{doubled} {}", left[0]);
+    assert_eq!(supplied(&[twice, off])[0], 0.0);
+    // The mean of 100 W/m2 at first and 200 W/m2 at 0.5 s, from 0.2 s to 0.4 s, is 160 W/m2.
+    let constant = supplied(&[SourceByHand::HeaterPower { solid, power: 160.0 }])[0];
+    assert!(near(constant, left[0]), "{constant} {}", left[0]);
+    let calm = supplied(&[SourceByHand::OutsideTransfer { solid, coefficient: 0.0 }])[1];
+    assert!(calm < 0.0 && calm > 0.3 * left[1], "what still radiates: {calm} of {}", left[1]);
+    let mild = supplied(&[SourceByHand::OutsideTemperature { solid, celsius: 24.0 }])[1];
+    assert!(
+        mild.abs() < 0.1 * left[1].abs(),
+        "the sky, of which the scene tells nothing, is as warm as the air: {mild} {}",
+        left[1]
+    );
+    let clear = supplied(&[SourceByHand::OutsideSurroundings { solid, celsius: -100.0 }])[1];
+    assert!(clear < 1.2 * left[1], "{clear} {}", left[1]);
+    let hot = supplied(&[SourceByHand::Surroundings { solid, celsius: 300.0 }])[2];
+    assert!(hot > 10.0 * left[2].abs(), "{hot} {}", left[2]);
+}
+
+#[test]
+fn sources_that_are_not_there_are_refused() {
+    let mut dew = scene(PANE);
+    let mut refused = |change: SourceByHand, words: &str| {
+        let error = ByHand::Source(change).change(&mut dew).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    refused(SourceByHand::HeaterPower { solid: 0, power: 1.0 }, "no heater");
+    refused(SourceByHand::HeaterTimes { solid: 7, times: 1.0 }, "no heater");
+    refused(SourceByHand::OutsideTemperature { solid: 0, celsius: 1.0 }, "outside");
+    refused(SourceByHand::Surroundings { solid: 0, celsius: 1.0 }, "radiate");
+    refused(SourceByHand::HeaterPower { solid: 0, power: f64::NAN }, "power of a heater");
+    refused(SourceByHand::Surroundings { solid: 0, celsius: -300.0 }, "from -273.15");
 }

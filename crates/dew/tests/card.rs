@@ -4,7 +4,8 @@ use corpuscle_dew::air::{Particle, Properties, Role, TemperatureCoefficients};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{
-    ByHand, Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, WallTreatment,
+    ByHand, Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, SourceByHand,
+    WallTreatment,
 };
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{GpuModel, Model, ModelError};
@@ -354,9 +355,19 @@ fn solids_are_heated_and_cooled_as_on_the_processor() {
     let Some(gpu) = require_gpu("heaters on the card") else { return };
     for factor in [1.0, 5.0] {
         let [mut host, mut card] = [heated(factor), on_card(heated(factor), &gpu)];
-        for (time, most) in [(0.01, 1e-5), (0.1, 1e-3)] {
-            go(&mut host, time);
-            go(&mut card, time);
+        for (time, most) in [(0.01, 1e-5), (0.1, 1e-3), (0.15, 1.5e-3)] {
+            for dew in [&mut host, &mut card] {
+                go(dew, time);
+                if time == 0.1 {
+                    for change in [
+                        SourceByHand::HeaterTimes { solid: 0, times: 3.0 },
+                        SourceByHand::OutsideTemperature { solid: 0, celsius: -20.0 },
+                        SourceByHand::Surroundings { solid: 2, celsius: 200.0 },
+                    ] {
+                        ByHand::Source(change).change(dew).unwrap();
+                    }
+                }
+            }
             let [temperature, _] = differences_of_solids(&host, &card);
             assert!(temperature < most, "after {time} s by {factor}: {temperature}");
             for body in 0..3 {

@@ -43,28 +43,52 @@ impl Series {
     /// [`SceneError::Series`] with file and line where the file is not such a table.
     pub fn load(&self, folder: &Path) -> Result<Table, SceneError> {
         match self {
-            Self::Constant(value) => Ok(Table { rows: vec![[0.0, *value]] }),
+            Self::Constant(value) => Ok(Table::constant(*value)),
             Self::Table(rows) => {
                 let error = |(_, what)| SceneError::Series { file: "the scene".into(), line: None, what };
                 check_rows(rows).map_err(error)?;
                 Ok(Table { rows: rows.clone() })
             }
-            Self::File { csv, factor } => {
-                let mut table = read_csv(&folder.join(csv))?;
-                table.rows.iter_mut().for_each(|row| row[1] *= factor);
-                Ok(table)
-            }
+            Self::File { csv, factor } => Ok(read_csv(&folder.join(csv))?.times(*factor)),
         }
     }
 }
 
 /// A series in memory: at least one row, times in s finite and in order, values finite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
 pub struct Table {
     rows: Vec<[f64; 2]>,
 }
 
+impl TryFrom<Vec<[f64; 2]>> for Table {
+    type Error = String;
+
+    /// A table of rows of time, s, and value; says what is wrong with rows that are none.
+    fn try_from(rows: Vec<[f64; 2]>) -> Result<Self, String> {
+        check_rows(&rows).map_err(|(_, what)| what)?;
+        Ok(Self { rows })
+    }
+}
+
+impl From<Table> for Vec<[f64; 2]> {
+    fn from(table: Table) -> Self {
+        table.rows
+    }
+}
+
 impl Table {
+    /// The same value at all times, which must be finite.
+    pub fn constant(value: f64) -> Self {
+        Self { rows: vec![[0.0, value]] }
+    }
+
+    /// The same table with all values multiplied by a finite factor.
+    pub fn times(mut self, factor: f64) -> Self {
+        self.rows.iter_mut().for_each(|row| row[1] *= factor);
+        self
+    }
+
     /// The rows of time, s, and value.
     pub fn rows(&self) -> &[[f64; 2]] {
         &self.rows

@@ -3,7 +3,7 @@
 use super::values::{as_number, largest, place_at, value_at};
 use super::{dew, flood, gas};
 use crate::physics::Change;
-use corpuscle::scene::{ModelScene, Scene};
+use corpuscle::scene::{ModelScene, Scene, Series};
 use toml::{Table, Value};
 
 /// Asks for the number that another parameter has now, by its key.
@@ -52,6 +52,9 @@ pub struct Group {
     /// The parameters.
     pub parameters: Vec<Parameter>,
 }
+
+/// How many times more a slider gives of what the scene says.
+pub(super) const MOST_TIMES: f64 = 5.0;
 
 /// Groups as they are put together; what the scene does not have is left out.
 pub(super) struct Builder {
@@ -126,6 +129,34 @@ impl Builder {
                 self.add(path, name, unit, hint, Control::Number { range, logarithmic: true })
             }
             None => self,
+        }
+    }
+
+    /// A value over time, 0 or more: a number, up to `most` where it is 0, or by how many times what the scene says is multiplied. The first way to change it is for a number, the
+    /// second for a factor.
+    pub(super) fn series(
+        &mut self,
+        path: &str,
+        name: &str,
+        (unit, most): (&'static str, f64),
+        hint: &'static str,
+        written: &Series,
+        [set, multiply]: [Live; 2],
+    ) -> &mut Self {
+        let times = format!("{name}, times");
+        match written {
+            Series::Constant(value) => {
+                let most = if *value > 0.0 { MOST_TIMES * value } else { most };
+                self.number(path, name, unit, [0.0, most], hint).live(path, set)
+            }
+            Series::Table(_) => {
+                self.add(path, &times, "", hint, Control::Times([0.0, MOST_TIMES])).live(path, multiply)
+            }
+            Series::File { factor, .. } => {
+                let path = format!("{path}.factor");
+                let range = [0.0, MOST_TIMES * factor.max(0.1)];
+                self.or(&path, 1.0).number(&*path, &times, "", range, hint).live(&path, multiply)
+            }
         }
     }
 

@@ -1,11 +1,12 @@
 //! Parameters of dew.
 
 use super::builder::{Builder, Control, Numbers};
+use super::values::{size, size_as_written};
 use super::{live, number_in};
 use crate::physics::Change;
-use corpuscle::DewByHand as ByHand;
 use corpuscle::scene::dew::{self, AirInflow};
 use corpuscle::scene::{Axis, Dew};
+use corpuscle::{DewByHand as ByHand, DewSourceByHand as Source};
 
 const SCHEMES: &[(&str, &str)] = &[("physical", "\"physical\""), ("paper (as patented)", "\"paper\"")];
 const TREATMENTS: &[(&str, &str)] = &[
@@ -127,7 +128,34 @@ fn solids(builder: &mut Builder, dew: &Dew) {
             )
             .live(&path("temperature_c"), warm)
             .number(path("rotation_deg.1"), "Turned about y", "°", [-90.0, 90.0], "Tilts what stands upright");
+        sources(builder, solid, path);
     }
+}
+
+/// What heats and cools a solid.
+fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> String) {
+    let heater = solid.heater.iter().flat_map(|heater| {
+        [("power_w", ("W", 10.0), &heater.power_w), ("power_w_per_m2", ("W/m²", 1000.0), &heater.power_w_per_m2)]
+    });
+    for (key, unit, power) in heater {
+        if let Some(power) = power {
+            let path = path(&format!("heater.{key}"));
+            let hint = "What its heater gives, evenly all through it";
+            builder.series(&path, "Heater", unit, hint, power, [heat, heat_times]);
+        }
+    }
+    let mut add = |key: &str, name: &str, unit, range, hint, change| {
+        let path = path(key);
+        builder.number(&*path, name, unit, range, hint).live(&path, change);
+    };
+    let air = "Of the air beyond the side of the box that it reaches";
+    add("outside.temperature_c", "Temperature outside", "°C", [-30.0, 60.0], air, cool_outside);
+    let wind = "5 to 10 in still air, 25 in wind";
+    add("outside.h_w_per_m2_k", "Heat transfer outside", "W/(m² K)", [0.0, 200.0], wind, change_transfer);
+    let sky = "Mean radiant temperature outside, as of the sky";
+    add("outside.surroundings_c", "Sky and ground outside", "°C", [-60.0, 100.0], sky, change_sky);
+    let room = "Mean radiant temperature in the box";
+    add("radiation.surroundings_c", "Surroundings", "°C", [-60.0, 500.0], room, change_surroundings);
 }
 
 /// Temperature and humidity of the air that comes in; where the scene leaves them out they are those of the air at the start.
@@ -161,6 +189,35 @@ fn axis_in(path: &str) -> Option<usize> {
 
 fn warm(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     live(ByHand::SolidTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
+}
+
+fn heat(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(Source::HeaterPower { solid: number_in(path)?, power: value.parse().ok()? })
+}
+
+fn heat_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    let (solid, wanted) = (number_in(path)?, size_as_written(value)?);
+    Some(Box::new(move |simulation| {
+        let now = simulation.scene().dew().and_then(|dew| dew.solid.get(solid)?.heater.as_ref());
+        let power = now.and_then(|heater| heater.power_w.as_ref().or(heater.power_w_per_m2.as_ref()));
+        simulation.change_by_hand(Source::HeaterTimes { solid, times: wanted / power.map_or(1.0, size) })
+    }))
+}
+
+fn cool_outside(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(Source::OutsideTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
+}
+
+fn change_transfer(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(Source::OutsideTransfer { solid: number_in(path)?, coefficient: value.parse().ok()? })
+}
+
+fn change_sky(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(Source::OutsideSurroundings { solid: number_in(path)?, celsius: value.parse().ok()? })
+}
+
+fn change_surroundings(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+    live(Source::Surroundings { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
 fn warm_inlet(path: &str, value: &str, numbers: Numbers<'_>) -> Option<Change> {

@@ -1,6 +1,8 @@
 //! Parameters of a flood.
 
+use super::builder::MOST_TIMES;
 use super::builder::{Builder, Control, Numbers};
+use super::values::{size, size_as_written};
 use super::{live, number_in};
 use crate::physics::Change;
 use corpuscle::FloodByHand as ByHand;
@@ -10,8 +12,6 @@ const SCHEMES: &[(&str, &str)] =
     &[("voronoi", "\"voronoi\""), ("balanced", "\"balanced\""), ("sph-swe (published)", "\"sph-swe\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];
 
-/// How many times more water a slider lets in at most.
-const MOST: f64 = 5.0;
 /// The hardest rain that a slider offers at least, mm/h: a cloudburst.
 const CLOUDBURST: f64 = 200.0;
 
@@ -19,13 +19,13 @@ const CLOUDBURST: f64 = 200.0;
 pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
     builder.group("Water");
     for (number, inflow) in flood.inflow.iter().enumerate() {
-        series(
-            builder,
+        builder.series(
             &format!("flood.inflow.{number}.discharge_m3_per_s"),
             &format!("Inflow: {}", inflow.name),
-            "m³/s",
+            ("m³/s", 100.0),
             "Water that comes in",
             &inflow.discharge_m3_per_s,
+            [flow, flow_times],
         );
     }
     for number in 0..flood.water.len() {
@@ -82,24 +82,6 @@ fn around(flood: &Flood, number: usize) -> [f64; 2] {
     [level - 5.0, level + 5.0]
 }
 
-/// A value over time: a number, or by how many times what the scene says is multiplied.
-fn series(builder: &mut Builder, path: &str, name: &str, unit: &'static str, hint: &'static str, written: &Series) {
-    match written {
-        Series::Constant(value) => {
-            let most = if *value > 0.0 { MOST * value } else { 100.0 };
-            builder.number(path, name, unit, [0.0, most], hint).live(path, flow);
-        }
-        Series::Table(_) => {
-            builder.add(path, &format!("{name}, times"), "", hint, Control::Times([0.0, MOST])).live(path, flow_times);
-        }
-        Series::File { factor, .. } => {
-            let path = format!("{path}.factor");
-            builder.or(&path, 1.0).number(&*path, &format!("{name}, times"), "", [0.0, MOST * factor.max(0.1)], hint);
-            builder.live(&path, flow_times);
-        }
-    }
-}
-
 fn levels(builder: &mut Builder, flood: &Flood) {
     let range = |level: f64| [level - 5.0, level + 5.0];
     for (number, stage) in flood.stage.iter().enumerate() {
@@ -129,11 +111,11 @@ fn rain(builder: &mut Builder, rain: Option<&Rain>) {
             builder.or(path, 0.0).number(path, "Rain", "mm/h", [0.0, CLOUDBURST], hint).live(path, let_rain);
         }
         Some(Series::Constant(value)) => {
-            let most = CLOUDBURST.max(MOST * value);
+            let most = CLOUDBURST.max(MOST_TIMES * value);
             builder.number(path, "Rain", "mm/h", [0.0, most], hint).live(path, let_rain);
         }
         Some(Series::Table(_) | Series::File { .. }) => {
-            builder.add(path, "Rain, times", "", hint, Control::Times([0.0, MOST])).live(path, rain_times);
+            builder.add(path, "Rain, times", "", hint, Control::Times([0.0, MOST_TIMES])).live(path, rain_times);
         }
     }
 }
@@ -142,23 +124,8 @@ fn flow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     live(ByHand::Discharge { inflow: number_in(path)?, discharge: value.parse().ok()? })
 }
 
-/// How large a series is, to be compared with the same times a number.
-fn size(series: &Series) -> f64 {
-    match series {
-        Series::Constant(value) => *value,
-        Series::Table(rows) => rows.iter().map(|row| row[1]).fold(0.0, f64::max),
-        Series::File { factor, .. } => *factor,
-    }
-}
-
-/// The size of a series or a factor as it is written in a scene.
-fn written_size(value: &str) -> Option<f64> {
-    let value = format!("v = {value}").parse::<toml::Table>().ok()?.remove("v")?;
-    super::as_number(&value).or_else(|| super::largest(&value))
-}
-
 fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    let (inflow, wanted) = (number_in(path)?, written_size(value)?);
+    let (inflow, wanted) = (number_in(path)?, size_as_written(value)?);
     Some(Box::new(move |simulation| {
         let now = simulation.scene().flood().and_then(|scene| scene.flood.inflow.get(inflow));
         let times = wanted / now.map_or(1.0, |inflow| size(&inflow.discharge_m3_per_s));
@@ -167,7 +134,7 @@ fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
 }
 
 fn rain_times(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    let wanted = written_size(value)?;
+    let wanted = size_as_written(value)?;
     Some(Box::new(move |simulation| {
         let now = simulation.scene().flood().and_then(|scene| scene.flood.rain.as_ref());
         let times = wanted / now.map_or(1.0, |rain| size(&rain.intensity_mm_per_h));

@@ -1,5 +1,6 @@
 //! Values of a scene by their keys.
 
+use corpuscle::scene::Series;
 use toml::{Table, Value};
 
 pub(super) fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option<String>) {
@@ -61,6 +62,21 @@ pub(super) fn place_at<'a>(document: &'a mut Table, path: &str) -> Option<&'a mu
 pub(super) fn largest(series: &Value) -> Option<f64> {
     let values = series.as_array()?.iter().map(|row| as_number(row.as_array()?.get(1)?));
     values.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+}
+
+/// How large a series is, to be compared with the same times a number.
+pub(super) fn size(series: &Series) -> f64 {
+    match series {
+        Series::Constant(value) => *value,
+        Series::Table(rows) => rows.iter().map(|row| row[1]).fold(0.0, f64::max),
+        Series::File { factor, .. } => *factor,
+    }
+}
+
+/// The size of a series or a factor as it is written in a scene.
+pub(super) fn size_as_written(value: &str) -> Option<f64> {
+    let value = format!("v = {value}").parse::<Table>().ok()?.remove("v")?;
+    as_number(&value).or_else(|| largest(&value))
 }
 
 /// A series of rows of time and value with its values multiplied, as it is written in a scene.

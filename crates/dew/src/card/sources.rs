@@ -139,7 +139,7 @@ fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 
 fn surroundings(around: &Surroundings, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSurroundings {
     let zero = origin.temperature - ZERO_CELSIUS;
     let [air_first, air_end] = append(&around.air_temperature, zero, values);
-    let [radiant_first, radiant_end] = append(&around.radiant_temperature, zero, values);
+    let [radiant_first, radiant_end] = append(around.radiant(), zero, values);
     CardSurroundings {
         transfer_coefficient: around.transfer_coefficient as f32,
         emissivity_sigma: (around.emissivity * STEFAN_BOLTZMANN) as f32,

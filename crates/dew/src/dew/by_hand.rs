@@ -2,17 +2,17 @@
 //!
 //! A change holds from the end of the last step on, at most one step before the time shown. The energy that solids get by hand is booked.
 
-use super::{COLD, Dew, State};
+use super::{COLD, Dew, SourceByHand, State};
 use crate::fan::Fan;
 use crate::humid_air::{HumidAir, ZERO_CELSIUS};
 use crate::open::{LEAST_SOUND, SOUND_OVER_MOTION};
 use crate::room::{Face, Inflow, Room};
 use crate::settings::Settings;
+use crate::solids::sources::BodySources;
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Series, Table};
+use corpuscle_scene::Table;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
-use std::path::Path;
 
 /// A change of dew that runs. Solids and fans are counted as in the scene, from 0; a face has an axis, 0 to 2, and an end, 0 at the
 /// smaller coordinate and 1 at the larger.
@@ -66,6 +66,8 @@ pub enum ByHand {
     },
     /// Temperatures of solids and water on them change so many times faster than in reality; at least 1.
     TimeFactor(f64),
+    /// Something that heats or cools a solid changes.
+    Source(SourceByHand),
 }
 
 /// All that a hand can change, as it is.
@@ -75,13 +77,22 @@ pub(crate) struct Hand {
     fans: Vec<Fan>,
     settings: Settings,
     sound_speed: f64,
-    /// Rows of time, s, and temperature, °C, of the bodies that are held.
-    held_to: Vec<Option<Vec<[f64; 2]>>>,
+    /// Temperature over time, °C, of the bodies that are held.
+    held_to: Vec<Option<Table>>,
+    /// Heaters, the outside, radiation.
+    sources: Vec<BodySources>,
     /// Gravity as drops feel it, m/s2.
     on_drops: Option<[f64; 3]>,
 }
 
-fn refuse(what: impl Into<String>) -> ModelError {
+impl Hand {
+    /// Power of a solid's heater over time.
+    pub(super) fn heater(&self, solid: usize) -> Option<&Table> {
+        self.sources.get(solid)?.heater.as_ref().map(|(power, _)| power)
+    }
+}
+
+pub(super) fn refuse(what: impl Into<String>) -> ModelError {
     ModelError::Setup(what.into())
 }
 
@@ -104,6 +115,7 @@ impl ByHand {
             Self::SolidTemperature { celsius, .. } | Self::InletTemperature { celsius, .. } => {
                 (celsius, "a temperature in °C", [-100.0, 300.0])
             }
+            Self::Source(change) => change.range(),
             Self::InletHumidity { relative, .. } => (relative, "relative humidity", [0.0, 1.0]),
             Self::Wind { velocity, .. } | Self::FanVelocity { velocity, .. } => {
                 (velocity, "a velocity in m/s", [-100.0, 100.0])
@@ -155,6 +167,7 @@ impl Dew {
             }
             ByHand::Gravity { axis, acceleration } => self.turn_gravity(axis, acceleration),
             ByHand::TimeFactor(factor) => self.go_faster(factor),
+            ByHand::Source(change) => self.change_source(change)?,
         }
         self.as_set_up.get_or_insert(before);
         self.keep_sound_faster();
@@ -185,7 +198,7 @@ impl Dew {
             }
         }
         if let Some(Some(table)) = self.held_to.get_mut(solid) {
-            *table = table_of(vec![[self.state.time, celsius]])?;
+            *table = Table::constant(celsius);
         }
         Ok(())
     }
@@ -257,27 +270,24 @@ impl Dew {
             fans: self.fans.clone(),
             settings: self.settings,
             sound_speed: self.air.sound_speed,
-            held_to: self.held_to.iter().map(|table| table.as_ref().map(|table| table.rows().to_vec())).collect(),
+            held_to: self.held_to.clone(),
+            sources: self.sources.bodies.clone(),
             on_drops: self.wetting.as_ref().map(|wetting| wetting.drops().laws().gravity),
         }
     }
 
     /// All is as the state's hand left it, or as it was set up where no hand was there.
-    pub(crate) fn take_hand(&mut self) -> Result<(), ModelError> {
-        let Some(hand) = self.state.hand.clone().or_else(|| self.as_set_up.clone()) else { return Ok(()) };
+    pub(crate) fn take_hand(&mut self) {
+        let Some(hand) = self.state.hand.clone().or_else(|| self.as_set_up.clone()) else { return };
         if self.as_set_up.is_none() {
             self.as_set_up = Some(self.as_it_is());
         }
         (self.room, self.fans, self.settings) = (hand.room, hand.fans, hand.settings);
         self.air.sound_speed = hand.sound_speed;
-        self.held_to = hand.held_to.into_iter().map(|rows| rows.map(table_of).transpose()).collect::<Result<_, _>>()?;
+        self.held_to = hand.held_to;
+        self.sources.bodies = hand.sources;
         if let (Some(wetting), Some(gravity)) = (&mut self.wetting, hand.on_drops) {
             *wetting.gravity_mut() = gravity;
         }
-        Ok(())
     }
-}
-
-fn table_of(rows: Vec<[f64; 2]>) -> Result<Table, ModelError> {
-    Series::Table(rows).load(Path::new("")).map_err(|error| refuse(error.to_string()))
 }

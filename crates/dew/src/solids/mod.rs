@@ -17,11 +17,12 @@ use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
 use corpuscle_sph::space::Cells;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use wall::WallCell;
 
 /// What a solid is made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// Conductivity of heat, W/(m K).
     pub conductivity: f64,

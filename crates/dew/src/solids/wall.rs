@@ -9,9 +9,10 @@ use super::sources::{HeatSources, SurfacePart};
 use crate::bodies;
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
+use serde::{Deserialize, Serialize};
 
 /// A layer of a wall.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) enum WallLayer {
     /// Of a material, and its thickness, m.
     Solid(Material, f64),

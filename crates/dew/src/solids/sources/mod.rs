@@ -9,6 +9,7 @@ use crate::humid_air::ZERO_CELSIUS;
 use crate::room::Room;
 use areas::AreaSampler;
 use corpuscle_scene::Table;
+use serde::{Deserialize, Serialize};
 
 /// Stefan-Boltzmann constant, W/(m2 K4) (CODATA 2018).
 pub(crate) const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
@@ -25,7 +26,7 @@ pub(crate) const OUTSIDE: usize = 1;
 pub(crate) const RADIATION: usize = 2;
 
 /// Surroundings of a surface: conditions of a heat flux by convection and radiation.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Surroundings {
     /// Heat transfer coefficient, W/(m2 K).
     pub transfer_coefficient: f64,
@@ -33,12 +34,12 @@ pub(crate) struct Surroundings {
     pub air_temperature: Table,
     /// Emissivity of the surface.
     pub emissivity: f64,
-    /// Mean radiant temperature, °C, over time.
-    pub radiant_temperature: Table,
+    /// Mean radiant temperature, °C, over time; that of the air where it is left out.
+    pub radiant_temperature: Option<Table>,
 }
 
 /// What is beyond a side of the box.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Outside {
     /// The side, by axis and end.
     pub side: [usize; 2],
@@ -49,7 +50,7 @@ pub(crate) struct Outside {
 }
 
 /// Heat sources of a body.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BodySources {
     /// Power of its heater over time, and whether in W/m2; else in W.
     pub heater: Option<(Table, bool)>,
@@ -104,12 +105,17 @@ pub(crate) struct Conditions {
 }
 
 impl Surroundings {
+    /// Mean radiant temperature, °C, over time.
+    pub fn radiant(&self) -> &Table {
+        self.radiant_temperature.as_ref().unwrap_or(&self.air_temperature)
+    }
+
     pub(super) fn at(&self, time: f64) -> Conditions {
         Conditions {
             transfer_coefficient: self.transfer_coefficient,
             air_temperature: self.air_temperature.at(time) + ZERO_CELSIUS,
             emissivity_sigma: self.emissivity * STEFAN_BOLTZMANN,
-            radiant_temperature: self.radiant_temperature.at(time) + ZERO_CELSIUS,
+            radiant_temperature: self.radiant().at(time) + ZERO_CELSIUS,
         }
     }
 }
@@ -250,9 +256,8 @@ impl HeatSources {
         bodies.iter().flat_map(move |body| {
             let BodySources { heater, outside, radiation } = &body.sources;
             let surroundings = outside.iter().map(|outside| &outside.surroundings).chain(radiation);
-            let tables = surroundings.flat_map(|of| {
-                [(of.transfer_coefficient, &of.air_temperature), (of.emissivity, &of.radiant_temperature)]
-            });
+            let tables = surroundings
+                .flat_map(|of| [(of.transfer_coefficient, &of.air_temperature), (of.emissivity, of.radiant())]);
             let ambient = tables.filter(|(factor, _)| *factor > 0.0).flat_map(|(_, table)| table.rows());
             let area = body.solid.area();
             let heated = heater.iter().map(move |(table, is_per_area)| {
