@@ -3,6 +3,7 @@
 use crate::args::CheckOptions;
 use crate::interrupt::stop_on_interrupt;
 use crate::output::{duration, number, print, print_json};
+use crate::progress::while_shown;
 use crate::refusal::in_words;
 use crate::scene_argument;
 use crate::terrain::fetch_for;
@@ -119,7 +120,7 @@ fn fault(error: &anyhow::Error) -> Value {
 fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
     fetch_for(&named.scene, &stop_on_interrupt()?)?;
-    let mut simulation = Simulation::open(named.scene, &named.folder)?;
+    let mut simulation = while_shown("setting up the scene", || Simulation::open(named.scene, &named.folder))??;
     let particles_at_start = simulation.model().particles();
     let particles_to_come = simulation.particles_to_come().round() as usize;
     let probe = Probe::run(&mut simulation)?;

@@ -1,13 +1,14 @@
-//! The progress bar.
+//! What tells on standard error how far work has come; hidden where that is not a terminal.
 
 use crate::output::{duration, number, rate};
 use corpuscle::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::time::Duration;
 
 /// Length of the bar in ticks.
 const TICKS: u64 = 1000;
 
-/// A bar on standard error; hidden where that is not a terminal.
+/// A bar for a run.
 pub struct Bar(ProgressBar);
 
 impl Bar {
@@ -35,4 +36,15 @@ impl Bar {
     pub fn clear(&self) {
         self.0.finish_and_clear();
     }
+}
+
+/// Does work of which nobody knows how long it takes, and shows for how long it has been at it.
+pub fn while_shown<T>(what: &str, work: impl FnOnce() -> T) -> anyhow::Result<T> {
+    let spinner = ProgressBar::new_spinner();
+    spinner.set_style(ProgressStyle::with_template("{spinner} {msg}, {elapsed}")?);
+    spinner.set_message(what.to_owned());
+    spinner.enable_steady_tick(Duration::from_millis(100));
+    let done = work();
+    spinner.finish_and_clear();
+    Ok(done)
 }

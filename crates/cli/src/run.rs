@@ -4,7 +4,7 @@ use crate::args::{Backend, RunOptions};
 use crate::interrupt::stop_on_interrupt;
 use crate::look::picture_settings;
 use crate::output::{duration, number, print_json, rate};
-use crate::progress::Bar;
+use crate::progress::{Bar, while_shown};
 use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
@@ -94,7 +94,7 @@ fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpu
 fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simulation, Recorder)> {
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
     fetch_for(&named.scene, stop)?;
-    let mut simulation = Simulation::open(named.scene, &named.folder)?;
+    let mut simulation = while_shown("setting up the scene", || Simulation::open(named.scene, &named.folder))??;
     // Before there is a folder: what is refused leaves none behind.
     compute_on(options.backend, &mut simulation)?;
     let folder = match &options.output {

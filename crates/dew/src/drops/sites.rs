@@ -11,7 +11,7 @@ use corpuscle_solids::Solid;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::f64::consts::PI;
 
 /// Largest part of a plane that disks cover which are put there one after another and do not overlap (Feder 1980).
@@ -164,7 +164,7 @@ fn around_patches(patches: &[Patch], solid: usize, reach: f64) -> Option<[[f64; 
 }
 
 impl Scatter<'_> {
-    /// Positions on the surface in random order. They are drawn evenly from the space within `reach` outside of it, cube by cube, each with
+    /// Positions on the surface. They are drawn evenly from the space within `reach` outside of it, cube by cube, each with
     /// random numbers of its own.
     fn places(&self, seed: u64) -> Vec<Place> {
         let mut cubes = Vec::new();
@@ -177,9 +177,7 @@ impl Scatter<'_> {
             random.set_stream(cube.number);
             self.places_in(cube, &mut random)
         });
-        let mut places: Vec<Place> = drawn.collect();
-        places.par_sort_by_key(|place| place.order);
-        places
+        drawn.collect()
     }
 
     /// Cubes of four times the reach or less that the surface may pass.
@@ -244,16 +242,23 @@ impl Scatter<'_> {
     }
 }
 
-/// Of the places that nucleate, one after another, those that no kept one is nearer to than `apart`, m.
+/// Places that are compared with the sites before them at once.
+const PLACES_AT_ONCE: usize = 1 << 14;
+
+/// Of the places that nucleate, solid by solid and one after another in their random order, those that no kept one is nearer to than `apart`, m.
 fn kept(places: &[Place], apart: f64) -> Vec<Site> {
+    let nucleating = places.iter().enumerate().filter(|(_, place)| place.nucleates);
+    let mut order: Vec<(u32, u64, u32)> = nucleating.map(|(at, place)| (place.solid, place.order, at as u32)).collect();
+    order.par_sort_unstable();
     let mut cells = Cells::new(apart);
-    for place in places.iter().filter(|place| place.nucleates) {
-        let is_near = |other: &Site| {
-            distance2(other.position, place.position) < apart * apart && place.is_beside(other.solid, other.normal)
-        };
-        if !cells.around(place.position).any(is_near) {
-            let Place { solid, position, normal, .. } = *place;
-            cells.add(Site { solid, position, normal, patch: 0 });
+    for some in order.chunks(PLACES_AT_ONCE) {
+        let is_free = |place: &&Place| !cells.has_beside(place, apart);
+        let free: Vec<&Place> = some.par_iter().map(|&(.., at)| &places[at as usize]).filter(is_free).collect();
+        for place in free {
+            if !cells.has_beside(place, apart) {
+                let Place { solid, position, normal, .. } = *place;
+                cells.add(Site { solid, position, normal, patch: 0 });
+            }
         }
     }
     cells.sites
@@ -265,13 +270,13 @@ struct Cells {
     side: f64,
     sites: Vec<Site>,
     /// The last site of each cell, and of each site the one before it in its cell.
-    last: HashMap<[i64; 3], u32>,
+    last: FxHashMap<[i64; 3], u32>,
     before: Vec<Option<u32>>,
 }
 
 impl Cells {
     fn new(within: f64) -> Self {
-        Self { side: 2.0 * within, sites: Vec::new(), last: HashMap::new(), before: Vec::new() }
+        Self { side: 2.0 * within, sites: Vec::new(), last: FxHashMap::default(), before: Vec::new() }
     }
 
     fn cell(&self, place: [f64; 3]) -> [i64; 3] {
@@ -285,10 +290,22 @@ impl Cells {
         self.sites.push(site);
     }
 
-    /// Sites, among them all that are as near to a place as half a cell.
+    /// Whether a site is nearer to a place than `apart`, m, on the same side of the same solid.
+    fn has_beside(&self, place: &Place, apart: f64) -> bool {
+        let is_near = |other: &Site| {
+            distance2(other.position, place.position) < apart * apart && place.is_beside(other.solid, other.normal)
+        };
+        self.around(place.position).any(is_near)
+    }
+
+    /// Sites, among them all that are as near to a place as half a cell; those of its own cell first.
     fn around(&self, place: [f64; 3]) -> impl Iterator<Item = &Site> {
-        let [x, y, z] = self.cell(place.map(|x| x - 0.5 * self.side));
-        let near = (0..8_i64).map(move |at| [x + at % 2, y + at / 2 % 2, z + at / 4]);
+        let own = self.cell(place);
+        let beside = self.cell(place.map(|x| x - 0.5 * self.side));
+        // Of the cells before and behind its own the nearer one.
+        let nearer = |axis: usize| if beside[axis] < own[axis] { own[axis] - 1 } else { own[axis] + 1 };
+        let cells = [0, 1, 2].map(|axis| [own[axis], nearer(axis)]);
+        let near = (0..8_usize).map(move |at| [0, 1, 2].map(|axis| cells[axis][at >> axis & 1]));
         let lasts = near.filter_map(|cell| self.last.get(&cell).copied());
         let numbers = lasts.flat_map(|last| std::iter::successors(Some(last), |&number| self.before[number as usize]));
         numbers.map(|number| &self.sites[number as usize])
