@@ -12,7 +12,7 @@ mod transfer;
 
 pub use by_hand::ByHand;
 #[cfg(feature = "gpu")]
-pub(crate) use motion::FARTHEST_SPREAD;
+pub(crate) use motion::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD};
 pub use scatter::Scatter;
 pub use sources_by_hand::SourceByHand;
 

@@ -14,7 +14,7 @@ const WATER_MOLAR_MASS: f64 = 18.015_268e-3;
 const DRY_AIR_MOLAR_MASS: f64 = 28.966e-3;
 
 /// Molar mass of water over that of dry air.
-const MASS_RATIO: f64 = WATER_MOLAR_MASS / DRY_AIR_MOLAR_MASS;
+pub(crate) const MASS_RATIO: f64 = WATER_MOLAR_MASS / DRY_AIR_MOLAR_MASS;
 
 /// Specific gas constant of vapour, J/(kg K).
 pub const VAPOUR_GAS_CONSTANT: f64 = GAS_CONSTANT / WATER_MOLAR_MASS;
@@ -25,8 +25,8 @@ pub const DRY_AIR_GAS_CONSTANT: f64 = GAS_CONSTANT / DRY_AIR_MOLAR_MASS;
 /// The constants of e_s = e_0 exp(b T / (c + T)), T in °C: Bolton, Monthly Weather Review 108 (1980) 1046, equation 10.
 /// Within 0.1 % of tables from -30 to 35 °C.
 const AT_ZERO: f64 = 611.2;
-const B: f64 = 17.67;
-const C: f64 = 243.5;
+pub(crate) const B: f64 = 17.67;
+pub(crate) const C: f64 = 243.5;
 
 /// Pressure of saturated vapour over water, Pa, at a temperature above -243.5 °C.
 pub fn saturation_pressure(temperature: f64) -> f64 {

@@ -20,7 +20,7 @@ pub type Tensor = [f64; 6];
 pub type Moments = [f64; 15];
 
 /// Largest eigenvalue of a [`Tensor`]: a particle with few neighbours diffuses no faster along any axis than one with half of them.
-const MAX_EIGENVALUE: f64 = 2.0;
+pub(crate) const MAX_EIGENVALUE: f64 = 2.0;
 
 /// Arithmetic of one number or of several at once.
 pub trait Number:

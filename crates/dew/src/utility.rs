@@ -16,7 +16,7 @@ pub(crate) const STEPS: u64 = 10;
 pub(crate) const FARTHER: f64 = 2.0;
 
 /// Distances are compared after a way of this, in smoothing lengths.
-const WAY: f64 = 0.05;
+pub(crate) const WAY: f64 = 0.05;
 
 /// What is to become of a parcel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -75,10 +75,10 @@ pub struct Push<'a> {
 
 /// Repulsion at the distance at which it begins, over the square of the speed of sound and the spacing's inverse
 /// (Monaghan 1994 takes the square of the fastest speed, a hundredth of that; the strong force is to hold at any speed).
-const STRENGTH: f64 = 0.3;
+pub(crate) const STRENGTH: f64 = 0.3;
 
 /// Distance from a solid's particle at which repulsion begins, over the spacing.
-const RANGE: f64 = 1.5;
+pub(crate) const RANGE: f64 = 1.5;
 
 /// Distance, over the spacing, at which the repulsion is so weak that air at rest stays slow.
 pub const CALM: f64 = 1.3;

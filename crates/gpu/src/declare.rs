@@ -33,7 +33,35 @@ macro_rules! shared {
 
 shared! {
     f32 => "f32", u32 => "u32", i32 => "i32",
-    [f32; 2] => "vec2f", [f32; 4] => "vec4f", [u32; 2] => "vec2u", [u32; 4] => "vec4u",
+}
+
+/// Two to four numbers are a vector, more an array.
+fn vector(number: &str, letter: char, count: usize) -> String {
+    if (2..=4).contains(&count) { format!("vec{count}{letter}") } else { format!("array<{number}, {count}>") }
+}
+
+impl<const N: usize> Shared for [f32; N] {
+    fn wgsl() -> String {
+        vector("f32", 'f', N)
+    }
+}
+
+impl<const N: usize> Shared for [u32; N] {
+    fn wgsl() -> String {
+        vector("u32", 'u', N)
+    }
+}
+
+impl<const N: usize> Shared for [[u32; 4]; N] {
+    fn wgsl() -> String {
+        format!("array<vec4u, {N}>")
+    }
+}
+
+impl<T: SharedStruct, const N: usize> Shared for [T; N] {
+    fn wgsl() -> String {
+        format!("array<{}, {N}>", T::wgsl())
+    }
 }
 
 impl<T: Shared> Shared for [T] {
@@ -195,52 +223,34 @@ pub trait Buffers {
 ///
 /// gives the constant, a `#[repr(C)]` structure that can be copied to the device, and `Memory`, with a buffer for each binding, numbered in their order.
 /// [`check_layouts`](crate::check_layouts) says in a test where WGSL would lay a structure out otherwise.
+/// Without `buffers` it gives constants and structures only, and `declaration()`, for shaders that write their bindings themselves.
 #[macro_export]
 macro_rules! declare {
     (
-        constants {
-            $($(#[$const_doc:meta])* $const_vis:vis const $const:ident: $const_type:ty = $value:expr;)*
+        constants { $($constants:tt)* }
+        structs { $($structs:tt)* }
+    ) => {
+        $crate::declare!(@constants $($constants)*);
+        $crate::declare!(@structs $($structs)*);
+
+        /// What the host and the shaders share.
+        pub(super) fn declaration() -> $crate::Declaration {
+            $crate::Declaration {
+                constants: $crate::declare!(@lines $($constants)*),
+                structs: $crate::declare!(@layouts $($structs)*),
+                bindings: Vec::new(),
+            }
         }
-        structs {
-            $($(#[$struct_doc:meta])* $struct_vis:vis struct $struct:ident {
-                $($(#[$member_doc:meta])* $member_vis:vis $member:ident: $member_type:ty),+ $(,)?
-            })*
-        }
+    };
+    (
+        constants { $($constants:tt)* }
+        structs { $($structs:tt)* }
         $(#[$buffers_doc:meta])* $buffers_vis:vis buffers $buffers:ident {
             $($(#[$binding_doc:meta])* $space:ident $binding:ident: $binding_type:ty),+ $(,)?
         }
     ) => {
-        $($(#[$const_doc])* $const_vis const $const: $const_type = $value;)*
-
-        $(
-            $(#[$struct_doc])*
-            #[derive(Debug, Clone, Copy, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-            #[repr(C)]
-            $struct_vis struct $struct {
-                $($(#[$member_doc])* $member_vis $member: $member_type),+
-            }
-
-            impl $crate::Shared for $struct {
-                fn wgsl() -> String {
-                    stringify!($struct).into()
-                }
-            }
-
-            impl $crate::SharedStruct for $struct {
-                fn layout() -> $crate::Layout {
-                    $crate::Layout {
-                        name: stringify!($struct),
-                        size: size_of::<Self>(),
-                        members: vec![$($crate::Member {
-                            name: stringify!($member),
-                            wgsl: <$member_type as $crate::Shared>::wgsl(),
-                            offset: std::mem::offset_of!(Self, $member),
-                            size: size_of::<$member_type>(),
-                        }),+],
-                    }
-                }
-            }
-        )*
+        $crate::declare!(@constants $($constants)*);
+        $crate::declare!(@structs $($structs)*);
 
         $(#[$buffers_doc])*
         #[derive(Debug)]
@@ -251,13 +261,8 @@ macro_rules! declare {
         impl $crate::Buffers for $buffers {
             fn declaration() -> $crate::Declaration {
                 $crate::Declaration {
-                    constants: vec![$(format!(
-                        "const {}: {} = {};\n",
-                        stringify!($const),
-                        <$const_type as $crate::Shared>::wgsl(),
-                        $crate::SharedConstant::literal($const),
-                    )),*],
-                    structs: vec![$(<$struct as $crate::SharedStruct>::layout()),*],
+                    constants: $crate::declare!(@lines $($constants)*),
+                    structs: $crate::declare!(@layouts $($structs)*),
                     bindings: vec![$($crate::Binding {
                         name: stringify!($binding),
                         wgsl: <$binding_type as $crate::Shared>::wgsl(),
@@ -270,6 +275,59 @@ macro_rules! declare {
                 vec![$(&self.$binding),+]
             }
         }
+    };
+    (@constants $($(#[$doc:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {
+        $($(#[$doc])* $vis const $name: $type = $value;)*
+    };
+    (@lines $($(#[$doc:meta])* $vis:vis const $name:ident: $type:ty = $value:expr;)*) => {
+        vec![$(format!(
+            "const {}: {} = {};\n",
+            stringify!($name),
+            <$type as $crate::Shared>::wgsl(),
+            $crate::SharedConstant::literal($name),
+        )),*]
+    };
+    (@structs $($(#[$doc:meta])* $vis:vis struct $name:ident {
+        $($(#[$member_doc:meta])* $member_vis:vis $member:ident: $type:ty),+ $(,)?
+    })*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+            #[repr(C)]
+            $vis struct $name {
+                $($(#[$member_doc])* $member_vis $member: $type),+
+            }
+
+            impl Default for $name {
+                fn default() -> Self {
+                    bytemuck::Zeroable::zeroed()
+                }
+            }
+
+            impl $crate::Shared for $name {
+                fn wgsl() -> String {
+                    stringify!($name).into()
+                }
+            }
+
+            impl $crate::SharedStruct for $name {
+                fn layout() -> $crate::Layout {
+                    $crate::Layout {
+                        name: stringify!($name),
+                        size: size_of::<Self>(),
+                        members: vec![$($crate::Member {
+                            name: stringify!($member),
+                            wgsl: <$type as $crate::Shared>::wgsl(),
+                            offset: std::mem::offset_of!(Self, $member),
+                            size: size_of::<$type>(),
+                        }),+],
+                    }
+                }
+            }
+        )*
+    };
+    (@layouts $($(#[$doc:meta])* $vis:vis struct $name:ident { $($members:tt)* })*) => {
+        vec![$(<$name as $crate::SharedStruct>::layout()),*]
     };
     (@is_uniform uniform) => { true };
     (@is_uniform storage) => { false };

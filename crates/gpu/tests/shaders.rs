@@ -1,5 +1,6 @@
 //! Every shader of the project: valid, and within the portable floor.
 
+use corpuscle_gpu::DECLARED;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,15 +20,24 @@ fn shaders_below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Name and text of every shader in the tree, but for those that import a declaration of their model, which tests them.
+/// Name and text of every shader in the tree, but for those that import a declaration of their model, themselves or by another: the model tests them.
 fn all_shaders() -> Vec<(String, String)> {
     let mut paths = Vec::new();
-    let is_whole = |(_, text): &(String, String)| !text.contains("#import declared");
     shaders_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), &mut paths);
     paths.sort();
     let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
-    paths.iter().map(|path| (name(path), fs::read_to_string(path).unwrap())).filter(is_whole).collect()
+    let all: Vec<_> = paths.iter().map(|path| (name(path), fs::read_to_string(path).unwrap())).collect();
+    let library: Vec<(&str, &str)> =
+        all.iter().map(|(name, text)| (name.as_str(), text.as_str())).chain([(DECLARED, MARK)]).collect();
+    let is_whole = |(name, text): &&(String, String)| {
+        let joined = corpuscle_gpu::join(name, text, &library);
+        !text.contains("#import declared") && !joined.is_ok_and(|text| text.contains(MARK))
+    };
+    all.iter().filter(is_whole).cloned().collect()
 }
+
+/// Stands for a declaration.
+const MARK: &str = "// declared";
 
 fn check(text: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;

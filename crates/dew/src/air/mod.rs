@@ -10,6 +10,8 @@ pub mod transport;
 
 pub use arrangement::{Arrangement, Entry};
 pub use density::Sums;
+#[cfg(feature = "gpu")]
+pub(crate) use pairs::DAMPING;
 pub use pairs::{Column, Rates, sum as sum_pairs};
 pub use particle::{Particle, Role};
 pub use properties::{Properties, TemperatureCoefficients};

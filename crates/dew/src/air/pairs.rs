@@ -47,7 +47,7 @@ pub struct Rates {
 /// Neighbours that approach each other are held up by the pressure of their impact, rho min(3 a, c) a for an approach at a
 /// (Zhang, Hu & Adams 2017: a Riemann solver of low dissipation). It is of second order in how velocities differ, so slow and
 /// smooth flow does not feel it; without it the noise of air that is fast for its particles' distance grows until it bursts.
-const DAMPING: f64 = 3.0;
+pub(crate) const DAMPING: f64 = 3.0;
 
 /// Sums over all pairs of air. Viscosity and diffusivity of a pair are those at the mean of its temperatures.
 pub fn sum(arrangement: &Arrangement, columns: &[Column], scale: &Scale, air: &Properties, rates: &mut [Rates]) {

@@ -1,6 +1,6 @@
 // What the particles of each solid sum up to in a step, and to what they are brought where the temperature that they are held at changes: a
 // group for each solid. The latter is the twin of `hold` in `dew.rs`.
-#import dew_solids
+#import dew_card
 #import dew_rows
 
 @group(0) @binding(1) var<storage, read_write> solids: array<Solid>;

@@ -1,13 +1,6 @@
 // Columns of air outside open sides. Twin of `faces/open.rs`.
 #import dew_card
 
-// A column as the host tells it, and how the air before it moves across the side, m/s.
-struct OutsideColumn {
-    velocity: f32,
-    // Whether no solid stands in it.
-    is_free: u32,
-}
-
 // What the parcels before a column sum up to, whatever their order: whole numbers. And how far out its last parcel is.
 struct BeforeColumn {
     velocity: atomic<i32>,

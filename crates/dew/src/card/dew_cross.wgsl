@@ -12,9 +12,6 @@
 @group(0) @binding(6) var<storage, read_write> partials: array<Partial>;
 @group(0) @binding(7) var<storage, read_write> before: array<BeforeColumn>;
 
-// How far air goes on beyond an open face, in smoothing lengths.
-const BEYOND = 2.0;
-
 const NOWHERE = 6u;
 
 var<workgroup> came: array<vec4f, 256>;

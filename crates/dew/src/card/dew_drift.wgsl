@@ -10,9 +10,6 @@
 var<workgroup> near: array<vec3f, 256>;
 var<workgroup> nearest: array<vec2f, 256>;
 
-// Twin of the constant in `faces/mod.rs`.
-const OUTLET_LAYER = 0.2;
-
 fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     let size = high - low;
     let shifted = at - size * floor((at - low) / size);

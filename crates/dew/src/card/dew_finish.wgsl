@@ -1,6 +1,6 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
 // `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
-#import dew_solids
+#import dew_card
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> partials: array<Partial>;
@@ -9,8 +9,6 @@
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 @group(0) @binding(4) var<storage, read> bodies: array<Body>;
 @group(0) @binding(5) var<storage, read> own: array<Site>;
-
-const DIFFUSION_LIMIT = 0.9;
 
 const THREADS = 128u;
 
@@ -67,7 +65,7 @@ fn book(all: Partial) {
     }
     status.elapsed = add(status.elapsed, step);
     status.time = add(status.time, step);
-    status.lengths[min(status.steps, 63u)] = step;
+    status.lengths[min(status.steps, MOST_STEPS - 1u)] = step;
     status.steps += 1u;
     let low = status.particle_steps.x + status.particles;
     status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));

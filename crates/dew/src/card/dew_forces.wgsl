@@ -10,7 +10,7 @@
 @group(0) @binding(4) var<storage, read_write> particles: array<Packed>;
 @group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
-@group(0) @binding(9) var<uniform> fans: array<Fan, 1024>;
+@group(0) @binding(9) var<uniform> fans: array<Fan, MOST_FANS>;
 
 // What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
 struct Rates {
@@ -20,9 +20,6 @@ struct Rates {
     moistening: f32,
     weights: f32,
 }
-
-// Pressure of impact: see `air/pairs.rs`.
-const DAMPING = 3.0;
 
 // Distances, in h, below which two places are one.
 const NOTHING = 1e-9;
@@ -82,10 +79,6 @@ fn of_air(i: u32, own: Column) -> Rates {
         weights,
     );
 }
-
-// Repulsion by solids: see `walls.rs` (Monaghan 1994, equation 4.1).
-const STRENGTH = 0.3;
-const RANGE = 1.5;
 
 fn repulsion(r: f32) -> f32 {
     let over = RANGE * parameters.spacing / r;
@@ -194,10 +187,6 @@ fn fraction_by_humidity(vapour: f32) -> f32 {
     let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
     return parameters.saturated * MASS_RATIO * parameters.air_pressure / (rest * rest);
 }
-
-// Time step limits: see `next_step` in `dew/motion.rs`.
-const ACCELERATION_LIMIT = 0.25;
-const DIFFUSION_LIMIT = 0.9;
 
 // The longest step after this one; 0 where anything is not a number, which must not be lost in a minimum.
 fn longest_step(speed_squared: f32, acceleration_squared: f32, stiffest: f32) -> f32 {

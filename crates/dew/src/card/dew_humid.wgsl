@@ -1,10 +1,5 @@
 // Saturation, and what passes between air and the surface of a solid. Twin of `humid_air.rs` and of `Exchange::flux`.
-#import dew_solids
-
-// The constants of `humid_air.rs` (Bolton 1980, equation 10), and molar mass of water over that of dry air.
-const B = 17.67;
-const C = 243.5;
-const MASS_RATIO = 0.6219453152;
+#import dew_card
 
 // exp(x) - 1 without losing the digits of what is small: the series for a sixteenth of x, then four times (1 + e)^2 - 1.
 fn exp_less_one(x: f32) -> f32 {
@@ -18,8 +13,8 @@ fn exp_less_one(x: f32) -> f32 {
 
 // Pressure of saturated vapour less that at the ambient temperature, Pa, at a temperature from the ambient air's: Bolton's formula over its value there.
 fn saturation_pressure(temperature: f32) -> f32 {
-    let ambient = C + parameters.celsius;
-    return parameters.saturated * exp_less_one(B * C * temperature / (ambient * (ambient + temperature)));
+    let ambient = BOLTON_C + parameters.celsius;
+    return parameters.saturated * exp_less_one(BOLTON_B * BOLTON_C * temperature / (ambient * (ambient + temperature)));
 }
 
 // Part of the mass that is vapour in saturated air, less that of the ambient air, and its slope over temperature, 1/K. Where water boils it is all of it.
@@ -28,8 +23,8 @@ fn saturation(temperature: f32) -> vec2f {
     let pressure = parameters.saturated + higher;
     let rest = parameters.air_pressure - (1.0 - MASS_RATIO) * pressure;
     let at_ambient = parameters.air_pressure - (1.0 - MASS_RATIO) * parameters.saturated;
-    let above = C + parameters.celsius + temperature;
-    let slope = MASS_RATIO * parameters.air_pressure / (rest * rest) * pressure * B * C / (above * above);
+    let above = BOLTON_C + parameters.celsius + temperature;
+    let slope = MASS_RATIO * parameters.air_pressure / (rest * rest) * pressure * BOLTON_B * BOLTON_C / (above * above);
     let more = MASS_RATIO * parameters.air_pressure * higher / (rest * at_ambient);
     return vec2f(more + parameters.lacking, slope);
 }

@@ -5,17 +5,6 @@
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(3) var<storage, read_write> measured: array<Measured>;
 
-// Sums of temperature, K, and vapour from the ambient air's, and of fog; the square of the largest speed, m2/s2, and how many there are.
-struct Measured {
-    temperature: f32,
-    vapour: f32,
-    fog: f32,
-    fastest: f32,
-    count: u32,
-}
-
-const GROUPS = 64u;
-
 var<workgroup> sums: array<Measured, 256>;
 
 fn joined(a: Measured, b: Measured) -> Measured {
@@ -43,7 +32,7 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
 ) {
     var own = Measured();
-    for (var i = id.x; i < status.particles; i += 256u * GROUPS) {
+    for (var i = id.x; i < status.particles; i += 256u * MEASURING_GROUPS) {
         own = joined(own, measure(particles[i]));
     }
     sums[thread] = own;

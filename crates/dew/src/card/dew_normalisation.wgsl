@@ -16,9 +16,6 @@ struct Moments {
     of_z: vec3f,
 }
 
-// Largest eigenvalue of a tensor.
-const MAX_EIGENVALUE = 2.0;
-
 // Adds a neighbour at an offset, over h.
 fn add_moments(moments: ptr<function, Moments>, offset: vec3f, volume: f32) {
     let q_squared = dot(offset, offset);

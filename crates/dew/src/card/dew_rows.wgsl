@@ -1,14 +1,6 @@
 // Values over time. Twin of `Table::at`.
 #import dew_card
 
-// A value, and when, s since the state was sent.
-struct Row {
-    time: Account,
-    // Temperatures are counted from the ambient air's, K.
-    value: f32,
-    unused: f32,
-}
-
 @group(0) @binding(4) var<storage, read> rows: array<Row>;
 
 // From one time to another, s.

@@ -1,43 +1,7 @@
 // Heat that solids get from their heaters, from outside the box and by radiation: a group for each solid. Twin of `HeatSources::add_heat` and
 // `Conditions::flux` in `solids/sources/mod.rs`.
-#import dew_solids
+#import dew_card
 #import dew_rows
-
-// A part of a surface: m2; distance to the particle over the conductivity, m2 K/W.
-struct Part {
-    area: f32,
-    resistance: f32,
-}
-
-// Share of a particle in its solid's heat sources: part of the heater's power; its surface in a side of the box, and in the box.
-struct Share {
-    heater: f32,
-    unused: f32,
-    outside: Part,
-    radiation: Part,
-}
-
-// Surroundings of a surface: heat transfer coefficient, W/(m2 K); emissivity times the Stefan-Boltzmann constant, W/(m2 K4); rows of the temperature of the
-// air and of the mean radiant temperature.
-struct Surroundings {
-    transfer_coefficient: f32,
-    emissivity_sigma: f32,
-    air_first: u32,
-    air_end: u32,
-    radiant_first: u32,
-    radiant_end: u32,
-}
-
-// Heat sources of a solid: factor and rows of the heater's power; and the heat that each kind has supplied, J.
-struct Source {
-    power_factor: f32,
-    unused: f32,
-    power_first: u32,
-    power_end: u32,
-    outside: Surroundings,
-    radiation: Surroundings,
-    supplied: array<Account, 3>,
-}
 
 // Surroundings at a time; temperatures from the ambient air's, K.
 struct Conditions {
@@ -53,8 +17,6 @@ struct Conditions {
 @group(0) @binding(5) var<storage, read> shares: array<Share>;
 @group(0) @binding(6) var<storage, read> bodies: array<Body>;
 @group(0) @binding(7) var<storage, read_write> sources: array<Source>;
-
-const ITERATIONS = 5u;
 
 var<workgroup> power: f32;
 var<workgroup> outside: Conditions;

@@ -1,7 +1,7 @@
 // Particles of solids take up what they get in a step: heat, and water from vapour that diffuses to them and from parcels near them
 // that are beyond saturation. Twin of `exchange` and `deposit_of` in `dew/transfer.rs`.
 #import dew_neighbours
-#import dew_solids
+#import dew_card
 
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> start: array<u32>;

@@ -3,9 +3,6 @@
 
 @group(0) @binding(8) var<storage, read> field: array<f32>;
 
-// In smoothing lengths: see `utility.rs`.
-const WAY = 0.05;
-
 const MATTERS = 0u;
 const LOW = 1u;
 const USELESS = 2u;

@@ -1,7 +1,7 @@
 //! How far solids are, on nodes: where it is looked for air of low utility.
 
-use super::layout::Parameters;
 use super::origin::Origin;
+use super::shared::Parameters;
 use crate::dew::Dew;
 use crate::utility::FARTHER;
 use rayon::prelude::*;

@@ -1,7 +1,6 @@
 //! What gauges tell, without the air coming back.
 
-use super::layout::CardMeasured;
-use super::tasks::MEASURING_GROUPS;
+use super::shared::{self, MEASURING_GROUPS};
 use super::{Card, Origin};
 use crate::dew::State;
 use crate::measures::Totals;
@@ -16,15 +15,15 @@ impl Card {
         self.tasks.measure.run(&mut pass, MEASURING_GROUPS);
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
-        let groups: Vec<CardMeasured> = read(&self.gpu, &self.tasks.measured, MEASURING_GROUPS as usize)?;
+        let groups: Vec<shared::Measured> = read(&self.gpu, &self.tasks.measured, MEASURING_GROUPS as usize)?;
         self.fetch_solids(state)?;
         Ok(totals(&groups, self.origin))
     }
 }
 
-fn totals(groups: &[CardMeasured], ambient: Origin) -> Totals {
+fn totals(groups: &[shared::Measured], ambient: Origin) -> Totals {
     let count = groups.iter().map(|group| f64::from(group.count)).sum();
-    let sum = |of: fn(&CardMeasured) -> f32| groups.iter().map(|group| f64::from(of(group))).sum::<f64>();
+    let sum = |of: fn(&shared::Measured) -> f32| groups.iter().map(|group| f64::from(of(group))).sum::<f64>();
     Totals {
         count,
         temperature: count * ambient.temperature + sum(|group| group.temperature),

@@ -4,31 +4,29 @@
 //! stay with the host: they are few, each decides for itself whether it sticks, merges or runs, and they only want to know what
 //! water the solids have gained once in some steps.
 //!
-//! What single precision is spent on: see `layout.rs`.
+//! What single precision is spent on: see `shared.rs`.
 
 mod field;
-mod layout;
 mod measure;
 mod numbers;
 mod origin;
 mod seen;
+mod shared;
 mod solids;
 mod sources;
 mod tasks;
 
-pub(crate) use layout::MOST_FANS;
 #[cfg(test)]
 pub(crate) use numbers::MANY;
+pub(crate) use shared::MOST_FANS;
 
 use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
 use bytemuck::Zeroable;
 use corpuscle_gpu::{Gpu, GpuError, Pass, Stopwatch, read, wgpu};
-use layout::{
-    CardBody, CardParticle, CardRow, CardSolid, CardWater, MOST_STEPS, OutsideColumn, Parameters, Status, TURN,
-};
 use origin::Origin;
 use seen::Seen;
+use shared::{MOST_STEPS, OutsideColumn, Parameters, Status, TURN};
 use solids::CardSolids;
 use sources::CardSources;
 use std::sync::OnceLock;
@@ -43,7 +41,7 @@ pub(crate) struct Card {
     /// Where solids have any.
     sources: Option<CardSources>,
     origin: Origin,
-    bodies: Vec<CardBody>,
+    bodies: Vec<shared::Body>,
     /// Times, s, and temperatures, K, at which solids are held where they change.
     held_rows: Vec<[f64; 2]>,
     status: Status,
@@ -178,18 +176,18 @@ impl Card {
 
     /// Hands the state over, with what part of the evaporation of a wet surface the water on each particle of the solids lets go.
     pub fn send(&mut self, state: &State, evaporation: &[f64]) {
-        let air: Vec<CardParticle> = state.air.iter().map(|particle| self.origin.to_card(particle)).collect();
-        let temperature = |temperature: &f64| CardSolid {
-            temperature: layout::account(temperature - self.origin.temperature),
-            ..CardSolid::default()
+        let air: Vec<shared::Particle> = state.air.iter().map(|particle| self.origin.to_card(particle)).collect();
+        let temperature = |temperature: &f64| shared::Solid {
+            temperature: shared::Account::from(temperature - self.origin.temperature),
+            ..shared::Solid::default()
         };
-        let solids: Vec<CardSolid> = state.temperatures.iter().map(temperature).collect();
+        let solids: Vec<shared::Solid> = state.temperatures.iter().map(temperature).collect();
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.gpu.queue.write_buffer(buffer, 0, bytes);
         write(&self.tasks.particles, bytemuck::cast_slice(&air));
         write(&self.tasks.solids, bytemuck::cast_slice(&solids));
         write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
-        let row = |&row: &[f64; 2]| CardRow::new(row, state.time, self.origin.temperature);
-        let rows: Vec<CardRow> = self.held_rows.iter().map(row).collect();
+        let row = |&row: &[f64; 2]| shared::Row::new(row, state.time, self.origin.temperature);
+        let rows: Vec<shared::Row> = self.held_rows.iter().map(row).collect();
         write(&self.tasks.rows, bytemuck::cast_slice(&rows));
         if let Some(sources) = &mut self.sources {
             sources.upload(&self.gpu, state.time);
@@ -203,10 +201,10 @@ impl Card {
             particles: air.len() as u32,
             step: state.time_step as f32,
             next_id: state.next_id as u32,
-            seen: layout::account(state.utility_seen - state.time),
+            seen: shared::Account::from(state.utility_seen - state.time),
             turn: (state.steps % u64::from(TURN)) as u32,
             drift: state.drift.map(|gain| gain as f32),
-            phase: std::array::from_fn(|number| layout::account(phases[number])),
+            phase: std::array::from_fn(|number| shared::Account::from(phases[number])),
             density_excess_beyond: narrow(state.density_excess_beyond),
             running_mean_before: narrow(state.running_mean_before),
             ..Status::zeroed()
@@ -219,12 +217,12 @@ impl Card {
 
     /// Tells the water on the particles of the solids, kg, where drops have moved, and what part of the evaporation of a wet surface it lets go.
     pub fn tell_water(&mut self, water: &[f64], evaporation: &[f64]) {
-        let tell = |(&water, &evaporation): (&f64, &f64)| CardWater {
+        let tell = |(&water, &evaporation): (&f64, &f64)| shared::Water {
             told: water as f32,
             evaporation: evaporation as f32,
-            ..CardWater::default()
+            ..shared::Water::default()
         };
-        let told: Vec<CardWater> = water.iter().zip(evaporation).map(tell).collect();
+        let told: Vec<shared::Water> = water.iter().zip(evaporation).map(tell).collect();
         self.gpu.queue.write_buffer(&self.tasks.waters, 0, bytemuck::cast_slice(&told));
         self.water_told.clear();
         self.water_told.extend_from_slice(water);
@@ -232,10 +230,10 @@ impl Card {
 
     /// Brings the water on the particles of the solids, kg.
     pub fn fetch_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
-        let waters: Vec<CardWater> = read(&self.gpu, &self.tasks.waters, self.water_told.len())?;
+        let waters: Vec<shared::Water> = read(&self.gpu, &self.tasks.waters, self.water_told.len())?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
-        let now = |(told, water): (&f64, &CardWater)| (told + layout::value(water.gained)).max(0.0);
+        let now = |(told, water): (&f64, &shared::Water)| (told + water.gained.value()).max(0.0);
         water.extend(self.water_told.iter().zip(&waters).map(now));
         Ok(())
     }
@@ -245,7 +243,7 @@ impl Card {
         if !self.ahead {
             return Ok(());
         }
-        let air: Vec<CardParticle> = read(&self.gpu, &self.tasks.particles, self.status.particles as usize)?;
+        let air: Vec<shared::Particle> = read(&self.gpu, &self.tasks.particles, self.status.particles as usize)?;
         self.fetch_solids(state)?;
         state.air.clear();
         state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
@@ -255,10 +253,10 @@ impl Card {
 
     /// Brings back what changes of the solids.
     fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
-        let solids: Vec<CardSolid> = read(&self.gpu, &self.tasks.solids, state.temperatures.len())?;
-        let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        let solids: Vec<shared::Solid> = read(&self.gpu, &self.tasks.solids, state.temperatures.len())?;
+        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
         self.fetch_water(&mut state.water_on)?;
-        let temperature = |solid: &CardSolid| layout::value(solid.temperature) + self.origin.temperature;
+        let temperature = |solid: &shared::Solid| solid.temperature.value() + self.origin.temperature;
         state.temperatures.clear();
         state.temperatures.extend(solids.iter().map(temperature));
         state.heat_flow.clear();
@@ -270,9 +268,9 @@ impl Card {
     pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
         #[cfg(test)]
         self.lose();
-        let count = count.min(MOST_STEPS) as u32;
+        let count = count.min(MOST_STEPS as usize) as u32;
         self.status = Status {
-            halted: layout::SPOKEN,
+            halted: shared::SPOKEN,
             particles: self.status.particles,
             cells: self.status.cells,
             step: self.status.step,
@@ -297,7 +295,7 @@ impl Card {
         self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
         self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
-        let bodies: Vec<CardBody> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
         let supplied =
             self.sources.as_mut().map(|sources| sources.download_supplied(&self.gpu)).transpose()?.unwrap_or_default();
         self.busy += began.elapsed().as_secs_f64();
@@ -316,12 +314,12 @@ impl Card {
         }
     }
 
-    fn progress(&mut self, bodies: &[CardBody], supplied: Vec<[f64; 3]>) -> Progress {
+    fn progress(&mut self, bodies: &[shared::Body], supplied: Vec<[f64; 3]>) -> Progress {
         let Status { steps, particle_steps: [low, high], step, halted, fastest, .. } = self.status;
-        let held: Vec<f64> = bodies.iter().map(|body| layout::value(body.held)).collect();
+        let held: Vec<f64> = bodies.iter().map(|body| body.held.value()).collect();
         let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
         self.held_before = held;
-        let phase = |axis: usize, side: usize| layout::value(self.status.phase[2 * axis + side]);
+        let phase = |axis: usize, side: usize| self.status.phase[2 * axis + side].value();
         let wide = |by_face: [f32; 6]| [0, 1, 2].map(|axis| [0, 1].map(|side| f64::from(by_face[2 * axis + side])));
         Progress {
             lengths: self.status.lengths[..steps as usize].iter().map(|&step| f64::from(step)).collect(),
@@ -331,17 +329,17 @@ impl Card {
             came: self.crossed(self.status.came.values()),
             went: self.crossed(self.status.went.values()),
             diffused: self.status.diffused.values(),
-            fogged: layout::value(self.status.fogged),
+            fogged: self.status.fogged.value(),
             held_heat,
             supplied,
             drift: self.status.drift.map(f64::from),
-            utility_seen: self.sent_at + layout::value(self.status.seen),
+            utility_seen: self.sent_at + self.status.seen.value(),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
             density_excess_beyond: wide(self.status.density_excess_beyond),
             running_mean_before: wide(self.status.running_mean_before),
             fastest: f64::from(fastest).sqrt(),
-            broken: halted == layout::BROKEN,
-            full: halted == layout::FULL,
+            broken: halted == shared::BROKEN,
+            full: halted == shared::FULL,
         }
     }
 

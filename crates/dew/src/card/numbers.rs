@@ -1,7 +1,7 @@
 //! The numbers of a run, as the shaders want them.
 
-use super::layout::{self, CardFan, Inlet, MOST_FANS, Parameters};
 use super::origin::Origin;
+use super::shared::{self, Inlet, MOST_FANS, Parameters};
 use crate::dew::Dew;
 use crate::exchange::saturation;
 use crate::faces::BEYOND;
@@ -25,10 +25,10 @@ fn narrow(vector: [f64; 3]) -> [f32; 3] {
 }
 
 /// The fans of a model, and room for more.
-pub(super) fn card_fans(dew: &Dew, origin: Origin) -> [CardFan; MOST_FANS] {
+pub(super) fn card_fans(dew: &Dew, origin: Origin) -> [shared::Fan; MOST_FANS as usize] {
     let told = |fan: &Fan| {
         let [low, high] = fan.corners();
-        CardFan {
+        shared::Fan {
             low: origin.relative(low),
             high: origin.relative(high),
             rate: fan.rate() as f32,
@@ -37,7 +37,7 @@ pub(super) fn card_fans(dew: &Dew, origin: Origin) -> [CardFan; MOST_FANS] {
             unused: 0.0,
         }
     };
-    std::array::from_fn(|number| dew.fans.get(number).map_or_else(CardFan::default, told))
+    std::array::from_fn(|number| dew.fans.get(number).map_or_else(shared::Fan::default, told))
 }
 
 impl Parameters {
@@ -49,7 +49,7 @@ impl Parameters {
         new.tell_air(dew);
         new.tell_kernels(dew);
         new.tell_inlets(dew);
-        new.fans = dew.fans.len().min(MOST_FANS) as u32;
+        new.fans = dew.fans.len().min(MOST_FANS as usize) as u32;
         new
     }
 
@@ -60,7 +60,7 @@ impl Parameters {
         let size = [0, 1, 2].map(|axis| room.high[axis] + beyond(axis, 1) - corner[axis]);
         (self.low, self.high) = (origin.relative(room.low), origin.relative(room.high));
         (self.h, self.per_h, self.spacing) = (h as f32, (1.0 / h) as f32, dew.scale.spacing as f32);
-        for (rule, face) in self.faces.iter_mut().zip(room.faces.as_flattened()) {
+        for (rule, face) in self.faces.as_flattened_mut().iter_mut().zip(room.faces.as_flattened()) {
             *rule = self::rule(face);
         }
         let cells = |size_of_cell: f64| size.map(|length| (length / size_of_cell).ceil());
@@ -149,11 +149,11 @@ impl Parameters {
 
 fn rule(face: &Face) -> u32 {
     match face {
-        Face::Wall => layout::WALL,
-        Face::Periodic => layout::PERIODIC,
-        Face::Inlet(_) => layout::INLET,
-        Face::Outlet => layout::OUTLET,
-        Face::Open => layout::OPEN,
+        Face::Wall => shared::WALL,
+        Face::Periodic => shared::PERIODIC,
+        Face::Inlet(_) => shared::INLET,
+        Face::Outlet => shared::OUTLET,
+        Face::Open => shared::OPEN,
     }
 }
 
@@ -161,15 +161,15 @@ fn flags(dew: &Dew) -> u32 {
     let settings = &dew.settings;
     let parcels = settings.condensation == Condensation::Parcel;
     let all = [
-        (dew.room.faces.as_flattened().iter().any(Face::is_passed), layout::IS_PASSED),
-        (!parcels, layout::DIFFUSES),
-        (settings.fog, layout::FOGS),
-        (settings.fog || parcels, layout::SATURATES),
-        (dew.wetting.is_some(), layout::REFUSES_FAST),
-        (settings.humidity == Humidity::Relative, layout::RELATIVE),
-        (settings.low_utility.is_some(), layout::TENDS),
-        (dew.is_closed(), layout::IS_CLOSED),
-        (settings.mean == Mean::Harmonic, layout::IS_HARMONIC),
+        (dew.room.faces.as_flattened().iter().any(Face::is_passed), shared::IS_PASSED),
+        (!parcels, shared::DIFFUSES),
+        (settings.fog, shared::FOGS),
+        (settings.fog || parcels, shared::SATURATES),
+        (dew.wetting.is_some(), shared::REFUSES_FAST),
+        (settings.humidity == Humidity::Relative, shared::RELATIVE),
+        (settings.low_utility.is_some(), shared::TENDS),
+        (dew.is_closed(), shared::IS_CLOSED),
+        (settings.mean == Mean::Harmonic, shared::IS_HARMONIC),
     ];
     all.into_iter().filter_map(|(is_set, flag)| is_set.then_some(flag)).sum()
 }

@@ -1,16 +1,8 @@
 //! Parcels of air from the host's numbers to the shaders' and back.
 
-use super::layout::{CardParticle, account, value};
+use super::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use crate::air::{Particle, Role};
 use crate::room::Room;
-
-/// Roles, as `dew_card.wgsl` has them.
-const INSIDE: u32 = 0;
-const COMING: u32 = 1;
-const LEAVING: u32 = 2;
-const OUTSIDE: u32 = 3;
-const STILL: u32 = 4;
-const IDLE: u32 = 5;
 
 /// Where the shaders count from.
 #[derive(Debug, Clone, Copy)]
@@ -42,9 +34,9 @@ impl Origin {
         })
     }
 
-    pub fn to_card(self, particle: &Particle) -> CardParticle {
+    pub fn to_card(self, particle: &Particle) -> shared::Particle {
         let narrow = |vector: [f64; 3]| vector.map(|along| along as f32);
-        CardParticle {
+        shared::Particle {
             place: self.parcel(particle.position),
             density: particle.density as f32,
             velocity: narrow(particle.velocity),
@@ -52,15 +44,15 @@ impl Origin {
             acceleration: narrow(particle.acceleration),
             spreading: narrow(particle.spreading),
             id: particle.id as u32,
-            temperature: account(particle.temperature - self.temperature),
-            vapour: account(particle.vapour - self.vapour),
+            temperature: (particle.temperature - self.temperature).into(),
+            vapour: (particle.vapour - self.vapour).into(),
             role: role(particle.role),
             idle: particle.idle as f32,
-            ..CardParticle::default()
+            ..shared::Particle::default()
         }
     }
 
-    pub fn to_host(self, particle: &CardParticle) -> Particle {
+    pub fn to_host(self, particle: &shared::Particle) -> Particle {
         let wide = |vector: [f32; 3]| vector.map(f64::from);
         let (place, middle) = (wide(particle.place), self.middle());
         Particle {
@@ -68,8 +60,8 @@ impl Origin {
             velocity: wide(particle.velocity),
             acceleration: wide(particle.acceleration),
             spreading: wide(particle.spreading),
-            temperature: value(particle.temperature) + self.temperature,
-            vapour: value(particle.vapour) + self.vapour,
+            temperature: particle.temperature.value() + self.temperature,
+            vapour: particle.vapour.value() + self.vapour,
             fog: f64::from(particle.fog),
             density: f64::from(particle.density),
             id: u64::from(particle.id),
@@ -79,9 +71,9 @@ impl Origin {
     }
 }
 
-/// As `dew_card.wgsl` has roles. None that has gone is there at the end of a step.
+/// As the shaders have roles. None that has gone is there at the end of a step.
 fn role(role: Role) -> u32 {
-    let of_face = |kind: u32, axis: u8, side: u8| kind | ((2 * u32::from(axis) + u32::from(side)) << 4);
+    let of_face = |kind: u32, axis: u8, side: u8| kind | ((2 * u32::from(axis) + u32::from(side)) << FACE_BITS);
     match role {
         Role::Coming(axis, side) => of_face(COMING, axis, side),
         Role::Leaving(axis, side) => of_face(LEAVING, axis, side),
@@ -93,8 +85,8 @@ fn role(role: Role) -> u32 {
 }
 
 fn role_of(role: u32) -> Role {
-    let face = (role >> 4) as u8;
-    match role & 15 {
+    let face = (role >> FACE_BITS) as u8;
+    match role & ROLE_MASK {
         COMING => Role::Coming(face / 2, face % 2),
         LEAVING => Role::Leaving(face / 2, face % 2),
         OUTSIDE => Role::Outside(face / 2, face % 2),

@@ -1,7 +1,7 @@
 //! Air as it is seen, for whoever draws it on the same device.
 
 use super::Card;
-use super::tasks::LIBRARY;
+use super::{shared, tasks};
 use corpuscle_gpu::{DEVICE_PARTICLES, DeviceParticles, GpuError, Kernel, Pass, THREADS, Task, uniform, wgpu};
 
 /// Air as it is seen, and what writes it.
@@ -17,7 +17,9 @@ impl Seen {
         let gpu = &card.gpu;
         let air = DeviceParticles::new(gpu, card.room, card.origin.middle(), spacing)?;
         let shown = uniform(gpu, "time shown", &[0.0_f32; 4]);
-        let library: Vec<_> = LIBRARY.iter().copied().chain([DEVICE_PARTICLES]).collect();
+        let shared = shared::declaration().types();
+        let mut library = tasks::library(&shared);
+        library.push(DEVICE_PARTICLES);
         let kernel = Kernel::new(gpu, "dew_seen", include_str!("dew_seen.wgsl"), &library);
         let tasks = &card.tasks;
         let buffers = [&tasks.parameters, &tasks.status, &tasks.particles, &shown, &air.buffer];

@@ -1,7 +1,7 @@
 //! Solids as the shaders see them: their particles, what air is near, and how heat goes through them.
 
-use super::layout::{self, CardBody, CardSite, Parameters};
 use super::origin::Origin;
+use super::shared::{self, Parameters};
 use crate::contact::Contact;
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
@@ -24,7 +24,7 @@ pub(super) struct CardSolids {
     /// Particles and cells.
     pub count: usize,
     /// The solids, then the walls, by their ranges of particles or cells and of rows.
-    pub bodies: Vec<CardBody>,
+    pub bodies: Vec<shared::Body>,
     /// Times, s, and temperatures, K, at which solids are held where they change.
     pub rows: Vec<[f64; 2]>,
 }
@@ -39,20 +39,21 @@ impl CardSolids {
             let of_it = dew.conduction.pairs(node);
             pairs.extend(of_it.map(|(other, conductance)| [other as u32, (conductance as f32).to_bits()]));
             let end = pairs.len() as u32;
-            let of_cell = || CardSite { capacity: dew.solids.heat_capacity(node) as f32, ..CardSite::default() };
+            let of_cell =
+                || shared::Site { capacity: dew.solids.heat_capacity(node) as f32, ..shared::Site::default() };
             let site = particles.get(node).map_or_else(of_cell, |particle| {
                 card_site(dew, origin, &Site::itself(node as u32, particle.position), particle.volume)
             });
-            own.push(CardSite { first, end, ..site });
+            own.push(shared::Site { first, end, ..site });
         }
         let mut sites = of_contact(dew, origin, &dew.contact);
-        sites.extend(dew.ghosts.sites.iter().zip(&dew.ghosts.volumes).map(|(site, volume)| CardSite {
+        sites.extend(dew.ghosts.sites.iter().zip(&dew.ghosts.volumes).map(|(site, volume)| shared::Site {
             place: origin.relative(site.position),
             volume: (volume / dew.scale.volume) as f32,
-            flags: layout::GHOST,
-            ..CardSite::default()
+            flags: shared::GHOST,
+            ..shared::Site::default()
         }));
-        let cell = |site: &CardSite| cell_at(parameters, site.place);
+        let cell = |site: &shared::Site| cell_at(parameters, site.place);
         sites.sort_by_key(cell);
         let cells = parameters.cells.iter().product::<u32>();
         let first = |wanted: u32| sites.partition_point(|site| cell(site) < wanted) as u32;
@@ -65,7 +66,7 @@ impl CardSolids {
                 let first_row = rows.len() as u32;
                 rows.extend(changes(dew, group));
                 let (first, end, end_row) = (before(group), before(group + 1), rows.len() as u32);
-                CardBody { first, end, first_row, end_row, ..CardBody::default() }
+                shared::Body { first, end, first_row, end_row, ..shared::Body::default() }
             })
             .collect();
         Ok(Self {
@@ -87,40 +88,40 @@ fn changes(dew: &Dew, body: usize) -> Vec<[f64; 2]> {
     if rows.len() > 1 { rows.iter().map(kelvin).collect() } else { Vec::new() }
 }
 
-fn of_contact(dew: &Dew, origin: Origin, contact: &Contact) -> Vec<CardSite> {
+fn of_contact(dew: &Dew, origin: Origin, contact: &Contact) -> Vec<shared::Site> {
     let sites = contact.sites.iter().zip(&contact.volumes).zip(&contact.walls);
     let of_one = |((site, &volume), walls): ((&Site, &f64), &WallTreatment)| {
         let card = card_site(dew, origin, site, volume);
         let keeps_out = match walls {
-            WallTreatment::DensityCorrection => layout::JOINS_DENSITY,
-            WallTreatment::VirtualForce => layout::REPELS,
+            WallTreatment::DensityCorrection => shared::JOINS_DENSITY,
+            WallTreatment::VirtualForce => shared::REPELS,
             WallTreatment::Ghosts | WallTreatment::None => 0,
         };
-        CardSite { flags: card.flags | keeps_out, ..card }
+        shared::Site { flags: card.flags | keeps_out, ..card }
     };
     sites.map(of_one).collect()
 }
 
 /// But for the way it keeps air out.
-fn card_site(dew: &Dew, origin: Origin, site: &Site, volume: f64) -> CardSite {
+fn card_site(dew: &Dew, origin: Origin, site: &Site, volume: f64) -> shared::Site {
     let number = site.particle as usize;
     let particle = &dew.solids.particles[number];
     let (of_air, of_solid) = (dew.air.conductor(), dew.solids.material(number).conductor());
     let mean = dew.settings.mean;
     let flag = |is_set: bool, flag: u32| if is_set { flag } else { 0 };
-    CardSite {
+    shared::Site {
         place: origin.relative(site.position),
         volume: (volume / dew.scale.volume) as f32,
         to_air: mean.conductivity(of_air, of_solid) as f32,
         to_solid: mean.conductivity(of_solid, of_air) as f32,
         part: (of_solid.conductivity / (of_solid.conductivity + of_air.conductivity)) as f32,
-        flags: flag(particle.normal.is_some(), layout::BOUNDARY)
-            | flag(particle.near_surface, layout::NEAR_SURFACE)
-            | flag(dew.solids.is_held(number), layout::HELD)
-            | flag(site.beyond, layout::IMAGE_BEYOND),
+        flags: flag(particle.normal.is_some(), shared::BOUNDARY)
+            | flag(particle.near_surface, shared::NEAR_SURFACE)
+            | flag(dew.solids.is_held(number), shared::HELD)
+            | flag(site.beyond, shared::IMAGE_BEYOND),
         particle: site.particle,
         capacity: dew.solids.heat_capacity(number) as f32,
-        ..CardSite::default()
+        ..shared::Site::default()
     }
 }
 

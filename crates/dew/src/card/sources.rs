@@ -1,49 +1,13 @@
 //! Heat sources of solids on the GPU: layouts and buffers of `dew_sources.wgsl`.
 
-use super::layout::{self, Account, CardRow};
 use super::origin::Origin;
+use super::shared;
 use super::solids::filled;
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::solids::sources::{BodySources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
-use bytemuck::{Pod, Zeroable};
 use corpuscle_gpu::{Gpu, GpuError, read, storage, wgpu};
 use corpuscle_scene::Table;
-
-/// Twin of `Surroundings`.
-#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
-#[repr(C)]
-struct CardSurroundings {
-    transfer_coefficient: f32,
-    emissivity_sigma: f32,
-    air_first: u32,
-    air_end: u32,
-    radiant_first: u32,
-    radiant_end: u32,
-}
-
-/// Twin of `Source`.
-#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
-#[repr(C)]
-struct CardSource {
-    power_factor: f32,
-    unused: f32,
-    power_first: u32,
-    power_end: u32,
-    outside: CardSurroundings,
-    radiation: CardSurroundings,
-    supplied: [Account; 3],
-}
-
-/// Twin of `Share`.
-#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
-#[repr(C)]
-struct CardShare {
-    heater: f32,
-    unused: f32,
-    outside: [f32; 2],
-    radiation: [f32; 2],
-}
 
 /// Sources of heat on the device.
 #[derive(Debug)]
@@ -52,7 +16,7 @@ pub(super) struct CardSources {
     pub rows: wgpu::Buffer,
     pub sources: wgpu::Buffer,
     /// Of each solid, before it has supplied anything.
-    initial: Vec<CardSource>,
+    initial: Vec<shared::Source>,
     /// Times, s, and values: W or K from the ambient air's temperature.
     values: Vec<[f64; 2]>,
     /// Heat supplied until the last batch, J.
@@ -66,16 +30,16 @@ impl CardSources {
         if sources.shares.is_empty() {
             return Ok(None);
         }
-        let part = |part: SurfacePart| [part.area as f32, part.resistance as f32];
-        let share = |share: &ParticleShare| CardShare {
+        let part = |part: SurfacePart| shared::Part { area: part.area as f32, resistance: part.resistance as f32 };
+        let share = |share: &ParticleShare| shared::Share {
             heater: share.heater as f32,
             unused: 0.0,
             outside: part(share.outside),
             radiation: part(share.radiation),
         };
-        let shares: Vec<CardShare> = sources.shares.iter().map(share).collect();
+        let shares: Vec<shared::Share> = sources.shares.iter().map(share).collect();
         let mut values = Vec::new();
-        let initial: Vec<CardSource> = sources
+        let initial: Vec<shared::Source> = sources
             .bodies
             .iter()
             .zip(&sources.power_factors)
@@ -83,7 +47,7 @@ impl CardSources {
             .collect();
         Ok(Some(Self {
             shares: filled(gpu, "shares of sources", &shares)?,
-            rows: storage::<CardRow>(gpu, "rows of sources", values.len())?,
+            rows: storage::<shared::Row>(gpu, "rows of sources", values.len())?,
             sources: filled(gpu, "sources of heat", &initial)?,
             before: vec![[0.0; 3]; initial.len()],
             initial,
@@ -93,7 +57,7 @@ impl CardSources {
 
     /// Uploads the rows, counted from the time of a state, s, and sets what was supplied to nothing.
     pub fn upload(&mut self, gpu: &Gpu, time: f64) {
-        let rows: Vec<CardRow> = self.values.iter().map(|&row| CardRow::new(row, time, 0.0)).collect();
+        let rows: Vec<shared::Row> = self.values.iter().map(|&row| shared::Row::new(row, time, 0.0)).collect();
         gpu.queue.write_buffer(&self.rows, 0, bytemuck::cast_slice(&rows));
         gpu.queue.write_buffer(&self.sources, 0, bytemuck::cast_slice(&self.initial));
         self.before.fill([0.0; 3]);
@@ -101,8 +65,8 @@ impl CardSources {
 
     /// Downloads the heat that each solid got since the last time, J.
     pub fn download_supplied(&mut self, gpu: &Gpu) -> Result<Vec<[f64; 3]>, GpuError> {
-        let now: Vec<CardSource> = read(gpu, &self.sources, self.initial.len())?;
-        let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(layout::value)).collect();
+        let now: Vec<shared::Source> = read(gpu, &self.sources, self.initial.len())?;
+        let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(shared::Account::value)).collect();
         let since = |(now, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|kind| now[kind] - before[kind]);
         let supplied = now.iter().zip(&self.before).map(since).collect();
         self.before = now;
@@ -122,8 +86,8 @@ fn append(table: &Table, zero: f64, values: &mut Vec<[f64; 2]>) -> [u32; 2] {
     [first, values.len() as u32]
 }
 
-fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSource {
-    let mut source = CardSource { power_factor: factor as f32, ..CardSource::default() };
+fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 2]>) -> shared::Source {
+    let mut source = shared::Source { power_factor: factor as f32, ..shared::Source::default() };
     if let Some((table, _)) = &of.heater {
         [source.power_first, source.power_end] = append(table, 0.0, values);
     }
@@ -136,11 +100,11 @@ fn source(of: &BodySources, factor: f64, origin: Origin, values: &mut Vec<[f64; 
     source
 }
 
-fn surroundings(around: &Surroundings, origin: Origin, values: &mut Vec<[f64; 2]>) -> CardSurroundings {
+fn surroundings(around: &Surroundings, origin: Origin, values: &mut Vec<[f64; 2]>) -> shared::Surroundings {
     let zero = origin.temperature - ZERO_CELSIUS;
     let [air_first, air_end] = append(&around.air_temperature, zero, values);
     let [radiant_first, radiant_end] = append(around.radiant(), zero, values);
-    CardSurroundings {
+    shared::Surroundings {
         transfer_coefficient: around.transfer_coefficient as f32,
         emissivity_sigma: (around.emissivity * STEFAN_BOLTZMANN) as f32,
         air_first,

@@ -1,17 +1,17 @@
 //! The passes of a step, each with what it works on.
 
-use super::layout::{
-    Before, BeforeColumn, CardBody, CardFan, CardMeasured, CardParticle, CardRow, CardSolid, CardWater, Column,
-    MOST_FANS, OutsideColumn, Parameters, Partial, Status, Surface,
+use super::shared::{
+    self, Before, BeforeColumn, Column, MEASURING_GROUPS, MOST_FANS, OutsideColumn, Parameters, Partial, Status,
+    Surface,
 };
 use super::solids::{CardSolids, filled};
 use super::sources::CardSources;
 use corpuscle_gpu::{
-    CellSort, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
+    CellSort, DECLARED, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
 };
 
-/// Pieces that the shaders import.
-pub(super) const LIBRARY: &[(&str, &str)] = &[
+/// Pieces that the shaders import, but for what they share with the host.
+const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_columns", include_str!("dew_columns.wgsl")),
@@ -20,17 +20,18 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("dew_normalisation", include_str!("dew_normalisation.wgsl")),
     ("dew_rows", include_str!("dew_rows.wgsl")),
     ("dew_saturate", include_str!("dew_saturate.wgsl")),
-    ("dew_solids", include_str!("dew_solids.wgsl")),
     ("dew_utility", include_str!("dew_utility.wgsl")),
 ];
+
+/// Pieces that the shaders import; `shared` is the text of what they share with the host.
+pub(super) fn library(shared: &str) -> Vec<(&'static str, &str)> {
+    PIECES.iter().copied().chain([(DECLARED, shared)]).collect()
+}
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
 const SOLIDS: u64 = 4;
 const BODIES: u64 = 5;
-
-/// Groups that share the parcels when they are summed up for gauges: see `dew_measure.wgsl`.
-pub(super) const MEASURING_GROUPS: u32 = 64;
 
 /// Everything on the device.
 #[derive(Debug)]
@@ -72,7 +73,7 @@ impl Tasks {
         gpu: &Gpu,
         count: usize,
         parameters: &Parameters,
-        fans: &[CardFan; MOST_FANS],
+        fans: &[shared::Fan; MOST_FANS as usize],
         solids: &CardSolids,
         sources: Option<&CardSources>,
         outside: &[OutsideColumn],
@@ -80,14 +81,14 @@ impl Tasks {
     ) -> Result<Self, GpuError> {
         let CardSolids { start: site_start, sites, own, pairs, .. } = solids;
         let cells = parameters.cells.iter().product::<u32>() as usize + 1;
-        let is_passed = parameters.flags & super::layout::IS_PASSED != 0;
+        let is_passed = parameters.flags & super::shared::IS_PASSED != 0;
         let parameters = uniform(gpu, "parameters of the air", parameters);
         let fans = uniform(gpu, "fans", fans);
-        let rows = storage::<CardRow>(gpu, "temperatures held", solids.rows.len())?;
+        let rows = storage::<shared::Row>(gpu, "temperatures held", solids.rows.len())?;
         let status = storage::<Status>(gpu, "status", 1)?;
         let groups = storage::<[u32; 3]>(gpu, "groups", 6)?;
-        let particles = storage::<CardParticle>(gpu, "air", count)?;
-        let ordered = storage::<CardParticle>(gpu, "air in order", count)?;
+        let particles = storage::<shared::Particle>(gpu, "air", count)?;
+        let ordered = storage::<shared::Particle>(gpu, "air in order", count)?;
         let keys = storage::<u32>(gpu, "numbers of parcels", count)?;
         let spots = storage::<[f32; 4]>(gpu, "places of parcels", count)?;
         let columns = storage::<Column>(gpu, "columns of air", count)?;
@@ -97,19 +98,21 @@ impl Tasks {
         let is_open = !outside.is_empty();
         let outside = filled(gpu, "columns outside", outside)?;
         let field = filled(gpu, "distances to solids", field)?;
-        let states = storage::<CardSolid>(gpu, "states of solids", solids.count)?;
-        let waters = storage::<CardWater>(gpu, "water on solids", solids.count)?;
+        let states = storage::<shared::Solid>(gpu, "states of solids", solids.count)?;
+        let waters = storage::<shared::Water>(gpu, "water on solids", solids.count)?;
         let surfaces = storage::<Surface>(gpu, "surfaces", solids.count)?;
-        let bodies = filled::<CardBody>(gpu, "solids", &solids.bodies)?;
-        let measured = storage::<CardMeasured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?;
+        let bodies = filled::<shared::Body>(gpu, "solids", &solids.bodies)?;
+        let measured = storage::<shared::Measured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
         let of_air = [&particles, &ordered, &keys, &spots, &columns, &partials, &before, &sort.places, &sort.order];
         let of_cells = [&sort.counts, &sort.start, site_start];
         let of_solids = [&states, &waters, &surfaces, sites, own, pairs];
         let bytes = of_air.into_iter().chain(of_cells).chain(of_solids).map(wgpu::Buffer::size).sum();
+        let shared = shared::declaration().types();
+        let library = library(&shared);
         let task = |name, text, buffers: &[Option<&wgpu::Buffer>]| {
             let bindings = buffers.iter().map(|buffer| buffer.map(wgpu::Buffer::as_entire_binding));
-            Kernel::new(gpu, name, text, LIBRARY).on_those(gpu, bindings)
+            Kernel::new(gpu, name, text, &library).on_those(gpu, bindings)
         };
         macro_rules! shader {
             ($name:literal, [$first:expr, $($buffer:expr),*]) => {

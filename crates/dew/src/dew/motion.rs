@@ -10,10 +10,10 @@ use crate::walls::{self, Push};
 use rayon::prelude::*;
 
 /// Acceleration limits the time step: this times the root of spacing over acceleration.
-const ACCELERATION_LIMIT: f64 = 0.25;
+pub(crate) const ACCELERATION_LIMIT: f64 = 0.25;
 
 /// Part of the longest step for which no diffusion overshoots its neighbours.
-const DIFFUSION_LIMIT: f64 = 0.9;
+pub(crate) const DIFFUSION_LIMIT: f64 = 0.9;
 
 /// A particle is not moved farther than this in a step to be evened out among its neighbours, in spacings.
 pub(crate) const FARTHEST_SPREAD: f64 = 0.05;

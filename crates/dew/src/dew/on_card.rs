@@ -79,7 +79,7 @@ impl GpuModel for Dew {
 impl Dew {
     /// What this model has that there is no twin of on the card.
     fn missing_on_card(&self) -> Vec<&'static str> {
-        let all = [(self.fans.len() > MOST_FANS, "more than 1024 fans ([[dew.fan]])")];
+        let all = [(self.fans.len() > MOST_FANS as usize, "more than 1024 fans ([[dew.fan]])")];
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 

@@ -205,7 +205,7 @@ impl Dew {
 
 /// Thickness of the layer before an outlet whose mean particle shift the air beyond takes over, in smoothing lengths: less than one layer of particles,
 /// so that a layer keeps the shift that moves it as a whole; without it sound between an inlet and the outlet grows.
-const OUTLET_LAYER: f64 = 0.2;
+pub(crate) const OUTLET_LAYER: f64 = 0.2;
 
 /// What air before an outlet does along the outlet's axis, in the mean.
 #[derive(Debug, Clone, Copy, Default)]

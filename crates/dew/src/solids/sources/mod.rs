@@ -121,7 +121,7 @@ impl Surroundings {
 }
 
 /// Iterations of Newton's method for the temperature of a surface: enough for one that glowing surroundings warm by hundreds of K.
-const ITERATIONS: usize = 5;
+pub(crate) const ITERATIONS: usize = 5;
 
 impl Conditions {
     /// Heat flux into the surface, W/m2, and by how much it falls with the temperature of the particle behind it, W/(m2 K).

@@ -1,0 +1,619 @@
+//! What the host and the shaders of humid air share: one declaration, from which the WGSL comes too.
+//!
+//! Single precision has some 7 digits. They are not to be spent on where the room is, nor on the 300 K and the part of vapour that all
+//! air has in common: positions are counted from the middle of the room, temperature and vapour from those of the ambient air. What grows by
+//! little in a step is kept as a sum with what it has too much.
+
+corpuscle_gpu::declare! {
+    constants {
+        /// Flag of [`Parameters::flags`]: air comes and goes by faces.
+        pub const IS_PASSED: u32 = 1;
+        /// Vapour diffuses to surfaces; else particles that are colder than their dew point give up what they have too much.
+        pub const DIFFUSES: u32 = 2;
+        /// Vapour beyond saturation becomes fog.
+        pub const FOGS: u32 = 4;
+        /// Vapour beyond saturation is looked for.
+        pub const SATURATES: u32 = 8;
+        /// Air faster than sound is refused.
+        pub const REFUSES_FAST: u32 = 16;
+        /// What diffuses is relative humidity.
+        pub const RELATIVE: u32 = 32;
+        /// Air of low utility is looked for.
+        pub const TENDS: u32 = 64;
+        /// No air comes or goes.
+        pub const IS_CLOSED: u32 = 128;
+        /// Conductivities of air and solid are harmonically averaged; else arithmetically.
+        pub const IS_HARMONIC: u32 = 256;
+        /// What a face does: it is a wall.
+        pub const WALL: u32 = 0;
+        /// It is joined to the opposite one.
+        pub const PERIODIC: u32 = 1;
+        /// Air comes in.
+        pub const INLET: u32 = 2;
+        /// Air leaves.
+        pub const OUTLET: u32 = 3;
+        /// Air goes where the flow takes it.
+        pub const OPEN: u32 = 4;
+        /// Role of a particle: in the room. Roles of a face have its number, twice the axis and 1 for the high side, in higher bits.
+        pub const INSIDE: u32 = 0;
+        /// Before an inlet.
+        pub const COMING: u32 = 1;
+        /// Beyond an outlet.
+        pub const LEAVING: u32 = 2;
+        /// Beyond an open side.
+        pub const OUTSIDE: u32 = 3;
+        /// It stays.
+        pub const STILL: u32 = 4;
+        /// Of low utility.
+        pub const IDLE: u32 = 5;
+        /// Bits of a role below the number of its face.
+        pub const FACE_BITS: u32 = 4;
+        /// Those bits.
+        pub const ROLE_MASK: u32 = 15;
+        /// Flag of [`Site::flags`]: a boundary particle.
+        pub const BOUNDARY: u32 = 1;
+        /// Air can come within reach of it.
+        pub const NEAR_SURFACE: u32 = 2;
+        /// It counts in the density of the air.
+        pub const JOINS_DENSITY: u32 = 4;
+        /// It repels air.
+        pub const REPELS: u32 = 8;
+        /// A ghost sample.
+        pub const GHOST: u32 = 16;
+        /// Its temperature is held.
+        pub const HELD: u32 = 32;
+        /// An image beyond a side that air passes.
+        pub const IMAGE_BEYOND: u32 = 64;
+        /// Value of [`Status::halted`]: the batch goes on.
+        pub const GOING: u32 = 0;
+        /// The time asked for is reached.
+        pub const ARRIVED: u32 = 1;
+        /// The step is too short to go on, or the air faster than sound.
+        pub const BROKEN: u32 = 2;
+        /// The host has said until when to go on.
+        pub const SPOKEN: u32 = 3;
+        /// There may be too little room for what comes in the next step.
+        pub const FULL: u32 = 4;
+        /// It is looked for air of low utility once in so many steps.
+        pub const TURN: u32 = crate::utility::STEPS as u32;
+        /// Steps that can be ordered at once.
+        pub const MOST_STEPS: u32 = 64;
+        /// Groups that share the particles when they are summed up for gauges.
+        pub const MEASURING_GROUPS: u32 = 64;
+        /// Fans that there is room for: 48 KiB of the 64 that every device has for numbers of this kind.
+        pub const MOST_FANS: u32 = 1024;
+        /// How far air goes on beyond a face that it passes, in smoothing lengths.
+        pub const BEYOND: f32 = crate::faces::BEYOND as f32;
+        /// Depth of the layer before an outlet whose mean velocity air beyond takes, in spacings.
+        pub const OUTLET_LAYER: f32 = crate::faces::OUTLET_LAYER as f32;
+        /// Acceleration limits the time step: this times the root of spacing over acceleration.
+        pub const ACCELERATION_LIMIT: f32 = crate::dew::ACCELERATION_LIMIT as f32;
+        /// Part of the longest step for which no diffusion overshoots its neighbours.
+        pub const DIFFUSION_LIMIT: f32 = crate::dew::DIFFUSION_LIMIT as f32;
+        /// Damping of particles that approach each other.
+        pub const DAMPING: f32 = crate::air::DAMPING as f32;
+        /// Strength of the virtual force of solids, over density and the square of the speed of sound.
+        pub const STRENGTH: f32 = crate::walls::STRENGTH as f32;
+        /// Its range, in spacings.
+        pub const RANGE: f32 = crate::walls::RANGE as f32;
+        /// Largest eigenvalue of a tensor of normalisation.
+        pub const MAX_EIGENVALUE: f32 = crate::normalisation::MAX_EIGENVALUE as f32;
+        /// How far ahead air of low utility is looked for, in smoothing lengths.
+        pub const WAY: f32 = crate::utility::WAY as f32;
+        /// Iterations of Newton's method for the temperature of a surface.
+        pub const ITERATIONS: u32 = crate::solids::sources::ITERATIONS as u32;
+        /// Constants of the formula of saturation, Bolton 1980: its factor, and °C.
+        pub const BOLTON_B: f32 = crate::humid_air::B as f32;
+        /// See above.
+        pub const BOLTON_C: f32 = crate::humid_air::C as f32;
+        /// Molar mass of water over that of dry air.
+        pub const MASS_RATIO: f32 = crate::humid_air::MASS_RATIO as f32;
+    }
+    structs {
+        /// A sum that does not forget what is small (Kahan 1965).
+        pub struct Account {
+            /// The sum.
+            pub sum: f32,
+            /// What it has too much.
+            pub lacking: f32,
+        }
+
+        /// Sums of four numbers.
+        pub struct Account4 {
+            /// The sums.
+            pub sum: [f32; 4],
+            /// What they have too much.
+            pub lacking: [f32; 4],
+        }
+
+        /// Air as it comes in by a face.
+        pub struct Inlet {
+            /// m/s.
+            pub velocity: [f32; 3],
+            /// From the ambient air's, K.
+            pub temperature: f32,
+            /// From the ambient air's, part of the mass.
+            pub vapour: f32,
+            /// Where a new layer stands, m beyond the face.
+            pub behind: f32,
+            /// Fills up.
+            pub unused: [f32; 2],
+        }
+
+        /// A box in which air is accelerated along a direction.
+        pub struct Fan {
+            /// Its low corner, m.
+            pub low: [f32; 3],
+            /// Rate of the acceleration, 1/s.
+            pub rate: f32,
+            /// Its high corner, m.
+            pub high: [f32; 3],
+            /// The speed to reach, m/s.
+            pub speed: f32,
+            /// Unit vector.
+            pub direction: [f32; 3],
+            /// Fills up.
+            pub unused: f32,
+        }
+
+        /// Numbers of the run.
+        pub struct Parameters {
+            /// Low corner of the room, m from its middle.
+            pub low: [f32; 3],
+            /// The kernels' support, m.
+            pub h: f32,
+            /// High corner of the room.
+            pub high: [f32; 3],
+            /// m.
+            pub spacing: f32,
+            /// What the faces do: at low and high x, low and high y; at low and high z.
+            pub faces: [[u32; 4]; 2],
+            /// Lowest corner of the cells, m.
+            pub corner: [f32; 3],
+            /// Cells per metre.
+            pub per_cell: f32,
+            /// Cells along each axis.
+            pub cells: [u32; 3],
+            /// [`IS_PASSED`] and those after it.
+            pub flags: u32,
+            /// Distance of particles that come in by inlets, m.
+            pub apart: [f32; 3],
+            /// Number of fans.
+            pub fans: u32,
+            /// Particles that come in, along each axis.
+            pub counts: [u32; 3],
+            /// 1/m.
+            pub per_h: f32,
+            /// m/s2.
+            pub gravity: [f32; 3],
+            /// Artificial speed of sound, m/s.
+            pub sound: f32,
+            /// Acceleration of all air, m/s2.
+            pub driven: [f32; 3],
+            /// Kinematic viscosity, m2/s.
+            pub viscosity: f32,
+            /// Of the air, kg/m3.
+            pub density: f32,
+            /// At which the pressure is that at rest, kg/m3.
+            pub rest_density: f32,
+            /// How dense solids are for the air.
+            pub kappa: f32,
+            /// Factor of sums over (1 - q^2)^3, with q = r/h.
+            pub of_filling: f32,
+            /// Over (1 - q) q q q q/|q|^2.
+            pub of_moments: f32,
+            /// Over (1 - q)^2, times pressures.
+            pub of_pressure: f32,
+            /// Over (1 - q)^2.
+            pub of_spread: f32,
+            /// Over 1 - q.
+            pub of_laplacian: f32,
+            /// Conductance over conductivity of a pair of air and solid, m.
+            pub of_pair: f32,
+            /// Of a particle, kg.
+            pub mass: f32,
+            /// J/(kg K).
+            pub heat_capacity: f32,
+            /// J/kg.
+            pub latent_heat: f32,
+            /// m2/s.
+            pub heat_diffusivity: f32,
+            /// m2/s.
+            pub vapour_diffusivity: f32,
+            /// m2/s.
+            pub largest_diffusivity: f32,
+            /// Twice density times diffusivity of vapour, kg/(m s).
+            pub vapour_reach: f32,
+            /// Temperature of the ambient air, K.
+            pub ambient: f32,
+            /// Its vapour, part of the mass.
+            pub ambient_vapour: f32,
+            /// Its temperature, °C.
+            pub celsius: f32,
+            /// Pa.
+            pub air_pressure: f32,
+            /// Times the gradient of crowding, m2/s2.
+            pub spreading: f32,
+            /// Farthest that a particle is put in a step, m.
+            pub farthest: f32,
+            /// Part of a smoothing length that sound may cross in a step.
+            pub cfl: f32,
+            /// s.
+            pub shortest_step: f32,
+            /// Least speed beyond outlets, m/s.
+            pub slowest: f32,
+            /// Pressure of saturated vapour at the ambient temperature, Pa.
+            pub saturated: f32,
+            /// Vapour pressure of the ambient air, Pa.
+            pub ambient_pressure: f32,
+            /// Always 0; read at run time so that the optimiser keeps compensated sums.
+            pub zero: u32,
+            /// How far beyond an open side the last particle of a full column stands, m, by axis.
+            pub deepest: [f32; 3],
+            /// With more particles than this the host has to make room.
+            pub full: u32,
+            /// The first node at which distances to solids are known, m.
+            pub field_corner: [f32; 3],
+            /// Nodes per metre.
+            pub per_node: f32,
+            /// Nodes along each axis.
+            pub nodes: [u32; 3],
+            /// Air is of low utility beyond this distance, m.
+            pub low_beyond: f32,
+            /// It is taken out beyond this distance, m.
+            pub useless_beyond: f32,
+            /// After so long, s.
+            pub low_after: f32,
+            /// How many times faster than in reality solids and water on them change.
+            pub time_factor: f32,
+            /// What the ambient air lacks to be saturated, part of the mass.
+            pub lacking: f32,
+            /// Temperature coefficient of viscosity, 1/K.
+            pub viscosity_per_kelvin: f32,
+            /// Of conductivity, 1/K.
+            pub conductivity_per_kelvin: f32,
+            /// Of the diffusivity of vapour, 1/K.
+            pub diffusivity_per_kelvin: f32,
+            /// Temperature at which properties are as told, from the ambient air's, K.
+            pub reference: f32,
+            /// By low and high x, y, z.
+            pub inlets: [Inlet; 6],
+        }
+
+        /// A particle of air; temperature, K, and vapour, part of the mass, are counted from the ambient air's.
+        pub struct Particle {
+            /// m.
+            pub place: [f32; 3],
+            /// kg/m3.
+            pub density: f32,
+            /// m/s.
+            pub velocity: [f32; 3],
+            /// Part of the mass.
+            pub fog: f32,
+            /// m/s2.
+            pub acceleration: [f32; 3],
+            /// Water that it lays on solids near, kg, over the sum of their weights.
+            pub deposit: f32,
+            /// Acceleration of the transport velocity, m/s2.
+            pub spreading: [f32; 3],
+            /// Its number.
+            pub id: u32,
+            /// K.
+            pub temperature: Account,
+            /// Part of the mass.
+            pub vapour: Account,
+            /// [`INSIDE`] and those after it.
+            pub role: u32,
+            /// For how long it has been of low utility, s.
+            pub idle: f32,
+            /// Fills up.
+            pub unused: [f32; 2],
+        }
+
+        /// A particle of a solid, its image, a ghost sample, or, with its pairs and capacity alone, a cell of a wall behind a solid.
+        pub struct Site {
+            /// m.
+            pub place: [f32; 3],
+            /// Over that of a particle of air.
+            pub volume: f32,
+            /// Conductivity with which the air is warmed, W/(m K).
+            pub to_air: f32,
+            /// Conductivity with which the solid is.
+            pub to_solid: f32,
+            /// Part of the heat at the surface that goes to the solid.
+            pub part: f32,
+            /// [`BOUNDARY`] and those after it.
+            pub flags: u32,
+            /// Number of the particle.
+            pub particle: u32,
+            /// First of its pairs in the list of conductances.
+            pub first: u32,
+            /// After the last of them.
+            pub end: u32,
+            /// J/K.
+            pub capacity: f32,
+        }
+
+        /// Water on a particle of a solid.
+        pub struct Water {
+            /// When the host last told, kg.
+            pub told: f32,
+            /// Part of the evaporation of a wet surface that it lets go.
+            pub evaporation: f32,
+            /// Gained since, kg.
+            pub gained: Account,
+        }
+
+        /// What else changes of a particle of a solid.
+        pub struct Solid {
+            /// From the ambient air's, K.
+            pub temperature: Account,
+            /// Heat through the surface in the last step, W.
+            pub flow: f32,
+            /// Heat that it was held against in the last step, J.
+            pub held: f32,
+            /// How stiff diffusion was, 1/s.
+            pub stiff: f32,
+            /// Water that the air gave, kg.
+            pub water: f32,
+        }
+
+        /// What air sees of a particle of a solid in a step, and what that gets.
+        pub struct Surface {
+            /// From the ambient air's, K.
+            pub temperature: f32,
+            /// kg.
+            pub water: f32,
+            /// Part of the evaporation asked for that there is water for.
+            pub share: f32,
+            /// Heat from the air, W.
+            pub heat: f32,
+            /// With that through the solid, W.
+            pub all_heat: f32,
+            /// Water, kg/s.
+            pub gain: f32,
+            /// To air and within the solid, W/K.
+            pub conductance: f32,
+            /// As of [`Water`].
+            pub evaporation: f32,
+        }
+
+        /// A solid or a wall: its particles or cells, and what they sum up to.
+        pub struct Body {
+            /// First of them.
+            pub first: u32,
+            /// After the last of them.
+            pub end: u32,
+            /// Heat through the surface, W.
+            pub flow: f32,
+            /// How stiff diffusion was, 1/s.
+            pub stiff: f32,
+            /// Heat that it was held against, J.
+            pub held: Account,
+            /// First of its rows, where the temperature at which it is held changes.
+            pub first_row: u32,
+            /// After the last of them.
+            pub end_row: u32,
+            /// Water that the air gave, kg.
+            pub water: f32,
+            /// Fills up.
+            pub unused: f32,
+        }
+
+        /// A value at a time.
+        pub struct Row {
+            /// s since the state was sent.
+            pub time: Account,
+            /// Temperatures are counted from the ambient air's, K.
+            pub value: f32,
+            /// Fills up.
+            pub unused: f32,
+        }
+
+        /// Part of a surface that a particle stands for.
+        pub struct Part {
+            /// m2.
+            pub area: f32,
+            /// Distance to the particle over the conductivity, m2 K/W.
+            pub resistance: f32,
+        }
+
+        /// Share of a particle in its solid's heat sources.
+        pub struct Share {
+            /// Part of the heater's power.
+            pub heater: f32,
+            /// Fills up.
+            pub unused: f32,
+            /// Its surface in a side of the box.
+            pub outside: Part,
+            /// Its surface in the box.
+            pub radiation: Part,
+        }
+
+        /// Surroundings of a surface.
+        pub struct Surroundings {
+            /// W/(m2 K).
+            pub transfer_coefficient: f32,
+            /// Emissivity times the Stefan-Boltzmann constant, W/(m2 K4).
+            pub emissivity_sigma: f32,
+            /// Rows of the temperature of the air.
+            pub air_first: u32,
+            /// After the last of them.
+            pub air_end: u32,
+            /// Rows of the mean radiant temperature.
+            pub radiant_first: u32,
+            /// After the last of them.
+            pub radiant_end: u32,
+        }
+
+        /// Heat sources of a solid or a wall.
+        pub struct Source {
+            /// Factor of the heater's power.
+            pub power_factor: f32,
+            /// Fills up.
+            pub unused: f32,
+            /// Rows of the heater's power.
+            pub power_first: u32,
+            /// After the last of them.
+            pub power_end: u32,
+            /// Outside the box.
+            pub outside: Surroundings,
+            /// In the box.
+            pub radiation: Surroundings,
+            /// Heat that each kind has supplied, J.
+            pub supplied: [Account; 3],
+        }
+
+        /// A column of air outside an open side.
+        pub struct OutsideColumn {
+            /// How the air before it moves across the side, m/s.
+            pub velocity: f32,
+            /// Whether no solid stands in it.
+            pub is_free: u32,
+        }
+
+        /// What a group sums up for gauges.
+        pub struct Measured {
+            /// From the ambient air's, K.
+            pub temperature: f32,
+            /// From the ambient air's, part of the mass.
+            pub vapour: f32,
+            /// Part of the mass.
+            pub fog: f32,
+            /// Square of the largest speed, m2/s2.
+            pub fastest: f32,
+            /// Particles in the room.
+            pub count: u32,
+        }
+
+        /// What the host learns, and says.
+        pub struct Status {
+            /// Particles of air; this and the next first: the sort reads them.
+            pub particles: u32,
+            /// Number of cells.
+            pub cells: u32,
+            /// [`GOING`] and those after it.
+            pub halted: u32,
+            /// Steps since the start of the batch.
+            pub steps: u32,
+            /// Low and high half.
+            pub particle_steps: [u32; 2],
+            /// The next step, s.
+            pub step: f32,
+            /// When to halt, s since the host last spoke.
+            pub until: f32,
+            /// Time since the host last spoke, s.
+            pub elapsed: Account,
+            /// Number of the next particle that comes in.
+            pub next_id: u32,
+            /// Square of the largest speed in the last step, m2/s2.
+            pub fastest: f32,
+            /// Of particles that came: number, temperature, K, vapour and fog, parts of the mass.
+            pub came: Account4,
+            /// The same of those that went.
+            pub went: Account4,
+            /// Over the mass of a particle: water that diffused in and out over faces, and energy, J/kg.
+            pub diffused: Account4,
+            /// Vapour that became fog, part of a particle's mass.
+            pub fogged: Account,
+            /// Time since the state was sent, s.
+            pub time: Account,
+            /// How far the air before each inlet has come since its last layer, m.
+            pub phase: [Account; 6],
+            /// What air beyond each outlet is faster by, m/s.
+            pub before: [f32; 6],
+            /// The mean `spreading` nearest to each outlet along its axis, m/s2.
+            pub spreading_before: [f32; 6],
+            /// By how much the air beyond each outlet is denser than at rest, over its density at rest.
+            pub density_excess_beyond: [f32; 6],
+            /// Running mean of the velocity along its axis of the air before each outlet, m/s.
+            pub running_mean_before: [f32; 6],
+            /// When it was last looked for air of low utility, s since the state was sent.
+            pub seen: Account,
+            /// What all air of a closed room gains in the next step for accelerated time: temperature, K, and vapour, part of the mass.
+            pub drift: [f32; 2],
+            /// Number of the batch's first step, from one that is a multiple of [`TURN`].
+            pub turn: u32,
+            /// Fills up.
+            pub unused: u32,
+            /// Fills up.
+            pub unused_more: [u32; 2],
+            /// How long the steps were, s.
+            pub lengths: [f32; MOST_STEPS as usize],
+        }
+    }
+}
+
+impl Account {
+    /// The value of the sum.
+    pub fn value(self) -> f64 {
+        f64::from(self.sum) - f64::from(self.lacking)
+    }
+}
+
+/// A number as a sum of two.
+impl From<f64> for Account {
+    fn from(value: f64) -> Self {
+        let sum = value as f32;
+        Self { sum, lacking: (f64::from(sum) - value) as f32 }
+    }
+}
+
+impl Account4 {
+    /// The values of the sums.
+    pub fn values(&self) -> [f64; 4] {
+        std::array::from_fn(|k| Account { sum: self.sum[k], lacking: self.lacking[k] }.value())
+    }
+}
+
+impl Row {
+    /// A value less `zero` at a time, counted from `start`, s.
+    pub fn new([time, value]: [f64; 2], start: f64, zero: f64) -> Self {
+        Self { time: (time - start).into(), value: (value - zero) as f32, unused: 0.0 }
+    }
+}
+
+/// Bytes of a `BeforeColumn`, of `dew_columns.wgsl`.
+pub(super) type BeforeColumn = [u32; 3];
+
+/// Bytes of a `Column`, a `Partial`, and of what is summed before faces.
+pub(super) type Column = [f32; 16];
+pub(super) type Partial = [f32; 16];
+pub(super) type Before = [[f32; 8]; 6];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::card::tasks::library;
+
+    /// Each by itself with what it imports.
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/card");
+        let mut count = 0;
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.extension().is_some_and(|extension| extension == "wgsl") {
+                let (name, text) =
+                    (path.file_stem().unwrap().to_str().unwrap(), std::fs::read_to_string(&path).unwrap());
+                let shared = declaration().types();
+                let mut library = library(&shared);
+                library.push(corpuscle_gpu::DEVICE_PARTICLES);
+                let joined = corpuscle_gpu::join(name, &text, &library).unwrap();
+                corpuscle_gpu::check_shader(&joined).unwrap_or_else(|error| panic!("{name}.wgsl: {error}"));
+                count += 1;
+            }
+        }
+        assert!(count > 15, "{count}");
+    }
+
+    #[test]
+    fn rust_and_wgsl_lay_structures_out_alike() {
+        corpuscle_gpu::check_layouts(&declaration()).unwrap();
+    }
+
+    #[test]
+    fn sums_keep_what_is_small() {
+        let value = 300.000_000_123;
+        assert!((Account::from(value).value() - value).abs() < 1e-13 * value);
+    }
+}
