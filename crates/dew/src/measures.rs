@@ -4,6 +4,7 @@ use crate::air::Particle;
 use crate::dew::Dew;
 use crate::drops::Drops;
 use crate::fogging::Cover;
+use crate::humid_air::is_frost;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
 use std::f64::consts::SQRT_2;
 
@@ -177,6 +178,29 @@ impl Dew {
         let all =
             ["heat_from_heater", "heat_from_outside", "heat_by_radiation"].into_iter().zip(self.heat_supplied(body));
         all.zip(has).filter_map(|(heat, has)| has.then_some(heat))
+    }
+
+    /// Says on which solids water would be ice now.
+    pub(crate) fn frost(&self) -> Vec<String> {
+        let is_wet = |body: usize| match &self.wetting {
+            Some(wetting) => wetting.stories()[body].covered > 0.0,
+            None => self.water_on_body(body) > 0.0,
+        };
+        let is_cold = |body: usize| {
+            let particles = self.solids.particles.iter().zip(&self.state.temperatures);
+            let mut surface =
+                particles.filter(|(particle, _)| particle.body as usize == body && particle.normal.is_some());
+            surface.any(|(_, &temperature)| is_frost(temperature))
+        };
+        let frozen = self.names.iter().enumerate().filter(|(body, _)| is_wet(*body) && is_cold(*body));
+        frozen
+            .map(|(_, name)| {
+                format!(
+                    "there is water on the solid \"{name}\", and some of its surface is below 0 °C: it would be frost, which is out of scope, and is taken as \
+                     water"
+                )
+            })
+            .collect()
     }
 
     /// Water on a body, kg, and its mean temperature, K.

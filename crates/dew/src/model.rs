@@ -182,7 +182,7 @@ impl Model for Dew {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        self.warnings.iter().cloned().chain(self.frost()).collect()
     }
 
     fn save(&self) -> Vec<u8> {

@@ -94,6 +94,27 @@ fn a_run_with_a_wall_goes_on_from_its_checkpoint() {
 }
 
 #[test]
+fn water_on_a_pane_that_has_become_colder_than_ice_is_told() {
+    let frosts = |outside: f64| {
+        let text = format!(
+            "run.until_s = 1\n[dew]\nsize_m = [0.016, 0.012, 0.012]\nspacing_m = 0.002\nbuoyancy = false\ntime_factor = 200\n\
+             air = {{ temperature_c = 20, relative_humidity = 0.9 }}\ndrops.smallest_radius_m = 5e-5\n[dew.faces]\nx_max = \"open\"\n[[dew.solid]]\n\
+             name = \"pane\"\nshape = {{ box = {{ size_m = [0.006, 0.012, 0.012] }} }}\nposition_m = [0.003, 0.006, 0.006]\ntemperature_c = 5\n\
+             outside = {{ side = \"x_min\", temperature_c = {outside}, h_w_per_m2_k = 500 }}\n"
+        );
+        let scene = Scene::parse(&text, "test", &[]).unwrap();
+        let mut dew = corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
+        let is_told = |dew: &Dew| {
+            dew.warnings().iter().any(|warning| warning.contains("\"pane\"") && warning.contains("below 0 °C"))
+        };
+        assert!(!is_told(&dew), "{:?}", dew.warnings());
+        go(&mut dew, 0.5);
+        is_told(&dew)
+    };
+    assert!(frosts(-30.0) && !frosts(3.0));
+}
+
+#[test]
 fn a_material_of_a_layer_that_is_not_known_is_named() {
     let error = made(&DOUBLE.replace("\"glass\"", "\"glas\"")).err().unwrap().to_string();
     assert!(
