@@ -41,7 +41,7 @@ const BYTES_PER_CELL_OF_WATER: f64 = 560.0;
 const BYTES_PER_BALL: f64 = 500.0;
 
 /// Memory for each particle of dew, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
-const BYTES_PER_PARCEL: f64 = 1300.0;
+const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
 
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
@@ -153,7 +153,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
 fn bytes_per_particle(scene: &Scene) -> f64 {
     match &scene.model {
         ModelScene::Gas(_) => BYTES_PER_BALL,
-        ModelScene::Dew(_) => BYTES_PER_PARCEL,
+        ModelScene::Dew(_) => BYTES_PER_AIR_PARTICLE,
         ModelScene::Flood(flood) if flood.flood.scheme == Scheme::Voronoi => BYTES_PER_CELL_OF_WATER,
         ModelScene::Flood(_) => BYTES_PER_PARTICLE,
     }

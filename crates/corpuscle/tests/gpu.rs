@@ -26,7 +26,7 @@ const FLOODS: [(&str, f64, f64); 8] = [
     ("flood/rough-terrain", 2.0, 1e-2),
 ];
 
-/// Scenes, the time from which they are compared, and a distance of parcels, m, at which software in place of a card does hundred steps in seconds.
+/// Scenes, the time from which they are compared, and a distance of particles, m, at which software in place of a card does hundred steps in seconds.
 const DEW: [(&str, f64, &str); 5] = [
     ("dew/pane", 0.15, "0.003"),
     ("dew/lens", 0.1, "0.003"),
@@ -120,13 +120,13 @@ fn water(model: &dyn Model) -> Vec<(u64, [f64; 5])> {
     particles.iter().map(|p| (p.id, [p.x, p.y, p.u, p.v, p.depth])).collect()
 }
 
-/// Place, velocity, temperature, vapour and fog of each parcel.
+/// Place, velocity, temperature, vapour and fog of each particle.
 fn air(model: &dyn Model) -> Vec<(u64, [f64; 9])> {
     let model: &dyn Any = model;
     let air = model.downcast_ref::<Dew>().unwrap().air().iter();
-    air.map(|parcel| {
-        let ([x, y, z], [u, v, w]) = (parcel.position, parcel.velocity);
-        (parcel.id, [x, y, z, u, v, w, parcel.temperature, parcel.vapour, parcel.fog])
+    air.map(|particle| {
+        let ([x, y, z], [u, v, w]) = (particle.position, particle.velocity);
+        (particle.id, [x, y, z, u, v, w, particle.temperature, particle.vapour, particle.fog])
     })
     .collect()
 }

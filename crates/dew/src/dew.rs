@@ -354,7 +354,7 @@ impl Dew {
         self.wetting.as_ref().map_or_else(sum, |wetting| wetting.water(water))
     }
 
-    /// Energy of a parcel of air, J: its heat above 0 °C, and the heat that its vapour gives off when it condenses.
+    /// Energy of a particle of air, J: its heat above 0 °C, and the heat that its vapour gives off when it condenses.
     pub(crate) fn energy_of(&self, particle: &Particle) -> f64 {
         let heat = self.air.heat_capacity * (particle.temperature - COLD);
         self.particle_mass() * (heat + self.latent_heat * particle.vapour)
@@ -421,7 +421,7 @@ impl Dew {
         on.filter(|(particle, _)| particle.body as usize == body).map(|(_, water)| water).sum()
     }
 
-    /// The air, as it stands at the end of the last step; parcels before inlets and beyond outlets among it.
+    /// The air, as it stands at the end of the last step; particles before inlets and beyond outlets among it.
     pub fn air(&self) -> &[Particle] {
         &self.state.air
     }

@@ -77,9 +77,9 @@ pub struct Work {
     pub supplied: Vec<[f64; 3]>,
     /// How stiff diffusion was, 1/s, for the air near sites, then for the particles of the solids.
     pub stiff: Vec<f64>,
-    /// What each parcel of air has beyond saturation, part of the mass.
+    /// What each particle of air has beyond saturation, part of the mass.
     pub excesses: Vec<f64>,
-    /// How the water of a parcel is divided.
+    /// How the water of a particle is divided.
     pub shares: Vec<(u32, f64)>,
 }
 
@@ -181,7 +181,7 @@ impl Exchange<'_> {
         sum
     }
 
-    /// How a parcel's water is divided among the boundary particles near it: pairs of the numbers of boundary particles and
+    /// How an air particle's water is divided among the boundary particles near it: pairs of the numbers of boundary particles and
     /// parts, in `shares`. Empty where none is near.
     pub fn shares(&self, near: &Near, shares: &mut Vec<(u32, f64)>) {
         let part = |pair: &Pair| {

@@ -24,7 +24,7 @@ pub(crate) struct Layer {
 
 /// What is found there.
 pub(crate) struct Found {
-    /// Signed distance of the nearest parcel, m; negative where air is inside.
+    /// Signed distance of the nearest particle, m; negative where air is inside.
     pub nearest: f64,
     /// Width of the vacuum before the surface if the air began at once beyond it, m.
     pub gap: f64,

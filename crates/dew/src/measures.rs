@@ -11,7 +11,7 @@ use std::f64::consts::SQRT_2;
 /// What gauges tell of the air as a whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Totals {
-    /// Parcels inside.
+    /// Particles inside.
     pub count: f64,
     /// Sums over them: temperatures, K, vapour and fog, parts of the mass.
     pub temperature: f64,

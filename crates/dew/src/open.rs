@@ -85,7 +85,7 @@ fn refuse_what_cannot_be(scene: &written::Dew) -> Result<(), ModelError> {
     let refuse = |what: &str| Err(ModelError::Setup(what.into()));
     if humidity_transport(scene) == HumidityTransport::RelativeHumidity && scene.scheme == Scheme::Physical {
         return refuse(
-            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"paper\" only, where parcels of air condense: give \
+            "dew.transport.humidity = \"relative-humidity\" goes with the scheme \"paper\" only, where particles of air condense: give \
              scheme = \"paper\", or \"mass-fraction\"",
         );
     }
@@ -215,7 +215,7 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
             HumidityTransport::MassFraction => Humidity::MassFraction,
             HumidityTransport::RelativeHumidity => Humidity::Relative,
         },
-        condensation: if paper { Condensation::Parcel } else { Condensation::Diffusion },
+        condensation: if paper { Condensation::Particle } else { Condensation::Diffusion },
         gravity: if scene.buoyancy { scene.gravity_m_per_s2 } else { [0.0; 3] },
         low_utility: scene.low_utility.as_ref().map(|low| LowUtility { distance: low.distance, after: low.after_s }),
         time_factor: scene.time_factor,

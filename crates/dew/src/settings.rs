@@ -57,8 +57,8 @@ pub enum Condensation {
     /// Vapour diffuses to the surface, where air is saturated at the surface's temperature; and back from water there.
     #[default]
     Diffusion,
-    /// As published: a parcel of air at the surface that is colder than its dew point gives up what it has too much.
-    Parcel,
+    /// As published: a particle of air at the surface that is colder than its dew point gives up what it has too much.
+    Particle,
 }
 
 /// What of the vapour diffuses.
@@ -90,7 +90,7 @@ pub struct Settings {
     pub walls: WallTreatment,
     /// How heat passes between unlike neighbours.
     pub mean: Mean,
-    /// What of the vapour diffuses; relative humidity only where parcels condense.
+    /// What of the vapour diffuses; relative humidity only where particles condense.
     pub humidity: Humidity,
     /// How vapour becomes water on a surface.
     pub condensation: Condensation,

@@ -18,7 +18,7 @@ pub(crate) const FARTHER: f64 = 2.0;
 /// Distances are compared after a way of this, in smoothing lengths.
 pub(crate) const WAY: f64 = 0.05;
 
-/// What is to become of a parcel.
+/// What is to become of a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Utility {
     Matters,

@@ -6,7 +6,7 @@ use crate::normalisation::{self, Moments};
 use crate::settings::WallTreatment;
 use rayon::prelude::*;
 
-/// What walls add to each parcel near solids, kept between steps.
+/// What walls add to each air particle near solids, kept between steps.
 #[derive(Debug, Default)]
 pub struct Work {
     parts: Vec<f64>,

@@ -90,7 +90,7 @@ impl Wetting {
         step - self.step
     }
 
-    /// Whether it is their turn in a step, with so many parcels of air.
+    /// Whether it is their turn in a step, with so many particles of air.
     pub fn is_due(&self, step: u64, air: usize) -> bool {
         let many = DROPS_TOGETHER * self.drops.drops().len() / air.max(1);
         step - self.step >= STEPS * (1 + many as u64)
@@ -301,7 +301,7 @@ impl Dew {
         self.tell_evaporation();
     }
 
-    /// Drops take over what condensed, where it is their turn; there are so many parcels of air.
+    /// Drops take over what condensed, where it is their turn; there are so many particles of air.
     pub(crate) fn tend_drops(&mut self, air: usize) {
         let step = self.state.steps;
         let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };

@@ -50,7 +50,7 @@ fn of_ball(dew: &Dew) -> [f64; 2] {
 
 #[test]
 fn water_and_energy_balance_with_any_factor() {
-    for condensation in [Condensation::Diffusion, Condensation::Parcel] {
+    for condensation in [Condensation::Diffusion, Condensation::Particle] {
         for faces in [CLOSED, through_flow()] {
             for held in [false, true] {
                 let mut setup = ball(faces, held, 25.0);
@@ -112,7 +112,7 @@ fn air_passes_the_same_heat_with_any_factor() {
         let mut setup = ball(CLOSED, true, factor);
         setup.room.faces = [[Face::Wall; 2], [Face::Periodic; 2], [Face::Periodic; 2]];
         setup.settings.gravity = [0.0; 3];
-        setup.settings.condensation = Condensation::Parcel;
+        setup.settings.condensation = Condensation::Particle;
         setup.settings.fog = false;
         let plate = |x: f64, temperature: f64| {
             let size = setup.room.high;

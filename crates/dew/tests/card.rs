@@ -47,7 +47,7 @@ fn stirred(setup: &Setup) -> Dew {
     nudged(setup, 0.0)
 }
 
-/// The same with every second parcel or so faster along x by `nudge`, m/s.
+/// The same with every second particle or so faster along x by `nudge`, m/s.
 fn nudged(setup: &Setup, nudge: f64) -> Dew {
     let start = |place| {
         let [x, y, z] = part(setup, place).map(|part| (TAU * part).sin());
@@ -87,11 +87,11 @@ fn largest(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).abs()).fold(0.0, f64::max)
 }
 
-/// Largest differences over all parcels: place over the spacing; velocity, m/s; acceleration, m/s2; temperature, K; vapour and fog, parts
+/// Largest differences over all particles: place over the spacing; velocity, m/s; acceleration, m/s2; temperature, K; vapour and fog, parts
 /// of the mass; density, kg/m3.
 fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
     let (a, b) = (by_id(a), by_id(b));
-    assert_eq!(a.len(), b.len(), "parcels");
+    assert_eq!(a.len(), b.len(), "particles");
     let mut most = [0.0_f64; 7];
     for (a, b) in a.iter().zip(&b) {
         assert_eq!((a.id, a.role), (b.id, b.role));
@@ -121,7 +121,7 @@ fn all_faces() -> [(&'static str, [[Face; 2]; 3]); 3] {
     ]
 }
 
-/// Goes one step and nine more with both, and compares every parcel and every particle of the solids.
+/// Goes one step and nine more with both, and compares every air particle and every particle of the solids.
 fn assert_as_on_the_processor(name: &str, both: [Dew; 2]) {
     assert_as_near(name, both, TEN);
 }
@@ -205,7 +205,7 @@ fn published_ways_go_as_on_the_processor() {
         let mut setup = ball(all_faces()[2].1, false);
         setup.settings.mean = mean;
         setup.air.coefficients = TemperatureCoefficients::default();
-        setup.settings.condensation = Condensation::Parcel;
+        setup.settings.condensation = Condensation::Particle;
         setup.settings.humidity = Humidity::Relative;
         setup.settings.time_factor = 2.0;
         assert_as_on_the_processor(&format!("{mean:?}"), [stirred(&setup), on_card(stirred(&setup), &gpu)]);
@@ -254,7 +254,7 @@ fn air_that_conducts_better_where_it_is_warm_does_so_as_on_the_processor() {
     }
 }
 
-/// The speed is such that no parcel stands in a face after a whole number of steps, where rounding would tell on which side.
+/// The speed is such that no particle stands in a face after a whole number of steps, where rounding would tell on which side.
 fn through_flow() -> [[Face; 2]; 3] {
     let inflow = Inflow { velocity: [0.097, 0.0, 0.0], temperature: WARM + 2.0, vapour: vapour(WARM, 0.9) };
     [[Face::Inlet(inflow), Face::Outlet], [Face::Wall, Face::Outlet], [Face::Periodic; 2]]
@@ -440,7 +440,7 @@ fn air_of_low_utility_goes_as_on_the_processor() {
         step(&mut host, 1);
         assert!(idle(&host) > 50 && 2 * idle(&host) < host.air().len(), "{name}: {}", idle(&host));
         // Beside air that only moves on, what rounding leaves grows tenfold within ten steps: as far as on the processor, where velocities change by as much
-        // as moves parcels by what single precision leaves after a step.
+        // as moves particles by what single precision leaves after a step.
         let (mut plain, mut moved) = (stirred(&setup), nudged(&setup, 1e-6));
         step(&mut plain, 10);
         step(&mut moved, 10);
@@ -455,7 +455,7 @@ fn air_of_low_utility_goes_as_on_the_processor() {
     }
 }
 
-/// Round a ball the distance between nodes is not exact: of some hundred parcels one may be found useless that is not.
+/// Round a ball the distance between nodes is not exact: of some hundred particles one may be found useless that is not.
 #[test]
 fn air_of_low_utility_is_found_round_a_ball_and_taken_out() {
     let Some(gpu) = require_gpu("air of low utility on the card") else { return };

@@ -84,7 +84,7 @@ fn a_surface_above_the_dew_point_stays_dry() {
 #[test]
 fn published_ways_can_be_chosen() {
     let mut setup = ball(true, [[Face::Periodic; 2]; 3]);
-    setup.settings.condensation = Condensation::Parcel;
+    setup.settings.condensation = Condensation::Particle;
     let mut dew = open(&setup);
     advance(&mut dew, 1.0);
     assert!(dew.water_on_body(0) > 0.0);
@@ -198,7 +198,7 @@ fn deepest_in(walls: WallTreatment, until: f64) -> f64 {
 fn every_treatment_but_none_keeps_air_out() {
     let corrected = deepest_in(WallTreatment::DensityCorrection, 1.2);
     assert!(corrected > 0.0, "{corrected}");
-    // Ghosts stand at random: where they are few a parcel dips below the surface.
+    // Ghosts stand at random: where they are few a particle dips below the surface.
     let ghosts = deepest_in(WallTreatment::Ghosts, 0.6);
     assert!(ghosts > -0.1, "{ghosts}");
     let none = deepest_in(WallTreatment::None, 0.6);

@@ -58,7 +58,7 @@ fn warm_air_leaves_a_chimney_as_fast_as_it_should() {
         let rising = mean(&dew, 2);
         assert!((rising - speed).abs() < 0.08 * 0.155, "{rising} of {speed} m/s at {until} s");
         let count = inside(&dew).count();
-        assert!((1411..1470).contains(&count), "{count} of 1440 parcels at {until} s");
+        assert!((1411..1470).contains(&count), "{count} of 1440 particles at {until} s");
     }
     // Without the drop of pressure of air that comes in it would be 0.2 m/s.
     assert!((speed - 0.155).abs() < 0.001);
@@ -76,7 +76,7 @@ fn a_wind_along_an_open_side_stays_even() {
     for look in 1..=6 {
         advance(&mut dew, f64::from(look) * 20.0 * D / speed);
         let count = inside(&dew).count();
-        assert!((1164..1236).contains(&count), "{count} of 1200 parcels at {look}");
+        assert!((1164..1236).contains(&count), "{count} of 1200 particles at {look}");
         let along = mean(&dew, 0);
         assert!((along / speed - 1.0).abs() < 0.15, "{along} m/s at {look}");
         for axis in 1..3 {
@@ -99,7 +99,7 @@ fn wind_may_come_in_aslant() {
         advance(&mut dew, (25.0 + f64::from(look)) * D / 0.1);
         (0..2).for_each(|axis| means[axis] += 0.1 * mean(&dew, axis));
         let count = inside(&dew).count();
-        assert!((698..742).contains(&count), "{count} of 720 parcels");
+        assert!((698..742).contains(&count), "{count} of 720 particles");
     }
     let [along, aside] = means;
     assert!((along / 0.1 - 1.0).abs() < 0.03 && (aside / 0.05 - 1.0).abs() < 0.03, "{along} {aside} m/s");
@@ -160,7 +160,7 @@ fn air_that_has_left_does_not_drift_aside() {
         dew.air().iter().filter(|particle| matches!(particle.role, Role::Leaving(..))).copied().collect::<Vec<_>>()
     };
     let (before, from) = (left(&dew), dew.stepped_until());
-    assert!(before.len() > 36, "{} parcels have left", before.len());
+    assert!(before.len() > 36, "{} particles have left", before.len());
     advance(&mut dew, from + 0.5 * D / 0.1);
     let (after, time) = (left(&dew), dew.stepped_until() - from);
     let mut seen = 0;
@@ -168,10 +168,10 @@ fn air_that_has_left_does_not_drift_aside() {
         // The height; air does not cross the walls by its velocity alone.
         let drift = now.position[2] - was.position[2] - time * was.velocity[2];
         let bounced = now.velocity[2] != was.velocity[2];
-        assert!(bounced || drift.abs() < 1e-9 * D, "the parcel {} drifted by {drift} m", now.id);
+        assert!(bounced || drift.abs() < 1e-9 * D, "the particle {} drifted by {drift} m", now.id);
         seen += usize::from(!bounced);
     }
-    assert!(seen > 36, "{seen} parcels were looked at");
+    assert!(seen > 36, "{seen} particles were looked at");
 }
 
 /// What evens out the places of air pushes some of it back to the inlet that it came by, most where a solid stands before it: none of it goes out there.
@@ -240,7 +240,7 @@ fn cold_air_that_sinks_off_a_ball_is_replaced_and_nothing_is_lost() {
     for look in 1..=4 {
         advance(&mut dew, 0.3 * f64::from(look));
         let count = inside(&dew).count() as f64;
-        assert!((count / start - 1.0).abs() < 0.03, "{count} of {start} parcels at {look}");
+        assert!((count / start - 1.0).abs() < 0.03, "{count} of {start} particles at {look}");
         // sqrt(2 g H dT/T) over the height of the box: all that the fall can give.
         let fastest = inside(&dew).map(|particle| particle.speed_squared()).fold(0.0, f64::max).sqrt();
         assert!(fastest < (2.0_f64 * 9.81 * 12.0 * D * 20.0 / WARM).sqrt(), "{fastest} m/s at {look}");

@@ -1,8 +1,8 @@
-//! A parcel of air.
+//! A particle of air.
 
 use serde::{Deserialize, Serialize};
 
-/// A parcel of air of constant mass that moves with the flow.
+/// A particle of air of constant mass that moves with the flow.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Particle {
     /// Place, m.
@@ -29,7 +29,7 @@ pub struct Particle {
     pub idle: f64,
 }
 
-/// Whether a parcel is in the room.
+/// Whether a particle is in the room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
     /// In the room, and taking part in everything.

@@ -1,7 +1,7 @@
-// What the kernels of humid air share: numbers of the run, parcels of air, and what the host learns of a step.
+// What the kernels of humid air share: numbers of the run, particles of air, and what the host learns of a step.
 #import declared
 
-// A parcel as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
+// A particle as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
 struct Packed {
     place_and_density: vec4f,
     velocity_and_fog: vec4f,
@@ -37,7 +37,7 @@ fn packed(particle: Particle) -> Packed {
     );
 }
 
-// What neighbours read of a parcel; its pressure over the square of the density, Pa m6/kg2.
+// What neighbours read of a particle; its pressure over the square of the density, Pa m6/kg2.
 struct Column {
     place: vec3f,
     pressure: f32,
@@ -73,7 +73,7 @@ fn factor(diagonal: vec3f, doubled: vec3f, offset: vec3f) -> f32 {
     return (dot(diagonal, offset * offset) + dot(doubled, across)) / max(dot(offset, offset), 1e-30);
 }
 
-// What a group of threads sums up over its parcels: numbers, and temperature, vapour and fog, of those that came and went; what
+// What a group of threads sums up over its particles: numbers, and temperature, vapour and fog, of those that came and went; what
 // diffused, K/s and 1/s; vapour that became fog; the longest step, s, and the fastest, m2/s2.
 struct Partial {
     came: vec4f,

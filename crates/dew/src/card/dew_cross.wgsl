@@ -1,4 +1,4 @@
-// Each parcel gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell and before open sides.
+// Each particle gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell and before open sides.
 // Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::look` in `faces/open.rs`.
 #import dew_neighbours
 #import dew_columns
@@ -107,7 +107,7 @@ fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
     return (now == LEAVING || now == OUTSIDE) && !(depth_beyond((*particle).place, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
 }
 
-// What a parcel in the room before an open side adds to its column, and how far beyond one outside is.
+// What a particle in the room before an open side adds to its column, and how far beyond one outside is.
 fn tell_columns(particle: Particle) {
     if (particle.role & ROLE_MASK) == OUTSIDE {
         let number = particle.role >> FACE_BITS;
@@ -129,7 +129,7 @@ fn tell_columns(particle: Particle) {
     }
 }
 
-// Whether a parcel is taken out that has been of no use for long. Twin of `tend_utility`.
+// Whether a particle is taken out that has been of no use for long. Twin of `tend_utility`.
 fn tend(particle: ptr<function, Particle>, thread: u32) -> bool {
     let role = (*particle).role;
     if role != INSIDE && role != IDLE {

@@ -1,4 +1,4 @@
-// How dense the air is and how its parcels stand about each other, solids among them, and what neighbours read of each. Twin of
+// How dense the air is and how its particles stand about each other, solids among them, and what neighbours read of each. Twin of
 // `air/density.rs`, of `add_density` and `add_moments` in `walls.rs`, and of `fill_columns` in `dew/motion.rs`.
 #import dew_neighbours
 #import dew_humid

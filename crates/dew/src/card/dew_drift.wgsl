@@ -38,7 +38,7 @@ fn keep(particle: ptr<function, Particle>) {
     }
 }
 
-// What a parcel adds to the sums before a face.
+// What a particle adds to the sums before a face.
 fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     let axis = number / 2u;
     let at_face = select(parameters.high[axis], parameters.low[axis], number % 2u == 0u);

@@ -4,7 +4,7 @@
 
 @group(0) @binding(1) var<storage, read_write> status: Status;
 @group(0) @binding(2) var<storage, read> partials: array<Partial>;
-// Slots of three numbers: a thread for each parcel, a thread for each cell, a group for each block of 1024 cells, one group, a thread for
+// Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group, a thread for
 // each particle of the solids, a group for each solid.
 @group(0) @binding(3) var<storage, read_write> groups: array<u32>;
 @group(0) @binding(4) var<storage, read> bodies: array<Body>;
@@ -38,12 +38,12 @@ fn accelerate(step: f32) {
         heat += step * bodies[body].flow;
         water += bodies[body].water;
     }
-    let of_parcel = more * vec2f(water, heat) / parameters.mass;
+    let of_particle = more * vec2f(water, heat) / parameters.mass;
     if is_set(IS_CLOSED) {
-        let all = of_parcel / f32(status.particles);
+        let all = of_particle / f32(status.particles);
         status.drift = -vec2f((all.y - parameters.latent_heat * all.x) / parameters.heat_capacity, all.x);
     } else {
-        status.diffused = add4(status.diffused, max(vec4f(of_parcel.x, -of_parcel.x, of_parcel.y, -of_parcel.y), vec4f(0.0)));
+        status.diffused = add4(status.diffused, max(vec4f(of_particle.x, -of_particle.x, of_particle.y, -of_particle.y), vec4f(0.0)));
     }
 }
 

@@ -1,4 +1,4 @@
-// What air and solids do to a parcel, the second half of its kick, heat and vapour of the whole step, and what it then has beyond
+// What air and solids do to an air particle, the second half of its kick, heat and vapour of the whole step, and what it then has beyond
 // saturation. Twin of `air/pairs.rs`, `walls.rs`, `Exchange::to_one`, and of `kick` in `dew/motion.rs`.
 #import dew_neighbours
 #import dew_humid
@@ -102,7 +102,7 @@ struct Given {
     from_beyond: vec2f,
 }
 
-// Adds what one site gives to a parcel.
+// Adds what one site gives to an air particle.
 fn give(given: ptr<function, Given>, site: Site, own: Column, away: vec3f, q: f32) {
     let surface = surfaces[site.particle];
     let flux = flux(site, surface, own, away, q);
@@ -197,7 +197,7 @@ fn longest_step(speed_squared: f32, acceleration_squared: f32, stiffest: f32) ->
     return select(0.0, min(min(by_sound, by_force), by_diffusion), are_numbers);
 }
 
-// Kicks a parcel; what it adds to the sums.
+// Kicks a particle; what it adds to the sums.
 fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial {
     var rates = air;
     let given = of_solids(own, &rates);

@@ -32,7 +32,7 @@ fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
     return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
 
-// A layer of air `behind` an inlet, its parcels numbered from `first`.
+// A layer of air `behind` an inlet, its particles numbered from `first`.
 fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     let inlet = parameters.inlets[number];
     let axis = number / 2u;

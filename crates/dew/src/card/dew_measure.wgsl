@@ -1,4 +1,4 @@
-// What gauges tell of the air as a whole, summed up by groups that share the parcels. Twin of `Totals` in `measures.rs`.
+// What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures.rs`.
 #import dew_card
 
 @group(0) @binding(1) var<storage, read> status: Status;

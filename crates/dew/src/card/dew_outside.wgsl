@@ -32,14 +32,14 @@ fn mean_before(number: u32, column: u32) -> f32 {
     return velocity_of(sum) / f32(max(count, 1u));
 }
 
-// How far beyond the side the next parcel of a column would stand, m.
+// How far beyond the side the next particle of a column would stand, m.
 fn next_depth(number: u32, column: u32) -> f32 {
     let apart = parameters.apart[number / 2u];
     let bits = atomicLoad(&before[first_column(number) + column].outermost);
     return select(bitcast<f32>(bits - 1u), -0.5 * apart, bits == 0u) + apart;
 }
 
-// Parcels that there is room for in a column; where the device halts, nothing comes in.
+// Particles that there is room for in a column; where the device halts, nothing comes in.
 fn missing(number: u32, column: u32, is_going: bool) -> u32 {
     let axis = number / 2u;
     var count = 0u;
@@ -52,7 +52,7 @@ fn missing(number: u32, column: u32, is_going: bool) -> u32 {
 }
 
 // Adds the ambient air, at the place `at` in memory.
-fn add_parcel(number: u32, column: u32, depth: f32, at: u32, id: u32) {
+fn add_particle(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     let axis = number / 2u;
     let a = (axis + 1u) % 3u;
     let b = (axis + 2u) % 3u;
@@ -71,7 +71,7 @@ fn add_parcel(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     }
 }
 
-// Goes through the columns of a side; gives how many parcels there are then.
+// Goes through the columns of a side; gives how many particles there are then.
 fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> u32 {
     let along = columns_along(number);
     let all = along.x * along.y;
@@ -87,7 +87,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
         let sums = sums_before(thread, more);
         for (var k = 0u; k < more; k++) {
             let depth = next_depth(number, column) + f32(k) * parameters.apart[number / 2u];
-            add_parcel(number, column, depth, count + sums.x + k, id + count + sums.x + k);
+            add_particle(number, column, depth, count + sums.x + k, id + count + sums.x + k);
         }
         count += sums.y;
     }
@@ -104,7 +104,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
 @compute @workgroup_size(256)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let old = status.particles;
-    // Numbers go on from the last, so that a parcel's is this and its place in memory.
+    // Numbers go on from the last, so that a particle's is this and its place in memory.
     let id = status.next_id - old;
     let is_going = status.halted == GOING;
     var count = old;

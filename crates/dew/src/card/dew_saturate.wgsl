@@ -1,4 +1,4 @@
-// What a parcel has beyond saturation: fog, or water for solids near it. Twin of `exchange::excess`, `Exchange::shares`, and of `saturate`
+// What an air particle has beyond saturation: fog, or water for solids near it. Twin of `exchange::excess`, `Exchange::shares`, and of `saturate`
 // in `dew/transfer.rs`.
 #import dew_neighbours
 #import dew_humid
@@ -44,7 +44,7 @@ fn weights_near(place: vec3f) -> vec2f {
     return sums;
 }
 
-// What a parcel has beyond saturation goes onto solids near it, or becomes fog; gives the vapour that became fog.
+// What an air particle has beyond saturation goes onto solids near it, or becomes fog; gives the vapour that became fog.
 fn saturate(particle: ptr<function, Particle>) -> f32 {
     let excess = excess(*particle);
     if excess == 0.0 {

@@ -1,4 +1,4 @@
-// Particles of solids take up what they get in a step: heat, and water from vapour that diffuses to them and from parcels near them
+// Particles of solids take up what they get in a step: heat, and water from vapour that diffuses to them and from air particles near them
 // that are beyond saturation. Twin of `exchange` and `deposit_of` in `dew/transfer.rs`.
 #import dew_neighbours
 #import dew_card
@@ -12,7 +12,7 @@
 @group(0) @binding(7) var<storage, read_write> solids: array<Solid>;
 @group(0) @binding(8) var<storage, read_write> waters: array<Water>;
 
-// Water that parcels lay on a boundary particle, kg.
+// Water that air particles lay on a boundary particle, kg.
 fn deposited(site: Site) -> f32 {
     var water = 0.0;
     let mirrors = mirrors_round(site.place);

@@ -47,7 +47,7 @@ pub(crate) struct Card {
     status: Status,
     /// The time of the state that was sent, s.
     sent_at: f64,
-    /// Parcels that there is room for.
+    /// Particles that there is room for.
     room: usize,
     /// Water on the particles of the solids when it was last told, kg.
     water_told: Vec<f64>,
@@ -66,7 +66,7 @@ pub(crate) struct Card {
     pub lost_after: Option<u32>,
 }
 
-/// Parcels that came or went: sums of their temperature above 0 °C, K, vapour and fog, parts of the mass.
+/// Particles that came or went: sums of their temperature above 0 °C, K, vapour and fog, parts of the mass.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Crossed {
     pub temperature: f64,
@@ -85,9 +85,9 @@ pub(crate) struct Progress {
     pub next_id: u64,
     pub came: Crossed,
     pub went: Crossed,
-    /// Water that diffused in and out, part of a parcel's mass, and energy, J for a kilogram of it.
+    /// Water that diffused in and out, part of a particle's mass, and energy, J for a kilogram of it.
     pub diffused: [f64; 4],
-    /// Vapour that became fog, part of a parcel's mass.
+    /// Vapour that became fog, part of a particle's mass.
     pub fogged: f64,
     /// Heat that came from each solid held at a temperature, J.
     pub held_heat: Vec<f64>,
@@ -115,7 +115,7 @@ fn outside_column(&is_free: &bool) -> OutsideColumn {
 }
 
 impl Card {
-    /// Room for `room` parcels of air.
+    /// Room for `room` particles of air.
     pub fn new(gpu: Gpu, room: usize, dew: &Dew) -> Result<Self, GpuError> {
         let origin = Origin {
             room: dew.room,
@@ -163,7 +163,7 @@ impl Card {
         self.tasks.bytes + self.sources.as_ref().map_or(0, CardSources::bytes)
     }
 
-    /// Parcels that there are, and that there is room for.
+    /// Particles that there are, and that there is room for.
     pub fn filling(&self) -> [usize; 2] {
         [self.status.particles as usize, self.room]
     }

@@ -13,8 +13,8 @@ use crate::settings::{Condensation, Humidity, Mean};
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
 
-/// With so many parcels cells are half as large as the reach: that leaves out more of what is not near. Fewer are no work for a card, and
-/// with cells of the whole reach a lattice of them stays one: what its parcels sum up cancels in pairs.
+/// With so many particles cells are half as large as the reach: that leaves out more of what is not near. Fewer are no work for a card, and
+/// with cells of the whole reach a lattice of them stays one: what its particles sum up cancels in pairs.
 pub(crate) const MANY: usize = 50_000;
 
 /// More cells are not sorted into.
@@ -41,7 +41,7 @@ pub(super) fn card_fans(dew: &Dew, origin: Origin) -> [shared::Fan; MOST_FANS as
 }
 
 impl Parameters {
-    /// Of a model, on a card with room for so many parcels.
+    /// Of a model, on a card with room for so many particles.
     pub fn of(dew: &Dew, origin: Origin, room: usize) -> Self {
         let full = room.saturating_sub(dew.most_in_a_step()) as u32;
         let mut new = Self { flags: flags(dew), full, ..Self::default() };
@@ -159,12 +159,12 @@ fn rule(face: &Face) -> u32 {
 
 fn flags(dew: &Dew) -> u32 {
     let settings = &dew.settings;
-    let parcels = settings.condensation == Condensation::Parcel;
+    let particles = settings.condensation == Condensation::Particle;
     let all = [
         (dew.room.faces.as_flattened().iter().any(Face::is_passed), shared::IS_PASSED),
-        (!parcels, shared::DIFFUSES),
+        (!particles, shared::DIFFUSES),
         (settings.fog, shared::FOGS),
-        (settings.fog || parcels, shared::SATURATES),
+        (settings.fog || particles, shared::SATURATES),
         (dew.wetting.is_some(), shared::REFUSES_FAST),
         (settings.humidity == Humidity::Relative, shared::RELATIVE),
         (settings.low_utility.is_some(), shared::TENDS),

@@ -1,4 +1,4 @@
-//! Parcels of air from the host's numbers to the shaders' and back.
+//! Particles of air from the host's numbers to the shaders' and back.
 
 use super::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use crate::air::{Particle, Role};
@@ -25,8 +25,8 @@ impl Origin {
         [0, 1, 2].map(|axis| (place[axis] - middle[axis]) as f32)
     }
 
-    /// The same for a parcel: rounding must not put it over a high face.
-    fn parcel(&self, place: [f64; 3]) -> [f32; 3] {
+    /// The same for a particle: rounding must not put it over a high face.
+    fn relative_inside(&self, place: [f64; 3]) -> [f32; 3] {
         let (high, relative) = (self.relative(self.room.high), self.relative(place));
         [0, 1, 2].map(|axis| {
             let is_inside = place[axis] < self.room.high[axis];
@@ -37,7 +37,7 @@ impl Origin {
     pub fn to_card(self, particle: &Particle) -> shared::Particle {
         let narrow = |vector: [f64; 3]| vector.map(|along| along as f32);
         shared::Particle {
-            place: self.parcel(particle.position),
+            place: self.relative_inside(particle.position),
             density: particle.density as f32,
             velocity: narrow(particle.velocity),
             fog: particle.fog as f32,

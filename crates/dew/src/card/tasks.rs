@@ -68,7 +68,7 @@ pub(super) struct Tasks {
 }
 
 impl Tasks {
-    /// For so many parcels of air at most, with columns outside open sides.
+    /// For so many particles of air at most, with columns outside open sides.
     pub fn new(
         gpu: &Gpu,
         count: usize,
@@ -89,8 +89,8 @@ impl Tasks {
         let groups = storage::<[u32; 3]>(gpu, "groups", 6)?;
         let particles = storage::<shared::Particle>(gpu, "air", count)?;
         let ordered = storage::<shared::Particle>(gpu, "air in order", count)?;
-        let keys = storage::<u32>(gpu, "numbers of parcels", count)?;
-        let spots = storage::<[f32; 4]>(gpu, "places of parcels", count)?;
+        let keys = storage::<u32>(gpu, "numbers of particles", count)?;
+        let spots = storage::<[f32; 4]>(gpu, "places of particles", count)?;
         let columns = storage::<Column>(gpu, "columns of air", count)?;
         let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
         let before = storage::<Before>(gpu, "sums before faces", count.div_ceil(THREADS as usize))?;

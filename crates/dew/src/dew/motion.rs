@@ -112,17 +112,17 @@ impl Dew {
         rates.resize(state.air.len(), Rates::default());
         let relative = settings.humidity == Humidity::Relative;
         let saturated = humid_air::saturation_pressure(settings.ambient_temperature);
-        let parcel =
+        let humid_air =
             |particle: &Particle| HumidAir::with_mass_fraction(particle.temperature, air.pressure, particle.vapour);
         if relative {
             for (column, entry) in columns.iter_mut().zip(&arrangement.entries) {
-                column.vapour = parcel(&state.air[entry.particle as usize]).vapour_pressure / saturated;
+                column.vapour = humid_air(&state.air[entry.particle as usize]).vapour_pressure / saturated;
             }
         }
         sum_pairs(arrangement, columns, scale, air, rates);
         if relative {
             for (rates, particle) in rates.iter_mut().zip(&state.air) {
-                rates.moistening *= saturated * parcel(particle).mass_fraction_slope();
+                rates.moistening *= saturated * humid_air(particle).mass_fraction_slope();
             }
         }
         let walls = Push { contact, ghosts, arrangement, columns, scale, air, kappa: settings.kappa };

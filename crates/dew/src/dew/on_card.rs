@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// So many steps are ordered at once where there are no drops to be told of.
 const TOGETHER: u64 = 64;
 
-/// Room for parcels that come beside those that there are.
+/// Room for particles that come beside those that there are.
 const SPARE_ROOM: usize = 1024;
 
 fn failed(error: &GpuError) -> ModelError {
@@ -114,7 +114,7 @@ impl Dew {
         }
     }
 
-    /// Parcels that can come in a step: a layer before each inlet, and outside open sides as many as stand there in all.
+    /// Particles that can come in a step: a layer before each inlet, and outside open sides as many as stand there in all.
     pub(crate) fn most_in_a_step(&self) -> usize {
         let counts = self.room.counts(self.scale.spacing);
         let apart = self.room.apart(self.scale.spacing);

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 /// How a [`Dew::scatter`] arranges the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scatter {
-    /// Parcels are moved by up to this along each axis, in spacings.
+    /// Particles are moved by up to this along each axis, in spacings.
     pub reach: f64,
     /// Sweeps by which they are then evened out: none leaves them at random, some hundred until they stand still.
     pub sweeps: u32,
@@ -18,7 +18,7 @@ pub struct Scatter {
     pub seed: u64,
 }
 
-/// Tries to find a free place for a parcel; it stays where none is found.
+/// Tries to find a free place for a particle; it stays where none is found.
 const TRIES: u32 = 30;
 
 impl Dew {

@@ -124,7 +124,7 @@ impl Dew {
     /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
     /// again in drier air.
     pub(super) fn saturate(&mut self, step: f64) {
-        if !self.settings.fog && self.settings.condensation != Condensation::Parcel {
+        if !self.settings.fog && self.settings.condensation != Condensation::Particle {
             return;
         }
         let mut excesses = std::mem::take(&mut self.work.excesses);
@@ -142,7 +142,7 @@ impl Dew {
         self.work.excesses = excesses;
     }
 
-    /// What parcels have too much becomes fog, or fog becomes what they lack.
+    /// What particles have too much becomes fog, or fog becomes what they lack.
     fn turn_to_fog(&mut self, excesses: &[f64]) {
         let mass = self.particle_mass();
         let warming = self.latent_heat / self.air.heat_capacity;
@@ -154,7 +154,7 @@ impl Dew {
         }
     }
 
-    /// What parcels at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
+    /// What particles at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
     fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
         let mut shares = std::mem::take(&mut self.work.shares);
@@ -171,7 +171,7 @@ impl Dew {
         self.work.shares = shares;
     }
 
-    /// Water of a parcel, kg, goes onto the boundary particles near it by their shares.
+    /// Water of an air particle, kg, goes onto the boundary particles near it by their shares.
     fn deposit_of(&mut self, particle: usize, water: f64, shares: &[(u32, f64)], step: f64) {
         let mass = self.particle_mass();
         let factor = self.settings.time_factor;

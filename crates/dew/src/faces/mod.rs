@@ -15,7 +15,7 @@ use crate::solids::{Body, Searched, Solids, Surface};
 /// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
 pub(crate) const BEYOND: f64 = 2.0;
 
-/// How far before an inlet a new layer of parcels stands, m; they are `apart` m apart, and `h` is the smoothing length.
+/// How far before an inlet a new layer of particles stands, m; they are `apart` m apart, and `h` is the smoothing length.
 pub(crate) fn before_inlet(h: f64, apart: f64) -> f64 {
     ((BEYOND * h / apart).ceil() - 0.5) * apart
 }
@@ -115,7 +115,7 @@ impl Dew {
         self.move_outside();
     }
 
-    /// Gives a parcel the role of where it is now, and books what comes and goes; beyond outlets it goes on, as much faster as the air before them.
+    /// Gives a particle the role of where it is now, and books what comes and goes; beyond outlets it goes on, as much faster as the air before them.
     fn cross(&mut self, particle: &mut Particle, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
         if particle.role == Role::Inside {
             self.room.hold_at_inlets(&mut particle.position, &mut particle.velocity);
@@ -132,7 +132,7 @@ impl Dew {
                     particle.role = Role::Outside(axis as u8, side as u8);
                 } else {
                     particle.leave(axis, side, particle.velocity[axis], self.slowest());
-                    // Kept by each parcel for itself, what evened it out last would go on for ever, and stir the air beyond.
+                    // Kept by each particle for itself, what evened it out last would go on for ever, and stir the air beyond.
                     particle.spreading = [0.0; 3];
                     particle.spreading[axis] = before[axis][side].spreading;
                 }
@@ -155,7 +155,7 @@ impl Dew {
         SLOWEST * self.air.sound_speed
     }
 
-    /// The air before an outlet, with which the air beyond goes on: each parcel keeps what it is faster or slower by, and a flow that swells or ebbs
+    /// The air before an outlet, with which the air beyond goes on: each particle keeps what it is faster or slower by, and a flow that swells or ebbs
     /// meets no plug.
     pub(crate) fn before_outlet(&self, axis: usize, side: usize) -> BeforeOutlet {
         if self.room.faces[axis][side] != Face::Outlet {

@@ -10,7 +10,7 @@ use crate::air::{Particle, Role, Scale};
 use crate::dew::Dew;
 use crate::room::{Face, Room};
 
-/// How far beyond an open side the last parcel of a full column stands, m, nearer than what is let go of; parcels are `apart` m apart, and
+/// How far beyond an open side the last particle of a full column stands, m, nearer than what is let go of; particles are `apart` m apart, and
 /// `h` is the smoothing length. A ten-thousandth more, so that rounding does not tell whether there is room for one.
 pub(crate) fn deepest(h: f64, apart: f64) -> f64 {
     ((BEYOND * h / apart - 0.5).ceil() - 0.5 + 1e-4) * apart

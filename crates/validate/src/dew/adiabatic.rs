@@ -92,17 +92,17 @@ struct Together {
 impl Together {
     fn of(dew: &Dew, air: &Properties, latent_heat: f64) -> Self {
         let mass = dew.particle_mass();
-        let parcels = dew.air();
+        let particles = dew.air();
         let solid = dew.solids();
-        let of_air = parcels.len() as f64 * mass * air.heat_capacity;
+        let of_air = particles.len() as f64 * mass * air.heat_capacity;
         let of_solid: f64 = (0..solid.particles.len()).map(|i| solid.heat_capacity(i)).sum();
-        let in_air: f64 = parcels.iter().map(|parcel| mass * air.heat_capacity * parcel.temperature).sum();
+        let in_air: f64 = particles.iter().map(|particle| mass * air.heat_capacity * particle.temperature).sum();
         let in_solid: f64 = dew.temperatures().iter().enumerate().map(|(i, t)| solid.heat_capacity(i) * t).sum();
         Self {
             capacity: of_air + of_solid,
             heat: in_air + in_solid,
-            mass: parcels.len() as f64 * mass,
-            vapour: parcels.iter().map(|parcel| mass * parcel.vapour).sum(),
+            mass: particles.len() as f64 * mass,
+            vapour: particles.iter().map(|particle| mass * particle.vapour).sum(),
             latent_heat,
         }
     }

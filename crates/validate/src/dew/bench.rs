@@ -43,7 +43,7 @@ fn rate(name: &'static str, side: usize, options: &BenchOptions) -> Vec<Rate> {
     measured.unwrap_or_default().into_iter().collect()
 }
 
-/// Stirred air over a cold plate, `side` parcels each way.
+/// Stirred air over a cold plate, `side` particles each way.
 fn plate(side: usize) -> Result<Dew, ModelError> {
     let temperature = ZERO_CELSIUS + 25.0;
     let vapour = HumidAir::with_relative_humidity(temperature, 101_325.0, 0.7).mass_fraction();

@@ -109,7 +109,7 @@ fn air_by_id(dew: &Dew) -> Vec<Particle> {
     air
 }
 
-/// Largest differences: of parcels, place over the spacing, velocity (m/s), temperature (K), vapour and fog (parts of the mass); of
+/// Largest differences: of particles, place over the spacing, velocity (m/s), temperature (K), vapour and fog (parts of the mass); of
 /// particles of solids, temperature (K) and water over the most on any.
 fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
     let most = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
@@ -133,7 +133,7 @@ fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
     ]
 }
 
-/// Room for many parcels makes cells half as large as the reach, however few there are. The bounds are those of cells as large as it
+/// Room for many particles makes cells half as large as the reach, however few there are. The bounds are those of cells as large as it
 /// (`tests/card.rs`).
 #[test]
 fn air_in_cells_of_half_the_reach_goes_as_on_the_processor() {
