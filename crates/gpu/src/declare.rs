@@ -32,8 +32,18 @@ macro_rules! shared {
 }
 
 shared! {
-    f32 => "f32", u32 => "u32", i32 => "i32",
+    f32 => "f32", u32 => "u32", i32 => "i32", AtomicU32 => "atomic<u32>", AtomicI32 => "atomic<i32>",
 }
+
+/// A number that threads of a shader change at the same time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct AtomicU32(pub u32);
+
+/// The same with a sign.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct AtomicI32(pub i32);
 
 /// Two to four numbers are a vector, more an array.
 fn vector(number: &str, letter: char, count: usize) -> String {
@@ -161,7 +171,7 @@ impl Declaration {
         std::iter::once(self.types()).chain((0..).zip(&self.bindings).filter_map(line)).collect()
     }
 
-    /// The text of a shader joined from its pieces, with the bindings that it uses; and their numbers.
+    /// The text of a shader joined from its pieces, with the bindings that its functions use; and the numbers of those that its entry points use.
     ///
     /// # Errors
     /// [`ImportError::Missing`], and [`ImportError::Invalid`] where the text is no valid WGSL.
@@ -177,8 +187,8 @@ impl Declaration {
         };
         let invalid = |reason| ImportError::Invalid { shader: name.into(), reason };
         let used = uses(&with(&self.wgsl(|_| Some(Use::Written)))?).map_err(invalid)?;
-        let text = with(&self.wgsl(|number| used.get(&number).copied()))?;
-        Ok((text, used.into_keys().collect()))
+        let text = with(&self.wgsl(|number| used.by_any.get(&number).copied()))?;
+        Ok((text, used.by_entries.into_iter().collect()))
     }
 }
 
@@ -223,25 +233,8 @@ pub trait Buffers {
 ///
 /// gives the constant, a `#[repr(C)]` structure that can be copied to the device, and `Memory`, with a buffer for each binding, numbered in their order.
 /// [`check_layouts`](crate::check_layouts) says in a test where WGSL would lay a structure out otherwise.
-/// Without `buffers` it gives constants and structures only, and `declaration()`, for shaders that write their bindings themselves.
 #[macro_export]
 macro_rules! declare {
-    (
-        constants { $($constants:tt)* }
-        structs { $($structs:tt)* }
-    ) => {
-        $crate::declare!(@constants $($constants)*);
-        $crate::declare!(@structs $($structs)*);
-
-        /// What the host and the shaders share.
-        pub(super) fn declaration() -> $crate::Declaration {
-            $crate::Declaration {
-                constants: $crate::declare!(@lines $($constants)*),
-                structs: $crate::declare!(@layouts $($structs)*),
-                bindings: Vec::new(),
-            }
-        }
-    };
     (
         constants { $($constants:tt)* }
         structs { $($structs:tt)* }

@@ -19,7 +19,9 @@ mod sort;
 mod texture;
 
 pub use buffer::{filled, read, read_together, storage, uniform};
-pub use declare::{Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedStruct};
+pub use declare::{
+    AtomicI32, AtomicU32, Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedStruct,
+};
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;

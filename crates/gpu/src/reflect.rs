@@ -1,7 +1,7 @@
 //! What shaders say of themselves: which bindings they use, how their structures are laid out, and whether they keep to the portable floor.
 
 use crate::{Declaration, Layout};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use wgpu::naga;
 use wgpu::naga::proc::Layouter;
 use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
@@ -28,22 +28,36 @@ fn validated(text: &str) -> Result<(naga::Module, ModuleInfo), String> {
     Ok((module, info))
 }
 
-/// The bindings of group 0 that the entry points of a shader use.
-pub(crate) fn uses(text: &str) -> Result<BTreeMap<u32, Use>, String> {
+/// Bindings of group 0 that a shader uses.
+#[derive(Debug, Default)]
+pub(crate) struct Uses {
+    /// How its functions use them, called or not.
+    pub by_any: BTreeMap<u32, Use>,
+    /// Those that entry points use.
+    pub by_entries: BTreeSet<u32>,
+}
+
+/// The bindings of group 0 that a shader uses.
+pub(crate) fn uses(text: &str) -> Result<Uses, String> {
     let (module, info) = validated(text)?;
-    let mut found = BTreeMap::new();
-    for entry in 0..module.entry_points.len() {
+    let entries = (0..module.entry_points.len()).map(|entry| (info.get_entry_point(entry), true));
+    let functions = module.functions.iter().map(|(handle, _)| (&info[handle], false));
+    let mut uses = Uses::default();
+    for (function, is_entry) in functions.chain(entries) {
         for (handle, variable) in module.global_variables.iter() {
-            let used = info.get_entry_point(entry)[handle];
+            let used = function[handle];
             let Some(binding) = variable.binding.as_ref().filter(|_| !used.is_empty()) else { continue };
             let how = if used.contains(GlobalUse::WRITE) { Use::Written } else { Use::Read };
-            let known = found.entry(binding.binding).or_insert(how);
+            let known = uses.by_any.entry(binding.binding).or_insert(how);
             if how == Use::Written {
                 *known = how;
             }
+            if is_entry {
+                uses.by_entries.insert(binding.binding);
+            }
         }
     }
-    Ok(found)
+    Ok(uses)
 }
 
 /// Whether a shader is valid and keeps to the portable floor.

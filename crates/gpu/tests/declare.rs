@@ -125,6 +125,11 @@ fn a_shader_gets_the_bindings_that_it_uses() {
         assert!(text.contains(line), "{text}");
     }
     assert!(!text.contains("spare"));
+    // A function that no entry point calls needs the binding in the text, and no buffer.
+    let with_function = format!("{KERNEL}fn idle() {{\n    spare[0] = 1.0;\n}}\n");
+    let (text, used) = Memory::declaration().complete("test", &with_function, &[]).unwrap();
+    assert!(used == [0, 2, 3] && text.contains("var<storage, read_write> spare"), "{used:?} {text}");
+    check_shader(&text).unwrap();
     check_shader(&text).unwrap();
     assert!(check_shader(&text.replace("@workgroup_size(1)", "@workgroup_size(512)")).is_err());
     let unknown = Memory::declaration().complete("test", &KERNEL.replace("found[0]", "lost[0]"), &[]).unwrap_err();

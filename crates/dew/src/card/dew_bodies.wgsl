@@ -3,10 +3,6 @@
 #import dew_card
 #import dew_rows
 
-@group(0) @binding(1) var<storage, read_write> solids: array<Solid>;
-@group(0) @binding(2) var<storage, read_write> bodies: array<Body>;
-@group(0) @binding(3) var<storage, read> status: Status;
-
 // Heat through the surface, heat it was held against, water, how stiff.
 var<workgroup> sums: array<vec4f, 256>;
 

@@ -1,16 +1,6 @@
 // What the kernels of humid air share: numbers of the run, particles of air, and what the host learns of a step.
 #import declared
 
-// A particle as it lies in memory. Cards take up sixteen bytes at a time where they are told so, and a `Particle` member by member.
-struct Packed {
-    place_and_density: vec4f,
-    velocity_and_fog: vec4f,
-    acceleration_and_deposit: vec4f,
-    spreading_and_id: vec4u,
-    temperature_and_vapour: vec4f,
-    role_and_idle: vec4u,
-}
-
 fn unpacked(packed: Packed) -> Particle {
     let a = packed.place_and_density;
     let b = packed.velocity_and_fog;
@@ -51,14 +41,6 @@ struct Column {
     humidity: f32,
 }
 
-// The same as it lies in memory: who looks for neighbours needs the first part of those out of reach.
-struct PackedColumn {
-    place_and_pressure: vec4f,
-    velocity_and_temperature: vec4f,
-    diagonal_and_vapour: vec4f,
-    doubled_and_humidity: vec4f,
-}
-
 fn unpacked_column(packed: PackedColumn) -> Column {
     let a = packed.place_and_pressure;
     let b = packed.velocity_and_temperature;
@@ -73,28 +55,7 @@ fn factor(diagonal: vec3f, doubled: vec3f, offset: vec3f) -> f32 {
     return (dot(diagonal, offset * offset) + dot(doubled, across)) / max(dot(offset, offset), 1e-30);
 }
 
-// What a group of threads sums up over its particles: numbers, and temperature, vapour and fog, of those that came and went; what
-// diffused, K/s and 1/s; vapour that became fog; the longest step, s, and the fastest, m2/s2.
-struct Partial {
-    came: vec4f,
-    went: vec4f,
-    diffused: vec2f,
-    fogged: f32,
-    longest: f32,
-    fastest: f32,
-}
-
-// Sums over the air before a face, along the face's axis.
-struct BeforeOutlet {
-    // Within a smoothing length: acceleration, m/s2, velocity, m/s, and number.
-    near: vec3f,
-    // Nearest to it: `spreading`, m/s2, and number.
-    nearest: vec2f,
-}
-
 const FAR = 3.0e38;
-
-@group(0) @binding(0) var<uniform> parameters: Parameters;
 
 // Temperature from that at which the air's properties are as told, K.
 fn from_reference(temperature: f32) -> f32 {

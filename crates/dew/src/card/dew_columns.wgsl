@@ -1,13 +1,6 @@
 // Columns of air outside open sides. Twin of `faces/open.rs`.
 #import dew_card
 
-// What the particles before a column sum up to, whatever their order: whole numbers. And how far out its last particle is.
-struct BeforeColumn {
-    velocity: atomic<i32>,
-    count: atomic<u32>,
-    outermost: atomic<u32>,
-}
-
 // Velocities are counted in units of 2^-23 of the speed of sound, as fine as single precision has densities; each up to four times sound, so
 // that there is room for 63 particles before a column, where some two stand.
 const UNITS = 8388608.0;

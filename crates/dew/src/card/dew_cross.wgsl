@@ -4,14 +4,6 @@
 #import dew_columns
 #import dew_utility
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
-@group(0) @binding(4) var<storage, read_write> places: array<vec2u>;
-@group(0) @binding(5) var<storage, read_write> keys: array<u32>;
-@group(0) @binding(6) var<storage, read_write> partials: array<Partial>;
-@group(0) @binding(7) var<storage, read_write> before: array<BeforeColumn>;
-
 const NOWHERE = 6u;
 
 var<workgroup> came: array<vec4f, 256>;
@@ -111,7 +103,7 @@ fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
 fn tell_columns(particle: Particle) {
     if (particle.role & ROLE_MASK) == OUTSIDE {
         let number = particle.role >> FACE_BITS;
-        atomicMax(&before[column_of(number, particle.place)].outermost, bits_of_depth(depth_beyond(particle.place, number)));
+        atomicMax(&columns_before[column_of(number, particle.place)].outermost, bits_of_depth(depth_beyond(particle.place, number)));
     }
     for (var number = 0u; number < 6u; number++) {
         if particle.role != INSIDE || face(number) != OPEN || depth_beyond(particle.place, number) <= -parameters.h {
@@ -124,8 +116,8 @@ fn tell_columns(particle: Particle) {
         let sound = parameters.sound;
         let rise = sound * (particle.density / parameters.rest_density - 1.0) + 0.5 * inward * inward / sound;
         let column = column_of(number, particle.place);
-        atomicAdd(&before[column].velocity, units_of(along + outward * rise));
-        atomicAdd(&before[column].count, 1u);
+        atomicAdd(&columns_before[column].velocity, units_of(along + outward * rise));
+        atomicAdd(&columns_before[column].count, 1u);
     }
 }
 

@@ -4,15 +4,6 @@
 #import dew_humid
 #import dew_normalisation
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> spots: array<vec4f>;
-@group(0) @binding(4) var<storage, read> ordered: array<Packed>;
-@group(0) @binding(5) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(6) var<storage, read_write> columns: array<PackedColumn>;
-@group(0) @binding(7) var<storage, read> site_start: array<u32>;
-@group(0) @binding(8) var<storage, read> sites: array<Site>;
-
 // Filling and moments by the air, itself included.
 fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
     var filling = 1.0;

@@ -2,11 +2,6 @@
 // `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `before_outlet` in `faces/mod.rs`.
 #import dew_card
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Packed>;
-// By group and face.
-@group(0) @binding(3) var<storage, read_write> before: array<array<BeforeOutlet, 6>>;
-
 var<workgroup> near: array<vec3f, 256>;
 var<workgroup> nearest: array<vec2f, 256>;
 
@@ -47,7 +42,9 @@ fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     let is_nearest = is_near && distance < OUTLET_LAYER * parameters.h;
     return BeforeOutlet(
         select(vec3f(0.0), vec3f(particle.acceleration[axis], particle.velocity[axis], 1.0), is_near),
+        0.0,
         select(vec2f(0.0), vec2f(particle.spreading[axis], 1.0), is_nearest),
+        vec2f(0.0),
     );
 }
 
@@ -91,7 +88,7 @@ fn main(
             workgroupBarrier();
         }
         if thread == 0u {
-            before[group.x][number] = BeforeOutlet(near[0], nearest[0]);
+            before[group.x][number] = BeforeOutlet(near[0], 0.0, nearest[0], vec2f(0.0));
         }
         workgroupBarrier();
     }

@@ -2,14 +2,6 @@
 // `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
 #import dew_card
 
-@group(0) @binding(1) var<storage, read_write> status: Status;
-@group(0) @binding(2) var<storage, read> partials: array<Partial>;
-// Slots of three numbers: a thread for each particle, a thread for each cell, a group for each block of 1024 cells, one group, a thread for
-// each particle of the solids, a group for each solid.
-@group(0) @binding(3) var<storage, read_write> groups: array<u32>;
-@group(0) @binding(4) var<storage, read> bodies: array<Body>;
-@group(0) @binding(5) var<storage, read> own: array<Site>;
-
 const THREADS = 128u;
 
 var<workgroup> sums: array<Partial, 128>;
@@ -22,6 +14,8 @@ fn joined(a: Partial, b: Partial) -> Partial {
         a.fogged + b.fogged,
         min(a.longest, b.longest),
         max(a.fastest, b.fastest),
+        0.0,
+        vec2f(0.0),
     );
 }
 
@@ -105,7 +99,7 @@ fn decide() {
 
 @compute @workgroup_size(128)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    var all = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0);
+    var all = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0, 0.0, vec2f(0.0));
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += THREADS) {
             all = joined(all, partials[group]);

@@ -4,14 +4,6 @@
 #import dew_humid
 #import dew_saturate
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> columns: array<PackedColumn>;
-@group(0) @binding(4) var<storage, read_write> particles: array<Packed>;
-@group(0) @binding(7) var<storage, read> surfaces: array<Surface>;
-@group(0) @binding(8) var<storage, read_write> partials: array<Partial>;
-@group(0) @binding(9) var<uniform> fans: array<Fan, MOST_FANS>;
-
 // What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
 struct Rates {
     acceleration: vec3f,
@@ -222,7 +214,7 @@ fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial
     if (*particle).role == INSIDE && is_set(SATURATES) {
         fogged = saturate(particle);
     }
-    return Partial(vec4f(0.0), vec4f(0.0), diffused, fogged, longest_step(speed, acceleration, stiffest), speed);
+    return Partial(vec4f(0.0), vec4f(0.0), diffused, fogged, longest_step(speed, acceleration, stiffest), speed, 0.0, vec2f(0.0));
 }
 
 // What diffused, and what became fog; the longest step and the fastest.

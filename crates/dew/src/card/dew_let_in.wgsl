@@ -2,11 +2,6 @@
 // `before_outlet` and `update_outlet_pressure` in `faces/mod.rs`.
 #import dew_card
 
-@group(0) @binding(1) var<storage, read_write> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(3) var<storage, read> before: array<array<BeforeOutlet, 6>>;
-@group(0) @binding(4) var<storage, read_write> groups: array<u32>;
-
 var<workgroup> near: array<vec3f, 256>;
 var<workgroup> nearest: array<vec2f, 256>;
 
@@ -27,7 +22,7 @@ fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
         }
         workgroupBarrier();
     }
-    let all = BeforeOutlet(near[0], nearest[0]);
+    let all = BeforeOutlet(near[0], 0.0, nearest[0], vec2f(0.0));
     workgroupBarrier();
     return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
@@ -51,7 +46,7 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
         particle.id = first_id + k;
         particle.role = COMING | (number << FACE_BITS);
         if first + k < arrayLength(&particles) {
-            particles[first + k] = particle;
+            particles[first + k] = packed(particle);
         }
     }
 }

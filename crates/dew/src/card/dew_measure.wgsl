@@ -1,10 +1,6 @@
 // What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures.rs`.
 #import dew_card
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> particles: array<Particle>;
-@group(0) @binding(3) var<storage, read_write> measured: array<Measured>;
-
 var<workgroup> sums: array<Measured, 256>;
 
 fn joined(a: Measured, b: Measured) -> Measured {
@@ -33,7 +29,7 @@ fn main(
 ) {
     var own = Measured();
     for (var i = id.x; i < status.particles; i += 256u * MEASURING_GROUPS) {
-        own = joined(own, measure(particles[i]));
+        own = joined(own, measure(unpacked(particles[i])));
     }
     sums[thread] = own;
     workgroupBarrier();

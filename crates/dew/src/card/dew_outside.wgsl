@@ -4,15 +4,6 @@
 #import dew_columns
 #import sums_before
 
-@group(0) @binding(1) var<storage, read_write> status: Status;
-@group(0) @binding(2) var<storage, read_write> particles: array<Particle>;
-@group(0) @binding(3) var<storage, read_write> before: array<BeforeColumn>;
-@group(0) @binding(4) var<storage, read_write> columns: array<OutsideColumn>;
-@group(0) @binding(5) var<storage, read_write> counts: array<atomic<u32>>;
-@group(0) @binding(6) var<storage, read_write> places: array<vec2u>;
-@group(0) @binding(7) var<storage, read_write> keys: array<u32>;
-@group(0) @binding(8) var<storage, read_write> groups: array<u32>;
-
 // The mean velocity before a column of a side and those next to it, m/s.
 fn mean_before(number: u32, column: u32) -> f32 {
     let first = first_column(number);
@@ -25,8 +16,8 @@ fn mean_before(number: u32, column: u32) -> f32 {
     for (var b = low.y; b <= high.y; b++) {
         for (var a = low.x; a <= high.x; a++) {
             let other = first + a + along.x * b;
-            sum += f32(atomicLoad(&before[other].velocity));
-            count += atomicLoad(&before[other].count);
+            sum += f32(atomicLoad(&columns_before[other].velocity));
+            count += atomicLoad(&columns_before[other].count);
         }
     }
     return velocity_of(sum) / f32(max(count, 1u));
@@ -35,7 +26,7 @@ fn mean_before(number: u32, column: u32) -> f32 {
 // How far beyond the side the next particle of a column would stand, m.
 fn next_depth(number: u32, column: u32) -> f32 {
     let apart = parameters.apart[number / 2u];
-    let bits = atomicLoad(&before[first_column(number) + column].outermost);
+    let bits = atomicLoad(&columns_before[first_column(number) + column].outermost);
     return select(bitcast<f32>(bits - 1u), -0.5 * apart, bits == 0u) + apart;
 }
 
@@ -43,7 +34,7 @@ fn next_depth(number: u32, column: u32) -> f32 {
 fn missing(number: u32, column: u32, is_going: bool) -> u32 {
     let axis = number / 2u;
     var count = 0u;
-    if is_going && columns[first_column(number) + column].is_free != 0u {
+    if is_going && outside_columns[first_column(number) + column].is_free != 0u {
         for (var depth = next_depth(number, column); depth <= parameters.deepest[axis]; depth += parameters.apart[axis]) {
             count += 1u;
         }
@@ -65,7 +56,7 @@ fn add_particle(number: u32, column: u32, depth: f32, at: u32, id: u32) {
     particle.role = OUTSIDE | (number << FACE_BITS);
     if at < arrayLength(&particles) {
         let cell = cell_at(particle.place);
-        particles[at] = particle;
+        particles[at] = packed(particle);
         places[at] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[at] = id;
     }
@@ -82,7 +73,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
         var more = 0u;
         if column < all {
             more = missing(number, column, is_going);
-            columns[first + column].velocity = mean_before(number, column);
+            outside_columns[first + column].velocity = mean_before(number, column);
         }
         let sums = sums_before(thread, more);
         for (var k = 0u; k < more; k++) {
@@ -94,9 +85,9 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
     storageBarrier();
     workgroupBarrier();
     for (var column = thread; column < all; column += 256u) {
-        atomicStore(&before[first + column].velocity, 0);
-        atomicStore(&before[first + column].count, 0u);
-        atomicStore(&before[first + column].outermost, 0u);
+        atomicStore(&columns_before[first + column].velocity, 0);
+        atomicStore(&columns_before[first + column].count, 0u);
+        atomicStore(&columns_before[first + column].outermost, 0u);
     }
     return count;
 }

@@ -2,14 +2,6 @@
 // `Arrangement::arrange`. Air outside open sides gets its velocity. Twin of `move_outside` in `faces/open.rs`.
 #import dew_columns
 
-@group(0) @binding(1) var<storage, read_write> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> order: array<u32>;
-@group(0) @binding(4) var<storage, read> particles: array<Packed>;
-@group(0) @binding(5) var<storage, read_write> ordered: array<Packed>;
-@group(0) @binding(6) var<storage, read_write> spots: array<vec4f>;
-@group(0) @binding(7) var<storage, read> columns: array<OutsideColumn>;
-
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
@@ -19,7 +11,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         if (particle.role & ROLE_MASK) == OUTSIDE {
             let number = particle.role >> FACE_BITS;
             particle.velocity = vec3f(0.0);
-            particle.velocity[number / 2u] = columns[column_of(number, particle.place)].velocity;
+            particle.velocity[number / 2u] = outside_columns[column_of(number, particle.place)].velocity;
             particle.acceleration = vec3f(0.0);
             particle.spreading = vec3f(0.0);
         }

@@ -1,8 +1,6 @@
 // Values over time. Twin of `Table::at`.
 #import dew_card
 
-@group(0) @binding(4) var<storage, read> rows: array<Row>;
-
 // From one time to another, s.
 fn between(a: Account, b: Account) -> f32 {
     return (b.sum - a.sum) - (b.lacking - a.lacking);

@@ -3,9 +3,6 @@
 #import dew_neighbours
 #import dew_humid
 
-@group(0) @binding(5) var<storage, read> site_start: array<u32>;
-@group(0) @binding(6) var<storage, read> sites: array<Site>;
-
 // Twin of `exchange::excess`, whose slope is a difference that single precision would lose.
 fn excess(particle: Particle) -> f32 {
     let warming = parameters.latent_heat / parameters.heat_capacity;

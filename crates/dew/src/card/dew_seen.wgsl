@@ -10,6 +10,7 @@ struct Shown {
     unused_c: f32,
 }
 
+@group(0) @binding(0) var<uniform> parameters: Parameters;
 @group(0) @binding(1) var<storage, read> status: Status;
 @group(0) @binding(2) var<storage, read> particles: array<Particle>;
 @group(0) @binding(3) var<uniform> shown: Shown;

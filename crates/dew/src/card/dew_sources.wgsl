@@ -11,13 +11,6 @@ struct Conditions {
     radiant_temperature: f32,
 }
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> solids: array<Solid>;
-@group(0) @binding(3) var<storage, read_write> surfaces: array<Surface>;
-@group(0) @binding(5) var<storage, read> shares: array<Share>;
-@group(0) @binding(6) var<storage, read> bodies: array<Body>;
-@group(0) @binding(7) var<storage, read_write> sources: array<Source>;
-
 var<workgroup> power: f32;
 var<workgroup> outside: Conditions;
 var<workgroup> radiation: Conditions;

@@ -3,16 +3,6 @@
 #import dew_neighbours
 #import dew_humid
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> columns: array<PackedColumn>;
-@group(0) @binding(4) var<storage, read> own: array<Site>;
-@group(0) @binding(5) var<storage, read> solids: array<Solid>;
-@group(0) @binding(6) var<storage, read_write> surfaces: array<Surface>;
-// The other particle and the conductance, W/K.
-@group(0) @binding(7) var<storage, read> pairs: array<vec2u>;
-@group(0) @binding(8) var<storage, read> waters: array<Water>;
-
 // Heat by difference of temperature, W, condensation and evaporation, kg/s, and the sum of conductances, W/K.
 fn from_air(site: Site, surface: Surface) -> vec4f {
     var sums = Account4(vec4f(0.0), vec4f(0.0));

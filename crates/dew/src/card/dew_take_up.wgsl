@@ -3,15 +3,6 @@
 #import dew_neighbours
 #import dew_card
 
-@group(0) @binding(1) var<storage, read> status: Status;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> spots: array<vec4f>;
-@group(0) @binding(4) var<storage, read> particles: array<Packed>;
-@group(0) @binding(5) var<storage, read> own: array<Site>;
-@group(0) @binding(6) var<storage, read> surfaces: array<Surface>;
-@group(0) @binding(7) var<storage, read_write> solids: array<Solid>;
-@group(0) @binding(8) var<storage, read_write> waters: array<Water>;
-
 // Water that air particles lay on a boundary particle, kg.
 fn deposited(site: Site) -> f32 {
     var water = 0.0;

@@ -1,8 +1,6 @@
 // Which air matters to no solid. Twin of `utility.rs`; how far the solids are is read off nodes half a spacing apart.
 #import dew_card
 
-@group(0) @binding(8) var<storage, read> field: array<f32>;
-
 const MATTERS = 0u;
 const LOW = 1u;
 const USELESS = 2u;

@@ -15,7 +15,7 @@ impl Card {
         self.tasks.measure.run(&mut pass, MEASURING_GROUPS);
         drop(pass);
         self.gpu.queue.submit([encoder.finish()]);
-        let groups: Vec<shared::Measured> = read(&self.gpu, &self.tasks.measured, MEASURING_GROUPS as usize)?;
+        let groups: Vec<shared::Measured> = read(&self.gpu, &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
         self.fetch_solids(state)?;
         Ok(totals(&groups, self.origin))
     }

@@ -42,8 +42,8 @@ pub(crate) struct Card {
     sources: Option<CardSources>,
     origin: Origin,
     bodies: Vec<shared::Body>,
-    /// Times, s, and temperatures, K, at which solids are held where they change.
-    held_rows: Vec<[f64; 2]>,
+    /// Times, s, and values: temperatures from the ambient air's, K, and powers.
+    rows: Vec<[f64; 2]>,
     status: Status,
     /// The time of the state that was sent, s.
     sent_at: f64,
@@ -124,25 +124,27 @@ impl Card {
         };
         let mut parameters = Parameters::of(dew, origin, room);
         let field = field::tell_field(&mut parameters, dew, origin);
-        let solids = CardSolids::new(&gpu, dew, origin, &parameters)?;
+        let mut rows = Vec::new();
+        let solids = CardSolids::new(&gpu, dew, origin, &parameters, &mut rows)?;
         let outside: Vec<OutsideColumn> = dew.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
-        let sources = CardSources::new(&gpu, dew, origin)?;
+        let sources = CardSources::new(dew, origin, &mut rows);
         let fans = numbers::card_fans(dew, origin);
-        let tasks = Tasks::new(&gpu, room, &parameters, &fans, &solids, sources.as_ref(), &outside, &field)?;
+        let (bodies, of_solids) = (solids.bodies.clone(), solids.count);
+        let tasks = Tasks::new(&gpu, room, &parameters, &fans, solids, sources.as_ref(), rows.len(), &outside, &field)?;
         let cells = parameters.cells.iter().product::<u32>() + 1;
-        let held_before = vec![0.0; solids.bodies.len()];
+        let held_before = vec![0.0; bodies.len()];
         Ok(Self {
             gpu,
             tasks,
             sources,
             origin,
-            bodies: solids.bodies,
-            held_rows: solids.rows,
+            bodies,
+            rows,
             // One more cell holds what has gone.
             status: Status { cells, ..Status::zeroed() },
             sent_at: 0.0,
             room,
-            water_told: vec![0.0; solids.count],
+            water_told: vec![0.0; of_solids],
             held_before,
             ahead: false,
             busy: 0.0,
@@ -160,7 +162,7 @@ impl Card {
 
     /// Bytes held on the device.
     pub fn bytes(&self) -> u64 {
-        self.tasks.bytes + self.sources.as_ref().map_or(0, CardSources::bytes)
+        self.tasks.bytes()
     }
 
     /// Particles that there are, and that there is room for.
@@ -183,14 +185,14 @@ impl Card {
         };
         let solids: Vec<shared::Solid> = state.temperatures.iter().map(temperature).collect();
         let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.gpu.queue.write_buffer(buffer, 0, bytes);
-        write(&self.tasks.particles, bytemuck::cast_slice(&air));
-        write(&self.tasks.solids, bytemuck::cast_slice(&solids));
-        write(&self.tasks.bodies, bytemuck::cast_slice(&self.bodies));
-        let row = |&row: &[f64; 2]| shared::Row::new(row, state.time, self.origin.temperature);
-        let rows: Vec<shared::Row> = self.held_rows.iter().map(row).collect();
-        write(&self.tasks.rows, bytemuck::cast_slice(&rows));
+        write(&self.tasks.memory.particles, bytemuck::cast_slice(&air));
+        write(&self.tasks.memory.solids, bytemuck::cast_slice(&solids));
+        write(&self.tasks.memory.bodies, bytemuck::cast_slice(&self.bodies));
+        let row = |&row: &[f64; 2]| shared::Row::new(row, state.time);
+        let rows: Vec<shared::Row> = self.rows.iter().map(row).collect();
+        write(&self.tasks.memory.rows, bytemuck::cast_slice(&rows));
         if let Some(sources) = &mut self.sources {
-            sources.upload(&self.gpu, state.time);
+            sources.reset(&self.gpu, &self.tasks.memory);
         }
         self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
@@ -210,7 +212,7 @@ impl Card {
             ..Status::zeroed()
         };
         // Who draws before the first step reads it too.
-        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
+        self.gpu.queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
         self.sent_at = state.time;
         self.ahead = false;
     }
@@ -223,14 +225,14 @@ impl Card {
             ..shared::Water::default()
         };
         let told: Vec<shared::Water> = water.iter().zip(evaporation).map(tell).collect();
-        self.gpu.queue.write_buffer(&self.tasks.waters, 0, bytemuck::cast_slice(&told));
+        self.gpu.queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&told));
         self.water_told.clear();
         self.water_told.extend_from_slice(water);
     }
 
     /// Brings the water on the particles of the solids, kg.
     pub fn fetch_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
-        let waters: Vec<shared::Water> = read(&self.gpu, &self.tasks.waters, self.water_told.len())?;
+        let waters: Vec<shared::Water> = read(&self.gpu, &self.tasks.memory.waters, self.water_told.len())?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
         let now = |(told, water): (&f64, &shared::Water)| (told + water.gained.value()).max(0.0);
@@ -243,7 +245,7 @@ impl Card {
         if !self.ahead {
             return Ok(());
         }
-        let air: Vec<shared::Particle> = read(&self.gpu, &self.tasks.particles, self.status.particles as usize)?;
+        let air: Vec<shared::Particle> = read(&self.gpu, &self.tasks.memory.particles, self.status.particles as usize)?;
         self.fetch_solids(state)?;
         state.air.clear();
         state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
@@ -253,8 +255,8 @@ impl Card {
 
     /// Brings back what changes of the solids.
     fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
-        let solids: Vec<shared::Solid> = read(&self.gpu, &self.tasks.solids, state.temperatures.len())?;
-        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
+        let solids: Vec<shared::Solid> = read(&self.gpu, &self.tasks.memory.solids, state.temperatures.len())?;
+        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.memory.bodies, self.bodies.len())?;
         self.fetch_water(&mut state.water_on)?;
         let temperature = |solid: &shared::Solid| solid.temperature.value() + self.origin.temperature;
         state.temperatures.clear();
@@ -286,7 +288,7 @@ impl Card {
             ..Status::zeroed()
         };
         let began = Instant::now();
-        self.gpu.queue.write_buffer(&self.tasks.status, 0, bytemuck::bytes_of(&self.status));
+        self.gpu.queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
         let mut encoder =
             self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dew") });
         let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
@@ -294,10 +296,14 @@ impl Card {
         drop(pass);
         self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         self.gpu.queue.submit([encoder.finish()]);
-        self.status = read(&self.gpu, &self.tasks.status, 1)?[0];
-        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.bodies, self.bodies.len())?;
-        let supplied =
-            self.sources.as_mut().map(|sources| sources.download_supplied(&self.gpu)).transpose()?.unwrap_or_default();
+        self.status = read(&self.gpu, &self.tasks.memory.status, 1)?[0];
+        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.memory.bodies, self.bodies.len())?;
+        let supplied = self
+            .sources
+            .as_mut()
+            .map(|sources| sources.download_supplied(&self.gpu, &self.tasks.memory))
+            .transpose()?
+            .unwrap_or_default();
         self.busy += began.elapsed().as_secs_f64();
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         self.ahead |= self.status.steps > 0;

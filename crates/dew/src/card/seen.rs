@@ -1,8 +1,9 @@
 //! Air as it is seen, for whoever draws it on the same device.
 
 use super::Card;
-use super::{shared, tasks};
-use corpuscle_gpu::{DEVICE_PARTICLES, DeviceParticles, GpuError, Kernel, Pass, THREADS, Task, uniform, wgpu};
+use super::shared::Memory;
+use super::tasks::with_types;
+use corpuscle_gpu::{Buffers, DeviceParticles, GpuError, Kernel, Pass, THREADS, Task, uniform, wgpu};
 
 /// Air as it is seen, and what writes it.
 #[derive(Debug)]
@@ -17,12 +18,11 @@ impl Seen {
         let gpu = &card.gpu;
         let air = DeviceParticles::new(gpu, card.room, card.origin.middle(), spacing)?;
         let shown = uniform(gpu, "time shown", &[0.0_f32; 4]);
-        let shared = shared::declaration().types();
-        let mut library = tasks::library(&shared);
-        library.push(DEVICE_PARTICLES);
+        let types = Memory::declaration().types();
+        let library = with_types(&types);
         let kernel = Kernel::new(gpu, "dew_seen", include_str!("dew_seen.wgsl"), &library);
-        let tasks = &card.tasks;
-        let buffers = [&tasks.parameters, &tasks.status, &tasks.particles, &shown, &air.buffer];
+        let Memory { parameters, status, particles, .. } = &card.tasks.memory;
+        let buffers = [parameters, status, particles, &shown, &air.buffer];
         let task = kernel.on(gpu, &buffers.map(wgpu::Buffer::as_entire_binding));
         Ok(Self { air, task, shown })
     }

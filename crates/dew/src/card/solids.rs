@@ -25,12 +25,17 @@ pub(super) struct CardSolids {
     pub count: usize,
     /// The solids, then the walls, by their ranges of particles or cells and of rows.
     pub bodies: Vec<shared::Body>,
-    /// Times, s, and temperatures, K, at which solids are held where they change.
-    pub rows: Vec<[f64; 2]>,
 }
 
 impl CardSolids {
-    pub fn new(gpu: &Gpu, dew: &Dew, origin: Origin, parameters: &Parameters) -> Result<Self, GpuError> {
+    /// Times, s, and temperatures from the ambient air's, K, at which solids are held where they change come after `rows`.
+    pub fn new(
+        gpu: &Gpu,
+        dew: &Dew,
+        origin: Origin,
+        parameters: &Parameters,
+        rows: &mut Vec<[f64; 2]>,
+    ) -> Result<Self, GpuError> {
         let particles = &dew.solids.particles;
         let mut pairs = Vec::new();
         let mut own = Vec::new();
@@ -60,11 +65,10 @@ impl CardSolids {
         let start: Vec<u32> = (0..=cells).map(first).collect();
         let groups: Vec<usize> = (0..own.len()).map(|node| dew.solids.group(node)).collect();
         let before = |group: usize| groups.partition_point(|of| *of < group) as u32;
-        let mut rows = Vec::new();
         let bodies = (0..dew.solids.groups())
             .map(|group| {
                 let first_row = rows.len() as u32;
-                rows.extend(changes(dew, group));
+                rows.extend(changes(dew, group, origin.temperature));
                 let (first, end, end_row) = (before(group), before(group + 1), rows.len() as u32);
                 shared::Body { first, end, first_row, end_row, ..shared::Body::default() }
             })
@@ -76,15 +80,14 @@ impl CardSolids {
             pairs: filled(gpu, "conductances", &pairs)?,
             count: own.len(),
             bodies,
-            rows,
         })
     }
 }
 
-/// Times, s, and temperatures, K, at which a body is held, where they change.
-fn changes(dew: &Dew, body: usize) -> Vec<[f64; 2]> {
+/// Times, s, and temperatures from `zero`, K, at which a body is held, where they change.
+fn changes(dew: &Dew, body: usize, zero: f64) -> Vec<[f64; 2]> {
     let rows = dew.held_to.get(body).and_then(Option::as_ref).map_or(&[][..], Table::rows);
-    let kelvin = |&[time, celsius]: &[f64; 2]| [time, celsius + ZERO_CELSIUS];
+    let kelvin = |&[time, celsius]: &[f64; 2]| [time, celsius + ZERO_CELSIUS - zero];
     if rows.len() > 1 { rows.iter().map(kelvin).collect() } else { Vec::new() }
 }
 

@@ -1,34 +1,30 @@
-//! Heat sources of solids on the GPU: layouts and buffers of `dew_sources.wgsl`.
+//! Heat sources of solids on the GPU, for `dew_sources.wgsl`.
 
 use super::origin::Origin;
-use super::shared;
-use super::solids::filled;
+use super::shared::{self, Memory};
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::solids::sources::{BodySources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
-use corpuscle_gpu::{Gpu, GpuError, read, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, read};
 use corpuscle_scene::Table;
 
-/// Sources of heat on the device.
+/// Sources of heat.
 #[derive(Debug)]
 pub(super) struct CardSources {
-    pub shares: wgpu::Buffer,
-    pub rows: wgpu::Buffer,
-    pub sources: wgpu::Buffer,
-    /// Of each solid, before it has supplied anything.
-    initial: Vec<shared::Source>,
-    /// Times, s, and values: W or K from the ambient air's temperature.
-    values: Vec<[f64; 2]>,
+    /// Of each particle of the solids and each cell of walls.
+    pub shares: Vec<shared::Share>,
+    /// Of each solid and wall, before it has supplied anything.
+    pub initial: Vec<shared::Source>,
     /// Heat supplied until the last batch, J.
     before: Vec<[f64; 3]>,
 }
 
 impl CardSources {
-    /// None where no solid has any.
-    pub fn new(gpu: &Gpu, dew: &Dew, origin: Origin) -> Result<Option<Self>, GpuError> {
+    /// None where no solid has any. Their values over time, W or K from the ambient air's temperature, come after those of `values`.
+    pub fn new(dew: &Dew, origin: Origin, values: &mut Vec<[f64; 2]>) -> Option<Self> {
         let sources = &dew.sources;
         if sources.shares.is_empty() {
-            return Ok(None);
+            return None;
         }
         let part = |part: SurfacePart| shared::Part { area: part.area as f32, resistance: part.resistance as f32 };
         let share = |share: &ParticleShare| shared::Share {
@@ -37,45 +33,29 @@ impl CardSources {
             outside: part(share.outside),
             radiation: part(share.radiation),
         };
-        let shares: Vec<shared::Share> = sources.shares.iter().map(share).collect();
-        let mut values = Vec::new();
-        let initial: Vec<shared::Source> = sources
-            .bodies
-            .iter()
-            .zip(&sources.power_factors)
-            .map(|(of, &factor)| source(of, factor, origin, &mut values))
-            .collect();
-        Ok(Some(Self {
-            shares: filled(gpu, "shares of sources", &shares)?,
-            rows: storage::<shared::Row>(gpu, "rows of sources", values.len())?,
-            sources: filled(gpu, "sources of heat", &initial)?,
+        let bodies = sources.bodies.iter().zip(&sources.power_factors);
+        let initial: Vec<_> = bodies.map(|(of, &factor)| source(of, factor, origin, values)).collect();
+        Some(Self {
+            shares: sources.shares.iter().map(share).collect(),
             before: vec![[0.0; 3]; initial.len()],
             initial,
-            values,
-        }))
+        })
     }
 
-    /// Uploads the rows, counted from the time of a state, s, and sets what was supplied to nothing.
-    pub fn upload(&mut self, gpu: &Gpu, time: f64) {
-        let rows: Vec<shared::Row> = self.values.iter().map(|&row| shared::Row::new(row, time, 0.0)).collect();
-        gpu.queue.write_buffer(&self.rows, 0, bytemuck::cast_slice(&rows));
-        gpu.queue.write_buffer(&self.sources, 0, bytemuck::cast_slice(&self.initial));
+    /// Sets what was supplied to nothing.
+    pub fn reset(&mut self, gpu: &Gpu, memory: &Memory) {
+        gpu.queue.write_buffer(&memory.sources, 0, bytemuck::cast_slice(&self.initial));
         self.before.fill([0.0; 3]);
     }
 
-    /// Downloads the heat that each solid got since the last time, J.
-    pub fn download_supplied(&mut self, gpu: &Gpu) -> Result<Vec<[f64; 3]>, GpuError> {
-        let now: Vec<shared::Source> = read(gpu, &self.sources, self.initial.len())?;
+    /// Downloads the heat that each solid and wall got since the last time, J.
+    pub fn download_supplied(&mut self, gpu: &Gpu, memory: &Memory) -> Result<Vec<[f64; 3]>, GpuError> {
+        let now: Vec<shared::Source> = read(gpu, &memory.sources, self.initial.len())?;
         let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(shared::Account::value)).collect();
         let since = |(now, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|kind| now[kind] - before[kind]);
         let supplied = now.iter().zip(&self.before).map(since).collect();
         self.before = now;
         Ok(supplied)
-    }
-
-    /// Bytes held on the device.
-    pub fn bytes(&self) -> u64 {
-        [&self.shares, &self.rows, &self.sources].map(wgpu::Buffer::size).iter().sum()
     }
 }
 

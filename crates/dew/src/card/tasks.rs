@@ -1,17 +1,18 @@
 //! The passes of a step, each with what it works on.
 
 use super::shared::{
-    self, Before, BeforeColumn, Column, MEASURING_GROUPS, MOST_FANS, OutsideColumn, Parameters, Partial, Status,
-    Surface,
+    BeforeColumn, BeforeOutlet, Body, Fan, IS_PASSED, MEASURING_GROUPS, MOST_FANS, Measured, Memory, OutsideColumn,
+    Packed, PackedColumn, Parameters, Partial, Row, Solid, Status, Surface, Water,
 };
 use super::solids::{CardSolids, filled};
 use super::sources::CardSources;
 use corpuscle_gpu::{
-    CellSort, DECLARED, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
+    Buffers, CellSort, DECLARED, DEVICE_PARTICLES, DeclaredKernel, Gpu, GpuError, Pass, SUMS_BEFORE, SortSlots,
+    THREADS, Task, storage, uniform, wgpu,
 };
 
 /// Pieces that the shaders import, but for what they share with the host.
-const PIECES: &[(&str, &str)] = &[
+pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_columns", include_str!("dew_columns.wgsl")),
@@ -23,9 +24,9 @@ const PIECES: &[(&str, &str)] = &[
     ("dew_utility", include_str!("dew_utility.wgsl")),
 ];
 
-/// Pieces that the shaders import; `shared` is the text of what they share with the host.
-pub(super) fn library(shared: &str) -> Vec<(&'static str, &str)> {
-    PIECES.iter().copied().chain([(DECLARED, shared)]).collect()
+/// The same with the constants and structures that they share with the host, for a shader that writes its bindings itself.
+pub(super) fn with_types(types: &str) -> Vec<(&'static str, &str)> {
+    PIECES.iter().copied().chain([(DECLARED, types), DEVICE_PARTICLES]).collect()
 }
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
@@ -36,16 +37,7 @@ const BODIES: u64 = 5;
 /// Everything on the device.
 #[derive(Debug)]
 pub(super) struct Tasks {
-    pub parameters: wgpu::Buffer,
-    pub status: wgpu::Buffer,
-    pub particles: wgpu::Buffer,
-    pub solids: wgpu::Buffer,
-    pub waters: wgpu::Buffer,
-    pub bodies: wgpu::Buffer,
-    pub rows: wgpu::Buffer,
-    /// Bytes held.
-    pub bytes: u64,
-    groups: wgpu::Buffer,
+    pub memory: Memory,
     sort: CellSort,
     drift: Task,
     /// Where air passes a face.
@@ -64,111 +56,87 @@ pub(super) struct Tasks {
     finish: Task,
     /// What gauges tell of the air.
     pub measure: Task,
-    pub measured: wgpu::Buffer,
 }
 
 impl Tasks {
-    /// For so many particles of air at most, with columns outside open sides.
+    /// For so many particles of air at most, with columns outside open sides, and with so many rows of values over time.
     pub fn new(
         gpu: &Gpu,
         count: usize,
         parameters: &Parameters,
-        fans: &[shared::Fan; MOST_FANS as usize],
-        solids: &CardSolids,
+        fans: &[Fan; MOST_FANS as usize],
+        solids: CardSolids,
         sources: Option<&CardSources>,
+        rows: usize,
         outside: &[OutsideColumn],
         field: &[f32],
     ) -> Result<Self, GpuError> {
-        let CardSolids { start: site_start, sites, own, pairs, .. } = solids;
+        let CardSolids { start: site_start, sites, own, pairs, count: of_solids, bodies } = solids;
         let cells = parameters.cells.iter().product::<u32>() as usize + 1;
-        let is_passed = parameters.flags & super::shared::IS_PASSED != 0;
-        let parameters = uniform(gpu, "parameters of the air", parameters);
-        let fans = uniform(gpu, "fans", fans);
-        let rows = storage::<shared::Row>(gpu, "temperatures held", solids.rows.len())?;
+        let groups = count.div_ceil(THREADS as usize);
         let status = storage::<Status>(gpu, "status", 1)?;
-        let groups = storage::<[u32; 3]>(gpu, "groups", 6)?;
-        let particles = storage::<shared::Particle>(gpu, "air", count)?;
-        let ordered = storage::<shared::Particle>(gpu, "air in order", count)?;
         let keys = storage::<u32>(gpu, "numbers of particles", count)?;
-        let spots = storage::<[f32; 4]>(gpu, "places of particles", count)?;
-        let columns = storage::<Column>(gpu, "columns of air", count)?;
-        let partials = storage::<Partial>(gpu, "sums of groups", count.div_ceil(THREADS as usize))?;
-        let before = storage::<Before>(gpu, "sums before faces", count.div_ceil(THREADS as usize))?;
-        let columns_before = storage::<BeforeColumn>(gpu, "sums before columns", outside.len())?;
-        let is_open = !outside.is_empty();
-        let outside = filled(gpu, "columns outside", outside)?;
-        let field = filled(gpu, "distances to solids", field)?;
-        let states = storage::<shared::Solid>(gpu, "states of solids", solids.count)?;
-        let waters = storage::<shared::Water>(gpu, "water on solids", solids.count)?;
-        let surfaces = storage::<Surface>(gpu, "surfaces", solids.count)?;
-        let bodies = filled::<shared::Body>(gpu, "solids", &solids.bodies)?;
-        let measured = storage::<shared::Measured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?;
         let sort = CellSort::new(gpu, count, cells, &status, &keys)?;
-        let of_air = [&particles, &ordered, &keys, &spots, &columns, &partials, &before, &sort.places, &sort.order];
-        let of_cells = [&sort.counts, &sort.start, site_start];
-        let of_solids = [&states, &waters, &surfaces, sites, own, pairs];
-        let bytes = of_air.into_iter().chain(of_cells).chain(of_solids).map(wgpu::Buffer::size).sum();
-        let shared = shared::declaration().types();
-        let library = library(&shared);
-        let task = |name, text, buffers: &[Option<&wgpu::Buffer>]| {
-            let bindings = buffers.iter().map(|buffer| buffer.map(wgpu::Buffer::as_entire_binding));
-            Kernel::new(gpu, name, text, &library).on_those(gpu, bindings)
+        let memory = Memory {
+            parameters: uniform(gpu, "parameters of the air", parameters),
+            status,
+            particles: storage::<Packed>(gpu, "air", count)?,
+            ordered: storage::<Packed>(gpu, "air in order", count)?,
+            spots: storage::<[f32; 4]>(gpu, "places of particles", count)?,
+            columns: storage::<PackedColumn>(gpu, "columns of air", count)?,
+            partials: storage::<Partial>(gpu, "sums of groups", groups)?,
+            before: storage::<[BeforeOutlet; 6]>(gpu, "sums before faces", groups)?,
+            columns_before: storage::<BeforeColumn>(gpu, "sums before columns", outside.len())?,
+            outside_columns: filled(gpu, "columns outside", outside)?,
+            counts: sort.counts.clone(),
+            places: sort.places.clone(),
+            keys,
+            start: sort.start.clone(),
+            order: sort.order.clone(),
+            groups: storage::<[u32; 3]>(gpu, "groups", 6)?,
+            site_start,
+            sites,
+            own,
+            solids: storage::<Solid>(gpu, "states of solids", of_solids)?,
+            waters: storage::<Water>(gpu, "water on solids", of_solids)?,
+            surfaces: storage::<Surface>(gpu, "surfaces", of_solids)?,
+            pairs,
+            bodies: filled::<Body>(gpu, "solids", &bodies)?,
+            rows: storage::<Row>(gpu, "values over time", rows)?,
+            shares: filled(gpu, "shares of sources", sources.map_or(&[][..], |sources| &sources.shares))?,
+            sources: filled(gpu, "sources of heat", sources.map_or(&[][..], |sources| &sources.initial))?,
+            measured: storage::<Measured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?,
+            field: filled(gpu, "distances to solids", field)?,
+            fans: uniform(gpu, "fans", fans),
         };
+        let task = |name, text| DeclaredKernel::<Memory>::new(gpu, name, text, PIECES).on(gpu, &memory);
         macro_rules! shader {
-            ($name:literal, [$first:expr, $($buffer:expr),*]) => {
-                task($name, include_str!(concat!($name, ".wgsl")), &[$first, $(Some(&$buffer)),*])
+            ($name:literal) => {
+                task($name, include_str!(concat!($name, ".wgsl")))
             };
         }
-        let has_solids = solids.count > 0;
-        let all = Some(&parameters);
+        let has_solids = of_solids > 0;
         Ok(Self {
-            drift: shader!("dew_drift", [all, status, particles, before]),
-            let_in: is_passed.then(|| shader!("dew_let_in", [all, status, particles, before, groups])),
-            cross: shader!(
-                "dew_cross",
-                [all, status, particles, sort.counts, sort.places, keys, partials, columns_before, field]
-            ),
-            outside: is_open.then(|| {
-                shader!(
-                    "dew_outside",
-                    [all, status, particles, columns_before, outside, sort.counts, sort.places, keys, groups]
-                )
-            }),
-            reorder: shader!("dew_reorder", [all, status, sort.start, sort.order, particles, ordered, spots, outside]),
-            density: shader!(
-                "dew_density",
-                [all, status, sort.start, spots, ordered, particles, columns, *site_start, *sites]
-            ),
-            surfaces: has_solids.then(|| {
-                shader!("dew_surfaces", [all, status, sort.start, columns, *own, states, surfaces, *pairs, waters])
-            }),
-            sources: sources.map(|of| {
-                shader!("dew_sources", [all, status, states, surfaces, of.rows, of.shares, bodies, of.sources])
-            }),
-            forces: shader!(
-                "dew_forces",
-                [all, status, sort.start, columns, particles, *site_start, *sites, surfaces, partials, fans]
-            ),
-            take_up: has_solids.then(|| {
-                [
-                    shader!("dew_take_up", [all, status, sort.start, spots, particles, *own, surfaces, states, waters]),
-                    shader!("dew_bodies", [all, states, bodies, status, rows]),
-                ]
-            }),
-            finish: shader!("dew_finish", [all, status, partials, groups, bodies, *own]),
-            measure: shader!("dew_measure", [None, status, particles, measured]),
-            measured,
-            parameters,
-            status,
-            particles,
-            solids: states,
-            waters,
-            bodies,
-            rows,
-            bytes,
-            groups,
+            drift: shader!("dew_drift"),
+            let_in: (parameters.flags & IS_PASSED != 0).then(|| shader!("dew_let_in")),
+            cross: shader!("dew_cross"),
+            outside: (!outside.is_empty()).then(|| shader!("dew_outside")),
+            reorder: shader!("dew_reorder"),
+            density: shader!("dew_density"),
+            surfaces: has_solids.then(|| shader!("dew_surfaces")),
+            sources: sources.map(|_| shader!("dew_sources")),
+            forces: shader!("dew_forces"),
+            take_up: has_solids.then(|| [shader!("dew_take_up"), shader!("dew_bodies")]),
+            finish: shader!("dew_finish"),
+            measure: shader!("dew_measure"),
+            memory,
             sort,
         })
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> u64 {
+        self.memory.in_order().into_iter().map(wgpu::Buffer::size).sum()
     }
 
     /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
@@ -180,7 +148,7 @@ impl Tasks {
     }
 
     fn step(&self, pass: &mut Pass<'_>) {
-        let groups = &self.groups;
+        let groups = &self.memory.groups;
         self.drift.run_as_told(pass, groups, SLOTS.particles);
         if let Some(let_in) = &self.let_in {
             let_in.run(pass, 1);
