@@ -245,8 +245,9 @@ fn wall_layers(row: usize, solid: &str, layers: &[dew::WallLayer]) -> Result<Vec
     layers.iter().enumerate().map(layer).collect()
 }
 
-/// A solid with something outside reaches the side, or is within this of it, over the spacing.
-const AT_SIDE: f64 = 0.05;
+/// A solid with something outside reaches the side, or is within this of it, over the spacing: rounding. The area in the side is measured on the solid's form, and one that ends farther
+/// away would have too little of it.
+const AT_SIDE: f64 = 1e-3;
 
 fn refuse_away_from_side(dew: &Dew, row: usize, written: &dew::Solid, solid: &Solid) -> Result<(), BodyError> {
     let Some(outside) = &written.outside else { return Ok(()) };

@@ -106,7 +106,10 @@ fn a_solid_with_something_outside_reaches_there() {
              outside = {{ side = \"x_min\", temperature_c = 0, h_w_per_m2_k = 10 }} }}"
         )
     };
-    assert!(made(&pane(0.01)).is_ok());
-    let error = made(&pane(0.05)).unwrap_err();
-    assert!(["pane", "dew.solid.0.outside", "x_min"].iter().all(|word| error.contains(word)), "{error}");
+    assert!(made(&pane(0.01)).is_ok() && made(&pane(0.010_000_001)).is_ok());
+    // By far, and by a fiftieth of a spacing, where half of the area would be missing.
+    for x in [0.05, 0.0101] {
+        let error = made(&pane(x)).unwrap_err();
+        assert!(["pane", "dew.solid.0.outside", "x_min"].iter().all(|word| error.contains(word)), "{error}");
+    }
 }

@@ -114,6 +114,21 @@ fn water_on_a_pane_that_has_become_colder_than_ice_is_told() {
     assert!(frosts(-30.0) && !frosts(3.0));
 }
 
+/// A spike that touches the side with its tip: nothing of it lies in the side, and its wall has no cells.
+#[test]
+fn a_wall_of_no_area_does_nothing() {
+    let text = "run.until_s = 1\n[dew]\nsize_m = [0.016, 0.012, 0.012]\nspacing_m = 0.002\nair = { temperature_c = 20, relative_humidity = 0.3 }\n\
+                drops.smallest_radius_m = 5e-4\n[[dew.solid]]\nname = \"spike\"\n\
+                shape = { revolution = { profile_m = [[0, 0], [0.0004, 0.003], [0.003, 0.004], [0.003, 0.008], [0, 0.008]] } }\n\
+                position_m = [0.006, 0.006, 0]\ntemperature_c = 20\n\
+                outside = { side = \"z_min\", temperature_c = 0, h_w_per_m2_k = 25, layers = [{ material = \"glass\", thickness_m = 0.004 }] }\n";
+    let scene = Scene::parse(text, "test", &[]).unwrap();
+    let mut dew = corpuscle_dew::open(scene.dew().unwrap(), 1, Path::new("")).unwrap();
+    go(&mut dew, 0.05);
+    assert_eq!(dew.heat_supplied(0), [0.0; 3]);
+    assert_eq!(dew.gauge_columns().len(), dew.gauge_row().len());
+}
+
 #[test]
 fn a_material_of_a_layer_that_is_not_known_is_named() {
     let error = made(&DOUBLE.replace("\"glass\"", "\"glas\"")).err().unwrap().to_string();

@@ -738,7 +738,7 @@ mod tests {
             corpuscle_gpu::check_shader(&whole).unwrap_or_else(|error| panic!("{name}.wgsl: {error}"));
             count += 1;
         }
-        assert_eq!(count, 14);
+        assert!(count >= 14, "{count}");
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub(crate) struct WallCell {
     /// Number of the layer, counted from the solid.
     pub layer: u32,
     /// The outer surface, of the last cell of a column.
-    pub(crate) outer: SurfacePart,
+    pub outer: SurfacePart,
 }
 
 /// How a wall is divided into cells, for each area of it.
@@ -130,7 +130,7 @@ impl Dew {
                 self.add_wall(number, body, &mut links);
             }
         }
-        if links.is_empty() {
+        if self.solids.walls.is_empty() {
             return;
         }
         self.conduction.connect(self.solids.nodes(), &links);

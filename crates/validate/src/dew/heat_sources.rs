@@ -1,12 +1,12 @@
 //! Heaters, heat to the outside, and radiation of solids, each beside its known answer.
 
 use super::ledger::dew_of;
-use super::{advance, ledger_rounding, ready, rows};
+use super::{advance, ledger_error, ledger_rounding, rows};
 use crate::device::{is_reduced, reduced};
 use crate::{Case, Options, Row};
 use corpuscle_dew::Dew;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::ModelError;
 use std::f64::consts::PI;
 
 pub(super) const HEAT_SOURCES: Case = Case {
@@ -27,10 +27,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let name = HEAT_SOURCES.name;
     let mut rows = Vec::new();
     let mut balance = 0.0_f64;
-    let mut see = |dew: &Dew| {
-        let all = dew.ledger().balances;
-        balance = all.iter().map(|balance| balance.relative_error().abs()).fold(balance, f64::max);
-    };
+    let mut see = |dew: &Dew| balance = balance.max(ledger_error(dew));
     let mut errors = Vec::new();
     for &spacing in reduced(&SPACINGS) {
         let mut worst = [0.0_f64; 2];
@@ -73,6 +70,9 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 
 const SPACINGS: [f64; 3] = [1.5e-3, 1e-3, 0.7e-3];
 
+/// W/(m2 K4) (CODATA 2018).
+pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
+
 /// Why the heat of the coarser spacings is shown only.
 const WHY: &str = "bounded with nine layers; with four and six the layer that has cooled is as thin as they are";
 
@@ -87,44 +87,64 @@ const CAPACITY: f64 = 1e5;
 /// W/(m2 K), °C, °C, W/m2, s.
 const TRANSFER: f64 = 50.0;
 const OUTSIDE: f64 = -10.0;
-const START: f64 = 20.0;
+pub(super) const START: f64 = 20.0;
 const POWER: f64 = 300.0;
 const WATCHED: f64 = 6.0;
 
 /// Side of the slab, m.
 const WIDTH: f64 = 0.0044;
 
-fn axis_of(side: &str) -> usize {
+pub(super) fn axis_of(side: &str) -> usize {
     ["x", "y", "z"].iter().position(|axis| side.starts_with(axis)).unwrap_or(0)
 }
 
-/// A slab in a side of a box twice as thick, after `WATCHED`.
-fn slab(side: &str, spacing: f64) -> Result<Dew, ModelError> {
+/// A slab of conductivity, W/(m K), and heat capacity, J/(m3 K), in a side of a box twice as thick that is periodic across, at 20 °C, in air that neither warms nor
+/// moves; thickness and width in m. `rest` are keys of the solid.
+pub(super) fn slab_in_side(
+    side: &str,
+    [thickness, width]: [f64; 2],
+    spacing: f64,
+    factor: f64,
+    material: [f64; 2],
+    rest: &str,
+) -> Result<Dew, ModelError> {
     let axis = axis_of(side);
-    let is_low = side.ends_with("min");
     let of = |along: f64, across: f64| {
         let mut all = [across; 3];
         all[axis] = along;
         all
     };
-    let middle = if is_low { 0.5 * THICKNESS } else { 1.5 * THICKNESS };
+    let middle = if side.ends_with("min") { 0.5 * thickness } else { 1.5 * thickness };
     let periodic = |other: usize| ["x", "y", "z"].map(|name| (other != axis).then_some(name))[other];
     let faces: String = (0..3)
         .filter_map(periodic)
         .map(|name| format!("{name}_min = \"periodic\"\n{name}_max = \"periodic\"\n"))
         .collect();
-    let text = format!(
-        "run.until_s = {WATCHED}\n[dew]\nsize_m = {:?}\nspacing_m = {spacing}\n{STILL_AIR}[dew.faces]\n{faces}[[dew.solid]]\nname = \"slab\"\n\
-         shape = {{ box = {{ size_m = {:?} }} }}\nposition_m = {:?}\ntemperature_c = {START}\n\
-         material = {{ conductivity_w_per_m_k = {CONDUCTIVITY}, heat_capacity_j_per_kg_k = {}, density_kg_per_m3 = 1000 }}\n\
-         heater = {{ power_w_per_m2 = {POWER} }}\n\
-         outside = {{ side = \"{side}\", temperature_c = {OUTSIDE}, h_w_per_m2_k = {TRANSFER} }}\n",
-        of(2.0 * THICKNESS, WIDTH),
-        of(THICKNESS, WIDTH),
-        of(middle, 0.5 * WIDTH),
-        CAPACITY / 1000.0,
+    dew_of(&format!(
+        "run.until_s = 1\n[dew]\nsize_m = {:?}\nspacing_m = {spacing}\ntime_factor = {factor}\n{STILL_AIR}[dew.faces]\n{faces}[[dew.solid]]\nname = \"slab\"\n\
+         shape = {{ box = {{ size_m = {:?} }} }}\nposition_m = {:?}\ntemperature_c = {START}\nmaterial = {}\n{rest}",
+        of(2.0 * thickness, width),
+        of(thickness, width),
+        of(middle, 0.5 * width),
+        written(material),
+    ))
+}
+
+/// A material of a conductivity, W/(m K), and a heat capacity, J/(m3 K).
+pub(super) fn written([conductivity, capacity]: [f64; 2]) -> String {
+    format!(
+        "{{ conductivity_w_per_m_k = {conductivity}, heat_capacity_j_per_kg_k = {}, density_kg_per_m3 = 1000 }}",
+        capacity / 1000.0
+    )
+}
+
+/// The slab after `WATCHED`.
+fn slab(side: &str, spacing: f64) -> Result<Dew, ModelError> {
+    let rest = format!(
+        "heater = {{ power_w_per_m2 = {POWER} }}\n\
+         outside = {{ side = \"{side}\", temperature_c = {OUTSIDE}, h_w_per_m2_k = {TRANSFER} }}\n"
     );
-    let mut dew = ready(dew_of(&text)?)?;
+    let mut dew = slab_in_side(side, [THICKNESS, WIDTH], spacing, 1.0, [CONDUCTIVITY, CAPACITY], &rest)?;
     advance(&mut dew, WATCHED)?;
     Ok(dew)
 }
@@ -215,7 +235,7 @@ fn sphere(spacing: f64, factor: f64) -> Result<Dew, ModelError> {
          radiation = {{ emissivity = {EMISSIVITY}, surroundings_c = {START} }}\n",
         CAPACITY / 1000.0,
     );
-    let mut dew = ready(dew_of(&text)?)?;
+    let mut dew = dew_of(&text)?;
     advance(&mut dew, RADIATED / factor)?;
     Ok(dew)
 }
@@ -234,7 +254,6 @@ fn sphere_error(dew: &Dew, factor: f64) -> f64 {
 /// Mean temperature of the sphere after a time, K: C R/3 dT/dt = -q, q = e sigma (T_s^4 - T_r^4). Its surface is colder by q R/(5 k), as where it cools evenly
 /// all through. Runge and Kutta's method.
 fn radiated(time: f64) -> f64 {
-    const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
     let around = START + ZERO_CELSIUS;
     let rate = |mean: f64| {
         let mut flux = 0.0;

@@ -70,6 +70,11 @@ fn ledger_rounding() -> f64 {
 /// Particles across a column, along y and along z.
 const ACROSS: usize = 2;
 
+/// Largest relative error of the balances of a run.
+fn ledger_error(dew: &Dew) -> f64 {
+    dew.ledger().balances.iter().map(|balance| balance.relative_error().abs()).fold(0.0, f64::max)
+}
+
 /// A column along x from 0 to `length` m of particles a `spacing` apart, periodic across, walled at its ends.
 fn column(length: f64, spacing: f64) -> Room {
     let width = ACROSS as f64 * spacing;

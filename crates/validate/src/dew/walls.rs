@@ -1,15 +1,15 @@
 //! Heat through the layers of a wall behind a solid, beside exact answers.
 
-use super::ledger::{dew_of, gauge};
-use super::{advance, ledger_rounding, rows};
+use super::heat_sources::{START, STEFAN_BOLTZMANN, axis_of, slab_in_side, written};
+use super::ledger::gauge;
+use super::{advance, ledger_error, ledger_rounding, rows};
 use crate::device::{is_reduced, reduced};
 use crate::{Case, Options, Row};
 use corpuscle_dew::Dew;
 use corpuscle_dew::humid_air::ZERO_CELSIUS;
-use corpuscle_model::{Model, ModelError};
+use corpuscle_model::ModelError;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-use std::fmt::Write;
 
 pub(super) const WALLS: Case = Case {
     name: "dew/walls",
@@ -31,10 +31,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let name = WALLS.name;
     let mut rows = Vec::new();
     let mut balance = 0.0_f64;
-    let mut see = |dew: &Dew| {
-        let all = dew.ledger().balances;
-        balance = all.iter().map(|balance| balance.relative_error().abs()).fold(balance, f64::max);
-    };
+    let mut see = |dew: &Dew| balance = balance.max(ledger_error(dew));
     let mut errors = Vec::new();
     for &spacing in reduced(&SPACINGS) {
         let mm = spacing * 1e3;
@@ -59,7 +56,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     for &spacing in reduced(&SPACINGS) {
         let dew = two_panes(spacing)?;
         see(&dew);
-        let found = ["pane.mean_temperature_K", "pane.outside.1.mean_temperature_K"].map(|header| gauge(&dew, header));
+        let found = ["slab.mean_temperature_K", "slab.outside.1.mean_temperature_K"].map(|header| gauge(&dew, header));
         let [heated, second] =
             [0, 1].map(|pane| ((found[pane] - exact[pane]) / (exact[pane] - SKY - ZERO_CELSIUS)).abs());
         let mm = spacing * 1e3;
@@ -80,23 +77,10 @@ fn order_of(errors: &[f64]) -> Option<f64> {
     Some((coarse / fine).ln() / (SPACINGS[0] / SPACINGS[2]).ln())
 }
 
-/// A material: conductivity, W/(m K), and heat capacity, J/(m3 K).
-#[derive(Clone, Copy)]
-struct Material(f64, f64);
-
-impl Material {
-    fn written(self) -> String {
-        let Self(conductivity, capacity) = self;
-        format!(
-            "{{ conductivity_w_per_m_k = {conductivity}, heat_capacity_j_per_kg_k = {}, density_kg_per_m3 = 1000 }}",
-            capacity / 1000.0
-        )
-    }
-}
-
-const SLAB: Material = Material(0.2, 1e5);
-const METAL: Material = Material(50.0, 2e5);
-const FOAM: Material = Material(0.1, 3e4);
+/// Materials: conductivity, W/(m K), and heat capacity, J/(m3 K).
+const SLAB: [f64; 2] = [0.2, 1e5];
+const METAL: [f64; 2] = [50.0, 2e5];
+const FOAM: [f64; 2] = [0.1, 3e4];
 
 /// Thicknesses, m, and the gap's resistance, m2 K/W.
 const SLAB_THICKNESS: f64 = 0.003;
@@ -111,48 +95,18 @@ const UNEVEN_WIDTH: f64 = 0.0044;
 /// The swing outside: W/(m2 K), s, °C, K; and after how many periods it is looked at for one, at reduced and full size.
 const TRANSFER: f64 = 200.0;
 const PERIOD: f64 = 16.0;
-const MEAN: f64 = 20.0;
+const MEAN: f64 = START;
 const AMPLITUDE: f64 = 20.0;
 const PERIODS: [u32; 2] = [1, 8];
 
 /// Periods before the one that is looked at; at reduced size the swing has not settled then.
 fn periods_before() -> u32 {
-    reduced(&PERIODS)[reduced(&PERIODS).len() - 1]
+    if is_reduced() { PERIODS[0] } else { PERIODS[1] }
 }
 
 /// Rows of the swing's table in a period, by which its amplitude is 5e-5 smaller, and looks at the slab.
 const ROWS: u32 = 256;
 const LOOKS: u32 = 32;
-
-/// A slab in a side of a box twice as thick, with what is beyond; air that neither warms nor moves.
-fn slab(side: &str, spacing: f64, width: f64, factor: f64, rest: &str) -> Result<Dew, ModelError> {
-    let axis = axis_of(side);
-    let of = |along: f64, across: f64| {
-        let mut all = [across; 3];
-        all[axis] = along;
-        all
-    };
-    let middle = if side.ends_with("min") { 0.5 * SLAB_THICKNESS } else { 1.5 * SLAB_THICKNESS };
-    let faces: String = (0..3).filter(|other| *other != axis).fold(String::new(), |mut faces, other| {
-        let name = ["x", "y", "z"][other];
-        let _ = writeln!(faces, "{name}_min = \"periodic\"\n{name}_max = \"periodic\"");
-        faces
-    });
-    dew_of(&format!(
-        "run.until_s = 1\n[dew]\nsize_m = {:?}\nspacing_m = {spacing}\ntime_factor = {factor}\nbuoyancy = false\n\
-         air = {{ temperature_c = {MEAN}, relative_humidity = 0 }}\ntransport.air_conductivity_w_per_m_k = 1e-7\n\
-         drops.smallest_radius_m = 5e-4\n[dew.faces]\n{faces}[[dew.solid]]\nname = \"pane\"\nshape = {{ box = {{ size_m = {:?} }} }}\n\
-         position_m = {:?}\ntemperature_c = {MEAN}\nmaterial = {}\n{rest}",
-        of(2.0 * SLAB_THICKNESS, width),
-        of(SLAB_THICKNESS, width),
-        of(middle, 0.5 * width),
-        SLAB.written(),
-    ))
-}
-
-fn axis_of(side: &str) -> usize {
-    ["x", "y", "z"].iter().position(|axis| side.starts_with(axis)).unwrap_or(0)
-}
 
 /// The slab after the swing, and the largest error of the swing in it over that outside.
 fn swing(side: &str, spacing: f64, width: f64, factor: f64) -> Result<(Dew, f64), ModelError> {
@@ -166,10 +120,10 @@ fn swing(side: &str, spacing: f64, width: f64, factor: f64) -> Result<(Dew, f64)
         "outside = {{ side = \"{side}\", h_w_per_m2_k = {TRANSFER}, temperature_c = [{}], layers = [{{ resistance_m2_k_per_w = {GAP} }}, \
          {{ material = {}, thickness_m = {METAL_THICKNESS} }}, {{ material = {}, thickness_m = {FOAM_THICKNESS} }}] }}\n",
         rows.join(", "),
-        METAL.written(),
-        FOAM.written(),
+        written(METAL),
+        written(FOAM),
     );
-    let mut dew = slab(side, spacing, width, factor, &outside)?;
+    let mut dew = slab_in_side(side, [SLAB_THICKNESS, width], spacing, factor, SLAB, &outside)?;
     let axis = axis_of(side);
     let depths: Vec<f64> =
         dew.solids().particles.iter().map(|particle| (particle.position[axis] - SLAB_THICKNESS).abs()).collect();
@@ -187,14 +141,14 @@ fn swing(side: &str, spacing: f64, width: f64, factor: f64) -> Result<(Dew, f64)
 }
 
 /// Complex wave number of heat that swings, 1/m: its square is i omega C/k.
-fn wave_number(Material(conductivity, capacity): Material) -> Complex64 {
+fn wave_number([conductivity, capacity]: [f64; 2]) -> Complex64 {
     Complex64::new(0.0, TAU / PERIOD * capacity / conductivity).sqrt()
 }
 
 /// Temperature and heat flux into it at the outer face of a layer from those at its inner face.
-fn through(material: Material, thickness: f64, [temperature, flux]: [Complex64; 2]) -> [Complex64; 2] {
+fn through(material: [f64; 2], thickness: f64, [temperature, flux]: [Complex64; 2]) -> [Complex64; 2] {
     let wave_number = wave_number(material);
-    let (admittance, angle) = (material.0 * wave_number, wave_number * thickness);
+    let (admittance, angle) = (material[0] * wave_number, wave_number * thickness);
     let (cosh, sinh) = (angle.cosh(), angle.sinh());
     [temperature * cosh + flux * sinh / admittance, temperature * admittance * sinh + flux * cosh]
 }
@@ -223,16 +177,15 @@ fn two_panes(spacing: f64) -> Result<Dew, ModelError> {
         "heater = {{ power_w_per_m2 = {POWER} }}\n\
          outside = {{ side = \"y_max\", temperature_c = {OUTSIDE}, h_w_per_m2_k = {WIND}, emissivity = {EMISSIVITY}, surroundings_c = {SKY}, \
          layers = [{{ resistance_m2_k_per_w = {GAP} }}, {{ material = {}, thickness_m = {SECOND_PANE} }}] }}\n",
-        SLAB.written(),
+        written(SLAB),
     );
-    let mut dew = slab("y_max", spacing, UNEVEN_WIDTH, FACTOR, &rest)?;
+    let mut dew = slab_in_side("y_max", [SLAB_THICKNESS, UNEVEN_WIDTH], spacing, FACTOR, SLAB, &rest)?;
     advance(&mut dew, SETTLED)?;
     Ok(dew)
 }
 
 /// Mean temperatures of the two panes, K: all heat leaves by wind and radiation of the outer surface, whose temperature is found by halving.
 fn two_panes_exactly() -> [f64; 2] {
-    const STEFAN_BOLTZMANN: f64 = 5.670_374_419e-8;
     let lost = |surface: f64| {
         let of_sky = (SKY + ZERO_CELSIUS).powi(4);
         WIND * (surface - ZERO_CELSIUS - OUTSIDE) + EMISSIVITY * STEFAN_BOLTZMANN * (surface.powi(4) - of_sky)
@@ -243,7 +196,7 @@ fn two_panes_exactly() -> [f64; 2] {
         if lost(middle) < POWER { low = middle } else { high = middle }
     }
     // The heater warms evenly all through the inner pane, whose mean is warmer than its outer face by q L/(3 k).
-    let second = low + 0.5 * POWER * SECOND_PANE / SLAB.0;
-    let inner_face = low + POWER * (SECOND_PANE / SLAB.0 + GAP);
-    [inner_face + POWER * SLAB_THICKNESS / (3.0 * SLAB.0), second]
+    let second = low + 0.5 * POWER * SECOND_PANE / SLAB[0];
+    let inner_face = low + POWER * (SECOND_PANE / SLAB[0] + GAP);
+    [inner_face + POWER * SLAB_THICKNESS / (3.0 * SLAB[0]), second]
 }
