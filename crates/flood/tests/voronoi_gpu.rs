@@ -172,6 +172,89 @@ fn water_leaves_over_open_edges() {
     }
 }
 
+/// Levels that are held and rise, waves given by level, by velocity and by both, a paddle: through sides, a part of one, and a line inside, over wet and dry
+/// ground.
+#[test]
+fn levels_waves_and_paddles_work_at_sides() {
+    let Some(gpu) = require_gpu("levels at sides on the GPU") else { return };
+    let walls = "south = \"wall\", north = \"wall\"";
+    let cases = [
+        format!("edges = {{ west = {{ stage = [[0, 101], [3, 101.05]] }}, east = {{ stage = 101 }}, {walls} }}"),
+        format!(
+            "edges = {{ west = {{ stage = [[0, 101], [2, 101.5], [2, 101], [6, 100.6]] }}, east = \"open\", {walls} }}"
+        ),
+        // In faster than waves, over dry ground.
+        format!(
+            "edges = {{ west = {{ wave = {{ rest_level_m = 101, level_m = 102, velocity_m_per_s = 5 }} }}, east = \"wall\", {walls} }}"
+        ),
+        format!(
+            "edges = {{ west = {{ wave = {{ rest_level_m = 101, level_m = [[0, 101], [4, 101.2], [8, 101]] }} }}, east = \"open\", {walls} }}"
+        ),
+        format!(
+            "edges = {{ west = {{ wave = {{ rest_level_m = 101, velocity_m_per_s = [[0, 0], [4, 0.4], [8, 0]] }} }}, east = \"open\", {walls} }}"
+        ),
+        format!(
+            "edges = {{ west = {{ paddle = [[0, 0], [3, 0.5], [5, 0.2], [5.5, 0.2], [12, 1]] }}, east = {{ stage = 101 }}, {walls} }}"
+        ),
+        "edge_line = [{ line = [[15.2, -1], [15.2, 31]], edge = { stage = [[0, 101], [3, 101.05]] } }]".to_owned(),
+        "edge_part = [{ side = \"east\", from = 5, to = 12, edge = { stage = 100.6 } }]".to_owned(),
+    ];
+    for case in cases {
+        for (water, until, bounds) in [
+            ("level_m = 101", 12.0, [1e-5, 5e-5]),
+            // At dry fronts the thinnest water sets the time step, and rounding shows.
+            ("level_m = 101, polygon = [[30, 0], [66, 0], [66, 30], [30, 30]]", 4.0, [5e-5, 5e-4]),
+        ] {
+            let keys = format!("spacing_m = 1.5\nmanning = 0.02\nwater = [{{ {water} }}]\n{case}");
+            let open = || basin(&keys, [66.0, 30.0], |x, y| 100.0 + 0.2 * (0.3 * x).sin() * (0.2 * y).cos());
+            let floods = both(gpu.clone(), until, open);
+            eprintln!("{case}");
+            agree(&floods, bounds[0], bounds[1]);
+            let [cpu, gpu] = floods.each_ref().map(|flood| flood.ledger().balances[0].inflow);
+            assert!((gpu - cpu).abs() <= 1e-5 * cpu.max(10.0), "{case}: {cpu} {gpu}");
+        }
+    }
+}
+
+/// A tank at rest between held levels and a wave of no height stays at rest.
+#[test]
+fn a_tank_at_rest_stays_at_rest_between_held_levels() {
+    let Some(gpu) = require_gpu("a tank between held levels on the GPU") else { return };
+    let keys = "spacing_m = 1.5\nmanning = 0\nwater = [{ level_m = 101 }]\n\
+                edges = { west = { stage = 101 }, east = { wave = { rest_level_m = 101, level_m = 101 } }, south = { stage = 101 }, north = \"open\" }";
+    let mut flood = basin(keys, [66.0, 30.0], |x, y| 100.0 + 0.5 * (0.9 * x).sin() * (0.7 * y).cos());
+    flood.use_gpu(gpu).unwrap();
+    go(&mut flood, 60.0);
+    eprintln!("rms {:.2e} m/s after {} steps", rms(&flood), flood.steps());
+    assert!(rms(&flood) < 2e-6, "{}", rms(&flood));
+}
+
+/// Discharges come in over sides, parts of them and lines, onto dry and wet ground, and go out by a rating.
+#[test]
+fn discharges_come_in_and_go_out_by_a_rating() {
+    let Some(gpu) = require_gpu("discharges on the GPU") else { return };
+    let parts = "edge_part = [{ side = \"west\", from = 10, to = 20, edge = { discharge = [[0, 0], [5, 6], [5, 3]] } }, \
+                 { side = \"east\", from = 5, to = 12, edge = { rating = [[400, 0], [401, 4], [402, 9]] } }]\n";
+    let line = "edge_line = [{ line = [[20, 25], [20, 5]], edge = { discharge = [[0, 1], [7, 3], [9, 0]] } }]\n";
+    let fast = "edges = { west = { discharge = 60 }, east = { rating = [[400, 0], [400.2, 3]] }, south = \"wall\", north = \"wall\" }\n";
+    for case in [parts, line, fast] {
+        for water in ["level_m = 400.7", "level_m = 400.7, polygon = [[40, 0], [66, 0], [66, 30], [40, 30]]"] {
+            let keys = format!("spacing_m = 1.5\nmanning = 0.03\nwater = [{{ {water} }}]\n{case}");
+            let open = || basin(&keys, [66.0, 30.0], |x, y| 400.0 + 0.2 * (0.3 * x).sin() * (0.2 * y).cos());
+            let floods = both(gpu.clone(), 15.0, open);
+            eprintln!("{case}");
+            agree(&floods, 1e-5, 5e-5);
+            let books = floods.each_ref().map(|flood| {
+                let balance = &flood.ledger().balances[0];
+                [balance.inflow, balance.outflow]
+            });
+            for k in 0..2 {
+                assert!((books[1][k] - books[0][k]).abs() <= 1e-5 * books[0][k].max(1.0), "{case}: {books:?}");
+            }
+        }
+    }
+}
+
 /// Sheets on a slope that goes on beyond joined sides, from uneven to normal flow.
 #[test]
 fn sheets_run_at_the_velocity_of_normal_flow() {

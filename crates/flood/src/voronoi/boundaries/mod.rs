@@ -2,8 +2,10 @@
 
 mod open;
 mod state;
+#[cfg(feature = "gpu")]
+mod upload;
 
-pub(crate) use open::Boundaries;
+pub(crate) use open::{Boundaries, CROSSINGS, FEWEST_CROSSINGS, LAG};
 pub(crate) use state::state;
 
 use super::fluxes::{Crossing, own_thrust_at_border};

@@ -11,13 +11,13 @@ use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 
 /// How long a held level takes to be met exactly, in crossings of the terrain by waves: shorter waves leave.
-const CROSSINGS: f64 = 10.0;
+pub(crate) const CROSSINGS: f64 = 10.0;
 
 /// The same where the level changes fast: so that sloshing, which takes four crossings, still goes out.
-const FEWEST_CROSSINGS: f64 = 0.25;
+pub(crate) const FEWEST_CROSSINGS: f64 = 0.25;
 
 /// How far the level may be from one that changes, over the depth: where it would be farther, waves are let out less.
-const LAG: f64 = 0.005;
+pub(crate) const LAG: f64 = 0.005;
 
 /// A part of a side with a rule of its own.
 #[derive(Debug, Clone)]
@@ -35,9 +35,9 @@ pub(crate) struct Boundaries {
     pub rules: Vec<Boundary>,
     parts: Vec<Part>,
     /// The rule of each border face of the solver; none at solids.
-    of_faces: Vec<Option<u16>>,
+    pub(super) of_faces: Vec<Option<u16>>,
     /// Height of the ground in the middle of each border face, m.
-    ground: Vec<f64>,
+    pub(super) ground: Vec<f64>,
     /// What each border face does in the two stages of the step.
     now: [Vec<Now>; 2],
 }
@@ -241,11 +241,9 @@ impl Boundaries {
         let Self { of_faces, now, .. } = self;
         let faces = || faces_of(of_faces, solver, rule);
         let total: f64 = faces().map(|(_, cell, length)| length * conveyance(cell)).sum();
-        let lowest = faces().map(|(_, cell, _)| solver.mesh.bed[cell]).fold(f64::INFINITY, f64::min);
-        let is_lowest = |cell: usize| solver.mesh.bed[cell] <= lowest + 1e-6 * (1.0 + lowest.abs());
-        let lowest_length: f64 = faces().filter(|(_, cell, _)| is_lowest(*cell)).map(|(_, _, length)| length).sum();
+        let (lowest, lowest_length) = lowest_of(of_faces, solver, rule);
         for (border, cell, _) in faces() {
-            let dry = if is_lowest(cell) { 1.0 / lowest_length } else { 0.0 };
+            let dry = if wets(solver.mesh.bed[cell], lowest) { 1.0 / lowest_length } else { 0.0 };
             let share = if total > 0.0 { conveyance(cell) / total } else { dry };
             now.iter_mut().for_each(|now| now[border] = Now::Discharge(discharge * share));
         }
@@ -282,8 +280,20 @@ impl Boundaries {
     }
 }
 
+/// The lowest bed before the border faces of a rule, m, and the length of those before which it lies, m.
+pub(super) fn lowest_of(of_faces: &[Option<u16>], solver: &Solver, rule: u16) -> (f64, f64) {
+    let faces = || faces_of(of_faces, solver, rule).map(|(_, cell, length)| (solver.mesh.bed[cell], length));
+    let lowest = faces().map(|(bed, _)| bed).fold(f64::INFINITY, f64::min);
+    (lowest, faces().filter(|(bed, _)| wets(*bed, lowest)).map(|(_, length)| length).sum())
+}
+
+/// Whether a bed lies as low as the lowest: there water comes in where all is dry.
+pub(super) fn wets(bed: f64, lowest: f64) -> bool {
+    bed <= lowest + 1e-6 * (1.0 + lowest.abs())
+}
+
 /// The border faces of a rule: their number among all border faces, cell, length, m. `of_faces` is the rule of each.
-fn faces_of<'a>(
+pub(super) fn faces_of<'a>(
     of_faces: &'a [Option<u16>],
     solver: &'a Solver,
     rule: u16,

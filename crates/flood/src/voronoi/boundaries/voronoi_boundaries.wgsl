@@ -1,6 +1,8 @@
-// What passes border faces: see `boundaries/mod.rs` and `boundaries/state.rs`.
+// What passes border faces: see `boundaries/mod.rs` and `boundaries/state.rs`. Levels are above the bed of the cell. `IS_SECOND` comes with the stage.
 #import declared
+#import stage
 #import voronoi_faces
+#import voronoi_tables
 
 // Per length: volume out of the cell, momentum across and along the face that goes with it, thrust less the cell's own.
 struct Crossing {
@@ -8,6 +10,9 @@ struct Crossing {
     carried: vec2f,
     thrust: f32,
 }
+
+// Rounds of Newton's method.
+const ROUNDS = 20u;
 
 // Thrust on a wall less that of the cell: the flux of Harten, Lax & van Leer between the water and its mirror image, whose wave speeds are u - c and, from the
 // two-rarefaction state, c + u/2 (Toro 2001, equation 10.18).
@@ -17,34 +22,97 @@ fn through_wall(at: AtFace) -> Crossing {
     return Crossing(0.0, vec2f(0.0), at.depth * at.across * (at.across + fastest));
 }
 
-// Celerity and velocity outwards at an open side, by the characteristics that reach it (Toro 2001, section 6.3): the water beyond is still, and `beyond` deep; a
-// free fall where there is none. Nothing comes in.
-fn open(at: AtFace, beyond: f32) -> vec2f {
-    let celerity = sqrt(parameters.gravity * at.depth);
-    let outgoing = at.across + 2.0 * celerity;
-    if at.across >= celerity {
-        return vec2f(celerity, at.across);
-    }
-    if beyond <= 0.0 {
-        return vec2f(max(outgoing / 3.0, 0.0));
-    }
-    let incoming = -2.0 * sqrt(parameters.gravity * beyond);
-    let across = 0.5 * (outgoing + incoming);
-    if across < 0.0 {
-        return vec2f(max(0.5 * outgoing, 0.0), 0.0);
-    }
-    return vec2f(max(0.25 * (outgoing - incoming), 0.0), across);
+// The celerity of waves where the water stands at a level.
+fn celerity_of(level: f32) -> f32 {
+    return sqrt(parameters.gravity * max(level, 0.0));
 }
 
-// The same in normal flow with the velocity `factor` depth^(2/3) where that is slower than waves, critical flow where it is not.
-fn normal_flow(at: AtFace, factor: f32) -> vec2f {
-    let celerity = sqrt(parameters.gravity * at.depth);
-    let outgoing = at.across + 2.0 * celerity;
-    if at.across >= celerity {
-        return vec2f(celerity, at.across);
+// No water passes: the level rises or falls until what comes from inside is at rest.
+fn still(outgoing: f32) -> vec2f {
+    return vec2f(max(0.5 * outgoing, 0.0), 0.0);
+}
+
+// Critical flow outwards.
+fn critical(outgoing: f32) -> vec2f {
+    return vec2f(max(outgoing / 3.0, 0.0));
+}
+
+// Celerity and velocity outwards where the water beyond has a celerity and moves outwards at `drift`, by the characteristics that reach the face (Toro 2001,
+// section 6.3): a free fall where there is none, the critical depth of a dam break (Ritter 1892) onto dry ground.
+fn meets(beyond: f32, drift: f32, is_wet: bool, outgoing: f32) -> vec2f {
+    if beyond <= 0.0 {
+        return critical(outgoing);
     }
+    if !is_wet {
+        let speed = max((2.0 * beyond - drift) / 3.0, 0.0);
+        return vec2f(speed, -speed);
+    }
+    let incoming = drift - 2.0 * beyond;
+    let across = 0.5 * (outgoing + incoming);
+    let celerity = 0.25 * (outgoing - incoming);
+    if across < -celerity {
+        return vec2f(beyond, drift);
+    }
+    return vec2f(max(celerity, 0.0), across);
+}
+
+// Nothing comes in.
+fn open(outgoing: f32, level: f32) -> vec2f {
+    let found = meets(celerity_of(level), 0.0, true, outgoing);
+    if found.y < 0.0 {
+        return still(outgoing);
+    }
+    return found;
+}
+
+// Water beyond at a level that moves outwards at `drift`: over the ground under the face where it comes in faster than waves.
+fn level_beyond(at: AtFace, outgoing: f32, level: f32, drift: f32, ground_level: f32) -> vec2f {
+    let found = meets(celerity_of(level), drift, at.depth > 0.0, outgoing);
+    let over_ground = celerity_of(level - ground_level);
+    if -drift >= over_ground && found.y <= -found.x {
+        return vec2f(over_ground, drift);
+    }
+    return found;
+}
+
+// A discharge inwards: c^2 (2c - outgoing) = g q where that flow is slower than waves, critical depth where it is not.
+fn comes_in(discharge: f32, outgoing: f32) -> vec2f {
+    let wanted = parameters.gravity * discharge;
+    let slowest = pow(wanted, 1.0 / 3.0);
+    var celerity = max(slowest, outgoing);
+    for (var k = 0u; k < ROUNDS; k++) {
+        let value = celerity * celerity * (2.0 * celerity - outgoing) - wanted;
+        celerity -= value / (celerity * (6.0 * celerity - 2.0 * outgoing));
+    }
+    if celerity >= outgoing {
+        celerity = slowest;
+    }
+    return vec2f(celerity, -wanted / (celerity * celerity));
+}
+
+// A discharge outwards, and that of critical flow at most: the larger root of c^2 (outgoing - 2c) = g q.
+fn goes_out(discharge: f32, outgoing: f32) -> vec2f {
+    if outgoing <= 0.0 || discharge <= 0.0 {
+        return still(outgoing);
+    }
+    let slowest = outgoing / 3.0;
+    let wanted = parameters.gravity * discharge;
+    if wanted >= slowest * slowest * slowest {
+        return critical(outgoing);
+    }
+    var celerity = 0.5 * outgoing;
+    for (var k = 0u; k < ROUNDS; k++) {
+        let value = celerity * celerity * (outgoing - 2.0 * celerity) - wanted;
+        let slope = celerity * (2.0 * outgoing - 6.0 * celerity);
+        celerity = max(celerity - value / min(slope, -1e-30), slowest);
+    }
+    return vec2f(celerity, wanted / (celerity * celerity));
+}
+
+// Normal flow with the velocity `factor` depth^(2/3) where that is slower than waves, critical flow where it is not.
+fn normal_flow(factor: f32, outgoing: f32) -> vec2f {
     if outgoing <= 0.0 {
-        return vec2f(max(0.5 * outgoing, 0.0), 0.0);
+        return still(outgoing);
     }
     var low = 0.0;
     var high = 0.5 * outgoing;
@@ -58,25 +126,103 @@ fn normal_flow(at: AtFace, factor: f32) -> vec2f {
         }
     }
     if factor * pow(low * low / parameters.gravity, 2.0 / 3.0) > low {
-        low = outgoing / 3.0;
+        return critical(outgoing);
     }
     return vec2f(low, outgoing - 2.0 * low);
 }
 
-fn through_border(border: Border, at: AtFace) -> Crossing {
+// Water before a wall that moves inwards: as fast as the wall, unless the wall leaves it behind.
+fn before_paddle(inwards: f32, depth: f32, outgoing: f32) -> vec2f {
+    let celerity = 0.5 * (outgoing + inwards);
+    if depth <= 0.0 || celerity <= 0.0 {
+        return vec2f(0.0);
+    }
+    return vec2f(celerity, -inwards);
+}
+
+// What a table comes to in the stage.
+fn in_stage(table: u32) -> f32 {
+    return in_step(table, AT_BEGINNING + u32(IS_SECOND));
+}
+
+// Level and velocity outwards of an incoming simple wave: what is not given of them follows from u = 2 (c - c0).
+fn wave(border: Border) -> vec2f {
+    let at_rest = celerity_of(border.rest);
+    var inwards = 0.0;
+    if border.velocity_table != NONE {
+        inwards = in_stage(border.velocity_table);
+    }
+    var level = 0.0;
+    if border.table != NONE {
+        level = border.datum + in_stage(border.table);
+    } else {
+        let celerity = max(at_rest + 0.5 * inwards, 0.0);
+        level = celerity * celerity / parameters.gravity;
+    }
+    if border.velocity_table == NONE {
+        inwards = 2.0 * (celerity_of(level) - at_rest);
+    }
+    return vec2f(level, -inwards);
+}
+
+// Celerity and velocity outwards of the water at a border face that is no wall; `known` is what is known of the water beyond.
+fn state_of(border: Border, known: f32, at: AtFace) -> vec2f {
+    let celerity = sqrt(parameters.gravity * at.depth);
+    let outgoing = at.across + 2.0 * celerity;
+    if border.kind == PADDLE {
+        return before_paddle(in_step(border.table, MEAN), at.depth, outgoing);
+    }
+    if border.kind == DISCHARGE && known > 0.0 {
+        return comes_in(known, outgoing);
+    }
+    if at.depth > 0.0 && at.across >= celerity {
+        return vec2f(celerity, at.across);
+    }
+    switch border.kind {
+        case OPEN: {
+            return open(outgoing, known);
+        }
+        case NORMAL: {
+            return normal_flow(border.factor, outgoing);
+        }
+        case DISCHARGE: {
+            return goes_out(-known, outgoing);
+        }
+        case LEVEL: {
+            return level_beyond(at, outgoing, border.datum + in_stage(border.table), known, border.ground);
+        }
+        default: {
+            let beyond = wave(border);
+            return level_beyond(at, outgoing, beyond.x, beyond.y, border.ground);
+        }
+    }
+}
+
+// Whether water may come in over a border onto dry ground.
+fn may_bring(border: Border) -> bool {
+    return border.kind == LEVEL || border.kind == WAVE || border.kind == DISCHARGE;
+}
+
+// The depth at which waves have a celerity: by the ratio of celerities, so that still water has the cell's own depth to the bit.
+fn depth_of(celerity: f32, own_depth: f32) -> f32 {
+    if own_depth <= 0.0 {
+        return celerity * celerity / parameters.gravity;
+    }
+    let ratio = celerity / sqrt(parameters.gravity * own_depth);
+    return own_depth * ratio * ratio;
+}
+
+fn through_border(border: Border, known: f32, at: AtFace) -> Crossing {
     if border.kind == WALL {
         return through_wall(at);
     }
-    var state = vec2f(0.0);
-    if border.kind == OPEN {
-        state = open(at, border.value);
-    } else {
-        state = normal_flow(at, border.value);
+    let state = state_of(border, known, at);
+    let depth = depth_of(state.x, at.depth);
+    var volume = depth * state.y;
+    if border.kind == DISCHARGE && known >= 0.0 {
+        // The hydrograph's.
+        volume = -known;
     }
-    // By the ratio of celerities: still water has the cell's own depth to the bit.
-    let ratio = state.x / sqrt(parameters.gravity * at.depth);
-    let depth = at.depth * ratio * ratio;
-    let volume = depth * state.y;
     let along = select(0.0, at.along, state.y > 0.0);
     let thrust = 0.5 * parameters.gravity * (depth - at.depth) * (depth + at.depth);
     return Crossing(volume, volume * vec2f(state.y, along), thrust);

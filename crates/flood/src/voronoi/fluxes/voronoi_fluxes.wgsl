@@ -47,14 +47,17 @@ fn between(face: Face, here: Water, there: Water) -> Flux {
 }
 
 fn over_border(face: Face, here: Water) -> Flux {
+    let border = borders[face.border];
+    if here.depth <= 0.0 && !may_bring(border) {
+        return Flux(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
+    }
     let length = length(face.normal);
     let normal = face.normal / length;
-    let border = borders[face.border];
     var at = at_side(here, normal);
     if border.kind == WALL {
         at = at_wall(here, slopes[face.first], face.between, face.offset, normal);
     }
-    let found = through_border(border, at);
+    let found = through_border(border, beyond[face.border], at);
     return Flux(length * turned_back(found.carried, normal), vec2f(found.thrust, 0.0), length * found.volume, 0.0);
 }
 
@@ -67,9 +70,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let here = water[face.first];
     var flux = Flux(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
     if face.second == NONE {
-        if here.depth > 0.0 {
-            flux = over_border(face, here);
-        }
+        flux = over_border(face, here);
     } else {
         let there = water[face.second];
         if here.depth > 0.0 || there.depth > 0.0 {

@@ -8,9 +8,12 @@
 mod model;
 mod shared;
 mod supplies;
+mod tables;
 mod upload;
 
 pub(super) use model::OnGpu;
+pub(super) use shared::{Border, DISCHARGE, LEVEL, NONE, NORMAL, OPEN, PADDLE, Part, SharedDischarge, WALL, WAVE};
+pub(super) use tables::Tables;
 
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
@@ -28,6 +31,7 @@ const BATCH: f64 = 0.2;
 
 const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_sums", include_str!("voronoi_sums.wgsl")),
+    ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../../infiltration_laws.wgsl")),
     ("voronoi_water", include_str!("voronoi_water.wgsl")),
@@ -45,9 +49,10 @@ const VERSIONS: [[(&str, &str); 2]; 2] = [
 ];
 
 /// Name, text and version of the kernels.
-const SHADERS: [(&str, &str, usize); 11] = [
+const SHADERS: [(&str, &str, usize); 14] = [
     ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
+    ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 1),
     ("voronoi_kept", include_str!("../fluxes/voronoi_kept.wgsl"), 0),
     ("voronoi_update", include_str!("voronoi_update.wgsl"), 0),
     ("voronoi_update", include_str!("voronoi_update.wgsl"), 1),
@@ -57,12 +62,15 @@ const SHADERS: [(&str, &str, usize); 11] = [
     ("voronoi_begin", include_str!("voronoi_begin.wgsl"), 0),
     ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 0),
     ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 1),
+    ("voronoi_share", include_str!("../boundaries/voronoi_share.wgsl"), 0),
+    ("voronoi_follow", include_str!("../boundaries/voronoi_follow.wgsl"), 1),
 ];
 
 /// Slots of the numbers of groups that the passes run with.
 const CELLS: u64 = 0;
 const FACES: u64 = 1;
 const BORDERS: u64 = 2;
+const DISCHARGES: u64 = 3;
 
 /// The kernels with what they work on.
 type Tasks = [Task; SHADERS.len()];
@@ -91,6 +99,10 @@ pub(super) struct Sides {
     /// Whether there are obstacles, whose forces are measured.
     has_obstacles: bool,
     borders: usize,
+    /// Whether the water beyond some border is held at a level.
+    holds_levels: bool,
+    /// Whether discharges are shared out over border faces.
+    shares_discharges: bool,
 }
 
 /// Why a batch ended.
@@ -112,6 +124,8 @@ pub(super) struct Downloaded {
     pub soaked: Vec<f32>,
     /// Impulse over density at each border face since the upload, and in the last step, m4/s; empty where there are no obstacles.
     pub pushes: Vec<[[f64; 2]; 2]>,
+    /// What is known of the water beyond each border face; empty where no level is held.
+    pub beyond: Vec<f32>,
 }
 
 /// What passed since the flood is on the device.
@@ -166,7 +180,7 @@ impl GpuSolver {
     /// Finds the water of the columns that were uploaded.
     fn begin(&mut self) {
         let groups = self.cells.div_ceil(THREADS as usize) as u32;
-        self.submit(|[.., begin, _, _], _, pass| begin.run(pass, groups));
+        self.submit(|[.., begin, _, _, _, _], _, pass| begin.run(pass, groups));
     }
 
     /// Takes steps up to a time, s, or as many as a batch has. The number of steps.
@@ -236,16 +250,18 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn download(&self) -> Result<Downloaded, GpuError> {
-        let Memory { columns, records, supplies, pushes, .. } = &self.memory;
+        let Memory { columns, records, supplies, pushes, beyond, .. } = &self.memory;
         let pushed = if self.sides.has_obstacles { self.sides.borders } else { 0 };
+        let held = if self.sides.holds_levels { self.sides.borders } else { 0 };
         let supplied = if self.sides.exchanges { self.cells } else { 0 };
         let parts = [
             (columns, 2 * self.cells * size_of::<Column>()),
             (records, self.cells * size_of::<Record>()),
             (supplies, supplied * size_of::<Supply>()),
             (pushes, pushed * size_of::<Push>()),
+            (beyond, held * size_of::<f32>()),
         ];
-        let [columns, records, supplies, pushes] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
+        let [columns, records, supplies, pushes, beyond] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
         let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
         let (now, before) = columns.split_at(self.cells);
         let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());
@@ -253,7 +269,8 @@ impl GpuSolver {
         let supplies = bytemuck::pod_collect_to_vec::<u8, Supply>(&supplies);
         let soaked = supplies.iter().map(|supply| supply.soaked).collect();
         let pushes = bytemuck::pod_collect_to_vec::<u8, Push>(&pushes).iter().map(push_of).collect();
-        Ok(Downloaded { columns, records, soaked, pushes })
+        let beyond = bytemuck::pod_collect_to_vec(&beyond);
+        Ok(Downloaded { columns, records, soaked, pushes, beyond })
     }
 
     /// The device.
@@ -274,11 +291,29 @@ impl GpuSolver {
 
 /// Takes so many steps, or fewer.
 fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, count: u32) {
-    let [slopes, fluxes, kept, first, second, end, end_with_exchange, finish, _, push_first, push_second] = tasks;
+    let [
+        slopes,
+        fluxes_first,
+        fluxes_second,
+        kept,
+        first,
+        second,
+        end,
+        end_with_exchange,
+        finish,
+        _,
+        push_first,
+        push_second,
+        share,
+        follow,
+    ] = tasks;
     let end = if sides.exchanges { end_with_exchange } else { end };
     finish.run(pass, 1);
     for _ in 0..count {
-        for (update, push) in [(first, push_first), (second, push_second)] {
+        if sides.shares_discharges {
+            share.run_as_told(pass, &memory.groups, DISCHARGES);
+        }
+        for (fluxes, update, push) in [(fluxes_first, first, push_first), (fluxes_second, second, push_second)] {
             for (task, slot) in [(slopes, CELLS), (fluxes, FACES), (kept, CELLS)] {
                 task.run_as_told(pass, &memory.groups, slot);
             }
@@ -286,6 +321,9 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
                 push.run_as_told(pass, &memory.groups, BORDERS);
             }
             update.run_as_told(pass, &memory.groups, CELLS);
+        }
+        if sides.holds_levels {
+            follow.run_as_told(pass, &memory.groups, BORDERS);
         }
         end.run_as_told(pass, &memory.groups, CELLS);
         finish.run(pass, 1);

@@ -2,7 +2,6 @@
 
 use super::{Downloaded, GpuSolver, Halt, Input, Totals};
 use crate::rain::Intensity;
-use crate::voronoi::boundaries::Boundary;
 use crate::voronoi::rain::Weather;
 use crate::voronoi::{DENSITY, VoronoiFlood};
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
@@ -103,7 +102,6 @@ impl VoronoiFlood {
     /// What of the scene the GPU does not compute yet, and what to do; none where it computes all.
     pub(in crate::voronoi) fn on_cpu_only(&self) -> Option<CpuOnly> {
         let settings = &self.settings;
-        let has_edge = |is: fn(&Boundary) -> bool| self.boundaries.rules.iter().any(is);
         let rain = self.weather.as_ref().map(|weather| &weather.intensity);
         let missing = [
             (settings.adaptive.is_some(), "flood.adaptive runs on the CPU only", "leave [flood.adaptive] out"),
@@ -125,15 +123,6 @@ impl VoronoiFlood {
             ),
             (!self.structures.is_empty(), "flood.outflow, flood.stage and flood.link work on the CPU only", ""),
             (self.solver.mesh.has_crests(), "walls over which water flows (height_m) work on the CPU only", ""),
-            (has_edge(|rule| matches!(rule, Boundary::Level(_))), "edges with a stage work on the CPU only", ""),
-            (
-                has_edge(|rule| matches!(rule, Boundary::Discharge(_))),
-                "edges with a discharge work on the CPU only",
-                "",
-            ),
-            (has_edge(|rule| matches!(rule, Boundary::Wave { .. })), "edges with a wave work on the CPU only", ""),
-            (has_edge(|rule| matches!(rule, Boundary::Paddle(_))), "edges with a paddle work on the CPU only", ""),
-            (has_edge(|rule| matches!(rule, Boundary::Rating(_))), "edges with a rating work on the CPU only", ""),
         ];
         let (_, what, instead) = missing.into_iter().find(|(is_there, ..)| *is_there)?;
         let remedy = if instead.is_empty() { WITHOUT } else { instead };
@@ -193,7 +182,7 @@ impl VoronoiFlood {
 
     /// Takes the state of the GPU over: water, records, time and books.
     fn take_over(&mut self, on_gpu: &OnGpu) -> Result<(), ModelError> {
-        let Downloaded { columns: [now, before], records, soaked, pushes } =
+        let Downloaded { columns: [now, before], records, soaked, pushes, beyond } =
             on_gpu.solver.download().map_err(|error| device(&error))?;
         let totals = on_gpu.solver.totals();
         let Totals { time, step, last_step, cell_steps, .. } = totals;
@@ -202,6 +191,7 @@ impl VoronoiFlood {
         *self.solver.before_mut() = before;
         self.solver.renew_as_they_are();
         self.state.records = records;
+        self.boundaries.take_over(&beyond, &mut self.state.beyond);
         if is_new {
             (self.state.before, self.state.time) = (time - last_step, time);
         }

@@ -22,6 +22,14 @@ corpuscle_gpu::declare! {
         pub const OPEN: u32 = 1;
         /// Water leaves over the border at the depth of normal flow.
         pub const NORMAL: u32 = 2;
+        /// The water beyond the border is held at a level.
+        pub const LEVEL: u32 = 3;
+        /// A wave comes in over the border.
+        pub const WAVE: u32 = 4;
+        /// A discharge passes the border.
+        pub const DISCHARGE: u32 = 5;
+        /// The border is a wall that moves.
+        pub const PADDLE: u32 = 6;
         /// Friction after Manning 1891.
         pub const MANNING: u32 = 0;
         /// Friction after Chezy 1775.
@@ -44,10 +52,22 @@ corpuscle_gpu::declare! {
         pub const OUTFLOW_MARGIN: f32 = 1e-6;
         /// The ground drinks once in so many steps.
         pub const STEPS_A_DRAUGHT: u32 = super::super::rain::STEPS_A_DRAUGHT as u32;
-        /// Words of `tables` that each table has at their beginning: first row, number of rows, what it comes to over the step, and one that is not used.
-        pub const TABLE: u32 = 4;
-        /// Words of a row: time as a pair, s, and value.
+        /// Words of `tables` that each table has at their beginning: first row, number of rows, then what it comes to in the step.
+        pub const TABLE: u32 = 6;
+        /// The word with the integral over the step.
+        pub const INTEGRAL: u32 = 2;
+        /// The words with the value at the beginning of the step, and after it that at the end.
+        pub const AT_BEGINNING: u32 = 3;
+        /// The word with the mean over the step.
+        pub const MEAN: u32 = 5;
+        /// Words of a row: time, s, or level, m, as a pair, and value.
         pub const ROW: u32 = 3;
+        /// How long a held level takes to be met exactly, in crossings of the terrain by waves.
+        pub const CROSSINGS: f32 = super::super::boundaries::CROSSINGS as f32;
+        /// The same where the level changes fast.
+        pub const FEWEST_CROSSINGS: f32 = super::super::boundaries::FEWEST_CROSSINGS as f32;
+        /// How far the level may be from one that changes, over the depth.
+        pub const LAG: f32 = super::super::boundaries::LAG as f32;
         /// Words of a source of a cell: its table, the cell's share of it, and its velocity, m/s.
         pub const SOURCE: u32 = 4;
         /// Threads of a group.
@@ -76,6 +96,8 @@ corpuscle_gpu::declare! {
             pub tables: u32,
             /// The table of the depth of rain, m; [`NONE`] where there is none.
             pub rain_table: u32,
+            /// Number of discharges that are shared out over border faces.
+            pub discharges: u32,
         }
 
         /// How far the device is. Pairs are compensated sums: the value and what it lacks, to be added.
@@ -180,14 +202,52 @@ corpuscle_gpu::declare! {
 
         /// What a border face does.
         pub struct Border {
-            /// [`WALL`], [`OPEN`] or [`NORMAL`].
+            /// [`WALL`], [`OPEN`] and those after it.
             pub kind: u32,
-            /// At open borders the level beyond above the bed of the cell, m; at those of normal flow its velocity over the depth to 2/3, m^(1/3)/s.
-            pub value: f32,
             /// The face.
             pub face: u32,
             /// The obstacle; [`NONE`] elsewhere.
             pub obstacle: u32,
+            /// The table of the level over time, m, or of a paddle's velocity inwards, m/s; [`NONE`] where there is none.
+            pub table: u32,
+            /// The table of a wave's velocity inwards over time, m/s; [`NONE`] where there is none.
+            pub velocity_table: u32,
+            /// How much higher than the bed of the cell the level stands from which the table counts, m.
+            pub datum: f32,
+            /// How much higher than the bed of the cell the ground under the face stands, m.
+            pub ground: f32,
+            /// How much higher than the bed of the cell a wave's level at rest stands, m.
+            pub rest: f32,
+            /// At borders of normal flow its velocity over the depth to 2/3, m^(1/3)/s.
+            pub factor: f32,
+            /// Length of the terrain across the border, m.
+            pub span: f32,
+        }
+
+        /// A discharge that is shared out over border faces.
+        pub struct SharedDischarge {
+            /// The table of the discharge inwards over time, m3/s, or of that outwards over the level, m.
+            pub table: u32,
+            /// Whether it is that over the level: 1 or 0.
+            pub is_rating: u32,
+            /// Its first part.
+            pub first: u32,
+            /// The part after its last.
+            pub end: u32,
+        }
+
+        /// The part of a border face in a discharge.
+        pub struct Part {
+            /// The border face.
+            pub border: u32,
+            /// Its cell.
+            pub cell: u32,
+            /// Length of the face, m.
+            pub length: f32,
+            /// Bed of the cell above the level from which levels count, m.
+            pub bed: f32,
+            /// The part of a discharge that comes in here where all faces are dry, over the length, 1/m.
+            pub when_dry: f32,
         }
 
         /// What the water pushed an obstacle with at a face.
@@ -311,7 +371,7 @@ corpuscle_gpu::declare! {
         uniform parameters: Parameters,
         /// How far it is.
         storage status: Status,
-        /// Numbers of groups for cells, for faces and for border faces: 3 each.
+        /// Numbers of groups for cells, for faces, for border faces and for discharges that are shared out: 3 each.
         storage groups: [u32],
         /// Each cell.
         storage ground: [Ground],
@@ -321,6 +381,13 @@ corpuscle_gpu::declare! {
         storage faces: [Face],
         /// Each border face.
         storage borders: [Border],
+        /// What is known of the water beyond each border face: at open ones the level above the bed of the cell, m; at held ones the velocity outwards, m/s; where a
+        /// discharge passes that inwards per length, m2/s.
+        storage beyond: [f32],
+        /// Discharges that are shared out.
+        storage discharges: [SharedDischarge],
+        /// The parts of border faces in them.
+        storage parts: [Part],
         /// Columns now, then columns before the step.
         storage columns: [Column],
         /// Water of each cell.

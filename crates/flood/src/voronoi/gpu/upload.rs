@@ -2,12 +2,13 @@
 
 use super::Sides;
 use super::shared::{
-    BATCH_START, Border, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, NORMAL, OPEN,
-    Parameters, Passed, Push, Record, Slopes, Status, WALL, Water,
+    BATCH_START, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed,
+    Push, Record, Slopes, Status, Water,
 };
-use super::supplies::{Supplies, supplies};
+use super::supplies::{supplies, supply_tables};
+use super::tables::Tables;
 use crate::voronoi::Inflow;
-use crate::voronoi::boundaries::{Boundaries, Boundary};
+use crate::voronoi::boundaries::Boundaries;
 use crate::voronoi::friction::Slowing;
 use crate::voronoi::maps;
 use crate::voronoi::mesh::{self, Mesh};
@@ -52,6 +53,8 @@ impl Input<'_> {
             exchanges: self.exchanges(),
             has_obstacles: self.obstacle_of.iter().any(|obstacle| *obstacle != mesh::NONE),
             borders: self.solver.borders.len(),
+            holds_levels: self.boundaries.holds_levels(),
+            shares_discharges: self.boundaries.shares_discharges(),
         }
     }
 
@@ -68,16 +71,28 @@ impl Input<'_> {
         }
         let groups = cells.div_ceil(THREADS as usize);
         let status = self.status();
-        let Supplies { of_cells, tables, count, rain_table } = supplies(self);
-        let borders = &self.solver.borders;
+        let mut tables = Tables::default();
+        let of_supplies = supply_tables(self, &mut tables);
+        let sides = self.boundaries.upload(self.solver, self.beyond, self.obstacle_of, &mut tables);
+        let mut words = tables.words();
+        let supplies = supplies(self, &of_supplies, &mut words);
+        let parameters = Parameters {
+            tables: tables.count(),
+            rain_table: of_supplies.rain,
+            discharges: sides.discharges.len() as u32,
+            ..self.parameters()
+        };
         let memory = Memory {
-            parameters: uniform(gpu, "parameters", &Parameters { tables: count, rain_table, ..self.parameters() }),
+            parameters: uniform(gpu, "parameters", &parameters),
             status: filled(gpu, "status", &[status])?,
-            groups: filled(gpu, "groups", &[0_u32, 1, 1, 0, 1, 1, 0, 1, 1])?,
+            groups: filled(gpu, "groups", &[[0_u32, 1, 1]; 4])?,
             ground: filled(gpu, "cells", &(0..cells).map(|cell| self.ground(cell)).collect::<Vec<_>>())?,
             links: filled(gpu, "links", &(0..cells).flat_map(|cell| links(mesh, cell)).collect::<Vec<_>>())?,
             faces: filled(gpu, "faces", &self.faces())?,
-            borders: filled(gpu, "borders", &(0..borders.len()).map(|border| self.border(border)).collect::<Vec<_>>())?,
+            borders: filled(gpu, "borders", &sides.borders)?,
+            beyond: filled(gpu, "water beyond borders", &sides.beyond)?,
+            discharges: filled(gpu, "discharges", &sides.discharges)?,
+            parts: filled(gpu, "parts of discharges", &sides.parts)?,
             columns: filled(gpu, "columns", &self.columns())?,
             water: storage::<Water>(gpu, "water", cells)?,
             slopes: storage::<Slopes>(gpu, "slopes", cells)?,
@@ -86,9 +101,9 @@ impl Input<'_> {
             records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
             passed: storage::<Passed>(gpu, "sums of groups", groups)?,
             found: storage::<Found>(gpu, "steps of groups", groups)?,
-            pushes: storage::<Push>(gpu, "pushes", borders.len())?,
-            supplies: filled(gpu, "supplies", &of_cells)?,
-            tables: filled(gpu, "tables", &tables)?,
+            pushes: storage::<Push>(gpu, "pushes", sides.borders.len())?,
+            supplies: filled(gpu, "supplies", &supplies)?,
+            tables: filled(gpu, "tables", &words)?,
         };
         Ok((memory, status))
     }
@@ -162,23 +177,6 @@ impl Input<'_> {
             }
         };
         mesh.faces.iter().enumerate().map(face).collect()
-    }
-
-    fn border(&self, border: usize) -> Border {
-        let Solver { mesh, slowing, gravity, .. } = self.solver;
-        let cell = mesh.faces[self.solver.borders[border] as usize].cells[0] as usize;
-        let own =
-            Border { kind: WALL, value: 0.0, face: self.solver.borders[border], obstacle: self.obstacle_of[border] };
-        let open = |depth: f64| Border { kind: OPEN, value: depth.max(0.0) as f32, ..own };
-        let rule = self.boundaries.rule_of(border).map(|rule| &self.boundaries.rules[usize::from(rule)]);
-        match rule {
-            Some(Boundary::Open) => open(self.beyond[border] - mesh.bed[cell]),
-            Some(Boundary::NormalDepth(root)) => match slowing.conveyance(cell, *gravity) {
-                Some(conveyance) => Border { kind: NORMAL, value: (root * conveyance) as f32, ..own },
-                None => open(0.0),
-            },
-            _ => own,
-        }
     }
 
     fn columns(&self) -> Vec<Column> {

@@ -1,6 +1,7 @@
 // Books a step, and decides whether there is another before the time that the host waits for.
 #import declared
 #import voronoi_sums
+#import voronoi_tables
 
 var<workgroup> volumes: array<vec4f, 256>;
 var<workgroup> others: array<vec4f, 256>;
@@ -88,46 +89,14 @@ fn decide() -> u32 {
     return select(ARRIVED, GOING, left > 0.0);
 }
 
-// How long after now a row of a table is, s.
-fn after_now(row: u32) -> f32 {
-    let time = vec2f(bitcast<f32>(tables[row]), bitcast<f32>(tables[row + 1u]));
-    return (time.x - status.clock.x) + (time.y - status.clock.y);
-}
-
-fn value_of(row: u32) -> f32 {
-    return bitcast<f32>(tables[row + 2u]);
-}
-
-// The integral of a table over the next step: its rows are linear in between, and go on as they are before the first and after the last.
-fn integral(table: u32) -> f32 {
-    let first = tables[TABLE * table];
-    let count = tables[TABLE * table + 1u];
-    // The rows up to now, by halving.
-    var low = 0u;
-    var high = count;
-    while low < high {
-        let middle = (low + high) / 2u;
-        if after_now(first + ROW * middle) <= 0.0 {
-            low = middle + 1u;
-        } else {
-            high = middle;
-        }
-    }
-    var sum = 0.0;
-    var from_time = 0.0;
-    for (var row = low; row <= count && from_time < status.step; row++) {
-        let left = first + ROW * (max(row, 1u) - 1u);
-        let right = first + ROW * min(row, count - 1u);
-        let to_time = select(min(after_now(right), status.step), status.step, row == count);
-        var mean = value_of(left);
-        let span = after_now(right) - after_now(left);
-        if span > 0.0 {
-            mean += (value_of(right) - mean) * (0.5 * (from_time + to_time) - after_now(left)) / span;
-        }
-        sum += mean * max(to_time - from_time, 0.0);
-        from_time = to_time;
-    }
-    return sum;
+// What a table comes to in the next step.
+fn look_up(table: u32) {
+    let header = TABLE * table;
+    let sum = integral(table, status.clock, status.step);
+    tables[header + INTEGRAL] = bitcast<u32>(sum);
+    tables[header + MEAN] = bitcast<u32>(sum / status.step);
+    tables[header + AT_BEGINNING] = bitcast<u32>(value_at(table, status.clock));
+    tables[header + AT_BEGINNING + 1u] = bitcast<u32>(value_at(table, add(status.clock, status.step)));
 }
 
 @compute @workgroup_size(256)
@@ -145,8 +114,9 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         groups[0] = select(0u, groups_for(parameters.cells), goes_on);
         groups[3] = select(0u, groups_for(parameters.faces), goes_on);
         groups[6] = select(0u, groups_for(parameters.borders), goes_on);
+        groups[9] = select(0u, parameters.discharges, goes_on);
         for (var table = 0u; table < parameters.tables && goes_on; table++) {
-            tables[TABLE * table + 2u] = bitcast<u32>(integral(table));
+            look_up(table);
         }
     }
 }

@@ -1,22 +1,14 @@
 // Water that comes into a cell and goes out of it beside its motion: sources, rain, infiltration. See `patch.rs` and `rain/mod.rs`.
 #import declared
 #import voronoi_sums
+#import voronoi_tables
 #import voronoi_water
 #import infiltration_laws
-
-fn number(word: u32) -> f32 {
-    return bitcast<f32>(tables[word]);
-}
-
-// What a table comes to over the step: `voronoi_finish.wgsl` has written it.
-fn amount(table: u32) -> f32 {
-    return number(TABLE * table + 2u);
-}
 
 // Sources bring water with their velocity.
 fn supply(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
     for (var word = supplies[cell].first_source; word < supplies[cell].end_source; word += SOURCE) {
-        let volume = opaque(amount(tables[word]) * number(word + 1u));
+        let volume = opaque(in_step(tables[word], INTEGRAL) * number(word + 1u));
         let momentum = volume * vec2f(number(word + 2u), number(word + 3u));
         (*column).volume = add((*column).volume, volume);
         (*column).momentum += momentum;
@@ -27,7 +19,7 @@ fn supply(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
 
 fn rain(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
     if parameters.rain_table != NONE {
-        let volume = opaque(amount(parameters.rain_table) * supplies[cell].rain_area);
+        let volume = opaque(in_step(parameters.rain_table, INTEGRAL) * supplies[cell].rain_area);
         (*column).volume = add((*column).volume, volume);
         (*own).rained = vec2f(volume, 0.0);
     }

@@ -1,0 +1,38 @@
+//! Tables over time, or over a level, as they are uploaded.
+
+use super::shared::TABLE;
+use super::upload::pair;
+
+/// Tables by number.
+#[derive(Default)]
+pub(in crate::voronoi) struct Tables {
+    /// Rows of each: place, and value.
+    all: Vec<Vec<[f64; 2]>>,
+}
+
+impl Tables {
+    /// Takes a table in; its number.
+    pub fn add(&mut self, rows: impl IntoIterator<Item = [f64; 2]>) -> u32 {
+        self.all.push(rows.into_iter().collect());
+        self.all.len() as u32 - 1
+    }
+
+    pub fn count(&self) -> u32 {
+        self.all.len() as u32
+    }
+
+    /// As the device has them: what stands at the beginning for each, then all rows.
+    pub fn words(&self) -> Vec<u32> {
+        let mut words = vec![0; TABLE as usize * self.all.len()];
+        for (number, rows) in self.all.iter().enumerate() {
+            let header = TABLE as usize * number;
+            words[header] = words.len() as u32;
+            words[header + 1] = rows.len() as u32;
+            for &[place, value] in rows {
+                let [high, low] = pair(place);
+                words.extend([high, low, value as f32].map(f32::to_bits));
+            }
+        }
+        words
+    }
+}

@@ -1,0 +1,71 @@
+// Tables over time or over a level: linear between their rows, and as they are at the first and the last before and after.
+#import declared
+
+fn number(word: u32) -> f32 {
+    return bitcast<f32>(tables[word]);
+}
+
+// What a table came to in the step, by the number of the word.
+fn in_step(table: u32, word: u32) -> f32 {
+    return number(TABLE * table + word);
+}
+
+// How far a row stands after a place.
+fn after(row: u32, place: vec2f) -> f32 {
+    return (number(row) - place.x) + (number(row + 1u) - place.y);
+}
+
+fn value_of(row: u32) -> f32 {
+    return number(row + 2u);
+}
+
+// The number of rows of a table up to a place, by halving.
+fn rows_up_to(table: u32, place: vec2f) -> u32 {
+    let first = tables[TABLE * table];
+    var low = 0u;
+    var high = tables[TABLE * table + 1u];
+    while low < high {
+        let middle = (low + high) / 2u;
+        if after(first + ROW * middle, place) <= 0.0 {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+// The value at a place; at a jump the one after it.
+fn value_at(table: u32, place: vec2f) -> f32 {
+    let first = tables[TABLE * table];
+    let count = tables[TABLE * table + 1u];
+    let passed = rows_up_to(table, place);
+    if passed == 0u || passed == count {
+        return value_of(first + ROW * (max(passed, 1u) - 1u));
+    }
+    let right = first + ROW * passed;
+    let left = right - ROW;
+    let part = -after(left, place) / (after(right, place) - after(left, place));
+    return value_of(left) + part * (value_of(right) - value_of(left));
+}
+
+// The integral from a place on.
+fn integral(table: u32, place: vec2f, length: f32) -> f32 {
+    let first = tables[TABLE * table];
+    let count = tables[TABLE * table + 1u];
+    var sum = 0.0;
+    var start = 0.0;
+    for (var row = rows_up_to(table, place); row <= count && start < length; row++) {
+        let left = first + ROW * (max(row, 1u) - 1u);
+        let right = first + ROW * min(row, count - 1u);
+        let end = select(min(after(right, place), length), length, row == count);
+        var mean = value_of(left);
+        let span = after(right, place) - after(left, place);
+        if span > 0.0 {
+            mean += (value_of(right) - mean) * (0.5 * (start + end) - after(left, place)) / span;
+        }
+        sum += mean * max(end - start, 0.0);
+        start = end;
+    }
+    return sum;
+}
