@@ -85,7 +85,7 @@ impl Culvert {
         }
     }
 
-    /// The numbers as `card/flood_laws.wgsl` has them, levels above `level`, m.
+    /// The numbers as shaders have them, levels above `level`, m.
     #[cfg(feature = "gpu")]
     pub fn numbers(&self, level: f64) -> [f64; 9] {
         let Self { height, area, radius, length, floor, manning, entrance_loss, barrels } = self;

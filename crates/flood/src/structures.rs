@@ -122,8 +122,13 @@ impl Structures {
         flows.outflows.len() == self.outflows.len() && flows.links.len() == self.links.len()
     }
 
+    /// Number of them.
+    pub fn count(&self) -> usize {
+        self.outflows.len() + self.held.len() + self.links.len()
+    }
+
     pub fn is_empty(&self) -> bool {
-        self.outflows.is_empty() && self.held.is_empty() && self.links.is_empty()
+        self.count() == 0
     }
 
     /// A column of the discharge of each outflow and link.

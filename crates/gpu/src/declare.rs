@@ -13,6 +13,11 @@ pub const DECLARED: &str = "declared";
 pub trait Shared {
     /// Its WGSL name.
     fn wgsl() -> String;
+
+    /// Name and text of the piece of a shader that defines it; none where the declaration itself does.
+    fn piece() -> Option<(&'static str, &'static str)> {
+        None
+    }
 }
 
 /// A type of constants that the host and shaders share.
@@ -138,6 +143,8 @@ pub struct Binding {
     pub wgsl: String,
     /// A uniform buffer; else a storage buffer.
     pub is_uniform: bool,
+    /// See [`Shared::piece`].
+    pub piece: Option<(&'static str, &'static str)>,
 }
 
 /// What [`declare!`](crate::declare) tells of a declaration.
@@ -157,6 +164,13 @@ impl Declaration {
         self.constants.iter().cloned().chain(self.structs.iter().map(Layout::wgsl)).collect()
     }
 
+    /// Pieces that define types of bindings.
+    fn pieces(&self) -> Vec<(&'static str, &'static str)> {
+        let mut pieces: Vec<_> = self.bindings.iter().filter_map(|binding| binding.piece).collect();
+        pieces.dedup();
+        pieces
+    }
+
     /// All in WGSL, with the bindings for which `used` tells how a shader uses them.
     fn wgsl(&self, used: impl Fn(u32) -> Option<Use>) -> String {
         let line = |(number, binding): (u32, &Binding)| {
@@ -168,7 +182,9 @@ impl Declaration {
             let Binding { name, wgsl, .. } = binding;
             Some(format!("@group(0) @binding({number}) var<{space}> {name}: {wgsl};\n"))
         };
-        std::iter::once(self.types()).chain((0..).zip(&self.bindings).filter_map(line)).collect()
+        let import = |(name, _): &(&str, &str)| format!("#import {name}\n");
+        let imports: String = self.pieces().iter().map(import).collect();
+        [imports, self.types()].into_iter().chain((0..).zip(&self.bindings).filter_map(line)).collect()
     }
 
     /// The text of a shader joined from its pieces, with the bindings that its functions use; and the numbers of those that its entry points use.
@@ -182,7 +198,7 @@ impl Declaration {
         library: ShaderLibrary<'_>,
     ) -> Result<(String, Vec<u32>), ImportError> {
         let with = |declared: &str| {
-            let library: Vec<_> = library.iter().copied().chain([(DECLARED, declared)]).collect();
+            let library: Vec<_> = library.iter().copied().chain([(DECLARED, declared)]).chain(self.pieces()).collect();
             join(name, text, &library)
         };
         let invalid = |reason| ImportError::Invalid { shader: name.into(), reason };
@@ -246,7 +262,7 @@ macro_rules! declare {
         $crate::declare!(@structs $($structs)*);
 
         $(#[$buffers_doc])*
-        #[derive(Debug)]
+        #[derive(Debug, Clone)]
         $buffers_vis struct $buffers {
             $($(#[$binding_doc])* pub $binding: $crate::wgpu::Buffer),+
         }
@@ -259,6 +275,7 @@ macro_rules! declare {
                     bindings: vec![$($crate::Binding {
                         name: stringify!($binding),
                         wgsl: <$binding_type as $crate::Shared>::wgsl(),
+                        piece: <$binding_type as $crate::Shared>::piece(),
                         is_uniform: $crate::declare!(@is_uniform $space),
                     }),+],
                 }

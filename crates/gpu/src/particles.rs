@@ -1,10 +1,21 @@
 //! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
 //! nothing comes to the host.
 
-use crate::{Gpu, GpuError, read, storage};
+use crate::{Gpu, GpuError, Shared, read, storage};
 
 /// The piece `device_particles`: a buffer of particles as shaders have it.
 pub const DEVICE_PARTICLES: (&str, &str) = ("device_particles", include_str!("device_particles.wgsl"));
+
+/// A binding to [`DeviceParticles::buffer`].
+impl Shared for DeviceParticles {
+    fn wgsl() -> String {
+        "DeviceParticles".into()
+    }
+
+    fn piece() -> Option<(&'static str, &'static str)> {
+        Some(DEVICE_PARTICLES)
+    }
+}
 
 /// Bytes before the first particle.
 const HEADER: usize = 16;

@@ -24,6 +24,7 @@ pub(super) const LIBRARY: &[(&str, &str)] = &[
     ("flood_places", include_str!("flood_places.wgsl")),
     ("flood_water", include_str!("flood_water.wgsl")),
     ("flood_accounts", include_str!("flood_accounts.wgsl")),
+    ("hydraulics", include_str!("../hydraulics.wgsl")),
     ("flood_laws", include_str!("flood_laws.wgsl")),
     ("flood_wetness", include_str!("flood_wetness.wgsl")),
     ("flood_air", include_str!("flood_air.wgsl")),

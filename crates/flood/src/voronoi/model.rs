@@ -10,7 +10,7 @@ use corpuscle_model::{
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water less deep than this part of the depth of wet ground is not shown as a particle.
-const SHOWN: f64 = 0.1;
+pub(super) const SHOWN: f64 = 0.1;
 
 /// Momentum that is a smaller part of that of all water, if it were as fast as waves, is what rounding leaves of the thrusts in a lake at rest.
 const ROUNDING: f64 = 1e-9;

@@ -274,7 +274,7 @@ impl VoronoiFlood {
         let at = |border: &u32| mesh.obstacle_faces.binary_search_by_key(border, |(face, _)| *face).ok();
         let obstacles = borders.iter().map(|border| at(border).map(|place| mesh.obstacle_faces[place].1));
         self.obstacle_of.extend(obstacles.map(|obstacle| obstacle.unwrap_or(NONE)));
-        self.solver.crests = mesh.crests().map(|(cells, crest)| (cells, *crest)).collect();
+        self.solver.crests = walls::crests(mesh);
         self.boundaries.extend(&self.solver, &self.terrain);
         // Water has not come to tiles that are made while the model runs.
         for border in self.state.beyond.len()..self.solver.borders.len() {

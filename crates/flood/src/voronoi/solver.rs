@@ -8,8 +8,9 @@ use super::boundaries::Now;
 use super::fluxes::{Flux, Inputs, OnFaces, fluxes_of_chunk};
 use super::friction::Slowing;
 use super::local::Local;
-use super::mesh::{Crest, Mesh, NONE};
+use super::mesh::{Mesh, NONE};
 use super::reconstruction::slopes;
+use super::walls::OverCrest;
 use super::water::{Column, Slopes, Water};
 use corpuscle_lanes::{Level, Simd, dispatch};
 use corpuscle_model::ExactSum;
@@ -37,8 +38,8 @@ pub(crate) struct Solver {
     kept: Vec<f32>,
     /// The largest number of faces of a cell.
     most_faces: usize,
-    /// Walls that water may flow over, and the cells on both sides.
-    pub crests: Vec<([u32; 2], Crest)>,
+    /// Walls that water may flow over.
+    pub crests: Vec<OverCrest>,
     /// Faces on borders.
     pub borders: Vec<u32>,
     /// Over which borders water may come onto dry ground.

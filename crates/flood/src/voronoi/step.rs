@@ -107,24 +107,22 @@ impl VoronoiFlood {
         self.boundaries.follow(&self.solver, from, step, &mut self.state.beyond);
     }
 
-    /// Lets water come and go beside its motion: inflows, structures, rain, infiltration, what falls.
+    /// Lets water come and go beside its motion: structures, inflows, rain, infiltration, what falls.
     fn bring_and_take(&mut self, from: f64, until: f64) {
         let step = until - from;
         walls::overtop(&mut self.solver, step);
         let Self { solver, inflows, structures, patches, weather, state, .. } = self;
         let momentum = |change: &Change| DENSITY * (change.momentum[0] + change.momentum[1]);
-        for inflow in inflows.iter() {
-            let change = inflow.patch.add(solver, inflow.discharge.integral(from, until), inflow.velocity);
-            state.water.book(change.volume);
-            state.momentum.book(momentum(&change));
-            state.energy.book(DENSITY * change.energy);
-        }
         let (water, moments, energy) = (&mut state.water, &mut state.momentum, &mut state.energy);
-        patches.work(structures, &mut state.flows, solver, until, step, &mut |change| {
+        let mut book = |change: Change| {
             water.book(change.volume);
             moments.book(momentum(&change));
             energy.book(DENSITY * change.energy);
-        });
+        };
+        patches.work(structures, &mut state.flows, solver, until, step, &mut book);
+        for inflow in inflows.iter() {
+            book(inflow.patch.add(solver, inflow.discharge.integral(from, until), inflow.velocity));
+        }
         if let Some(weather) = weather {
             let before = [state.soaked.rained.value(), state.soaked.infiltrated.value()];
             let change = weather.pass(solver, &mut state.soaked, from, until, state.steps);

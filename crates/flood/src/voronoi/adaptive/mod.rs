@@ -77,13 +77,17 @@ impl VoronoiFlood {
         self.state.remakes
     }
 
+    /// Number of steps from one look at the water to the next; none where cells stay as they are.
+    pub(super) fn steps_between_looks(&self) -> Option<u64> {
+        // A step that is counted may have several of the shortest.
+        let parts = if self.settings.time_steps == TimeSteps::Local { 1 << HIGHEST } else { 1 };
+        self.adaptive.as_ref().map(|adaptive| u64::from((adaptive.settings.every_steps / parts).max(1)))
+    }
+
     /// Makes cells finer and coarser as the water asks, where it is time to look. At the start of a step: what is shown between two steps has the cells
     /// of both.
     pub(super) fn adapt(&mut self) -> Result<(), ModelError> {
-        let Some(adaptive) = &self.adaptive else { return Ok(()) };
-        // A step that is counted may have several of the shortest.
-        let parts = if self.settings.time_steps == TimeSteps::Local { 1 << HIGHEST } else { 1 };
-        let every = u64::from((adaptive.settings.every_steps / parts).max(1));
+        let Some(every) = self.steps_between_looks() else { return Ok(()) };
         // The water at the start was looked at.
         if self.state.steps == 0 || !self.state.steps.is_multiple_of(every) {
             return Ok(());

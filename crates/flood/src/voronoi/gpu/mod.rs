@@ -6,20 +6,26 @@
 //! There are no atomics: every cell gathers in the order of its links, so the result does not depend on how the threads run.
 
 mod model;
+mod seen;
 mod shared;
 mod supplies;
 mod tables;
 mod upload;
 
 pub(super) use model::OnGpu;
-pub(super) use shared::{Border, DISCHARGE, LEVEL, NONE, NORMAL, OPEN, PADDLE, Part, SharedDischarge, WALL, WAVE};
+pub(super) use shared::{
+    BesideCrest, Border, CULVERT, Crest, DISCHARGE, HOLD, InPatch, LEVEL, LINK, NONE, NORMAL, OPEN, OUTFLOW, PADDLE,
+    Part, RATING, SharedDischarge, Structure, WALL, WAVE, WEIR,
+};
 pub(super) use tables::Tables;
 
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
     Buffers, DeclaredKernel, Gpu, GpuError, Pass, ShaderLibrary, Stopwatch, THREADS, Task, read_together, wgpu,
 };
+use seen::Seen;
 use shared::{ARRIVED, AT_RIM, BATCH_START, BROKEN, Column, Memory, Push, Record, Status, Supply};
+use std::sync::OnceLock;
 use std::time::Instant;
 use upload::{Input, pair};
 
@@ -35,6 +41,9 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../../infiltration_laws.wgsl")),
     ("voronoi_water", include_str!("voronoi_water.wgsl")),
+    ("voronoi_stable", include_str!("voronoi_stable.wgsl")),
+    ("voronoi_change", include_str!("voronoi_change.wgsl")),
+    ("hydraulics", include_str!("../../hydraulics.wgsl")),
     ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
     ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),
     ("voronoi_faces", include_str!("../reconstruction/voronoi_faces.wgsl")),
@@ -42,14 +51,24 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_boundaries", include_str!("../boundaries/voronoi_boundaries.wgsl")),
 ];
 
-/// Pieces in which two versions of a shader differ: the stage, and whether water comes and goes beside its motion.
-const VERSIONS: [[(&str, &str); 2]; 2] = [
-    [("stage", "const IS_SECOND = false;\n"), ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n")],
-    [("stage", "const IS_SECOND = true;\n"), ("exchange", include_str!("../rain/voronoi_exchange.wgsl"))],
+/// Pieces in which versions of a shader differ: the stage, whether water comes and goes beside its motion, and whether it was looked at before that.
+const VERSIONS: [[(&str, &str); 2]; 3] = [
+    [
+        ("stage", "const IS_SECOND = false;\nconst IS_LOOKED_AT = false;\n"),
+        ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n"),
+    ],
+    [
+        ("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = false;\n"),
+        ("exchange", include_str!("../rain/voronoi_exchange.wgsl")),
+    ],
+    [
+        ("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = true;\n"),
+        ("exchange", include_str!("../rain/voronoi_exchange.wgsl")),
+    ],
 ];
 
 /// Name, text and version of the kernels.
-const SHADERS: [(&str, &str, usize); 14] = [
+const SHADERS: [(&str, &str, usize); 19] = [
     ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 1),
@@ -64,13 +83,24 @@ const SHADERS: [(&str, &str, usize); 14] = [
     ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 1),
     ("voronoi_share", include_str!("../boundaries/voronoi_share.wgsl"), 0),
     ("voronoi_follow", include_str!("../boundaries/voronoi_follow.wgsl"), 1),
+    ("voronoi_look", include_str!("voronoi_look.wgsl"), 1),
+    ("voronoi_crests", include_str!("../walls/voronoi_crests.wgsl"), 1),
+    ("voronoi_overtop", include_str!("../walls/voronoi_overtop.wgsl"), 1),
+    ("voronoi_structures", include_str!("../structures/voronoi_structures.wgsl"), 1),
+    ("voronoi_end", include_str!("voronoi_end.wgsl"), 2),
 ];
+
+/// The kernel that finds the water of columns.
+const BEGIN: usize = 9;
 
 /// Slots of the numbers of groups that the passes run with.
 const CELLS: u64 = 0;
 const FACES: u64 = 1;
 const BORDERS: u64 = 2;
 const DISCHARGES: u64 = 3;
+const CRESTS: u64 = 4;
+const BESIDE_CRESTS: u64 = 5;
+const STRUCTURES: u64 = 6;
 
 /// The kernels with what they work on.
 type Tasks = [Task; SHADERS.len()];
@@ -89,6 +119,8 @@ pub(crate) struct GpuSolver {
     /// Wall-clock time of all batches, s.
     busy: f64,
     pub stopwatch: Option<Stopwatch>,
+    /// The water as it is drawn, once somebody has looked.
+    seen: OnceLock<Seen>,
 }
 
 /// What a flood has beside the motion of its water.
@@ -99,6 +131,10 @@ pub(super) struct Sides {
     /// Whether there are obstacles, whose forces are measured.
     has_obstacles: bool,
     borders: usize,
+    /// Number of structures.
+    structures: usize,
+    /// Whether there are crests that water flows over.
+    has_crests: bool,
     /// Whether the water beyond some border is held at a level.
     holds_levels: bool,
     /// Whether discharges are shared out over border faces.
@@ -126,6 +162,8 @@ pub(super) struct Downloaded {
     pub pushes: Vec<[[f64; 2]; 2]>,
     /// What is known of the water beyond each border face; empty where no level is held.
     pub beyond: Vec<f32>,
+    /// Discharge of each structure, m3/s.
+    pub discharges: Vec<f32>,
 }
 
 /// What passed since the flood is on the device.
@@ -136,6 +174,8 @@ pub(super) struct Totals {
     pub step: f64,
     pub last_step: f64,
     pub cell_steps: u64,
+    /// Number of wet cells.
+    pub wet: usize,
     /// In and out.
     pub water: [f64; 2],
     pub energy: [f64; 2],
@@ -159,8 +199,19 @@ impl GpuSolver {
         let (memory, status) = input.upload(&gpu)?;
         let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
         let (cells, sides) = (input.cells(), input.sides());
-        let mut solver =
-            Self { gpu, kernels, memory, tasks, cells, sides, status, batch: 1, busy: 0.0, stopwatch: None };
+        let mut solver = Self {
+            gpu,
+            kernels,
+            memory,
+            tasks,
+            cells,
+            sides,
+            status,
+            batch: 1,
+            busy: 0.0,
+            stopwatch: None,
+            seen: OnceLock::new(),
+        };
         solver.begin();
         Ok(solver)
     }
@@ -172,6 +223,7 @@ impl GpuSolver {
     pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
         (self.memory, self.status) = input.upload(&self.gpu)?;
         self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(&self.gpu, &self.memory));
+        self.seen = OnceLock::new();
         (self.cells, self.sides) = (input.cells(), input.sides());
         self.begin();
         Ok(())
@@ -180,16 +232,17 @@ impl GpuSolver {
     /// Finds the water of the columns that were uploaded.
     fn begin(&mut self) {
         let groups = self.cells.div_ceil(THREADS as usize) as u32;
-        self.submit(|[.., begin, _, _, _, _], _, pass| begin.run(pass, groups));
+        self.submit(|tasks, _, pass| tasks[BEGIN].run(pass, groups));
     }
 
-    /// Takes steps up to a time, s, or as many as a batch has. The number of steps.
+    /// Takes steps up to a time, s, or as many as a batch has, `most` at most. The number of steps.
     ///
     /// # Errors
     /// [`GpuError::Lost`].
-    pub fn advance(&mut self, until: f64) -> Result<(u64, Halt), GpuError> {
+    pub fn advance(&mut self, until: f64, most: u64) -> Result<(u64, Halt), GpuError> {
         let left = (until - self.totals().time) / f64::from(self.status.step);
         let count = (left.ceil().clamp(1.0, f64::from(MOST_STEPS)) as u32).min(self.batch);
+        let count = u64::from(count).min(most) as u32;
         self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: pair(until), ..self.status };
         let began = Instant::now();
         self.gpu.queue.write_buffer(&self.memory.status, 0, bytemuck::bytes_of(&self.status));
@@ -235,6 +288,7 @@ impl GpuSolver {
             time: sum(clock),
             step: f64::from(step),
             last_step: f64::from(last_step),
+            wet: self.status.wet as usize,
             cell_steps: (u64::from(high) << 32) + u64::from(low),
             water: [inflow, outflow].map(sum),
             energy: [energy_in, energy_out].map(sum),
@@ -250,7 +304,7 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn download(&self) -> Result<Downloaded, GpuError> {
-        let Memory { columns, records, supplies, pushes, beyond, .. } = &self.memory;
+        let Memory { columns, records, supplies, pushes, beyond, structure_discharges, .. } = &self.memory;
         let pushed = if self.sides.has_obstacles { self.sides.borders } else { 0 };
         let held = if self.sides.holds_levels { self.sides.borders } else { 0 };
         let supplied = if self.sides.exchanges { self.cells } else { 0 };
@@ -260,8 +314,9 @@ impl GpuSolver {
             (supplies, supplied * size_of::<Supply>()),
             (pushes, pushed * size_of::<Push>()),
             (beyond, held * size_of::<f32>()),
+            (structure_discharges, self.sides.structures * size_of::<f32>()),
         ];
-        let [columns, records, supplies, pushes, beyond] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
+        let [columns, records, supplies, pushes, beyond, discharges] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
         let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
         let (now, before) = columns.split_at(self.cells);
         let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());
@@ -269,8 +324,8 @@ impl GpuSolver {
         let supplies = bytemuck::pod_collect_to_vec::<u8, Supply>(&supplies);
         let soaked = supplies.iter().map(|supply| supply.soaked).collect();
         let pushes = bytemuck::pod_collect_to_vec::<u8, Push>(&pushes).iter().map(push_of).collect();
-        let beyond = bytemuck::pod_collect_to_vec(&beyond);
-        Ok(Downloaded { columns, records, soaked, pushes, beyond })
+        let [beyond, discharges] = [beyond, discharges].map(|bytes| bytemuck::pod_collect_to_vec(&bytes));
+        Ok(Downloaded { columns, records, soaked, pushes, beyond, discharges })
     }
 
     /// The device.
@@ -306,8 +361,18 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
         push_second,
         share,
         follow,
+        look,
+        crests,
+        overtop,
+        structures,
+        end_of_works,
     ] = tasks;
-    let end = if sides.exchanges { end_with_exchange } else { end };
+    let has_works = sides.has_crests || sides.structures > 0;
+    let end = match sides.exchanges {
+        _ if has_works => end_of_works,
+        true => end_with_exchange,
+        false => end,
+    };
     finish.run(pass, 1);
     for _ in 0..count {
         if sides.shares_discharges {
@@ -324,6 +389,16 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
         }
         if sides.holds_levels {
             follow.run_as_told(pass, &memory.groups, BORDERS);
+        }
+        if has_works {
+            look.run_as_told(pass, &memory.groups, CELLS);
+        }
+        if sides.has_crests {
+            crests.run_as_told(pass, &memory.groups, CRESTS);
+            overtop.run_as_told(pass, &memory.groups, BESIDE_CRESTS);
+        }
+        if sides.structures > 0 {
+            structures.run_as_told(pass, &memory.groups, STRUCTURES);
         }
         end.run_as_told(pass, &memory.groups, CELLS);
         finish.run(pass, 1);
@@ -359,7 +434,8 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid_and_within_the_floor() {
-        for (name, text, version) in SHADERS {
+        let drawing = (seen::SHADER.0, seen::SHADER.1, 0);
+        for (name, text, version) in SHADERS.into_iter().chain([drawing]) {
             let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
             let (text, _) = Memory::declaration().complete(name, text, &library).unwrap_or_else(|e| panic!("{e}"));
             check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -2,10 +2,12 @@
 
 use super::{Downloaded, GpuSolver, Halt, Input, Totals};
 use crate::rain::Intensity;
+use crate::voronoi::model::SHOWN;
 use crate::voronoi::rain::Weather;
+use crate::voronoi::structures::upload::take_over;
 use crate::voronoi::{DENSITY, VoronoiFlood};
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
-use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Glance, GpuModel, Model, ModelError};
+use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, Passed};
 use corpuscle_scene::{Storage, TimeSteps};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,6 +17,10 @@ pub(crate) struct OnGpu {
     start: Start,
     /// Whether water, time or what acts on it was changed on the CPU since it was uploaded.
     is_stale: bool,
+    /// Whether it has taken steps that are not taken over yet.
+    is_ahead: bool,
+    /// The step before which it was last looked at whether cells should be finer or coarser.
+    looked_before: Option<u64>,
 }
 
 /// What the books said when the flood was uploaded.
@@ -43,7 +49,13 @@ impl GpuModel for VoronoiFlood {
             return Err(ModelError::Setup(format!("{what}: {remedy}")));
         }
         let solver = GpuSolver::new(gpu, &self.input()).map_err(|error| ModelError::Setup(error.to_string()))?;
-        self.on_gpu = Some(Box::new(OnGpu { solver, start: self.start(), is_stale: false }));
+        self.on_gpu = Some(Box::new(OnGpu {
+            solver,
+            start: self.start(),
+            is_stale: false,
+            is_ahead: false,
+            looked_before: None,
+        }));
         Ok(())
     }
 
@@ -52,7 +64,10 @@ impl GpuModel for VoronoiFlood {
     }
 
     fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
-        Ok(None)
+        let is_there = |on_gpu: &&OnGpu| !on_gpu.is_stale && self.state.falling.is_empty();
+        let Some(on_gpu) = self.on_gpu.as_deref().filter(is_there) else { return Ok(None) };
+        let least = SHOWN * self.settings.wet_depth_m;
+        on_gpu.solver.seen(&self.solver.mesh, self.shown, least).map(Some).map_err(|error| device(&error))
     }
 
     fn advance_shown(
@@ -65,16 +80,29 @@ impl GpuModel for VoronoiFlood {
     ) -> Result<(), ModelError> {
         while self.on_gpu.is_some() && !stop.load(Ordering::Relaxed) {
             // A time that has passed stands for the end of the next step.
-            let until = if next > self.shown { next } else { self.state.time + self.state.time_step };
+            let is_step = next <= self.shown;
+            let until = if is_step { self.end_of_next_step() } else { next };
             if until >= time {
                 break;
             }
-            self.advance_with(until, stop, companion)?;
-            if self.shown < until {
-                return Ok(());
+            if companion.gauges_after(self.shown).is_some_and(|due| due <= until) {
+                self.advance_with(until, stop, companion)?;
+                if self.shown < until {
+                    return Ok(());
+                }
+            } else {
+                self.with_gpu(|flood, on_gpu| match is_step {
+                    true => flood.step_once(on_gpu),
+                    false => flood.step_to(on_gpu, until, stop),
+                })?;
+                let is_there = is_step || self.shown >= until;
+                if !is_there || !companion.passed(self.passed()) {
+                    return self.with_gpu(Self::fetch);
+                }
             }
-            next = show(Glance { frame: self.frame(), on_device: None });
+            next = show(self.glance()?);
         }
+        self.with_gpu(Self::fetch)?;
         self.advance_with(time, stop, companion)
     }
 
@@ -104,7 +132,6 @@ impl VoronoiFlood {
         let settings = &self.settings;
         let rain = self.weather.as_ref().map(|weather| &weather.intensity);
         let missing = [
-            (settings.adaptive.is_some(), "flood.adaptive runs on the CPU only", "leave [flood.adaptive] out"),
             (
                 settings.time_steps == TimeSteps::Local,
                 "local time steps run on the CPU only",
@@ -115,14 +142,11 @@ impl VoronoiFlood {
                 "flood.storage = \"level-volume\" runs on the CPU only",
                 "take \"mean\"",
             ),
-            (!self.state.falling.is_empty(), "water in the air (a block of [[flood.water]]) falls on the CPU only", ""),
             (
                 rain.is_some_and(|rain| matches!(rain, Intensity::Function(_))),
                 "rain by a function falls on the CPU only",
                 "",
             ),
-            (!self.structures.is_empty(), "flood.outflow, flood.stage and flood.link work on the CPU only", ""),
-            (self.solver.mesh.has_crests(), "walls over which water flows (height_m) work on the CPU only", ""),
         ];
         let (_, what, instead) = missing.into_iter().find(|(is_there, ..)| *is_there)?;
         let remedy = if instead.is_empty() { WITHOUT } else { instead };
@@ -136,35 +160,122 @@ impl VoronoiFlood {
 
     /// Advances on the GPU, and takes over what it came to.
     pub(in crate::voronoi) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        self.with_gpu(|flood, on_gpu| {
+            flood.step_to(on_gpu, time, stop)?;
+            flood.fetch(on_gpu)
+        })
+    }
+
+    /// Does something with the GPU where there is one.
+    fn with_gpu(
+        &mut self,
+        work: impl FnOnce(&mut Self, &mut OnGpu) -> Result<(), ModelError>,
+    ) -> Result<(), ModelError> {
         let Some(mut on_gpu) = self.on_gpu.take() else { return Ok(()) };
-        let done = self.step_on(&mut on_gpu, time, stop);
+        let done = work(self, &mut on_gpu);
         self.on_gpu = Some(on_gpu);
         done
     }
 
-    fn step_on(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
-        if std::mem::take(&mut on_gpu.is_stale) {
-            self.upload(on_gpu)?;
+    /// Takes steps up to a time, s. What the GPU came to stays there: see [`VoronoiFlood::fetch`].
+    fn step_to(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        // Water in the air falls on the CPU.
+        while !self.state.falling.is_empty() && self.state.time < time && !stop.load(Ordering::Relaxed) {
+            self.step()?;
+            on_gpu.is_stale = true;
         }
-        let mut is_arrived = self.state.time >= time;
+        let mut is_arrived = self.clock(on_gpu) >= time;
         while !is_arrived {
             if stop.load(Ordering::Relaxed) {
-                self.take_over(on_gpu)?;
+                self.fetch(on_gpu)?;
                 self.shown = self.shown.max(self.state.time);
                 return Ok(());
             }
-            let (steps, halt) = on_gpu.solver.advance(time).map_err(|error| device(&error))?;
-            self.state.steps += steps;
-            match halt {
-                Halt::Full => {}
-                Halt::Arrived => is_arrived = true,
-                Halt::AtRim => self.go_beyond_rim(on_gpu)?,
-                Halt::Broken => return Err(self.broken_on_gpu(on_gpu)),
-            }
+            is_arrived = self.take_steps(on_gpu, time, u64::MAX)?;
         }
-        self.take_over(on_gpu)?;
         self.shown = time;
         Ok(())
+    }
+
+    /// Takes a step, and shows its end.
+    fn step_once(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+        if self.state.falling.is_empty() {
+            let later = self.clock(on_gpu) + 2.0 * self.solver.longest;
+            self.take_steps(on_gpu, later, 1)?;
+        } else {
+            self.step()?;
+            on_gpu.is_stale = true;
+        }
+        self.shown = self.clock(on_gpu);
+        Ok(())
+    }
+
+    /// Takes steps up to a time, s, or some of them, `most` at most; whether it arrived there.
+    fn take_steps(&mut self, on_gpu: &mut OnGpu, time: f64, most: u64) -> Result<bool, ModelError> {
+        if std::mem::take(&mut on_gpu.is_stale) {
+            self.upload(on_gpu)?;
+        }
+        let most = self.look_at_cells(on_gpu)?.min(most);
+        let (steps, halt) = on_gpu.solver.advance(time, most).map_err(|error| device(&error))?;
+        on_gpu.is_ahead = true;
+        self.state.steps += steps;
+        match halt {
+            Halt::Full => Ok(false),
+            Halt::Arrived => Ok(true),
+            Halt::AtRim => self.go_beyond_rim(on_gpu).map(|()| false),
+            Halt::Broken => Err(self.broken_on_gpu(on_gpu)),
+        }
+    }
+
+    /// Takes over what the GPU came to, where it is ahead.
+    fn fetch(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+        if on_gpu.is_ahead { self.take_over(on_gpu) } else { Ok(()) }
+    }
+
+    /// Time at the end of the last step, s.
+    fn clock(&self, on_gpu: &OnGpu) -> f64 {
+        if on_gpu.is_ahead { on_gpu.solver.totals().time } else { self.state.time }
+    }
+
+    fn end_of_next_step(&self) -> f64 {
+        let ahead = self.on_gpu.as_ref().filter(|on_gpu| on_gpu.is_ahead).map(|on_gpu| on_gpu.solver.totals());
+        ahead.map_or(self.state.time + self.state.time_step, |totals| totals.time + totals.step)
+    }
+
+    /// How far it is, by what the GPU tells without what stays there.
+    fn passed(&self) -> Passed {
+        let here = (self.particles(), self.particle_steps());
+        let ahead = self.on_gpu.as_ref().filter(|on_gpu| on_gpu.is_ahead);
+        let (particles, particle_steps) = ahead.map_or(here, |on_gpu| {
+            let totals = on_gpu.solver.totals();
+            (totals.wet, on_gpu.start.cell_steps + totals.cell_steps)
+        });
+        Passed { time: self.shown, particles, particle_steps }
+    }
+
+    /// What is shown while the GPU goes on: the particles where they lie, or the frame while water is in the air.
+    fn glance(&mut self) -> Result<Glance, ModelError> {
+        if let Some(particles) = self.particles_on_gpu()? {
+            return Ok(Glance { frame: Frame { time: self.shown, sets: Vec::new() }, on_device: Some(particles) });
+        }
+        self.with_gpu(Self::fetch)?;
+        Ok(Glance { frame: self.frame(), on_device: None })
+    }
+
+    /// Makes cells finer and coarser as the water asks, where it is time to look. The number of steps to the next look.
+    fn look_at_cells(&mut self, on_gpu: &mut OnGpu) -> Result<u64, ModelError> {
+        let Some(every) = self.steps_between_looks() else { return Ok(u64::MAX) };
+        let steps = self.state.steps;
+        if steps.is_multiple_of(every) && on_gpu.looked_before != Some(steps) {
+            on_gpu.looked_before = Some(steps);
+            self.take_over(on_gpu)?;
+            let remakes = self.state.remakes;
+            self.adapt()?;
+            if self.state.remakes > remakes {
+                self.upload(on_gpu)?;
+            }
+        }
+        Ok(every - steps % every)
     }
 
     /// Makes the tiles that water stands beside.
@@ -181,9 +292,10 @@ impl VoronoiFlood {
     }
 
     /// Takes the state of the GPU over: water, records, time and books.
-    fn take_over(&mut self, on_gpu: &OnGpu) -> Result<(), ModelError> {
-        let Downloaded { columns: [now, before], records, soaked, pushes, beyond } =
+    fn take_over(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+        let Downloaded { columns: [now, before], records, soaked, pushes, beyond, discharges } =
             on_gpu.solver.download().map_err(|error| device(&error))?;
+        on_gpu.is_ahead = false;
         let totals = on_gpu.solver.totals();
         let Totals { time, step, last_step, cell_steps, .. } = totals;
         let is_new = time > self.state.time;
@@ -191,6 +303,7 @@ impl VoronoiFlood {
         *self.solver.before_mut() = before;
         self.solver.renew_as_they_are();
         self.state.records = records;
+        take_over(&discharges, &self.structures, &mut self.state.flows);
         self.boundaries.take_over(&beyond, &mut self.state.beyond);
         if is_new {
             (self.state.before, self.state.time) = (time - last_step, time);
@@ -228,7 +341,7 @@ impl VoronoiFlood {
     }
 
     /// Says where the computation came to no number, and goes back to the state before.
-    fn broken_on_gpu(&mut self, on_gpu: &OnGpu) -> ModelError {
+    fn broken_on_gpu(&mut self, on_gpu: &mut OnGpu) -> ModelError {
         if let Err(error) = self.take_over(on_gpu) {
             return error;
         }
@@ -284,6 +397,9 @@ impl VoronoiFlood {
             steps: self.state.steps,
             inflows: &self.inflows,
             weather: self.weather.as_ref(),
+            structures: &self.structures,
+            patches: &self.patches,
+            flows: &self.state.flows,
             obstacle_of: &self.obstacle_of,
             soaked: &self.state.soaked,
         }

@@ -1,6 +1,7 @@
 //! What the host and the shaders of scheme `voronoi` share: one declaration, from which the WGSL comes too.
 
 use super::super::{friction, water};
+use corpuscle_gpu::DeviceParticles;
 
 corpuscle_gpu::declare! {
     constants {
@@ -30,6 +31,20 @@ corpuscle_gpu::declare! {
         pub const DISCHARGE: u32 = 5;
         /// The border is a wall that moves.
         pub const PADDLE: u32 = 6;
+        /// A structure that lets water out by a rating.
+        pub const OUTFLOW: u32 = 0;
+        /// A structure that holds water at a level.
+        pub const HOLD: u32 = 1;
+        /// A structure that leads water from one patch to another.
+        pub const LINK: u32 = 2;
+        /// A link that is a culvert: its numbers are those of `Culvert` in `hydraulics.wgsl`.
+        pub const CULVERT: u32 = 0;
+        /// A link that is a weir: its numbers are crest, m, width, m, and coefficient, m^(1/2)/s.
+        pub const WEIR: u32 = 1;
+        /// A link that leads by a table over the difference of levels.
+        pub const RATING: u32 = 2;
+        /// Most of the volume between the levels on both sides of a crest that flows over in a step.
+        pub const MOST_OVER_CREST: f32 = super::super::walls::MOST_OVER_CREST as f32;
         /// Friction after Manning 1891.
         pub const MANNING: u32 = 0;
         /// Friction after Chezy 1775.
@@ -98,6 +113,14 @@ corpuscle_gpu::declare! {
             pub rain_table: u32,
             /// Number of discharges that are shared out over border faces.
             pub discharges: u32,
+            /// Number of crests.
+            pub crests: u32,
+            /// Number of cells beside crests.
+            pub beside_crests: u32,
+            /// Number of structures.
+            pub structures: u32,
+            /// Coefficient of Poleni's formula for crests, m^(1/2)/s.
+            pub crest_coefficient: f32,
         }
 
         /// How far the device is. Pairs are compensated sums: the value and what it lacks, to be added.
@@ -250,6 +273,88 @@ corpuscle_gpu::declare! {
             pub when_dry: f32,
         }
 
+        /// A crest between two cells that water may flow over.
+        pub struct Crest {
+            /// The cells.
+            pub cells: [u32; 2],
+            /// The part of each cell's water that may flow over here.
+            pub parts: [f32; 2],
+            /// Momentum over density that goes over with the volume, m4/s.
+            pub momentum: [f32; 2],
+            /// Volume that flows over in the step from the first cell to the second, m3.
+            pub volume: f32,
+            /// Crest above the bed of the first cell, m.
+            pub above: f32,
+            /// How much higher the bed of the second cell stands, m.
+            pub rise: f32,
+            /// m.
+            pub length: f32,
+        }
+
+        /// A cell beside crests.
+        pub struct BesideCrest {
+            /// The cell.
+            pub cell: u32,
+            /// Its first entry among those of crests.
+            pub first: u32,
+            /// The entry after its last.
+            pub end: u32,
+        }
+
+        /// What lets water out, holds it at a level or leads it to another place.
+        pub struct Structure {
+            /// First cells of its patches among those of all.
+            pub firsts: [u32; 2],
+            /// The cells after their last.
+            pub ends: [u32; 2],
+            /// Areas of its patches, m2.
+            pub areas: [f32; 2],
+            /// [`OUTFLOW`], [`HOLD`] or [`LINK`].
+            pub kind: u32,
+            /// Discharge over level, level over time, or discharge over the difference of levels: its table.
+            pub table: u32,
+            /// Whether a link leads both ways: 1 or 0.
+            pub both_ways: u32,
+            /// By what a link leads: [`CULVERT`], [`WEIR`] or [`RATING`].
+            pub law: u32,
+            /// Where in `tables` the numbers of the law stand.
+            pub numbers: u32,
+            /// Fills up.
+            pub unused: u32,
+        }
+
+        /// A cell of a patch.
+        pub struct InPatch {
+            /// The cell.
+            pub cell: u32,
+            /// Its bed above the level from which the structure's levels count, m.
+            pub above: f32,
+            /// m2.
+            pub area: f32,
+            /// Mean height of the ground, m.
+            pub bed: f32,
+        }
+
+        /// Where a cell is drawn.
+        pub struct Place {
+            /// Centroid from the origin of what is drawn, m.
+            pub at: [f32; 2],
+            /// Its bed above that origin, m.
+            pub bed: f32,
+            /// The lowest bits of the number of its point.
+            pub id: u32,
+        }
+
+        /// The time at which the water is shown.
+        pub struct Shown {
+            /// How far it is on the way from the column before the last step to that after it.
+            pub share: f32,
+            /// Water less deep than this is not shown, m.
+            pub least_depth: f32,
+            /// Fills up.
+            pub unused: [f32; 2],
+        }
+
         /// What the water pushed an obstacle with at a face.
         pub struct Push {
             /// Impulse over density since the flood is on the device, m4/s: eastwards, a compensated sum.
@@ -371,7 +476,7 @@ corpuscle_gpu::declare! {
         uniform parameters: Parameters,
         /// How far it is.
         storage status: Status,
-        /// Numbers of groups for cells, for faces, for border faces and for discharges that are shared out: 3 each.
+        /// Numbers of groups for cells, for faces, for border faces, for discharges that are shared out, for crests, for cells beside them and for structures: 3 each.
         storage groups: [u32],
         /// Each cell.
         storage ground: [Ground],
@@ -400,12 +505,30 @@ corpuscle_gpu::declare! {
         storage kept: [f32],
         /// What happened in each cell.
         storage records: [Record],
-        /// For each group of cells.
+        /// For each group of cells, and for structures.
         storage passed: [Passed],
         /// For each group of cells.
         storage found: [Found],
         /// For each border face.
         storage pushes: [Push],
+        /// Crests that water may flow over.
+        storage crests: [Crest],
+        /// Cells beside crests.
+        storage beside_crests: [BesideCrest],
+        /// For each of these its crests: twice the number, and one more where it is the second cell.
+        storage crest_entries: [u32],
+        /// Structures.
+        storage structures: [Structure],
+        /// Cells of their patches.
+        storage in_patches: [InPatch],
+        /// Discharge of each structure in the last step, m3/s.
+        storage structure_discharges: [f32],
+        /// Where each cell is drawn; empty where nobody looks.
+        storage places: [Place],
+        /// The time that is shown.
+        uniform shown: Shown,
+        /// The water as it is drawn.
+        storage drawn: DeviceParticles,
         /// What each cell is supplied with; empty where nothing comes in or soaks in.
         storage supplies: [Supply],
         /// Tables over time, sources and laws of infiltration: see [`TABLE`].

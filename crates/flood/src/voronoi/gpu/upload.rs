@@ -3,10 +3,11 @@
 use super::Sides;
 use super::shared::{
     BATCH_START, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed,
-    Push, Record, Slopes, Status, Water,
+    Place, Push, Record, Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
+use crate::structures::{Flows, Structures};
 use crate::voronoi::Inflow;
 use crate::voronoi::boundaries::Boundaries;
 use crate::voronoi::friction::Slowing;
@@ -14,7 +15,8 @@ use crate::voronoi::maps;
 use crate::voronoi::mesh::{self, Mesh};
 use crate::voronoi::rain::{Soaked, Weather};
 use crate::voronoi::solver::Solver;
-use crate::voronoi::water;
+use crate::voronoi::structures::Patches;
+use crate::voronoi::{walls, water};
 use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, uniform};
 
 /// What is uploaded.
@@ -31,6 +33,9 @@ pub(crate) struct Input<'a> {
     pub steps: u64,
     pub inflows: &'a [Inflow],
     pub weather: Option<&'a Weather>,
+    pub structures: &'a Structures,
+    pub patches: &'a Patches,
+    pub flows: &'a Flows,
     /// The obstacle at each border face.
     pub obstacle_of: &'a [u32],
     pub soaked: &'a Soaked,
@@ -44,7 +49,12 @@ impl Input<'_> {
 
     /// Whether water comes and goes beside its motion.
     pub fn exchanges(&self) -> bool {
-        !self.inflows.is_empty() || self.weather.is_some()
+        !self.inflows.is_empty() || self.weather.is_some() || self.has_works()
+    }
+
+    /// Whether there are structures, or crests that water flows over.
+    fn has_works(&self) -> bool {
+        !self.structures.is_empty() || !self.solver.crests.is_empty()
     }
 
     /// What there is beside the motion of the water.
@@ -53,6 +63,8 @@ impl Input<'_> {
             exchanges: self.exchanges(),
             has_obstacles: self.obstacle_of.iter().any(|obstacle| *obstacle != mesh::NONE),
             borders: self.solver.borders.len(),
+            structures: self.structures.count(),
+            has_crests: !self.solver.crests.is_empty(),
             holds_levels: self.boundaries.holds_levels(),
             shares_discharges: self.boundaries.shares_discharges(),
         }
@@ -74,18 +86,25 @@ impl Input<'_> {
         let mut tables = Tables::default();
         let of_supplies = supply_tables(self, &mut tables);
         let sides = self.boundaries.upload(self.solver, self.beyond, self.obstacle_of, &mut tables);
+        let mut works = self.patches.upload(self.structures, mesh, &mut tables);
+        let over = walls::upload::upload(&self.solver.crests, mesh);
         let mut words = tables.words();
+        works.add_numbers(&mut words);
         let supplies = supplies(self, &of_supplies, &mut words);
         let parameters = Parameters {
             tables: tables.count(),
             rain_table: of_supplies.rain,
             discharges: sides.discharges.len() as u32,
+            crests: over.crests.len() as u32,
+            beside_crests: over.beside.len() as u32,
+            structures: works.structures.len() as u32,
+            crest_coefficient: walls::crest_coefficient(self.solver.gravity) as f32,
             ..self.parameters()
         };
         let memory = Memory {
             parameters: uniform(gpu, "parameters", &parameters),
             status: filled(gpu, "status", &[status])?,
-            groups: filled(gpu, "groups", &[[0_u32, 1, 1]; 4])?,
+            groups: filled(gpu, "groups", &[[0_u32, 1, 1]; 7])?,
             ground: filled(gpu, "cells", &(0..cells).map(|cell| self.ground(cell)).collect::<Vec<_>>())?,
             links: filled(gpu, "links", &(0..cells).flat_map(|cell| links(mesh, cell)).collect::<Vec<_>>())?,
             faces: filled(gpu, "faces", &self.faces())?,
@@ -99,9 +118,18 @@ impl Input<'_> {
             fluxes: storage::<Flux>(gpu, "fluxes", faces)?,
             kept: storage::<f32>(gpu, "kept parts", cells)?,
             records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
-            passed: storage::<Passed>(gpu, "sums of groups", groups)?,
+            passed: storage::<Passed>(gpu, "sums of groups", groups + 1)?,
             found: storage::<Found>(gpu, "steps of groups", groups)?,
             pushes: storage::<Push>(gpu, "pushes", sides.borders.len())?,
+            crests: filled(gpu, "crests", &over.crests)?,
+            beside_crests: filled(gpu, "cells beside crests", &over.beside)?,
+            crest_entries: filled(gpu, "crests of cells", &over.entries)?,
+            structures: filled(gpu, "structures", &works.structures)?,
+            in_patches: filled(gpu, "cells of patches", &works.in_patches)?,
+            structure_discharges: filled(gpu, "discharges of structures", &self.discharges())?,
+            places: filled::<Place>(gpu, "places of cells", &[])?,
+            shown: uniform(gpu, "time shown", &Shown::default()),
+            drawn: filled::<u32>(gpu, "water as seen", &[])?,
             supplies: filled(gpu, "supplies", &supplies)?,
             tables: filled(gpu, "tables", &words)?,
         };
@@ -177,6 +205,14 @@ impl Input<'_> {
             }
         };
         mesh.faces.iter().enumerate().map(face).collect()
+    }
+
+    /// Discharges of structures in the last step, m3/s.
+    fn discharges(&self) -> Vec<f32> {
+        let held = vec![0.0; self.structures.held.len()];
+        let [outflows, links] = [&self.flows.outflows, &self.flows.links]
+            .map(|flows| flows.iter().map(|flow| flow.discharge as f32).collect::<Vec<_>>());
+        [outflows, held, links].concat()
     }
 
     fn columns(&self) -> Vec<Column> {

@@ -1,8 +1,10 @@
 // The end of a step: records what the water did in each cell, has water come and go beside its motion, and finds how long the next step may be. The piece
-// `exchange` is empty where nothing comes or goes.
+// `exchange` is empty where nothing comes or goes; `IS_LOOKED_AT` comes with the stage, and holds where `voronoi_look.wgsl` has recorded the water.
 #import declared
 #import voronoi_sums
+#import stage
 #import voronoi_record
+#import voronoi_stable
 #import exchange
 
 var<workgroup> volumes: array<vec4f, 256>;
@@ -10,20 +12,14 @@ var<workgroup> others: array<vec4f, 256>;
 var<workgroup> steps: array<f32, 256>;
 var<workgroup> counts: array<vec2u, 256>;
 
-// The longest stable time step of a cell over the Courant number, s.
-fn stable_step(cell: u32) -> f32 {
-    let now = water[cell];
-    if now.depth <= 0.0 {
-        return 3.0e38;
-    }
-    return ground[cell].width / (length(now.velocity) + sqrt(parameters.gravity * now.depth));
-}
-
 // Takes a cell through the end of the step.
 fn end_step(cell: u32, thread: u32) {
     var own = Found();
-    record(cell, water[cell]);
-    let before = stable_step(cell);
+    var before = 3.0e38;
+    if !IS_LOOKED_AT {
+        record(cell, water[cell]);
+        before = stable_step(cell);
+    }
     exchange(cell, &own);
     volumes[thread] = vec4f(own.rained, own.infiltrated);
     others[thread] = vec4f(own.supplied, own.energy, own.momentum);
@@ -68,7 +64,8 @@ fn main(
     if thread == 0u {
         let volume = volumes[0];
         let other = others[0];
-        found[group.x] =
-            Found(volume.xy, volume.zw, other.xy, other.z, other.w, steps[0], counts[0].x, counts[0].y, 0u);
+        let before = select(3.0e38, found[group.x].step, IS_LOOKED_AT);
+        let step = min(steps[0], before);
+        found[group.x] = Found(volume.xy, volume.zw, other.xy, other.z, other.w, step, counts[0].x, counts[0].y, 0u);
     }
 }

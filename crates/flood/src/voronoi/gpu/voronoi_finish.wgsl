@@ -21,7 +21,13 @@ fn collect(thread: u32) {
     var rain = zero;
     var step = 3.0e38;
     var count = vec2u(0u);
-    for (var group = thread; group < groups_for(parameters.cells); group += 256u) {
+    let all = groups_for(parameters.cells);
+    if thread == 0u {
+        // What structures did.
+        volume = vec4f(passed[all].outflow, passed[all].inflow);
+        other = vec4f(passed[all].energy, passed[all].momentum, 0.0);
+    }
+    for (var group = thread; group < all; group += 256u) {
         let of_group = passed[group];
         volume = vec4f(add_pair(volume.xy, of_group.outflow), add_pair(volume.zw, of_group.inflow));
         other += vec4f(of_group.energy, of_group.momentum, f32(of_group.is_broken));
@@ -115,6 +121,9 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         groups[3] = select(0u, groups_for(parameters.faces), goes_on);
         groups[6] = select(0u, groups_for(parameters.borders), goes_on);
         groups[9] = select(0u, parameters.discharges, goes_on);
+        groups[12] = select(0u, groups_for(parameters.crests), goes_on);
+        groups[15] = select(0u, groups_for(parameters.beside_crests), goes_on);
+        groups[18] = select(0u, 1u, goes_on);
         for (var table = 0u; table < parameters.tables && goes_on; table++) {
             look_up(table);
         }

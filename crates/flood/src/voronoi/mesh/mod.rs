@@ -233,12 +233,6 @@ impl Mesh {
         self.cuts = Cuts::new(&self.layout, ground);
     }
 
-    /// Whether there are walls with a crest.
-    #[cfg(feature = "gpu")]
-    pub fn has_crests(&self) -> bool {
-        !self.cuts.crests.is_empty()
-    }
-
     /// Walls with a crest between cells that are made, and the cells.
     pub fn crests(&self) -> impl Iterator<Item = ([u32; 2], &Crest)> {
         let cell = |point: u64| self.cell_of(point).map(|cell| cell as u32);

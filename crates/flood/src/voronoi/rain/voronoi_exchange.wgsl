@@ -2,7 +2,7 @@
 #import declared
 #import voronoi_sums
 #import voronoi_tables
-#import voronoi_water
+#import voronoi_change
 #import infiltration_laws
 
 // Sources bring water with their velocity.
@@ -45,13 +45,6 @@ fn drink(cell: u32, column: ptr<function, Column>, own: ptr<function, Found>) {
     (*own).momentum -= momentum.x + momentum.y;
 }
 
-fn kinetic(column: Column) -> f32 {
-    if column.volume.x <= 0.0 {
-        return 0.0;
-    }
-    return 0.5 * dot(column.momentum, column.momentum) / column.volume.x;
-}
-
 fn exchange(cell: u32, own: ptr<function, Found>) {
     let before = columns[cell];
     let area = ground[cell].area;
@@ -64,8 +57,7 @@ fn exchange(cell: u32, own: ptr<function, Found>) {
         return;
     }
     column.volume = tidy(column.volume);
-    let mean_depth = 0.5 * (column.volume.x + before.volume.x) / area;
-    (*own).energy = kinetic(column) - kinetic(before) + parameters.gravity * gained * (ground[cell].bed + mean_depth);
+    (*own).energy = energy_gained(before, column, area, ground[cell].bed);
     column.momentum = bounded_momentum(column.momentum, column.volume.x, area);
     columns[cell] = column;
     water[cell] = water_of(column, area);

@@ -1,5 +1,8 @@
 //! Outflows by rating, held levels, culverts and weirs in a step.
 
+#[cfg(feature = "gpu")]
+pub(super) mod upload;
+
 use super::mesh::Mesh;
 use super::patch::{Change, Patch};
 use super::solver::Solver;

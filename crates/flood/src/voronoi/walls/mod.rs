@@ -5,9 +5,13 @@
 mod outlines;
 mod overtopping;
 mod roofs;
+#[cfg(feature = "gpu")]
+pub(super) mod upload;
 
 pub(crate) use outlines::{no_data, of_lines, of_outlines, of_sides};
-pub(crate) use overtopping::overtop;
+#[cfg(feature = "gpu")]
+pub(crate) use overtopping::{MOST as MOST_OVER_CREST, coefficient as crest_coefficient};
+pub(crate) use overtopping::{OverCrest, crests, overtop};
 pub(crate) use roofs::{areas, collect};
 
 use corpuscle_terrain::Bounds;

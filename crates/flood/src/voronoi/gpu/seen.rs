@@ -1,0 +1,74 @@
+//! The water as particles on the device, for whoever draws them there.
+
+use super::shared::{Memory, Place, Shown};
+use super::{GpuSolver, LIBRARY};
+use crate::voronoi::mesh::Mesh;
+use corpuscle_gpu::{DeclaredKernel, DeviceParticles, Gpu, GpuError, Pass, THREADS, Task, filled, uniform, wgpu};
+
+/// The water as it is seen, and what writes it.
+pub(super) struct Seen {
+    particles: DeviceParticles,
+    memory: Memory,
+    task: Task,
+}
+
+impl Seen {
+    fn new(solver: &GpuSolver, mesh: &Mesh) -> Result<Self, GpuError> {
+        let gpu = &solver.gpu;
+        let [x, y] = mesh.layout.bounds.centre();
+        let level = mesh.bed.first().copied().unwrap_or(0.0);
+        let particles = DeviceParticles::new(gpu, mesh.len(), [x, y, level], mesh.layout.spacing())?;
+        let place = |cell: usize| {
+            let [east, north] = mesh.centroid[cell];
+            Place {
+                at: [(east - x) as f32, (north - y) as f32],
+                bed: (mesh.bed[cell] - level) as f32,
+                id: mesh.point[cell] as u32,
+            }
+        };
+        let memory = Memory {
+            places: filled(gpu, "places of cells", &(0..mesh.len()).map(place).collect::<Vec<_>>())?,
+            shown: uniform(gpu, "time shown", &Shown::default()),
+            drawn: particles.buffer.clone(),
+            ..solver.memory.clone()
+        };
+        let task = kernel(gpu).on(gpu, &memory);
+        Ok(Self { particles, memory, task })
+    }
+
+    /// Has the device write the particles as they are seen.
+    fn write(&self, gpu: &Gpu, shown: Shown) {
+        gpu.queue.write_buffer(&self.memory.shown, 0, bytemuck::bytes_of(&shown));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        self.task.run(&mut pass, (self.particles.room as u32).div_ceil(THREADS));
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+/// Name and text.
+pub(super) const SHADER: (&str, &str) = ("voronoi_seen", include_str!("voronoi_seen.wgsl"));
+
+fn kernel(gpu: &Gpu) -> DeclaredKernel<Memory> {
+    DeclaredKernel::new(gpu, SHADER.0, SHADER.1, LIBRARY)
+}
+
+impl GpuSolver {
+    /// The water at a time, s, as particles on the device: those deeper than `least_depth`, m.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`].
+    pub fn seen(&self, mesh: &Mesh, time: f64, least_depth: f64) -> Result<DeviceParticles, GpuError> {
+        if self.seen.get().is_none() {
+            // Nobody else can have been faster and done otherwise.
+            let _ = self.seen.set(Seen::new(self, mesh)?);
+        }
+        let seen = self.seen.get().expect("it was set above");
+        let totals = self.totals();
+        let share = (time - (totals.time - totals.last_step)) / totals.last_step;
+        let share = if totals.last_step > 0.0 { share.clamp(0.0, 1.0) } else { 1.0 };
+        seen.write(&self.gpu, Shown { share: share as f32, least_depth: least_depth as f32, ..Shown::default() });
+        Ok(seen.particles.clone())
+    }
+}

@@ -1,0 +1,18 @@
+// Water that is added to columns and taken from them beside the motion.
+#import declared
+#import voronoi_sums
+#import voronoi_water
+
+fn kinetic(column: Column) -> f32 {
+    if column.volume.x <= 0.0 {
+        return 0.0;
+    }
+    return 0.5 * dot(column.momentum, column.momentum) / column.volume.x;
+}
+
+// How much energy over density above the level 0 a column over a bed has more than another.
+fn energy_gained(before: Column, now: Column, area: f32, bed: f32) -> f32 {
+    let gained = (now.volume.x - before.volume.x) + (now.volume.y - before.volume.y);
+    let mean_depth = 0.5 * (now.volume.x + before.volume.x) / area;
+    return kinetic(now) - kinetic(before) + parameters.gravity * gained * (bed + mean_depth);
+}

@@ -1,0 +1,190 @@
+// Outflows by rating, held levels and links in a step, one after another: see `structures/mod.rs`. One group does all.
+#import declared
+#import voronoi_sums
+#import voronoi_tables
+#import voronoi_change
+#import hydraulics
+
+// Changes: volume as a compensated sum, energy and momentum over density.
+var<workgroup> changes: array<vec4f, 256>;
+
+fn both(a: vec4f, b: vec4f) -> vec4f {
+    return vec4f(add_pair(a.xy, b.xy), a.zw + b.zw);
+}
+
+// What all threads have together, for all of them.
+fn together(thread: u32, own: vec4f) -> vec4f {
+    changes[thread] = own;
+    for (var half = 128u; half > 0u; half /= 2u) {
+        workgroupBarrier();
+        if thread < half {
+            changes[thread] = both(changes[thread], changes[thread + half]);
+        }
+    }
+    return workgroupUniformLoad(&changes[0]);
+}
+
+// Adds water to a cell of a patch; the change.
+fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
+    let before = columns[place.cell];
+    var column = before;
+    column.volume = tidy(add_pair(before.volume, volume));
+    if column.volume.x < 0.0 {
+        column.volume = vec2f(0.0);
+    }
+    column.momentum += momentum;
+    let gained = tidy(add_pair(column.volume, -before.volume));
+    let energy = energy_gained(before, column, place.area, place.bed);
+    column.momentum = bounded_momentum(column.momentum, column.volume.x, place.area);
+    columns[place.cell] = column;
+    water[place.cell] = water_of(column, place.area);
+    return vec4f(gained, energy, momentum.x + momentum.y);
+}
+
+// Mean level of the wet cells of a patch by area; `DRY` where there are none.
+fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
+    var sums = vec4f(0.0);
+    for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
+        let place = in_patches[k];
+        let depth = water[place.cell].depth;
+        if depth > 0.0 {
+            sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth));
+        }
+    }
+    sums = together(thread, sums);
+    return select(DRY, sums.w / sums.z, sums.z > 0.0);
+}
+
+// Takes a volume from the cells in proportion to what they hold, and all they hold at most, with its velocity.
+fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
+    var held = vec4f(0.0);
+    for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
+        held.z += columns[in_patches[k].cell].volume.x;
+    }
+    held = together(thread, held);
+    var change = vec4f(0.0);
+    if held.z > 0.0 && wanted > 0.0 {
+        let share = min(wanted / held.z, 1.0);
+        for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
+            let column = columns[in_patches[k].cell];
+            // All of it to the last bit, or a part.
+            let volume = select(vec2f(opaque(share * column.volume.x), 0.0), column.volume, share == 1.0);
+            change = both(change, apply(in_patches[k], -volume, -share * column.momentum));
+        }
+    }
+    return together(thread, change);
+}
+
+// Raises the surface evenly by a volume at rest; the first cell gets what rounding leaves.
+fn give(thread: u32, own: Structure, end: u32, volume: vec2f) -> vec4f {
+    var change = vec4f(0.0);
+    for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
+        let place = in_patches[k];
+        let part = opaque(volume.x * (place.area / own.areas[end]));
+        change = both(change, apply(place, vec2f(part, 0.0), vec2f(0.0)));
+    }
+    var all = together(thread, change);
+    var rest = vec4f(0.0);
+    if thread == 0u && own.firsts[end] < own.ends[end] {
+        let left = tidy(add_pair(volume, -all.xy));
+        rest = apply(in_patches[own.firsts[end]], left, vec2f(0.0));
+    }
+    return both(all, together(thread, rest));
+}
+
+// Brings each cell to a level; what is added has the velocity of the water there.
+fn hold(thread: u32, own: Structure) -> vec4f {
+    let level = in_step(own.table, AT_BEGINNING + 1u);
+    var change = vec4f(0.0);
+    for (var k = own.firsts[0] + thread; k < own.ends[0]; k += GROUP) {
+        let place = in_patches[k];
+        let wanted = place.area * max(level - place.above, 0.0);
+        let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[place.cell].volume));
+        change = both(change, apply(place, volume, volume.x * water[place.cell].velocity));
+    }
+    return together(thread, change);
+}
+
+fn culvert_of(word: u32) -> Culvert {
+    return Culvert(
+        number(word), number(word + 1u), number(word + 2u), number(word + 3u), vec2f(number(word + 4u), number(word + 5u)),
+        number(word + 6u), number(word + 7u), number(word + 8u)
+    );
+}
+
+// Discharge from the end where the water stands at `upper` to where it stands at `lower`; `forward` from the first to the second.
+fn by_law(own: Structure, upper: f32, lower: f32, forward: bool) -> f32 {
+    if own.law == CULVERT {
+        let culvert = culvert_of(own.numbers);
+        return through_culvert(culvert, upper, lower, select(culvert.floor.yx, culvert.floor, forward));
+    }
+    if own.law == WEIR {
+        return over_weir(number(own.numbers), number(own.numbers + 1u), number(own.numbers + 2u), upper, lower);
+    }
+    // Where it has run dry the fall is not known: as from the same ground.
+    return value_at(own.table, vec2f(select(upper - lower, 0.0, lower == DRY), 0.0));
+}
+
+// Discharge wanted, positive from the first end to the second: see `Link::discharge_between`.
+fn of_link(own: Structure, first: f32, second: f32) -> f32 {
+    if first >= second {
+        return select(by_law(own, first, second, true), 0.0, first == DRY);
+    }
+    if own.both_ways == 1u {
+        return -by_law(own, second, first, false);
+    }
+    return 0.0;
+}
+
+// Leads water from one end to the other; what that changed, and the discharge is written.
+fn lead(thread: u32, number: u32, own: Structure) -> vec4f {
+    let first = level_of(thread, own, 0u);
+    let second = level_of(thread, own, 1u);
+    let wanted = of_link(own, first, second);
+    let source = select(0u, 1u, wanted < 0.0);
+    let taken = take(thread, own, source, abs(wanted) * status.step);
+    let given = give(thread, own, 1u - source, -taken.xy);
+    if thread == 0u {
+        structure_discharges[number] = select(given.x, -given.x, wanted < 0.0) / status.step;
+    }
+    return vec4f(both(taken, given).xyz, taken.w);
+}
+
+fn let_out(thread: u32, number: u32, own: Structure) -> vec4f {
+    let level = level_of(thread, own, 0u);
+    let wanted = select(max(value_at(own.table, vec2f(level, 0.0)), 0.0), 0.0, level == DRY);
+    let change = take(thread, own, 0u, wanted * status.step);
+    if thread == 0u {
+        structure_discharges[number] = -change.x / status.step;
+    }
+    return change;
+}
+
+fn book(books: ptr<function, Passed>, change: vec4f) {
+    if change.x > 0.0 {
+        (*books).inflow = add_pair((*books).inflow, change.xy);
+    } else {
+        (*books).outflow = add_pair((*books).outflow, -change.xy);
+    }
+    (*books).energy += vec2f(max(-change.z, 0.0), max(change.z, 0.0));
+    (*books).momentum += change.w;
+}
+
+@compute @workgroup_size(256)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    var books = Passed();
+    for (var k = 0u; k < parameters.structures; k++) {
+        let own = structures[k];
+        if own.kind == OUTFLOW {
+            book(&books, let_out(thread, k, own));
+        } else if own.kind == HOLD {
+            book(&books, hold(thread, own));
+        } else {
+            book(&books, lead(thread, k, own));
+        }
+        storageBarrier();
+    }
+    if thread == 0u {
+        passed[(parameters.cells + GROUP - 1u) / GROUP] = books;
+    }
+}
