@@ -74,13 +74,7 @@ fn open(name: &str, changes: &[(&str, &str)], gpu: &Gpu) -> Simulation {
     simulation
 }
 
-const DAM: [(&str, &str); 5] = [
-    ("flood.scheme", "balanced"),
-    ("flood.spacing_m", "2"),
-    ("flood.spacing_depth_m", "10"),
-    ("run.until_s", "1.3"),
-    ("run.frame_every_s", "0.52"),
-];
+const DAM: [(&str, &str); 3] = [("flood.spacing_m", "2"), ("run.until_s", "1.3"), ("run.frame_every_s", "0.52")];
 
 fn run(mut simulation: Simulation, album: &mut Album) -> Result<(), Error> {
     simulation.run(&mut [album], &AtomicBool::new(false), &mut |_| {}).map(|_| ())

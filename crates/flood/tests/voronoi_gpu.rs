@@ -394,6 +394,41 @@ fn water_flows_over_crests() {
     }
 }
 
+/// Ground with waves shorter than the cells, whose heights count: water runs over it, comes in over sides, by rain and from structures, and goes out.
+#[test]
+fn heights_within_cells_count() {
+    let Some(gpu) = require_gpu("heights within cells on the GPU") else { return };
+    let sides = "edges = { west = { discharge = 4 }, east = { rating = [[400, 0], [402, 9]] }, south = { stage = 400.8 }, north = \"open\" }\n";
+    let works = "stage = [{ name = \"lake\", polygon = [[45, 10], [60, 10], [60, 20], [45, 20]], level_m = 400.9 }]\n\
+                 link = [{ name = \"weir\", from = [50, 25], to = [20, 5], law = { weir = { crest_m = 400.5, width_m = 2 } } }]\n\
+                 obstacle = [{ name = \"levee\", line = [[25, -1], [30, 12], [27, 31]], height_m = 0.3 }]\n\
+                 rain.intensity_mm_per_h = 200\n";
+    let ground = |x: f64, y: f64| 400.0 + 0.5 * (2.1 * x).sin() * (1.7 * y).cos();
+    for case in [WALLS.to_owned(), sides.to_owned(), format!("{sides}{works}")] {
+        let keys = format!(
+            "spacing_m = 2\nmanning = 0.03\nstorage = \"level-volume\"\n{case}water = [{{ level_m = 400.7 }}, {{ level_m = 401, polygon = [[0, 0], [20, 0], [20, 30], [0, 30]] }}]"
+        );
+        let floods = both(gpu.clone(), 10.0, || basin(&keys, [66.0, 30.0], ground));
+        eprintln!("{case}");
+        agree(&floods, 2e-6, 2e-5);
+        let [cpu, gpu] = floods.each_ref().map(|flood| value(flood, "energy_in"));
+        assert!((gpu - cpu).abs() <= 1e-3 * cpu.abs().max(1.0), "{cpu} {gpu}");
+    }
+}
+
+/// A lake over such ground stays at rest.
+#[test]
+fn a_lake_on_ground_with_heights_within_cells_stays_at_rest() {
+    let Some(gpu) = require_gpu("a lake over heights within cells on the GPU") else { return };
+    let keys =
+        format!("spacing_m = 2\nmanning = 0\nstorage = \"level-volume\"\n{WALLS}water = [{{ level_m = 1001.5 }}]");
+    let mut flood = basin(&keys, [66.0, 30.0], |x, y| blocks(x, y) + 0.5 * (2.1 * x).sin() * (1.7 * y).cos());
+    flood.use_gpu(gpu).unwrap();
+    go(&mut flood, 60.0);
+    eprintln!("rms {:.2e} m/s after {} steps", rms(&flood), flood.steps());
+    assert!(rms(&flood) < 5e-6, "{}", rms(&flood));
+}
+
 /// Water in the air falls on the CPU, and the GPU goes on with it from the ground.
 #[test]
 fn blocks_of_water_fall() {
@@ -441,7 +476,7 @@ fn water_pushes_obstacles() {
 #[test]
 fn what_the_gpu_does_not_compute_is_refused_by_name() {
     let Some(gpu) = require_gpu("refusals of the GPU") else { return };
-    let cases = [("time_steps = \"local\"\n", "local time steps"), ("storage = \"level-volume\"\n", "storage")];
+    let cases = [("time_steps = \"local\"\n", "local time steps")];
     for (keys, word) in cases {
         let mut flood = basin(&dam("", keys), [66.0, 30.0], |_, _| 0.0);
         let Err(ModelError::Setup(text)) = flood.use_gpu(gpu.clone()) else { panic!("{keys} is taken") };

@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn a_flood_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
         let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
-        let coarse = [("flood.scheme", "balanced"), ("flood.spacing_m", "2"), ("flood.spacing_depth_m", "10")];
+        let coarse = [("flood.spacing_m", "2")];
         let coarse = coarse.map(|(path, value)| (path.to_owned(), value.to_owned()));
         let scene = Scene::parse(builtin("flood/dam-break").unwrap().text, "dam", &coarse).unwrap();
         let mut simulation = Simulation::open(scene, Path::new("")).unwrap();

@@ -5,7 +5,7 @@
 //! partly has the level of its water, not that of the mean ground with the water spread over it.
 
 /// Parts of a cell.
-const PARTS: usize = 16;
+pub(crate) const PARTS: usize = 16;
 
 /// Sides of triangles of ground are divided in so many parts to look at heights.
 const LOOKS: usize = 4;
@@ -64,6 +64,13 @@ fn parts_of(looks: &[[f64; 2]], bed: f64) -> Heights {
 #[inline]
 fn mean(heights: &Heights) -> f64 {
     heights.iter().map(|height| f64::from(*height)).sum::<f64>() / PARTS as f64
+}
+
+/// The heights above their mean, m.
+#[cfg(feature = "gpu")]
+pub(crate) fn above_mean(heights: &Heights) -> [f64; PARTS] {
+    let mean = mean(heights);
+    heights.map(|height| f64::from(height) - mean)
 }
 
 /// Mean over the parts of a cell of what `of_part` gives for the height of each above the mean ground, m.

@@ -8,6 +8,9 @@ use super::Boundary;
 use super::open::{Boundaries, faces_of, lowest_of, wets};
 use corpuscle_scene::Table;
 
+/// Level of no water beyond, above the bed of the cell, m.
+const DRY: f64 = -1e30;
+
 /// The tables of a rule, and the level from which those of a level count, m.
 #[derive(Debug, Clone, Copy)]
 struct OfRule {
@@ -138,13 +141,13 @@ impl Boundaries {
             return (wall, 0.0);
         };
         let own = Border { table, velocity_table, datum: (datum - bed) as f32, ..wall };
-        let open = |depth: f64| (Border { kind: OPEN, ..own }, depth.max(0.0));
+        let open = |level: f64| (Border { kind: OPEN, ..own }, level.max(DRY));
         match &self.rules[usize::from(rule)] {
             Boundary::Wall | Boundary::Periodic => (wall, 0.0),
             Boundary::Open => open(known - bed),
             Boundary::NormalDepth(root) => match solver.slowing.conveyance(cell, solver.gravity) {
                 Some(conveyance) => (Border { kind: NORMAL, factor: (root * conveyance) as f32, ..own }, 0.0),
-                None => open(0.0),
+                None => open(DRY),
             },
             Boundary::Level(_) => (Border { kind: LEVEL, ..own }, known),
             Boundary::Wave { rest, .. } => (Border { kind: WAVE, rest: (rest - bed) as f32, ..own }, 0.0),

@@ -1,4 +1,4 @@
-// What passes border faces: see `boundaries/mod.rs` and `boundaries/state.rs`. Levels are above the bed of the cell. `IS_SECOND` comes with the stage.
+// What passes border faces: see `boundaries/mod.rs` and `boundaries/state.rs`. Levels are above the bed that the cell sees under its level. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
 #import voronoi_faces
@@ -212,11 +212,20 @@ fn depth_of(celerity: f32, own_depth: f32) -> f32 {
     return own_depth * ratio * ratio;
 }
 
-fn through_border(border: Border, known: f32, at: AtFace) -> Crossing {
+// A border as it is seen where the level stands `shift` above mean bed and depth.
+fn as_seen(border: Border, shift: f32) -> Border {
+    var own = border;
+    own.datum -= shift;
+    own.ground -= shift;
+    own.rest -= shift;
+    return own;
+}
+
+fn through_border(border: Border, known: f32, at: AtFace, shift: f32) -> Crossing {
     if border.kind == WALL {
         return through_wall(at);
     }
-    let state = state_of(border, known, at);
+    let state = state_of(as_seen(border, shift), select(known, known - shift, border.kind == OPEN), at);
     let depth = depth_of(state.x, at.depth);
     var volume = depth * state.y;
     if border.kind == DISCHARGE && known >= 0.0 {

@@ -3,9 +3,10 @@
 #import stage
 #import voronoi_boundaries
 
-fn velocity_beyond(border: Border, before: f32) -> f32 {
-    let face = faces[border.face];
+fn velocity_beyond(written: Border, before: f32) -> f32 {
+    let face = faces[written.face];
     let own = water[face.first];
+    let border = as_seen(written, own.shift);
     let start = in_step(border.table, AT_BEGINNING);
     let end = in_step(border.table, AT_BEGINNING + 1u);
     let was = celerity_of(border.datum + start);

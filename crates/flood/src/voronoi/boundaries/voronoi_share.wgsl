@@ -1,6 +1,6 @@
 // Shares discharges out over border faces by conveyance: see `share` in `boundaries/open.rs`. A group does one.
 #import declared
-#import voronoi_tables
+#import voronoi_storage
 
 var<workgroup> sums: array<vec2f, 256>;
 
@@ -19,7 +19,7 @@ fn sum_of(thread: u32, own: vec2f) -> vec2f {
 
 // Length times depth to 5/3 over the length: the depth is that below a level, or the cell's own.
 fn conveyance(part: Part, level: f32, is_own: bool) -> f32 {
-    let depth = select(max(level - part.bed, 0.0), water[part.cell].depth, is_own);
+    let depth = select(depth_below(part.cell, level - part.bed), water[part.cell].depth, is_own);
     return pow(depth, 5.0 / 3.0);
 }
 
@@ -32,8 +32,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         let part = parts[k];
         let depth = water[part.cell].depth;
         if depth > 0.0 {
-            along += part.length * vec2f(1.0, part.bed + depth);
-            by_depth += part.length * depth * vec2f(1.0, part.bed + depth);
+            let level = part.bed + depth + water[part.cell].shift;
+            along += part.length * vec2f(1.0, level);
+            by_depth += part.length * depth * vec2f(1.0, level);
         }
     }
     along = sum_of(thread, along);

@@ -25,12 +25,12 @@ fn turned_back(across_along: vec2f, normal: vec2f) -> vec2f {
 fn between(face: Face, here: Water, there: Water) -> Flux {
     let length = length(face.normal);
     let normal = face.normal / length;
-    let level = there.depth - here.depth + face.rise;
+    let level = higher(here, there, face.rise);
     let a = seen(
-        here, there, 0.0, slopes[face.first], differences(here.depth, there.depth, face.rise), face.between, face.offset, normal
+        here, there, 0.0, slopes[face.first], differences(here, there, face.rise), face.between, face.offset, normal
     );
     let b = seen(
-        there, here, level, slopes[face.second], differences(there.depth, here.depth, -face.rise), -face.between, face.offset, normal
+        there, here, level, slopes[face.second], differences(there, here, -face.rise), -face.between, face.offset, normal
     );
     let bed = min(max(a.level - a.depth, b.level - b.depth), min(a.level, b.level));
     let above_a = a.level - bed;
@@ -57,7 +57,7 @@ fn over_border(face: Face, here: Water) -> Flux {
     if border.kind == WALL {
         at = at_wall(here, slopes[face.first], face.between, face.offset, normal);
     }
-    let found = through_border(border, beyond[face.border], at);
+    let found = through_border(border, beyond[face.border], at, here.shift);
     return Flux(length * turned_back(found.carried, normal), vec2f(found.thrust, 0.0), length * found.volume, 0.0);
 }
 

@@ -44,6 +44,7 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_stable", include_str!("voronoi_stable.wgsl")),
     ("voronoi_change", include_str!("voronoi_change.wgsl")),
     ("hydraulics", include_str!("../../hydraulics.wgsl")),
+    ("voronoi_storage", include_str!("../voronoi_storage.wgsl")),
     ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
     ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),
     ("voronoi_faces", include_str!("../reconstruction/voronoi_faces.wgsl")),
@@ -68,7 +69,7 @@ const VERSIONS: [[(&str, &str); 2]; 3] = [
 ];
 
 /// Name, text and version of the kernels.
-const SHADERS: [(&str, &str, usize); 19] = [
+const SHADERS: [(&str, &str, usize); 20] = [
     ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
     ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 1),
@@ -88,6 +89,7 @@ const SHADERS: [(&str, &str, usize); 19] = [
     ("voronoi_overtop", include_str!("../walls/voronoi_overtop.wgsl"), 1),
     ("voronoi_structures", include_str!("../structures/voronoi_structures.wgsl"), 1),
     ("voronoi_end", include_str!("voronoi_end.wgsl"), 2),
+    ("voronoi_shift", include_str!("../voronoi_shift.wgsl"), 0),
 ];
 
 /// The kernel that finds the water of columns.
@@ -135,6 +137,8 @@ pub(super) struct Sides {
     structures: usize,
     /// Whether there are crests that water flows over.
     has_crests: bool,
+    /// Whether the heights of the ground within cells count.
+    has_heights: bool,
     /// Whether the water beyond some border is held at a level.
     holds_levels: bool,
     /// Whether discharges are shared out over border faces.
@@ -366,6 +370,7 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
         overtop,
         structures,
         end_of_works,
+        shift,
     ] = tasks;
     let has_works = sides.has_crests || sides.structures > 0;
     let end = match sides.exchanges {
@@ -386,6 +391,9 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
                 push.run_as_told(pass, &memory.groups, BORDERS);
             }
             update.run_as_told(pass, &memory.groups, CELLS);
+            if sides.has_heights {
+                shift.run_as_told(pass, &memory.groups, CELLS);
+            }
         }
         if sides.holds_levels {
             follow.run_as_told(pass, &memory.groups, BORDERS);

@@ -8,7 +8,7 @@ use crate::voronoi::structures::upload::take_over;
 use crate::voronoi::{DENSITY, VoronoiFlood};
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
 use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, Passed};
-use corpuscle_scene::{Storage, TimeSteps};
+use corpuscle_scene::TimeSteps;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A GPU that takes the steps.
@@ -82,7 +82,7 @@ impl GpuModel for VoronoiFlood {
             // A time that has passed stands for the end of the next step.
             let is_step = next <= self.shown;
             let until = if is_step { self.end_of_next_step() } else { next };
-            if until >= time {
+            if until > time {
                 break;
             }
             if companion.gauges_after(self.shown).is_some_and(|due| due <= until) {
@@ -90,17 +90,20 @@ impl GpuModel for VoronoiFlood {
                 if self.shown < until {
                     return Ok(());
                 }
-            } else {
-                self.with_gpu(|flood, on_gpu| match is_step {
-                    true => flood.step_once(on_gpu),
-                    false => flood.step_to(on_gpu, until, stop),
-                })?;
-                let is_there = is_step || self.shown >= until;
-                if !is_there || !companion.passed(self.passed()) {
-                    return self.with_gpu(Self::fetch);
-                }
+                next = show(self.glance()?);
+                continue;
+            }
+            self.with_gpu(|flood, on_gpu| match is_step {
+                true => flood.step_once(on_gpu),
+                false => flood.step_to(on_gpu, until, stop),
+            })?;
+            if !is_step && self.shown < until {
+                return self.with_gpu(Self::fetch);
             }
             next = show(self.glance()?);
+            if !companion.passed(self.passed()) {
+                return self.with_gpu(Self::fetch);
+            }
         }
         self.with_gpu(Self::fetch)?;
         self.advance_with(time, stop, companion)
@@ -136,11 +139,6 @@ impl VoronoiFlood {
                 settings.time_steps == TimeSteps::Local,
                 "local time steps run on the CPU only",
                 "take flood.time_steps = \"global\"",
-            ),
-            (
-                settings.storage == Storage::LevelVolume,
-                "flood.storage = \"level-volume\" runs on the CPU only",
-                "take \"mean\"",
             ),
             (
                 rain.is_some_and(|rain| matches!(rain, Intensity::Function(_))),

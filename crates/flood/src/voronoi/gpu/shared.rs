@@ -85,6 +85,8 @@ corpuscle_gpu::declare! {
         pub const LAG: f32 = super::super::boundaries::LAG as f32;
         /// Words of a source of a cell: its table, the cell's share of it, and its velocity, m/s.
         pub const SOURCE: u32 = 4;
+        /// Parts of a cell whose heights count.
+        pub const PARTS: u32 = super::super::storage::PARTS as u32;
         /// Threads of a group.
         pub const GROUP: u32 = corpuscle_gpu::THREADS;
     }
@@ -119,6 +121,8 @@ corpuscle_gpu::declare! {
             pub beside_crests: u32,
             /// Number of structures.
             pub structures: u32,
+            /// Where in `tables` the heights of the parts of cells above their mean beds stand, m; [`NONE`] where they do not count.
+            pub heights: u32,
             /// Coefficient of Poleni's formula for crests, m^(1/2)/s.
             pub crest_coefficient: f32,
         }
@@ -379,8 +383,8 @@ corpuscle_gpu::declare! {
             pub velocity: [f32; 2],
             /// m; 0 where dry.
             pub depth: f32,
-            /// Fills up.
-            pub unused: f32,
+            /// Level less mean bed and depth, m: not 0 where the heights of the ground within the cell count.
+            pub shift: f32,
         }
 
         /// Slopes of depth, level, and velocity east- and northwards.

@@ -64,6 +64,7 @@ impl Input<'_> {
             has_obstacles: self.obstacle_of.iter().any(|obstacle| *obstacle != mesh::NONE),
             borders: self.solver.borders.len(),
             structures: self.structures.count(),
+            has_heights: self.solver.mesh.heights().is_some(),
             has_crests: !self.solver.crests.is_empty(),
             holds_levels: self.boundaries.holds_levels(),
             shares_discharges: self.boundaries.shares_discharges(),
@@ -91,7 +92,9 @@ impl Input<'_> {
         let mut words = tables.words();
         works.add_numbers(&mut words);
         let supplies = supplies(self, &of_supplies, &mut words);
+        let heights = add_heights(mesh, &mut words);
         let parameters = Parameters {
+            heights,
             tables: tables.count(),
             rain_table: of_supplies.rain,
             discharges: sides.discharges.len() as u32,
@@ -245,6 +248,14 @@ fn links(mesh: &Mesh, cell: usize) -> impl Iterator<Item = Link> + '_ {
         let rise = link.cell().map_or(0.0, |other| rise(mesh, [cell as u32, other as u32], mesh.lift_seen(link, cell)));
         Link { gradient: link.gradient, normal: single(outward), rise, neighbour, face: link.face, side: side as u32 }
     })
+}
+
+/// Adds the heights of the parts of all cells, where they count; where they begin.
+fn add_heights(mesh: &Mesh, words: &mut Vec<u32>) -> u32 {
+    let Some(heights) = mesh.heights() else { return NONE };
+    let first = words.len() as u32;
+    words.extend(heights.flatten().map(|height| (height as f32).to_bits()));
+    first
 }
 
 fn record_of(record: &maps::Record) -> Record {

@@ -1,7 +1,7 @@
 // Water that is added to columns and taken from them beside the motion.
 #import declared
 #import voronoi_sums
-#import voronoi_water
+#import voronoi_storage
 
 fn kinetic(column: Column) -> f32 {
     if column.volume.x <= 0.0 {
@@ -10,9 +10,9 @@ fn kinetic(column: Column) -> f32 {
     return 0.5 * dot(column.momentum, column.momentum) / column.volume.x;
 }
 
-// How much energy over density above the level 0 a column over a bed has more than another.
-fn energy_gained(before: Column, now: Column, area: f32, bed: f32) -> f32 {
+// How much energy over density above the level 0 a column over a bed has more than another in the same cell.
+fn energy_gained(cell: u32, before: Column, now: Column, area: f32, bed: f32) -> f32 {
     let gained = (now.volume.x - before.volume.x) + (now.volume.y - before.volume.y);
-    let mean_depth = 0.5 * (now.volume.x + before.volume.x) / area;
-    return kinetic(now) - kinetic(before) + parameters.gravity * gained * (bed + mean_depth);
+    let level = 0.5 * (level_over(cell, before.volume.x / area) + level_over(cell, now.volume.x / area));
+    return kinetic(now) - kinetic(before) + parameters.gravity * gained * (bed + level);
 }

@@ -1,6 +1,6 @@
 // The water of each cell as a particle to be drawn, at the time shown: see `frame` in `model.rs`.
 #import declared
-#import voronoi_water
+#import voronoi_storage
 
 fn particle_of(cell: u32) -> DeviceParticle {
     var particle: DeviceParticle;
@@ -9,12 +9,12 @@ fn particle_of(cell: u32) -> DeviceParticle {
     let area = ground[cell].area;
     let volume = mix(before.volume.x, now.volume.x, shown.share);
     let momentum = bounded_momentum(mix(before.momentum, now.momentum, shown.share), volume, area);
-    let own = water_of(Column(vec2f(volume, 0.0), momentum), area);
+    let own = water_in(cell, Column(vec2f(volume, 0.0), momentum), area);
     if own.depth <= shown.least_depth {
         return particle;
     }
     let place = places[cell];
-    particle.place = vec3f(place.at, place.bed + own.depth);
+    particle.place = vec3f(place.at, place.bed + own.depth + own.shift);
     particle.spacing = sqrt(area);
     particle.velocity = vec3f(own.velocity, 0.0);
     particle.depth = own.depth;

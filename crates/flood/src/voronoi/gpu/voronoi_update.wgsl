@@ -39,7 +39,7 @@ fn energy_of(cell: u32, flux: Flux, volume: f32) -> f32 {
     }
     // Divided before it is squared: the square of next to nothing is 0.
     let velocity = flux.carried / flux.volume;
-    return volume * (parameters.gravity * (ground[cell].bed + water[cell].depth) + 0.5 * dot(velocity, velocity));
+    return volume * (parameters.gravity * (ground[cell].bed + water[cell].depth + water[cell].shift) + 0.5 * dot(velocity, velocity));
 }
 
 fn gather(cell: u32) -> Gathered {

@@ -242,6 +242,12 @@ impl Mesh {
         })
     }
 
+    /// Heights of the parts of each cell above its mean bed, m, the lowest first; none where they do not count.
+    #[cfg(feature = "gpu")]
+    pub fn heights(&self) -> Option<impl Iterator<Item = [f64; storage::PARTS]> + '_> {
+        (!self.heights.is_empty()).then(|| self.heights.iter().map(storage::above_mean))
+    }
+
     /// Number of cells.
     pub fn len(&self) -> usize {
         self.area.len()

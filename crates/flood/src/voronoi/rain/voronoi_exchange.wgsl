@@ -57,8 +57,8 @@ fn exchange(cell: u32, own: ptr<function, Found>) {
         return;
     }
     column.volume = tidy(column.volume);
-    (*own).energy = energy_gained(before, column, area, ground[cell].bed);
+    (*own).energy = energy_gained(cell, before, column, area, ground[cell].bed);
     column.momentum = bounded_momentum(column.momentum, column.volume.x, area);
     columns[cell] = column;
-    water[cell] = water_of(column, area);
+    water[cell] = water_in(cell, column, area);
 }

@@ -4,7 +4,7 @@
 //! the neighbour there. Level and depth are reconstructed, the bed is what lies between them (Audusse et al. 2004, section 3).
 
 use super::mesh::{Face, Link, Mesh};
-use super::water::{DEPTH, EAST, LEVEL, NORTH, Slopes, Water, slope};
+use super::water::{DEPTH, EAST, LEVEL, NORTH, Slopes, THIN, Water, slope};
 use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFrom};
 
 /// A neighbour whose bed stands above the level here counts the less, the thinner its water: in full from this part of the depth here on.
@@ -49,8 +49,9 @@ pub(crate) fn slopes(mesh: &Mesh, water: &impl Fn(usize) -> Water, cell: usize) 
         };
         let there = &water(other);
         let [depth, level] = differences(here, there, mesh.lift_seen(link, cell));
-        let wet = f64::from(u8::from(there.depth > 0.0));
-        let velocity = [0, 1].map(|axis| wet * (there.velocity[axis] - here.velocity[axis]));
+        // Next to no water has no velocity that counts.
+        let share = (there.depth / THIN).min(1.0);
+        let velocity = [0, 1].map(|axis| share * (there.velocity[axis] - here.velocity[axis]));
         let difference = [depth, level, velocity[0], velocity[1]];
         for (slopes, gradient) in slopes.iter_mut().zip(link.gradient) {
             (0..4).for_each(|quantity| slopes[quantity] += f64::from(gradient) * difference[quantity]);
@@ -120,13 +121,13 @@ impl<S: Simd> Faces<S> {
     #[inline(always)]
     pub fn at(&self, simd: S) -> [AtFaces<S>; 2] {
         let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
-        let wet_a = self.water[0][DEPTH].simd_gt(zero).select(one, zero);
-        let wet_b = self.water[1][DEPTH].simd_gt(zero).select(one, zero);
-        let both = wet_a * wet_b;
+        let depths = [self.water[0][DEPTH], self.water[1][DEPTH]];
+        let [wet_a, wet_b] = depths.map(|depth| depth.simd_gt(zero).select(one, zero));
+        let both = (depths[0].min(depths[1]) * (1.0 / THIN)).min(1.0);
         [self.seen_from(simd, 0, wet_a, both), self.seen_from(simd, 1, wet_b, both)]
     }
 
-    /// What one side sees; `wet` and `both` are 1 where it, or both, have water, and 0 elsewhere.
+    /// What one side sees; `wet` is 1 where it has water and 0 elsewhere, `both` 1 where both do and less where one has next to none.
     #[inline(always)]
     fn seen_from(&self, simd: S, side: usize, wet: Lanes<S>, both: Lanes<S>) -> AtFaces<S> {
         let (own, other, differences) = (&self.water[side], &self.water[1 - side], &self.differences[side]);

@@ -48,10 +48,10 @@ fn seen(
     let share = higher * higher / (higher * higher + of_bed * of_bed + 1e-37);
     let bounded = higher - share * (deeper - kept);
     var velocity = own.velocity;
-    if other.depth > 0.0 {
-        let faster = other.velocity - own.velocity;
-        velocity += vec2f(change(faster.x, whole.z, along.z), change(faster.y, whole.w, along.w));
-    }
+    // Next to no water has no velocity that counts.
+    let both = min(min(own.depth, other.depth) / THIN, 1.0);
+    let faster = both * (other.velocity - own.velocity);
+    velocity += both * vec2f(change(faster.x, whole.z, along.z), change(faster.y, whole.w, along.w));
     let at = turned(velocity, normal);
     return AtFace(max(own.depth + kept, 0.0), level + bounded, at.x, at.y, bounded);
 }

@@ -13,8 +13,9 @@ fn difference(link: Link, here: Water) -> vec4f {
         return vec4f(0.0, 0.0, mirrored(link, here.velocity));
     }
     let there = water[link.neighbour];
-    let velocity = select(vec2f(0.0), there.velocity - here.velocity, there.depth > 0.0);
-    return vec4f(differences(here.depth, there.depth, link.rise), velocity);
+    // Next to no water has no velocity that counts.
+    let velocity = min(there.depth / THIN, 1.0) * (there.velocity - here.velocity);
+    return vec4f(differences(here, there, link.rise), velocity);
 }
 
 @compute @workgroup_size(256)

@@ -34,10 +34,10 @@ fn apply(place: InPatch, volume: vec2f, momentum: vec2f) -> vec4f {
     }
     column.momentum += momentum;
     let gained = tidy(add_pair(column.volume, -before.volume));
-    let energy = energy_gained(before, column, place.area, place.bed);
+    let energy = energy_gained(place.cell, before, column, place.area, place.bed);
     column.momentum = bounded_momentum(column.momentum, column.volume.x, place.area);
     columns[place.cell] = column;
-    water[place.cell] = water_of(column, place.area);
+    water[place.cell] = water_in(place.cell, column, place.area);
     return vec4f(gained, energy, momentum.x + momentum.y);
 }
 
@@ -48,7 +48,7 @@ fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
         let place = in_patches[k];
         let depth = water[place.cell].depth;
         if depth > 0.0 {
-            sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth));
+            sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth + water[place.cell].shift));
         }
     }
     sums = together(thread, sums);
@@ -98,7 +98,7 @@ fn hold(thread: u32, own: Structure) -> vec4f {
     var change = vec4f(0.0);
     for (var k = own.firsts[0] + thread; k < own.ends[0]; k += GROUP) {
         let place = in_patches[k];
-        let wanted = place.area * max(level - place.above, 0.0);
+        let wanted = place.area * depth_below(place.cell, level - place.above);
         let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[place.cell].volume));
         change = both(change, apply(place, volume, volume.x * water[place.cell].velocity));
     }

@@ -7,10 +7,10 @@ fn flow_over(crest: Crest) -> vec3f {
     let second = crest.cells.y;
     var levels = vec2f(DRY);
     if water[first].depth > 0.0 {
-        levels.x = water[first].depth;
+        levels.x = water[first].depth + water[first].shift;
     }
     if water[second].depth > 0.0 {
-        levels.y = crest.rise + water[second].depth;
+        levels.y = crest.rise + water[second].depth + water[second].shift;
     }
     let is_back = levels.x < levels.y;
     let giver = select(first, second, is_back);

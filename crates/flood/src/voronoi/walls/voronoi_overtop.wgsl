@@ -1,7 +1,7 @@
 // Gives each cell beside crests what flows over them.
 #import declared
 #import voronoi_sums
-#import voronoi_water
+#import voronoi_storage
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -31,5 +31,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let area = ground[beside.cell].area;
     column.momentum = bounded_momentum(column.momentum, column.volume.x, area);
     columns[beside.cell] = column;
-    water[beside.cell] = water_of(column, area);
+    water[beside.cell] = water_in(beside.cell, column, area);
 }

@@ -5,6 +5,7 @@ use super::super::thacker::{Exact, omega, plane};
 use super::beach::run_up;
 use super::thacker::{error, swing_with};
 use super::{all_sides, settings, worst};
+use crate::device::rounding;
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
@@ -17,7 +18,7 @@ pub(in super::super) const ADAPTIVE: Case = Case {
             of an error than with 0.1 d everywhere, for a fifth of the work (steps of cells); the bowl of `flood/voronoi/thacker-planar`, shallow nearly \
             everywhere, with 8 cm and down to 4 cm, beside 4 cm everywhere. Bound of the run-up: that of `flood/voronoi/beach` at 0.05 d.",
     slow: true,
-    reduced: 1.0,
+    reduced: 3.0,
     run: |_: &Options| rows(ADAPTIVE.name, measure()),
 };
 
@@ -44,7 +45,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
         at_most("run_up_work_over_020d", over_coarse, 2.0),
         at_most("bowl_error_over_4cm", bowl, 1.05),
         at_most("bowl_work_over_4cm", bowl_work, 0.85),
-        at_most("water_relative_error", water.max(bowl_water), 1e-13),
+        at_most("water_relative_error", water.max(bowl_water), rounding(1e-13, 1e-11)),
     ])
 }
 

@@ -17,7 +17,7 @@ pub(in super::super) const BEACH: Case = Case {
             profiles at eight times and the highest run-up against the exact solution of the shallow-water equations (Synolakis, J. Fluid Mech. \
             185, 1987, 523; NTHMP benchmark 1).",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: canonical,
 };
 
@@ -26,7 +26,7 @@ pub(in super::super) const RUN_UP: Case = Case {
     about: "Run-up of solitary waves of 0.04 to 0.3 of the depth on the beach 1:19.85 by scheme voronoi, three seeds, spacing 0.1 d, against the runs of the \
             laboratory (Synolakis 1987; NTHMP benchmark 4). All but the lowest break. n 0.01, that of glass (Chow 1959, table 5-6).",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: laboratory,
 };
 
@@ -35,7 +35,7 @@ pub(in super::super) const SENT_WAVE: Case = Case {
     about: "A wave sent in through a side by scheme voronoi, three seeds: the volume that it brings, and what is left of it after it came back from a \
             wall and left by the same side.",
     slow: false,
-    reduced: 1.0,
+    reduced: 2.0,
     run: |_: &Options| rows(SENT_WAVE.name, sent_wave()),
 };
 

@@ -3,6 +3,7 @@
 use super::super::dam_break::{DAM, LENGTH, TIME, UPSTREAM, exact_depth};
 use super::super::{rows, strip};
 use super::{Convergence, run, settings, worst};
+use crate::device::rounding;
 use crate::{Case, Options};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
@@ -17,7 +18,7 @@ pub(in super::super) const STOKER: Case = Case {
             Peers: GeoClaw 5.14 of second order 1.1e-3 at 1 m and 4.2e-3 at 4 m, LISFLOOD-FP 8.1 FV1 3.2e-3 and 1.0e-2, \
             ANUGA 4.1 DE1 4.3e-4 on squares of 2 m of four triangles each, scheme balanced 1.84e-3 and 6.5e-3. Bounds at 2 m and 4 m: GeoClaw and FV1 at 4 m.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: stoker,
 };
 
@@ -27,7 +28,7 @@ pub(in super::super) const RITTER: Case = Case {
             Peers: GeoClaw 5.14 of second order 1.6e-3 at 1 m and 5.7e-3 at 4 m, LISFLOOD-FP 8.1 FV1 4.4e-3 and 1.2e-2, \
             ANUGA 4.1 DE1 5.8e-4 on squares of 2 m of four triangles each, scheme balanced 1.42e-3 and 3.2e-3. Bounds at 2 m and 4 m: GeoClaw and FV1 at 4 m.",
     slow: true,
-    reduced: 1.0,
+    reduced: 4.0,
     run: ritter,
 };
 
@@ -36,7 +37,7 @@ pub(in super::super) const FINER: Case = Case {
     about: "The dam break of `flood/voronoi/stoker` with particles 4 m apart, and 1 m from 20 m above the dam on, three seeds: where cells are finer \
             the depth has less than half of the error, and it is none the worse elsewhere.",
     slow: true,
-    reduced: 1.0,
+    reduced: 4.0,
     run: finer,
 };
 
@@ -96,7 +97,7 @@ fn measure_finer() -> Result<Vec<crate::Row>, ModelError> {
     Ok(vec![
         row("error_below_the_dam_over_coarse", below, 0.5),
         row("error_above_the_dam_over_coarse", above, 1.0),
-        row("water_relative_error", water, 1e-13),
+        row("water_relative_error", water, rounding(1e-13, 1e-11)),
     ])
 }
 

@@ -16,7 +16,7 @@ pub(in super::super) const INVARIANCE: Case = Case {
             seeds (exact: Stoker 1957 in the frame that falls with the slope): ground and water turned by 30 degrees, and all lengths a \
             hundred times as large, must give the same error.",
     slow: false,
-    reduced: 1.0,
+    reduced: 4.0,
     run: |_: &Options| rows(INVARIANCE.name, measure()),
 };
 

@@ -16,7 +16,7 @@ pub(in super::super) const SHEETS: Case = Case {
             voronoi, three seeds: its mean velocity against Manning's formula, and its least depth. Peer: scheme balanced is 21, 57 and 78 % \
             too fast, and breaks the sheet into clumps.",
     slow: false,
-    reduced: 1.0,
+    reduced: 2.0,
     run: |_: &Options| rows(SHEETS.name, measure()),
 };
 

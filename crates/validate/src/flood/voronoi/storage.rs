@@ -21,7 +21,7 @@ pub(in super::super) const STORAGE: Case = Case {
             the water that there is. Thacker's bowls at 4 cm: error over that with cells of level ground. Rain on the \
             plane of flood/voronoi/rain-plane, for which it is not made.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: |_: &Options| rows(STORAGE.name, measure()),
 };
 

@@ -15,7 +15,7 @@ pub(in super::super) const PLANAR: Case = Case {
             0.5 m) by scheme voronoi, three seeds, spacings of 2, 4 and 8 cm. Peers: a prototype of the scheme 6.0e-3 at 2 cm, scheme \
             balanced 1.85e-2.",
     slow: true,
-    reduced: 1.0,
+    reduced: 4.0,
     run: planar,
 };
 
@@ -24,7 +24,7 @@ pub(in super::super) const RADIAL: Case = Case {
     about: "A radially symmetric wave in a paraboloid after one period (Thacker 1981; parameters of SWASHES 1.05: h0 0.1 m, a 1 m, r0 0.8 m) \
             by scheme voronoi, three seeds, spacings of 2, 4 and 8 cm. Peer: scheme balanced 1.48e-2 at 2 cm.",
     slow: true,
-    reduced: 1.0,
+    reduced: 2.0,
     run: radial,
 };
 

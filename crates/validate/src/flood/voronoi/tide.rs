@@ -18,7 +18,7 @@ pub(in super::super) const TIDE: Case = Case {
             from the wall is cos(k x) / cos(k l) times the tide, within 0.8 % here. Two periods. \
             Bound: that of scheme balanced.",
     slow: false,
-    reduced: 1.0,
+    reduced: 2.0,
     run: |_: &Options| rows(TIDE.name, measure()),
 };
 

@@ -16,7 +16,7 @@ pub(in super::super) const VORTEX: Case = Case {
             three seeds, spacings of 0.5, 1 and 2 m; exact: it stays as it is (g dh/dr = v2/r). A prototype with cells that stay comes to 0.20 in the \
             velocity at 1 m, with cells that move with the water to 0.05.",
     slow: true,
-    reduced: 1.0,
+    reduced: 4.0,
     run: |_: &Options| rows(VORTEX.name, measure()),
 };
 

@@ -16,7 +16,7 @@ pub(in super::super) const WAVES: Case = Case {
             of 1 cm, 64 m long, after one length of its way (exact by its characteristics, Stoker 1957, section 10.3), and a standing wave \
             of 0.1 mm in both directions, 32 m long, after one period (linear theory; what it leaves out is some 1e-4 of it).",
     slow: false,
-    reduced: 1.0,
+    reduced: 2.0,
     run: |_: &Options| rows(WAVES.name, measure()),
 };
 
