@@ -483,4 +483,10 @@ fn what_the_gpu_does_not_compute_is_refused_by_name() {
         assert!(text.contains(word) && text.contains(": "), "{text}");
         assert_eq!(flood.backend(), "cpu");
     }
+    let mut flood = basin(&dam("", ""), [66.0, 30.0], |_, _| 0.0);
+    flood.use_gpu(gpu).unwrap();
+    let Err(ModelError::Setup(text)) = flood.rain(Box::new(|_, _, _| 1e-5)) else {
+        panic!("rain by a function is taken")
+    };
+    assert!(text.contains("rain by a function"), "{text}");
 }

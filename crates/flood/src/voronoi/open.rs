@@ -91,8 +91,12 @@ impl VoronoiFlood {
     /// Has it rain as a function says, from the start on.
     ///
     /// # Errors
-    /// [`ModelError::Setup`] where the cells would not fit in memory.
+    /// [`ModelError::Setup`] where the cells would not fit in memory, or a GPU takes the steps: nothing has changed then.
     pub fn rain(&mut self, rain: RainFunction) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return Err(setup("rain by a function falls on the CPU only: take no GPU"));
+        }
         self.weather = Some(Weather::under(rain));
         self.make_all_tiles()
     }

@@ -1,5 +1,6 @@
 //! The approximate Riemann solver of Harten, Lax & van Leer (1983).
 
+use crate::voronoi::water::THIN;
 use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFloat};
 
 /// Waves slower than this carry nothing, m/s: without it the inverse of their speed may be no number.
@@ -13,7 +14,7 @@ pub(crate) struct Sides<S: Simd> {
 }
 
 /// Flux of volume, m2/s, and of momentum across the face over density, m3/s2, per length, from the first side to the second. Wave speeds
-/// after Einfeldt (1988) with the two-rarefaction state (Toro 2001, equations 10.17 to 10.22, dry fronts 10.24).
+/// after Einfeldt (1988) with the two-rarefaction state (Toro 2001, equations 10.17 to 10.22; 10.24 onto ground with next to no water).
 #[inline(always)]
 pub(crate) fn hll<S: Simd>(simd: S, a: Sides<S>, b: Sides<S>, gravity: f64) -> [Lanes<S>; 2] {
     let [slowest, fastest] = wave_speeds(simd, a, b, gravity);
@@ -31,13 +32,13 @@ pub(crate) fn hll<S: Simd>(simd: S, a: Sides<S>, b: Sides<S>, gravity: f64) -> [
 
 #[inline(always)]
 fn wave_speeds<S: Simd>(simd: S, a: Sides<S>, b: Sides<S>, gravity: f64) -> [Lanes<S>; 2] {
-    let zero = Lanes::splat(simd, 0.0);
     let [ca, cb] = [(a.depth * gravity).sqrt(), (b.depth * gravity).sqrt()];
     let celerity = ((ca + cb) * 0.5 - (b.across - a.across) * 0.25).max(0.0);
     let velocity = (a.across + b.across) * 0.5 + ca - cb;
     let slowest = (a.across - ca).min(velocity - celerity);
     let fastest = (b.across + cb).max(velocity + celerity);
-    let [wet_a, wet_b] = [a.depth.simd_gt(zero), b.depth.simd_gt(zero)];
+    let thin = Lanes::splat(simd, THIN);
+    let [wet_a, wet_b] = [a.depth.simd_gt(thin), b.depth.simd_gt(thin)];
     let slowest = wet_a.select(wet_b.select(slowest, a.across - ca), b.across - cb * 2.0);
     let fastest = wet_a.select(wet_b.select(fastest, a.across + ca * 2.0), b.across + cb);
     [slowest, fastest]

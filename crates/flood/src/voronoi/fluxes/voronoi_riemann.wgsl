@@ -1,7 +1,7 @@
 // The approximate Riemann solver of Harten, Lax & van Leer (1983): see `fluxes/riemann.rs`.
 #import declared
 
-// Wave speeds after Einfeldt (1988) with the two-rarefaction state (Toro 2001, equations 10.17 to 10.22, dry fronts 10.24), the slowest 0 at most and
+// Wave speeds after Einfeldt (1988) with the two-rarefaction state (Toro 2001, equations 10.17 to 10.22; 10.24 onto ground with next to no water), the slowest 0 at most and
 // the fastest at least. `a` and `b` are depth and velocity across the face on both sides.
 fn wave_speeds(a: vec2f, b: vec2f) -> vec2f {
     let celerity_a = sqrt(parameters.gravity * a.x);
@@ -10,11 +10,11 @@ fn wave_speeds(a: vec2f, b: vec2f) -> vec2f {
     let velocity = 0.5 * (a.y + b.y) + celerity_a - celerity_b;
     var slowest = min(a.y - celerity_a, velocity - celerity);
     var fastest = max(b.y + celerity_b, velocity + celerity);
-    if b.x <= 0.0 {
+    if b.x <= THIN {
         slowest = a.y - celerity_a;
         fastest = a.y + 2.0 * celerity_a;
     }
-    if a.x <= 0.0 {
+    if a.x <= THIN {
         slowest = b.y - 2.0 * celerity_b;
         fastest = b.y + celerity_b;
     }

@@ -120,19 +120,19 @@ impl<S: Simd> Faces<S> {
     /// The water at the faces as each side sees it.
     #[inline(always)]
     pub fn at(&self, simd: S) -> [AtFaces<S>; 2] {
-        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
-        let depths = [self.water[0][DEPTH], self.water[1][DEPTH]];
-        let [wet_a, wet_b] = depths.map(|depth| depth.simd_gt(zero).select(one, zero));
-        let both = (depths[0].min(depths[1]) * (1.0 / THIN)).min(1.0);
-        [self.seen_from(simd, 0, wet_a, both), self.seen_from(simd, 1, wet_b, both)]
+        let thick = |side: usize| (self.water[side][DEPTH] * (1.0 / THIN)).min(1.0);
+        let thick = [thick(0), thick(1)];
+        let both = thick[0].min(thick[1]);
+        [self.seen_from(simd, 0, thick[0], both), self.seen_from(simd, 1, thick[1], both)]
     }
 
-    /// What one side sees; `wet` is 1 where it has water and 0 elsewhere, `both` 1 where both do and less where one has next to none.
+    /// What one side sees. Next to no water has neither slopes nor a velocity that count: `thick` is 1 where it has more, `both` where both have, and less
+    /// elsewhere.
     #[inline(always)]
-    fn seen_from(&self, simd: S, side: usize, wet: Lanes<S>, both: Lanes<S>) -> AtFaces<S> {
+    fn seen_from(&self, simd: S, side: usize, thick: Lanes<S>, both: Lanes<S>) -> AtFaces<S> {
         let (own, other, differences) = (&self.water[side], &self.water[1 - side], &self.differences[side]);
-        let deeper = wet * self.change(simd, side, DEPTH, differences[DEPTH]);
-        let higher = wet * self.change(simd, side, LEVEL, differences[LEVEL]);
+        let deeper = thick * self.change(simd, side, DEPTH, differences[DEPTH]);
+        let higher = thick * self.change(simd, side, LEVEL, differences[LEVEL]);
         let [depth, level] = bounded(own, deeper, higher);
         let u = own[EAST] + both * self.change(simd, side, EAST, both * (other[EAST] - own[EAST]));
         let v = own[NORTH] + both * self.change(simd, side, NORTH, both * (other[NORTH] - own[NORTH]));

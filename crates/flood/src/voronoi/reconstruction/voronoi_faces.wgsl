@@ -40,16 +40,17 @@ fn seen(
     }
     let whole = slope.x * between.x + slope.y * between.y;
     let along = slope.x * offset.x + slope.y * offset.y;
-    let deeper = change(differences.x, whole.x, along.x);
-    let higher = change(differences.y, whole.y, along.y);
+    // Next to no water has neither slopes nor a velocity that count.
+    let thick = min(own.depth / THIN, 1.0);
+    let both = min(min(own.depth, other.depth) / THIN, 1.0);
+    let deeper = thick * change(differences.x, whole.x, along.x);
+    let higher = thick * change(differences.y, whole.y, along.y);
     // The depth changes by itself at most. On rough ground what is too much is taken off the level too: otherwise waves on a lake grow there.
     let kept = clamp(deeper, -own.depth, own.depth);
     let of_bed = higher - deeper;
     let share = higher * higher / (higher * higher + of_bed * of_bed + 1e-37);
     let bounded = higher - share * (deeper - kept);
     var velocity = own.velocity;
-    // Next to no water has no velocity that counts.
-    let both = min(min(own.depth, other.depth) / THIN, 1.0);
     let faster = both * (other.velocity - own.velocity);
     velocity += both * vec2f(change(faster.x, whole.z, along.z), change(faster.y, whole.w, along.w));
     let at = turned(velocity, normal);

@@ -5,7 +5,7 @@ use super::super::thacker::{Exact, omega, plane};
 use super::beach::run_up;
 use super::thacker::{error, swing_with};
 use super::{all_sides, settings, worst};
-use crate::device::rounding;
+use crate::device::{rounding, sized};
 use crate::{Case, Options, Row};
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Model, ModelError};
@@ -51,7 +51,7 @@ fn measure() -> Result<Vec<Row>, ModelError> {
 
 /// Settings with cells that become `finest_m` m wide.
 fn adaptive(finest_m: f64, settings: Settings) -> Settings {
-    let adaptive = Some(Adaptive { finest_m, ..Adaptive::default() });
+    let adaptive = Some(Adaptive { finest_m: sized(finest_m), ..Adaptive::default() });
     Settings { adaptive, wet_depth_m: WET, ..settings }
 }
 
@@ -79,7 +79,7 @@ fn bowls(seed: u64) -> Result<[f64; 3], ModelError> {
     let (exact, time): (Exact, f64) = (plane, 2.0 * TAU / omega());
     let even = settings(finest, 0.0, all_sides(&Edge::Wall));
     let fine = swing_with(&even, exact, time, seed)?;
-    let flood = swing_with(&adaptive(finest, Settings { spacing_m: Some(wide), ..even }), exact, time, seed)?;
+    let flood = swing_with(&adaptive(finest, Settings { spacing_m: Some(sized(wide)), ..even }), exact, time, seed)?;
     let work = flood.particle_steps() as f64 / fine.particle_steps() as f64;
     Ok([error(&flood, exact, time) / error(&fine, exact, time), work, water_error(&flood)])
 }

@@ -7,6 +7,7 @@ mod channels;
 
 use super::super::{order, rows};
 use super::worst;
+use crate::device::is_reduced;
 use crate::{Case, Options, Row};
 use corpuscle_model::ModelError;
 use std::path::Path;
@@ -17,7 +18,7 @@ pub(in super::super) const SWASHES: Case = Case {
             |h - h_exact| / mean h_exact at the finest, and the order between the widest and the finest. Steady flows start dry or from still water. \
             Bounds of the errors: those of scheme balanced.",
     slow: true,
-    reduced: 2.0,
+    reduced: 4.0,
     run: swashes,
 };
 
@@ -73,9 +74,13 @@ const SOLUTIONS: [Solution; 17] = [
     solution("mobile_rain", 16.0, channels::mobile_rain, 6e-3, None),
 ];
 
+/// Left out at the reduced size: the first two are `flood/voronoi/thacker-radial` and `flood/voronoi/thacker-planar`, the others have rain by a function.
+const LEFT_OUT: [&str; 4] = ["2d_t1_1", "2d_t1_2", "macdonald_rain_subcritical_manning", "mobile_rain"];
+
 fn swashes(options: &Options) -> Vec<Row> {
     let Some(data) = &options.data else { return vec![Row::without_data(SWASHES.name, options)] };
-    SOLUTIONS.iter().flat_map(|solution| rows(SWASHES.name, solution.measure(&data.join("swashes")))).collect()
+    let wanted = SOLUTIONS.iter().filter(|solution| !is_reduced() || !LEFT_OUT.contains(&solution.file));
+    wanted.flat_map(|solution| rows(SWASHES.name, solution.measure(&data.join("swashes")))).collect()
 }
 
 impl Solution {
