@@ -1,11 +1,10 @@
 //! Where the floods of cases are computed.
 
 pub(super) use crate::device::rounding;
-use corpuscle_flood::Flood;
 use corpuscle_model::{GpuModel, ModelError};
 
 /// A flood that is set up, on the card where one takes the steps.
-pub(super) fn ready(mut flood: Flood) -> Result<Flood, ModelError> {
+pub(super) fn ready<F: GpuModel>(mut flood: F) -> Result<F, ModelError> {
     if let Some(gpu) = crate::device::card() {
         flood.use_gpu(gpu)?;
     }

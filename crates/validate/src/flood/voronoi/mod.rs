@@ -35,11 +35,12 @@ pub(super) use tide::TIDE;
 pub(super) use vortex::VORTEX;
 pub(super) use waves::WAVES;
 
+use super::device::ready;
 use super::{GRAVITY, order};
 use crate::Row;
-use crate::device::{card, reduced, sized};
+use crate::device::{reduced, sized};
 use corpuscle_flood::{StartWater, VoronoiFlood};
-use corpuscle_model::{GpuModel, Model, ModelError};
+use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -74,14 +75,6 @@ fn set_up(
     water: &[StartWater],
 ) -> Result<VoronoiFlood, ModelError> {
     ready(VoronoiFlood::with_water(settings, seed, Path::new("."), Arc::clone(terrain), water)?)
-}
-
-/// A flood that is set up, on the GPU where one takes the steps.
-fn ready(mut flood: VoronoiFlood) -> Result<VoronoiFlood, ModelError> {
-    if let Some(gpu) = card() {
-        flood.use_gpu(gpu)?;
-    }
-    Ok(flood)
 }
 
 /// Goes on to `time` s.
