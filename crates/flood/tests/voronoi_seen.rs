@@ -84,6 +84,9 @@ fn compare(flood: &VoronoiFlood, gpu: &Gpu) {
 #[test]
 fn particles_on_the_gpu_are_those_of_the_frame() {
     let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
+    let mut stored = on_gpu(&RUN.replace("spacing_m = 1\n", "spacing_m = 2\nstorage = \"level-volume\"\n"), &gpu);
+    stored.advance_to(1.0, &AtomicBool::new(false)).unwrap();
+    compare(&stored, &gpu);
     let mut flood = on_gpu(RUN, &gpu);
     compare(&flood, &gpu);
     // Between two steps, and after cells were added.

@@ -81,13 +81,12 @@ impl Boundaries {
                     velocity.as_ref().map_or(NONE, |velocity| tables.add(velocity.rows().iter().copied()));
             }
             Boundary::Paddle(motion) => found.table = tables.add(velocity(motion)),
-            Boundary::Discharge(discharge) => {
-                found.datum = lowest_of(&self.of_faces, solver, rule).0;
-                found.table = tables.add(discharge.rows().iter().copied());
-            }
+            Boundary::Discharge(discharge) => found.table = tables.add(discharge.rows().iter().copied()),
             Boundary::Rating(rating) => {
-                found.datum = lowest_of(&self.of_faces, solver, rule).0;
-                found.table = tables.add(rating.rows().iter().map(|[level, value]| [level - found.datum, *value]));
+                // Water may not have come to any face yet.
+                let (lowest, length) = lowest_of(&self.of_faces, solver, rule);
+                let datum = if length > 0.0 { lowest } else { 0.0 };
+                found.table = tables.add(rating.rows().iter().map(|[level, value]| [level - datum, *value]));
             }
             Boundary::Wall | Boundary::Periodic | Boundary::Open | Boundary::NormalDepth(_) => {}
         }

@@ -153,7 +153,9 @@ impl VoronoiFlood {
 
     /// The GPU takes the state anew before its next step.
     pub(in crate::voronoi) fn tell_gpu(&mut self) {
-        self.on_gpu.iter_mut().for_each(|on_gpu| on_gpu.is_stale = true);
+        for on_gpu in &mut self.on_gpu {
+            (on_gpu.is_stale, on_gpu.is_ahead, on_gpu.looked_before) = (true, false, None);
+        }
     }
 
     /// Advances on the GPU, and takes over what it came to.
