@@ -28,26 +28,25 @@ struct Culvert {
     barrels: f32,
 }
 
-fn sill(culvert: Culvert, depth: f32) -> f32 {
+fn sill(culvert: Culvert, depth: f32, gravity: f32) -> f32 {
     let critical = 2.0 / 3.0 * depth;
-    return culvert.area / culvert.height * critical * sqrt(critical) * sqrt(parameters.gravity);
+    return culvert.area / culvert.height * critical * sqrt(critical) * sqrt(gravity);
 }
 
-fn orifice(culvert: Culvert, depth: f32) -> f32 {
-    return ORIFICE * culvert.area * sqrt(2.0 * parameters.gravity * (depth - 0.5 * culvert.height));
+fn orifice(culvert: Culvert, depth: f32, gravity: f32) -> f32 {
+    return ORIFICE * culvert.area * sqrt(2.0 * gravity * (depth - 0.5 * culvert.height));
 }
 
-fn inlet(culvert: Culvert, depth: f32) -> f32 {
+fn inlet(culvert: Culvert, depth: f32, gravity: f32) -> f32 {
     let transition = SUBMERGED * culvert.height;
     if depth < transition {
-        return sill(culvert, depth);
+        return sill(culvert, depth, gravity);
     }
-    return sill(culvert, transition) * orifice(culvert, depth) / orifice(culvert, transition);
+    return sill(culvert, transition, gravity) * orifice(culvert, depth, gravity) / orifice(culvert, transition, gravity);
 }
 
 // The level that a discharge through one barrel needs above it where the outlet decides.
-fn outlet_level(culvert: Culvert, discharge: f32, lower: f32, outlet: f32) -> f32 {
-    let gravity = parameters.gravity;
+fn outlet_level(culvert: Culvert, discharge: f32, lower: f32, outlet: f32, gravity: f32) -> f32 {
     let per_width = discharge * culvert.height / culvert.area;
     let critical = min(pow(per_width * per_width / gravity, 1.0 / 3.0), culvert.height);
     let behind = max(outlet + critical, lower);
@@ -57,17 +56,17 @@ fn outlet_level(culvert: Culvert, discharge: f32, lower: f32, outlet: f32) -> f3
 }
 
 // `floors` are those at the inlet and at the outlet.
-fn through_culvert(culvert: Culvert, upper: f32, lower: f32, floors: vec2f) -> f32 {
-    let most = inlet(culvert, max(upper - floors.x, 0.0));
+fn through_culvert(culvert: Culvert, upper: f32, lower: f32, floors: vec2f, gravity: f32) -> f32 {
+    let most = inlet(culvert, max(upper - floors.x, 0.0), gravity);
     // Sought by halving: the discharge that needs no more than the level there is.
-    if outlet_level(culvert, most, lower, floors.y) <= upper {
+    if outlet_level(culvert, most, lower, floors.y, gravity) <= upper {
         return culvert.barrels * most;
     }
     var low = 0.0;
     var high = most;
     for (var k = 0u; k < 30u; k++) {
         let middle = 0.5 * (low + high);
-        if outlet_level(culvert, middle, lower, floors.y) > upper {
+        if outlet_level(culvert, middle, lower, floors.y, gravity) > upper {
             high = middle;
         } else {
             low = middle;

@@ -26,7 +26,8 @@ fn by_law(link: u32, upper: f32, lower: f32, forward: bool) -> f32 {
     switch works[link + 3u] {
         case CULVERT: {
             let culvert = culvert_of(law);
-            return through_culvert(culvert, upper, lower, select(culvert.floor.yx, culvert.floor, forward));
+            let floors = select(culvert.floor.yx, culvert.floor, forward);
+            return through_culvert(culvert, upper, lower, floors, parameters.gravity);
         }
         case WEIR: { return over_weir(work(law), work(law + 1u), work(law + 2u), upper, lower); }
         default: {

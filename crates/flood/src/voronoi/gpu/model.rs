@@ -153,7 +153,7 @@ impl VoronoiFlood {
 
     /// The GPU takes the state anew before its next step.
     pub(in crate::voronoi) fn tell_gpu(&mut self) {
-        for on_gpu in &mut self.on_gpu {
+        if let Some(on_gpu) = &mut self.on_gpu {
             (on_gpu.is_stale, on_gpu.is_ahead, on_gpu.looked_before) = (true, false, None);
         }
     }

@@ -116,7 +116,8 @@ fn culvert_of(word: u32) -> Culvert {
 fn by_law(own: Structure, upper: f32, lower: f32, forward: bool) -> f32 {
     if own.law == CULVERT {
         let culvert = culvert_of(own.numbers);
-        return through_culvert(culvert, upper, lower, select(culvert.floor.yx, culvert.floor, forward));
+        let floors = select(culvert.floor.yx, culvert.floor, forward);
+        return through_culvert(culvert, upper, lower, floors, parameters.gravity);
     }
     if own.law == WEIR {
         return over_weir(number(own.numbers), number(own.numbers + 1u), number(own.numbers + 2u), upper, lower);
