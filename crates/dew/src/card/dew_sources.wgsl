@@ -29,13 +29,20 @@ fn conditions_at(around: Surroundings, time: Account) -> Conditions {
     return Conditions(around.transfer_coefficient, around.emissivity_sigma, air, radiant);
 }
 
-// Heat flux into a surface of that temperature, W/m2, and by how much it falls with the temperature, W/(m2 K).
-fn flux_at(conditions: Conditions, surface: f32) -> vec2f {
+// Heat transfer coefficient of radiation between a surface of that temperature and the surroundings, W/(m2 K).
+fn radiation_coefficient(conditions: Conditions, surface: f32) -> f32 {
     let a = parameters.ambient + conditions.radiant_temperature;
     let b = parameters.ambient + surface;
-    let radiation = conditions.emissivity_sigma * (conditions.radiant_temperature - surface) * (a + b) * (a * a + b * b);
+    return conditions.emissivity_sigma * (a + b) * (a * a + b * b);
+}
+
+// Heat flux into a surface of that temperature, W/m2, and by how much it falls with the temperature, W/(m2 K).
+fn flux_at(conditions: Conditions, surface: f32) -> vec2f {
+    let b = parameters.ambient + surface;
     let slope = conditions.transfer_coefficient + 4.0 * conditions.emissivity_sigma * b * b * b;
-    return vec2f(conditions.transfer_coefficient * (conditions.air_temperature - surface) + radiation, slope);
+    let convected = conditions.transfer_coefficient * (conditions.air_temperature - surface);
+    let radiated = radiation_coefficient(conditions, surface) * (conditions.radiant_temperature - surface);
+    return vec2f(convected + radiated, slope);
 }
 
 // Heat, W, and conductance, W/K, of a part of the surface before a particle.
@@ -43,7 +50,8 @@ fn heat(conditions: Conditions, part: Part, temperature: f32) -> vec2f {
     if part.area <= 0.0 {
         return vec2f(0.0);
     }
-    var difference = 0.0;
+    let coefficient = conditions.transfer_coefficient + radiation_coefficient(conditions, temperature);
+    var difference = part.resistance * flux_at(conditions, temperature).x / (1.0 + part.resistance * coefficient);
     for (var k = 0u; k < ITERATIONS; k++) {
         let flux = flux_at(conditions, temperature + difference);
         difference += (part.resistance * flux.x - difference) / (1.0 + part.resistance * flux.y);

@@ -120,22 +120,29 @@ impl Surroundings {
     }
 }
 
-/// Iterations of Newton's method for the temperature of a surface: enough for one that glowing surroundings warm by hundreds of K.
-pub(crate) const ITERATIONS: usize = 5;
+/// Iterations of Newton's method for the temperature of a surface, after a first estimate: enough for one that glowing surroundings warm by hundreds of K.
+pub(crate) const ITERATIONS: usize = 4;
 
 impl Conditions {
     /// Heat flux into the surface, W/m2, and by how much it falls with the temperature of the particle behind it, W/(m2 K).
     ///
     /// Newton's law of cooling and grey radiation, q = h (T_a - T_s) + e sigma (T_r^4 - T_s^4) (Incropera & DeWitt 2002, equations 1.3a and
-    /// 1.7), where the surface's temperature T_s is that of the particle and q times the resistance between them.
+    /// 1.7), where the surface's temperature T_s is that of the particle and q times the resistance between them. The first estimate of T_s is by the
+    /// coefficient of radiation between the particle and the surroundings: from the particle's temperature, Newton's method overshoots by hundreds of K
+    /// where the surroundings glow.
     pub(super) fn flux(&self, temperature: f64, resistance: f64) -> [f64; 2] {
-        let at = |surface: f64| {
+        // e sigma (T_r + T_s) (T_r^2 + T_s^2), equation 1.9.
+        let radiation = |surface: f64| {
             let (a, b) = (self.radiant_temperature, surface);
-            let radiation = self.emissivity_sigma * (a - b) * (a + b) * (a * a + b * b);
-            let slope = self.transfer_coefficient + 4.0 * self.emissivity_sigma * b.powi(3);
-            [self.transfer_coefficient * (self.air_temperature - b) + radiation, slope]
+            self.emissivity_sigma * (a + b) * (a * a + b * b)
         };
-        let mut difference = 0.0;
+        let at = |surface: f64| {
+            let convected = self.transfer_coefficient * (self.air_temperature - surface);
+            let slope = self.transfer_coefficient + 4.0 * self.emissivity_sigma * surface.powi(3);
+            [convected + radiation(surface) * (self.radiant_temperature - surface), slope]
+        };
+        let mut difference =
+            resistance * at(temperature)[0] / (1.0 + resistance * (self.transfer_coefficient + radiation(temperature)));
         for _ in 0..ITERATIONS {
             let [flux, slope] = at(temperature + difference);
             difference += (resistance * flux - difference) / (1.0 + resistance * slope);
@@ -311,7 +318,7 @@ mod tests {
             let surface = temperature + resistance * flux;
             let radiation = emissivity_sigma * (radiant_temperature.powi(4) - surface.powi(4));
             let law = transfer_coefficient * (air_temperature - surface) + radiation;
-            prop_assert!((flux - law).abs() <= 1e-4 * flux.abs() + 1e-3, "{flux} for {law}");
+            prop_assert!((flux - law).abs() <= 1e-6 * flux.abs() + 1e-6, "{flux} for {law}");
             let warmer = conditions.flux(temperature + 0.01, resistance)[0];
             prop_assert!(((flux - warmer) / 0.01 - slope).abs() < 0.01 * slope + 1e-6, "{slope}");
         }
