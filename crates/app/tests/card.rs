@@ -18,13 +18,10 @@ fn alone() -> MutexGuard<'static, ()> {
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The scheme of floods that the card computes.
-const BALANCED: [(&str, &str); 1] = [("flood.scheme", "\"balanced\"")];
-
 /// A dam that breaks, on the card, playing.
 fn dam(test: &str) -> Option<Stage> {
-    let changes = [("flood.spacing_m", "2"), ("flood.spacing_depth_m", "10"), ("run.until_s", "200")];
-    playing(test, "flood/dam-break", &[&BALANCED[..], &changes].concat())
+    let changes = [("flood.spacing_m", "2"), ("run.until_s", "200")];
+    playing(test, "flood/dam-break", &changes)
 }
 
 /// A built-in scene with changes, on the card, playing, in the simple look, which is quicker without a card.
@@ -158,7 +155,7 @@ fn dew_on_the_card_shows_its_drops_and_where_air_is_seen_the_air() {
 #[test]
 fn water_that_is_still_to_come_comes() {
     let _alone = alone();
-    let Some(mut stage) = playing("a valley on the card in the window", "flood/valley", &BALANCED) else { return };
+    let Some(mut stage) = playing("a valley on the card in the window", "flood/valley", &[]) else { return };
     stage.until(SOON, "water comes", |window| {
         window.snapshot().is_some_and(|now| goes_on(now.clone()) && now.known.sets[0].is_empty() && now.particles > 20)
     });

@@ -332,7 +332,7 @@ pub struct CheckOptions {
 
 #[derive(Debug, Args)]
 pub struct ValidateOptions {
-    /// Cases by name (`flood/stoker`) or beginning (`flood`) [default: all]
+    /// Cases by name (`flood/voronoi/stoker`) or beginning (`flood`) [default: all]
     #[arg(value_name = "CASE")]
     pub cases: Vec<String>,
     /// Leave out the cases that take more than some seconds

@@ -31,7 +31,7 @@ const SHORTEST_PROBE: f64 = 1e-3;
 /// Parts of a run for which the particles to come are counted.
 const ESTIMATE_PARTS: usize = 20;
 
-/// Memory for each particle of schemes balanced and sph-swe, bytes, measured: state, sorted copies, neighbours and work space.
+/// Memory for each particle of scheme sph-swe, bytes, measured: state, sorted copies, neighbours and work space.
 const BYTES_PER_PARTICLE: f64 = 1000.0;
 
 /// Memory for each wet particle of scheme voronoi, bytes, 533 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.

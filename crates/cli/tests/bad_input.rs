@@ -139,10 +139,9 @@ fn more_water_than_a_machine_holds_is_refused_before_any_memory_is_taken() {
         "water = [{ level_m = 1e9 }]",
         "water = [{ level_m = 1e300 }]",
         "water = [{ block = { from = [10, 10], to = [90, 90], height_m = 5, layers = 100000000000 } }]",
-        "water = [{ depth_m = 1 }]\nbalanced = { smoothing = 1.5 }\n[flood.sph_swe]\n[[flood.inflow]]\nname = \"river\"\n\
-         at = [300, 200]\ndischarge_m3_per_s = 1e30",
+        "water = [{ depth_m = 1 }]\n[[flood.inflow]]\nname = \"river\"\nat = [300, 200]\ndischarge_m3_per_s = 1e30",
     ] {
-        refused(&place, &format!("scheme = \"balanced\"\n{rest}"), &["particles", "flood.spacing_m"]);
+        refused(&place, &format!("scheme = \"sph-swe\"\n{rest}"), &["particles", "flood.spacing_m"]);
     }
     // Particles of scheme voronoi are as many however deep the water is.
     for (rest, words) in [

@@ -143,8 +143,8 @@ fn check_says_what_would_be_run_and_writes_nothing() {
     let text = place.run(&["check", "lake.toml"]).expect_status(0).stdout;
     assert!(text.contains("20 x 20 m") && text.contains("time step"), "{text}");
     let inflow = "flood.inflow.0={ name = \"river\", at = [5, 5], discharge_m3_per_s = 100 }";
-    let balanced = ["check", "lake.toml", "--json", "--set", inflow, "--set", "flood.scheme=balanced"];
-    let report = place.run(&balanced).expect_status(0).json();
+    let sph_swe = ["check", "lake.toml", "--json", "--set", inflow, "--set", "flood.scheme=sph-swe"];
+    let report = place.run(&sph_swe).expect_status(0).json();
     assert_eq!(report["particles_to_come"], 25, "200 m3 in particles of 2 x 2 x 2 m3");
     assert!(report["estimated_wall_time_s"].as_f64().unwrap() > 0.0);
     let report = place.run(&["check", "lake.toml", "--json", "--set", inflow]).expect_status(0).json();

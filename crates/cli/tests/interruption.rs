@@ -110,8 +110,8 @@ fn killed_at_ten_moments_and_resumed_a_flood_gives_the_same_bytes() {
 }
 
 #[test]
-fn killed_at_ten_moments_and_resumed_a_flood_by_scheme_balanced_gives_the_same_bytes() {
-    killed_and_resumed(&["--set=flood.scheme=balanced", "--set=flood.refinement={ spacing_m = 0.4 }"]);
+fn killed_at_ten_moments_and_resumed_a_flood_by_scheme_sph_swe_gives_the_same_bytes() {
+    killed_and_resumed(&["--set=flood.scheme=sph-swe"]);
 }
 
 /// Killed ten times, each time a little after some more rows, and checkpoints all the while: some kills meet one being written.

@@ -77,9 +77,9 @@ mod tests {
     use corpuscle_scene::{Scene, builtin};
     use std::path::Path;
 
-    /// A flood by scheme balanced with particles so far apart in water so deep, m.
+    /// A flood by scheme sph-swe with particles so far apart in water so deep, m.
     fn open(name: &str, [spacing, depth]: [&str; 2]) -> Simulation {
-        let set = [("flood.scheme", "balanced"), ("flood.spacing_m", spacing), ("flood.spacing_depth_m", depth)];
+        let set = [("flood.scheme", "sph-swe"), ("flood.spacing_m", spacing), ("flood.spacing_depth_m", depth)];
         let set = set.map(|(path, value)| (path.to_owned(), value.to_owned()));
         let scene = Scene::parse(builtin(name).unwrap().text, name, &set).unwrap();
         Simulation::open(scene, Path::new("")).unwrap()

@@ -7,25 +7,16 @@ use corpuscle::gpu::require_gpu;
 use corpuscle::model::{GaugeColumn, Map, Model, Values};
 use corpuscle::scene::{BUILTIN, Scene, builtin};
 use corpuscle_dew::Dew;
-use corpuscle_flood::{Flood, VoronoiFlood};
+use corpuscle_flood::{SphSweFlood, VoronoiFlood};
 use std::any::Any;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// Scenes, the time from which they are compared (the water moves by then, has come in, or has just landed), and how far gauges may be apart after
-/// hundred steps: more where few particles run thinly and one decides, or where water has just landed from 50 m. Those that name no scheme run by
-/// scheme balanced, with the particles that [`AS_FOR_BALANCED`] gives.
-const FLOODS: [(&str, f64, f64); 8] = [
-    ("flood/valley", 20.0, 1e-2),
-    ("flood/dam-break", 1.0, 1e-3),
-    ("flood/lake-at-rest", 0.5, 1e-3),
-    ("flood/city", 1.5, 1e-3),
-    ("flood/cloudburst", 700.0, 1e-3),
-    ("flood/cuboid", 1.7, 1e-3),
-    ("flood/cylinder", 1.7, 1e-3),
-    ("flood/rough-terrain", 2.0, 1e-2),
-];
+/// Scenes of scheme sph-swe, the time from which they are compared (the water moves by then, or has just landed), and how far gauges may be apart after hundred
+/// steps: more where water has just landed from 50 m.
+const FLOODS: [(&str, f64, f64); 3] =
+    [("flood/cuboid", 1.7, 1e-3), ("flood/cylinder", 1.7, 1e-3), ("flood/rough-terrain", 2.0, 1e-2)];
 
 /// Scenes, the time from which they are compared, and a distance of particles, m, at which software in place of a card does hundred steps in seconds.
 const DEW: [(&str, f64, &str); 5] = [
@@ -39,25 +30,8 @@ const DEW: [(&str, f64, &str); 5] = [
 /// Looks and gauges are then due amid steps of scheme sph-swe: a step that ends just then may end a little later in single precision.
 const UNEVEN: (&str, &str) = ("flood.sph_swe.time_step_s", "0.0199");
 
-/// Distance of particles, m, and the depth for it, of the scenes that name no scheme.
-const AS_FOR_BALANCED: [(&str, &str, &str); 5] = [
-    ("flood/valley", "4", "1.5"),
-    ("flood/dam-break", "1", "10"),
-    ("flood/lake-at-rest", "1", "6"),
-    ("flood/city", "2.5", "1"),
-    ("flood/cloudburst", "3", "0.02"),
-];
-
-/// What else the scenes of [`AS_FOR_BALANCED`] say: in scheme voronoi rain leaves no film.
-const FILM: (&str, &str) = ("flood.rain.film_m", "0.002");
-
 fn open(name: &str, overrides: &[(&str, &str)]) -> Simulation {
-    let for_balanced = AS_FOR_BALANCED.iter().find(|(of, ..)| *of == name).map(|(_, spacing, depth)| {
-        [("flood.scheme", "balanced"), ("flood.spacing_m", *spacing), ("flood.spacing_depth_m", *depth)]
-    });
-    let film = (name == "flood/cloudburst").then_some(&FILM);
-    let overrides = for_balanced.iter().flatten().chain(film).chain(overrides);
-    let overrides: Vec<_> = overrides.map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    let overrides: Vec<_> = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     open_as_changed(name, &overrides)
 }
 
@@ -93,7 +67,7 @@ fn both_of(open: impl Fn() -> Simulation, time: f64) -> [Simulation; 2] {
 
 fn time_step(model: &dyn Model) -> f64 {
     let model: &dyn Any = model;
-    let of_flood = model.downcast_ref::<Flood>().map(Flood::time_step);
+    let of_flood = model.downcast_ref::<SphSweFlood>().map(SphSweFlood::time_step);
     let of_voronoi = model.downcast_ref::<VoronoiFlood>().map(VoronoiFlood::time_step);
     of_flood.or(of_voronoi).unwrap_or_else(|| model.downcast_ref::<Dew>().unwrap().time_step())
 }
@@ -130,7 +104,7 @@ fn apart<const COUNT: usize>(mut both: [Vec<(u64, [f64; COUNT])>; 2]) -> [[f64; 
 /// Place, velocity and depth of each particle.
 fn water(model: &dyn Model) -> Vec<(u64, [f64; 5])> {
     let model: &dyn Any = model;
-    let particles = model.downcast_ref::<Flood>().unwrap().particles();
+    let particles = model.downcast_ref::<SphSweFlood>().unwrap().particles();
     particles.iter().map(|p| (p.id, [p.x, p.y, p.u, p.v, p.depth])).collect()
 }
 
@@ -176,13 +150,12 @@ fn assert_map(name: &str, [host, card]: [&Map; 2], bound: f64) {
 const WATER: [(u64, f64); 2] = [(1, 3e-5), (9, 1e-4)];
 
 #[test]
-fn built_in_floods_go_as_on_the_processor() {
-    if require_gpu("built-in floods on the card").is_none() {
+fn built_in_floods_of_scheme_sph_swe_go_as_on_the_cpu() {
+    if require_gpu("built-in floods of scheme sph-swe on the GPU").is_none() {
         return;
     }
     for (name, time, bound) in FLOODS {
-        let is_sph_swe = builtin(name).unwrap().text.contains("\nscheme = \"sph-swe\"");
-        let mut both = both_from(name, time, if is_sph_swe { &[UNEVEN] } else { &[] });
+        let mut both = both_from(name, time, &[UNEVEN]);
         let ground = both[0].terrain().unwrap().bounds().size();
         for (steps, near) in WATER {
             step(&mut both, steps);
@@ -291,7 +264,8 @@ fn the_other_built_in_scenes_are_refused() {
     if require_gpu("refusals by the card").is_none() {
         return;
     }
-    let compared: Vec<_> = FLOODS.iter().map(|flood| flood.0).chain(DEW.iter().map(|dew| dew.0)).collect();
+    let floods = FLOODS.iter().map(|flood| flood.0).chain(VORONOI.iter().map(|flood| flood.0));
+    let compared: Vec<_> = floods.chain(DEW.iter().map(|dew| dew.0)).collect();
     let fetched = |text: &str| text.contains("[terrain.fetch]");
     let others = BUILTIN.iter().filter(|scene| !compared.contains(&scene.name) && !fetched(scene.text));
     for scene in others.filter(|scene| scene.name != "gas/million") {

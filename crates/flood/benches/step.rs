@@ -1,10 +1,11 @@
-//! Time of one step of each scheme, with 12,000 particles in waves over ground with a relief of its own.
+//! Time of one step of each scheme, with 12,000 particles in waves over an uneven bed.
 
-use corpuscle_flood::{Flood, InitialWater};
+use corpuscle_flood::{Filling, InitialWater, SphSweFlood, StartWater, VoronoiFlood};
 use corpuscle_model::Model;
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Manning, Scheme};
 use corpuscle_terrain::{Bounds, Terrain};
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -13,11 +14,14 @@ use std::time::Duration;
 /// Side of the basin, m: with particles 1 m apart, 12,000 of them.
 const SIDE: f64 = 109.5;
 
-/// A basin of water about a metre deep, with friction and waves.
-fn basin(scheme: Scheme) -> Flood {
-    let bounds = Bounds { x_min: 0.0, x_max: SIDE, y_min: 0.0, y_max: SIDE };
-    let terrain = Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()));
-    let settings = Settings {
+const BOUNDS: Bounds = Bounds { x_min: 0.0, x_max: SIDE, y_min: 0.0, y_max: SIDE };
+
+fn terrain() -> Arc<Terrain> {
+    Arc::new(Terrain::gridded(BOUNDS, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()))
+}
+
+fn settings(scheme: Scheme) -> Settings {
+    Settings {
         scheme,
         spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
@@ -26,34 +30,60 @@ fn basin(scheme: Scheme) -> Flood {
         // Never again after the start: the step alone is measured.
         map_every_s: Some(1e9),
         ..Settings::default()
-    };
-    let ground = Arc::clone(&terrain);
-    let water = InitialWater {
-        depth: Box::new(move |x, y| 1.0 + 0.1 * (0.05 * x).sin() - ground.height(x, y)),
-        inside: Box::new(|_, _| true),
-        within: bounds,
-        velocity: Box::new(|_, y| [(0.07 * y).sin(), 0.0]),
-    };
-    Flood::with_water(&settings, 1, Path::new("."), terrain, &[water]).expect("the basin is sound")
+    }
 }
 
-fn step(criterion: &mut Criterion) {
+fn level(x: f64) -> f64 {
+    1.0 + 0.1 * (0.05 * x).sin()
+}
+
+fn velocity(y: f64) -> [f64; 2] {
+    [(0.07 * y).sin(), 0.0]
+}
+
+fn voronoi() -> VoronoiFlood {
+    let water = StartWater {
+        filling: Filling::Level(Box::new(|x, _| level(x))),
+        polygon: None,
+        velocity: Box::new(|_, y| velocity(y)),
+    };
+    VoronoiFlood::with_water(&settings(Scheme::Voronoi), 1, Path::new("."), terrain(), &[water])
+        .expect("the basin is sound")
+}
+
+fn sph_swe() -> SphSweFlood {
+    let terrain = terrain();
+    let bed = Arc::clone(&terrain);
+    let water = InitialWater {
+        depth: Box::new(move |x, y| level(x) - bed.height(x, y)),
+        inside: Box::new(|_, _| true),
+        within: BOUNDS,
+        velocity: Box::new(|_, y| velocity(y)),
+    };
+    SphSweFlood::with_water(&settings(Scheme::SphSwe), 1, Path::new("."), terrain, &[water])
+        .expect("the basin is sound")
+}
+
+/// Measures steps of a flood, whose next step is so long, s.
+fn measure<M: Model>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, mut flood: M, step: impl Fn(&M) -> f64) {
+    let stop = AtomicBool::new(false);
+    group.throughput(Throughput::Elements(Model::particles(&flood) as u64));
+    group.bench_function(name, |bencher| {
+        bencher.iter(|| {
+            // To the end of the coming step, and no farther.
+            let next = flood.time() + step(&flood);
+            flood.advance_to(next, &stop).expect("the water stays calm");
+        });
+    });
+}
+
+fn steps(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("step");
     group.sample_size(20).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
-    for (name, scheme) in [("balanced-12k", Scheme::Balanced), ("sph-swe-12k", Scheme::SphSwe)] {
-        let mut flood = basin(scheme);
-        let stop = AtomicBool::new(false);
-        group.throughput(Throughput::Elements(flood.particles().len() as u64));
-        group.bench_function(name, |bencher| {
-            bencher.iter(|| {
-                // To the end of the coming step, and no farther.
-                let next = flood.time() + flood.time_step();
-                flood.advance_to(next, &stop).expect("the water stays calm");
-            });
-        });
-    }
+    measure(&mut group, "voronoi-12k", voronoi(), VoronoiFlood::time_step);
+    measure(&mut group, "sph-swe-12k", sph_swe(), SphSweFlood::time_step);
     group.finish();
 }
 
-criterion_group!(benches, step);
+criterion_group!(benches, steps);
 criterion_main!(benches);

@@ -1,6 +1,6 @@
 //! Bed friction after Manning, Chezy, or in proportion to the velocity.
 
-use crate::particle::Particle;
+use crate::Particle;
 use crate::setup::setup;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Flood as Settings, Friction, LandUse, Manning};

@@ -4,37 +4,6 @@ use crate::sampling::Sample;
 use corpuscle_model::GaugeColumn;
 use corpuscle_terrain::Terrain;
 
-/// What gauges show at a time.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Reading {
-    /// The water at each place that gauges look at.
-    pub samples: Vec<Sample>,
-    /// Discharges of outflows and links, m3/s.
-    pub flows: Vec<f64>,
-    /// Force on each obstacle and its sum over time, over the density of water: m4/s2 and m4/s.
-    pub on_obstacles: Vec<[f64; 2]>,
-    pub impulses: Vec<[f64; 2]>,
-    /// Water in the model, m3, what came in and went out in all, of that what rained and soaked in, and what stands on the ground as a film.
-    pub stored: f64,
-    pub inflow: f64,
-    pub outflow: f64,
-    pub rained: f64,
-    pub infiltrated: f64,
-    pub film: f64,
-}
-
-#[cfg(feature = "gpu")]
-impl Reading {
-    /// Whether all of it are finite numbers.
-    pub fn is_sound(&self) -> bool {
-        let samples = self.samples.iter().map(|water| water.depth + water.velocity[0] + water.velocity[1]);
-        let pushes = self.on_obstacles.iter().chain(&self.impulses).flatten();
-        let sum: f64 = samples.sum::<f64>() + self.flows.iter().chain(pushes).sum::<f64>();
-        let Self { stored, inflow, outflow, rained, infiltrated, film, .. } = self;
-        (sum + stored + inflow + outflow + rained + infiltrated + film).is_finite()
-    }
-}
-
 /// A point where depth, level and velocity are measured.
 #[derive(Debug, Clone)]
 pub(crate) struct PointGauge {

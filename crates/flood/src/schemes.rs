@@ -1,7 +1,7 @@
-//! Floods of any scheme.
+//! Floods of both schemes.
 
 use crate::sampling::Sample;
-use crate::{ByHand, Flood, VoronoiFlood, limits};
+use crate::{ByHand, SphSweFlood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Flood as Settings, Scheme};
 use corpuscle_terrain::Terrain;
@@ -51,7 +51,7 @@ pub fn open(
             limits::check_depths(settings, &terrain, folder)?;
             Box::new(VoronoiFlood::new(settings, seed, folder, terrain)?)
         }
-        Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::new(settings, seed, folder, terrain)?),
+        Scheme::SphSwe => Box::new(SphSweFlood::new(settings, seed, folder, terrain)?),
     })
 }
 
@@ -70,25 +70,25 @@ pub fn open_to_restore(
             limits::check_cells(settings, &terrain)?;
             Box::new(VoronoiFlood::to_restore(settings, seed, folder, terrain)?)
         }
-        Scheme::Balanced | Scheme::SphSwe => Box::new(Flood::to_restore(settings, seed, folder, terrain)?),
+        Scheme::SphSwe => Box::new(SphSweFlood::to_restore(settings, seed, folder, terrain)?),
     })
 }
 
 /// A model that is a flood, as one.
 pub fn as_flood(model: &dyn Any) -> Option<&dyn FloodModel> {
-    let kernels = model.downcast_ref::<Flood>().map(|flood| flood as &dyn FloodModel);
+    let kernels = model.downcast_ref::<SphSweFlood>().map(|flood| flood as &dyn FloodModel);
     kernels.or_else(|| model.downcast_ref::<VoronoiFlood>().map(|flood| flood as &dyn FloodModel))
 }
 
 /// A model that is a flood, as one.
 pub fn as_flood_mut(model: &mut dyn Any) -> Option<&mut dyn FloodModel> {
-    if model.is::<Flood>() {
-        return model.downcast_mut::<Flood>().map(|flood| flood as &mut dyn FloodModel);
+    if model.is::<SphSweFlood>() {
+        return model.downcast_mut::<SphSweFlood>().map(|flood| flood as &mut dyn FloodModel);
     }
     model.downcast_mut::<VoronoiFlood>().map(|flood| flood as &mut dyn FloodModel)
 }
 
-impl FloodModel for Flood {
+impl FloodModel for SphSweFlood {
     fn settings(&self) -> &Settings {
         Self::settings(self)
     }

@@ -1,17 +1,13 @@
 //! From what a scene says to what the model needs.
 
-use crate::edges::{EdgeRule, EdgeRules};
-use crate::falling::Falling;
 use crate::fields;
 use crate::gauges::{LineGauge, PointGauge};
-use crate::inflow::Source;
 use crate::limits::{check_inside, span};
-use crate::particle::Particle;
-use crate::zone::Zone;
+use crate::zone::{Source, Zone};
 use corpuscle_model::ModelError;
-use corpuscle_scene::{Block, Edge, Flood as FloodScene, Gauge, Section, Series, Table, Water};
+use corpuscle_scene::{Block, Flood as FloodScene, Gauge, Section, Series, Table, Water};
 use corpuscle_terrain::{Bounds, RasterField, Terrain};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 
@@ -34,23 +30,6 @@ pub(crate) fn setup(text: impl std::fmt::Display) -> ModelError {
 
 pub(crate) fn load(series: &Series, folder: &Path) -> Result<Table, ModelError> {
     series.load(folder).map_err(setup)
-}
-
-pub(crate) fn edge_rules(scene: &FloodScene, terrain: &Terrain, folder: &Path) -> Result<EdgeRules, ModelError> {
-    let rule = |edge: &Edge| {
-        Ok(match edge {
-            Edge::Open => EdgeRule::Open,
-            Edge::Wall => EdgeRule::Wall,
-            Edge::Periodic => EdgeRule::Periodic,
-            Edge::Stage(level) => EdgeRule::Stage(load(level, folder)?),
-            Edge::Discharge(_) | Edge::Wave(_) | Edge::Paddle(_) | Edge::NormalDepth(_) | Edge::Rating(_) => {
-                return Err(setup("sides of this kind are for scheme voronoi: see [flood.edges]"));
-            }
-        })
-    };
-    let edges = &scene.edges;
-    let rules = [rule(&edges.west)?, rule(&edges.east)?, rule(&edges.south)?, rule(&edges.north)?];
-    Ok(EdgeRules { bounds: terrain.bounds(), rules })
 }
 
 /// The bodies of water that a scene fills at the start (blocks in the air apart).
@@ -156,36 +135,6 @@ pub(crate) fn closest(bodies: &[InitialWater], terrain: &Terrain, spacing: f64, 
 pub(crate) fn lattice(block: &Block, terrain: &Terrain, spacing: f64) -> [f64; 2] {
     let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
     [0, 1].map(|axis| ((to[axis] - from[axis]) / spacing).round().max(1.0))
-}
-
-/// The particles of a block in the air: layers of a lattice, each shifted a little at random so that no two stand one
-/// above the other.
-pub(crate) fn block(
-    block: &Block,
-    velocity: &dyn Fn(f64, f64) -> [f64; 2],
-    terrain: &Terrain,
-    spacing: f64,
-    volume: f64,
-    h: f64,
-    random: &mut ChaCha8Rng,
-) -> Vec<Falling> {
-    let [from, to] = [block.from, block.to].map(|corner| terrain.to_model(corner));
-    let centre = [0, 1].map(|axis| 0.5 * (from[axis] + to[axis]));
-    let bottom = terrain.height(centre[0], centre[1]) + block.height_m;
-    let count = lattice(block, terrain, spacing).map(|count| count as usize);
-    let mut falling = Vec::with_capacity(count[0] * count[1] * block.layers);
-    for layer in 0..block.layers {
-        for row in 0..count[1] {
-            for column in 0..count[0] {
-                let mut at = |from: f64, k: usize| from + (k as f64 + 0.5 + random.random_range(-0.2..0.2)) * spacing;
-                let (x, y) = (at(from[0], column), at(from[1], row));
-                let mut particle = Particle::new(0, x, y, volume, h);
-                [particle.u, particle.v] = velocity(x, y);
-                falling.push(Falling { particle, z: bottom + (layer as f64 + 0.5) * spacing, w: 0.0 });
-            }
-        }
-    }
-    falling
 }
 
 pub(crate) fn sources(

@@ -1,16 +1,21 @@
 //! Places where water comes in, is held, or goes out.
 
-use crate::particle::Particle;
-use crate::sampling::Sampler;
 use crate::setup::is_inside;
+use corpuscle_scene::Table;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 /// Inflowing water raises the surface where it comes in no faster than this, m/s: the area it is spread over follows.
 const FASTEST_RISE: f64 = 0.5;
 
-/// Places along each side at which a polygon is looked at.
-const LOOKS: usize = 9;
+/// A discharge into the water.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    pub zone: Zone,
+    /// Discharge over time, m3/s.
+    pub discharge: Table,
+    pub velocity: [f64; 2],
+}
 
 /// A part of the plane.
 #[derive(Debug, Clone)]
@@ -104,86 +109,6 @@ impl Zone {
     pub fn reach(&self) -> f64 {
         self.round().1
     }
-
-    /// Places all over it at which the water is looked at, each standing for the same area.
-    pub fn looks(&self) -> Vec<[f64; 2]> {
-        match self {
-            Self::Disc { centre, .. } => vec![*centre],
-            Self::Band { line, .. } => {
-                let on = |pair: &[[f64; 2]], part: f64| {
-                    [0, 1].map(|axis| pair[0][axis] + part * (pair[1][axis] - pair[0][axis]))
-                };
-                let length: f64 = line.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
-                let parts = |pair: &[[f64; 2]]| (LOOKS as f64 * distance(pair[0], pair[1]) / length).ceil() as usize;
-                line.windows(2)
-                    .flat_map(|pair| (0..parts(pair)).map(move |k| on(pair, (k as f64 + 0.5) / parts(pair) as f64)))
-                    .collect()
-            }
-            Self::Polygon(corners) => {
-                let [low, high] = rectangle(corners);
-                let at = |axis: usize, k: usize| low[axis] + (k as f64 + 0.5) / LOOKS as f64 * (high[axis] - low[axis]);
-                let places = (0..LOOKS * LOOKS).map(|k| [at(0, k % LOOKS), at(1, k / LOOKS)]);
-                places.filter(|[x, y]| is_inside(corners, *x, *y)).collect()
-            }
-        }
-    }
-
-    /// Its area, m2; that of a band without what bends add.
-    pub fn area(&self) -> f64 {
-        match self {
-            Self::Disc { radius, .. } => std::f64::consts::PI * radius * radius,
-            Self::Band { line, half_width } => {
-                2.0 * half_width * line.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>()
-            }
-            Self::Polygon(corners) => {
-                let next = corners.iter().cycle().skip(1);
-                let [x, y] = corners[0];
-                let twice = corners.iter().zip(next).map(|(a, b)| (a[0] - x) * (b[1] - y) - (b[0] - x) * (a[1] - y));
-                0.5 * twice.sum::<f64>().abs()
-            }
-        }
-    }
-
-    /// Length of its rim, m; of a band that of its two sides.
-    pub fn rim(&self) -> f64 {
-        match self {
-            Self::Disc { radius, .. } => std::f64::consts::TAU * radius,
-            Self::Band { line, .. } => 2.0 * line.windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>(),
-            Self::Polygon(corners) => {
-                let next = corners.iter().cycle().skip(1);
-                corners.iter().zip(next).map(|(a, b)| distance(*a, *b)).sum()
-            }
-        }
-    }
-
-    /// Level of the water in it, the mean over where there is some, m; none where it is dry.
-    pub fn level(&self, water: &Sampler) -> Option<f64> {
-        let levels = self.looks().into_iter().filter_map(|[x, y]| {
-            let depth = water.at(x, y).depth;
-            (depth > 0.0).then(|| water.terrain.height(x, y) + depth)
-        });
-        let (sum, count) = levels.fold((0.0, 0), |(sum, count), level| (sum + level, count + 1));
-        (count > 0).then(|| sum / f64::from(count))
-    }
-
-    /// Water that it lacks for a level, m3; negative where it has too much.
-    pub fn missing(&self, level: f64, water: &Sampler) -> f64 {
-        let looks = self.looks();
-        let depth = |[x, y]: [f64; 2]| (level - water.terrain.height(x, y)).max(0.0) - water.at(x, y).depth;
-        let missing: f64 = looks.iter().map(|&place| depth(place)).sum();
-        missing / looks.len().max(1) as f64 * self.area()
-    }
-
-    /// The particles in it that have not left, by number.
-    pub fn particles(&self, water: &Sampler) -> Vec<usize> {
-        let (middle, reach) = self.round();
-        let is_here = |particle: &Particle| {
-            particle.outside.is_none() && particle.volume > 0.0 && self.contains(particle.x, particle.y)
-        };
-        let mut found: Vec<usize> = water.numbers_near(middle[0], middle[1], reach).collect();
-        found.retain(|&number| is_here(&water.particles[number]));
-        found
-    }
 }
 
 fn rectangle(places: &[[f64; 2]]) -> [[f64; 2]; 2] {
@@ -231,14 +156,12 @@ mod tests {
         let bay = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [5.0, 4.0], [0.0, 10.0]];
         let zones =
             [Zone::at([3.0, 4.0], 2.0, 0.1), Zone::along(vec![[0.0, 0.0], [10.0, 0.0]], 3.0, 0.5), Zone::Polygon(bay)];
-        for (zone, area) in zones.iter().zip([4.0, 10.0, 70.0]) {
-            assert!((zone.area() / area - 1.0).abs() < 1e-12, "{}", zone.area());
+        for zone in &zones {
             let ([x, y], reach) = zone.round();
             for _ in 0..500 {
                 let place = zone.any(&mut random);
                 assert!(zone.contains(place[0], place[1]) && distance(place, [x, y]) <= reach);
             }
-            assert!(zone.looks().iter().all(|[x, y]| zone.contains(*x, *y)));
             assert!(!zone.contains(5.0, 6.0) || zone.reach() < 5.0);
         }
     }

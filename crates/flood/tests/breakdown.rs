@@ -1,6 +1,6 @@
 //! A value that is not a number ends the run where it appears, and none is shown.
 
-use corpuscle_flood::{Flood, InitialWater};
+use corpuscle_flood::{InitialWater, SphSweFlood};
 use corpuscle_model::{Model, ModelError, Values};
 use corpuscle_scene::{FloodScene, Scene, builtin};
 use corpuscle_terrain::Terrain;
@@ -13,7 +13,7 @@ const BASIN: &str = r#"
 run.until_s = 20
 terrain.plane.extent = { length_m = 120, width_m = 80, cell_m = 2 }
 [flood]
-scheme = "balanced"
+scheme = "sph-swe"
 spacing_m = 2
 spacing_depth_m = 10
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
@@ -35,7 +35,7 @@ fn with_water(
     depth: impl Fn(f64, f64) -> f64 + Sync,
     velocity: impl Fn(f64, f64) -> f64 + Sync,
     seed: u64,
-) -> Result<Flood, ModelError> {
+) -> Result<SphSweFlood, ModelError> {
     let scene = parse(BASIN, "basin", &[]);
     let terrain = terrain(&scene);
     let body = InitialWater {
@@ -44,12 +44,12 @@ fn with_water(
         within: terrain.bounds(),
         velocity: Box::new(move |x, y| [velocity(x, y), 0.0]),
     };
-    Flood::with_water(&scene.flood, seed, Path::new("."), terrain, &[body])
+    SphSweFlood::with_water(&scene.flood, seed, Path::new("."), terrain, &[body])
 }
 
 /// All that files get of a flood: of a frame, of gauges, and of the ledger. Maps mark dry cells by not-a-number, but
 /// hold no other.
-fn shown(flood: &Flood) -> Vec<f64> {
+fn shown(flood: &SphSweFlood) -> Vec<f64> {
     let mut values = flood.gauge_row();
     for set in flood.frame().sets {
         values.extend(set.position.iter().chain(&set.velocity).flatten());
@@ -96,12 +96,12 @@ fn a_velocity_that_is_no_number_is_refused_at_the_start_with_its_place() {
     assert!(x > 100.0 && text.contains("velocity") && text.contains("NaN") && text.contains("t = 0 s"), "{text}");
 }
 
-/// Particles of scheme paper three times as far apart as the scene has them, and nine times as heavy: their forces come
+/// Particles three times as far apart as the scene has them, and nine times as heavy: their forces come
 /// to be no numbers.
 #[test]
 fn a_run_that_breaks_down_says_where_and_when_and_shows_numbers_only() {
     let scene = parse(builtin("flood/cuboid").unwrap().text, "flood/cuboid", &[("flood.spacing_m", "3")]);
-    let mut flood = Flood::new(&scene.flood, 1, Path::new("."), terrain(&scene)).unwrap();
+    let mut flood = SphSweFlood::new(&scene.flood, 1, Path::new("."), terrain(&scene)).unwrap();
     let mut time = 0.0;
     let error = loop {
         time += 0.05;

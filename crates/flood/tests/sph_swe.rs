@@ -1,6 +1,6 @@
 //! Density and smoothing length of scheme sph-swe, against sums over all pairs and known answers.
 
-use corpuscle_flood::{Flood, InitialWater, Particle};
+use corpuscle_flood::{InitialWater, Particle, SphSweFlood};
 use corpuscle_model::Model;
 use corpuscle_scene::Scene;
 use corpuscle_sph::kernel::poly6;
@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 const SIDE: f64 = 80.0;
 const MIDDLE: f64 = 0.5 * SIDE;
 
-/// A lake round a dry island in rain: particles of rain are small, and water soaks in.
+/// A lake round a dry island, towards whose shore particles are smaller.
 const UNEVEN: &str = r#"
 run.until_s = 60
 terrain.bump = { extent = { length_m = 80, width_m = 80, cell_m = 1 }, height_m = 3, width_m = 10 }
@@ -23,8 +23,6 @@ spacing_m = 2
 spacing_depth_m = 1
 edges = { west = "wall", east = "wall", south = "wall", north = "wall" }
 water = [{ level_m = 1.2, velocity_m_per_s = [0.5, 0.2] }]
-rain = { intensity_mm_per_h = 20000, film_m = 0.01 }
-infiltration.horton = { first_mm_per_h = 4000, last_mm_per_h = 400, decay_per_h = 900 }
 "#;
 
 /// Particles that nothing pushes on flat ground.
@@ -40,20 +38,20 @@ water = [{ level_m = 1 }]
 sph_swe = { gas_constant = 0, viscosity = 0, control_force = false }
 "#;
 
-fn open(text: &str, overrides: &[(&str, &str)], water: Option<InitialWater>) -> Flood {
+fn open(text: &str, overrides: &[(&str, &str)], water: Option<InitialWater>) -> SphSweFlood {
     let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();
     let mut scene = Scene::parse(text, "test", &overrides).unwrap();
     scene.resolve_defaults();
     let scene = scene.flood().unwrap();
     let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
     match water {
-        None => Flood::new(&scene.flood, 1, Path::new("."), terrain),
-        Some(water) => Flood::with_water(&scene.flood, 1, Path::new("."), terrain, &[water]),
+        None => SphSweFlood::new(&scene.flood, 1, Path::new("."), terrain),
+        Some(water) => SphSweFlood::with_water(&scene.flood, 1, Path::new("."), terrain, &[water]),
     }
     .unwrap()
 }
 
-fn go(flood: &mut Flood, time: f64) {
+fn go(flood: &mut SphSweFlood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
 }
 
@@ -68,7 +66,7 @@ fn spreading(rate: f64) -> InitialWater<'static> {
 }
 
 /// The particles within `radius` of the middle, in the order of their identities.
-fn within(flood: &Flood, radius: f64) -> Vec<Particle> {
+fn within(flood: &SphSweFlood, radius: f64) -> Vec<Particle> {
     let near = |particle: &&Particle| (particle.x - MIDDLE).hypot(particle.y - MIDDLE) < radius;
     let mut near: Vec<_> = flood.particles().iter().filter(near).copied().collect();
     near.sort_unstable_by_key(|particle| particle.id);

@@ -61,19 +61,8 @@ impl Kernel {
 
     /// Gives it what it works on, in the order of its bindings.
     pub fn on(&self, gpu: &Gpu, resources: &[wgpu::BindingResource<'_>]) -> Task {
-        self.on_those(gpu, resources.iter().cloned().map(Some))
-    }
-
-    /// The same where it leaves some bindings of its pieces alone.
-    pub fn on_those<'a>(
-        &self,
-        gpu: &Gpu,
-        resources: impl IntoIterator<Item = Option<wgpu::BindingResource<'a>>>,
-    ) -> Task {
-        let numbered = resources.into_iter().zip(0..);
-        let entries: Vec<_> = numbered
-            .filter_map(|(resource, binding)| Some(wgpu::BindGroupEntry { binding, resource: resource? }))
-            .collect();
+        let numbered = resources.iter().cloned().zip(0..);
+        let entries: Vec<_> = numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
         self.task(gpu, &entries)
     }
 

@@ -70,11 +70,6 @@ impl<'a> Document<'a> {
         Place { source: self.name.to_owned(), line: None, column: 1, width: 0, text: String::new() }
     }
 
-    /// Whether `key` is written here.
-    pub fn has(&self, key: &str) -> bool {
-        key.split('.').try_fold(&self.root, |node, word| child(node, word)).is_some()
-    }
-
     /// Where the value of `key` is written, or the nearest table round it that is written.
     pub fn place_of(&self, key: &str) -> Option<Place> {
         let mut node = &self.root;

@@ -5,7 +5,6 @@ mod adaptive;
 mod finer;
 mod obstacle;
 mod rain;
-mod refinement;
 mod start;
 mod structures;
 
@@ -13,7 +12,6 @@ pub use adaptive::Adaptive;
 pub use finer::Finer;
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
-pub use refinement::Refinement;
 pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
@@ -29,13 +27,13 @@ pub struct Flood {
     pub scheme: Scheme,
     /// What lengths and discharges are written in. A scene that was read is in metres.
     pub units: FloodUnits,
-    /// Distance between particles, m: in scheme voronoi in all water, in the others in water of depth `spacing_depth_m`, where particles hold
+    /// Distance between particles, m: in scheme voronoi in all water, in sph-swe in water of depth `spacing_depth_m`, where particles hold
     /// `spacing_m^2 * spacing_depth_m` each at the start, so that they stand closer in deeper water and wider in shallower. Left out: the size of
     /// the terrain's cells, or more, so that not more than about 200,000 particles are wet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing_m: Option<f64>,
-    /// The depth at which particles are `spacing_m` apart, m, in schemes balanced and sph-swe; particles that fall from the air hold
-    /// `spacing_m^2 * spacing_depth_m` each in every scheme. Left out: the mean depth of the initial water, or 1 m where there is none; in
+    /// The depth at which particles are `spacing_m` apart, m, in scheme sph-swe; particles that fall from the air hold
+    /// `spacing_m^2 * spacing_depth_m` each in both schemes. Left out: the mean depth of the initial water, or 1 m where there is none; in
     /// scheme voronoi 1 m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing_depth_m: Option<f64>,
@@ -55,9 +53,6 @@ pub struct Flood {
     /// Rain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rain: Option<Rain>,
-    /// Particles are split where the water is thin and merged where it is deep (scheme balanced).
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub refinement: Option<Refinement>,
     /// Parts of the terrain with finer cells (scheme `voronoi`).
     pub finer: Vec<Finer>,
     /// Cells that become finer where the water is shallow on uneven ground (scheme `voronoi`).
@@ -72,8 +67,6 @@ pub struct Flood {
     /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map_every_s: Option<f64>,
-    /// Parameters of scheme `balanced`.
-    pub balanced: Balanced,
     /// Parameters of scheme `sph-swe`.
     pub sph_swe: SphSwe,
     /// What happens at the four sides of the terrain.
@@ -103,6 +96,42 @@ pub struct Flood {
     pub observed_extent: Option<PathBuf>,
 }
 
+impl Flood {
+    /// The first key below `[flood]` that asks for what only scheme voronoi has; none where scheme sph-swe has all.
+    #[must_use]
+    pub fn only_of_voronoi(&self) -> Option<String> {
+        let soaks = |class: &LandClass| class.infiltration.is_some();
+        let classes = self.land_use.iter().flat_map(|land_use| &land_use.class);
+        let line = self.obstacle.iter().position(|obstacle| obstacle.line.is_some());
+        let Edges { west, east, south, north } = &self.edges;
+        let of_voronoi = |edge: &Edge| !matches!(edge, Edge::Open | Edge::Wall | Edge::Periodic);
+        let side = [("west", west), ("east", east), ("south", south), ("north", north)];
+        let side = side.into_iter().find(|(_, edge)| of_voronoi(edge));
+        let asked = [
+            ("storage", (self.storage != Storage::Mean).then(String::new)),
+            ("time_steps", (self.time_steps != TimeSteps::Global).then(String::new)),
+            ("finer", first(&self.finer)),
+            ("adaptive", self.adaptive.as_ref().map(|_| String::new())),
+            ("rain", self.rain.as_ref().map(|_| String::new())),
+            ("infiltration", self.infiltration.as_ref().map(|_| String::new())),
+            ("land_use", classes.into_iter().position(soaks).map(|row| format!(".class.{row}.infiltration"))),
+            ("edges", side.map(|(side, _)| format!(".{side}"))),
+            ("edge_part", first(&self.edge_part)),
+            ("edge_line", first(&self.edge_line)),
+            ("outflow", first(&self.outflow)),
+            ("stage", first(&self.stage)),
+            ("link", first(&self.link)),
+            ("obstacle", line.map(|row| format!(".{row}.line"))),
+        ];
+        asked.into_iter().find_map(|(key, below)| Some(format!("{key}{}", below?)))
+    }
+}
+
+/// The first row of a list, as part of its key.
+fn first<T>(rows: &[T]) -> Option<String> {
+    rows.first().map(|_| ".0".into())
+}
+
 impl Default for Flood {
     fn default() -> Self {
         Self {
@@ -116,14 +145,12 @@ impl Default for Flood {
             land_use: None,
             infiltration: None,
             rain: None,
-            refinement: None,
             finer: Vec::new(),
             adaptive: None,
             storage: Storage::Mean,
             time_steps: TimeSteps::Global,
             wet_depth_m: 0.01,
             map_every_s: None,
-            balanced: Balanced::default(),
             sph_swe: SphSwe::default(),
             edges: Edges::default(),
             edge_part: Vec::new(),
@@ -147,8 +174,6 @@ impl Default for Flood {
 pub enum Scheme {
     /// Columns of water over Voronoi cells, with fluxes through their closed faces: right on any ground.
     Voronoi,
-    /// Particles that move with the water, with Riemann pair forces: for graphics cards, and ground without steps.
-    Balanced,
     /// The published stable SPH-SWE scheme (Acta Physica Sinica, 2021), with its control force.
     SphSwe,
 }
@@ -198,28 +223,6 @@ pub enum Manning {
         /// The file.
         raster: PathBuf,
     },
-}
-
-/// Parameters of scheme `balanced`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Balanced {
-    /// Time step over (smoothing length / wave speed).
-    pub cfl: f64,
-    /// Smoothing length over particle distance (eta).
-    pub smoothing: f64,
-    /// Smoothing length at most this many times that in water of depth `spacing_depth_m`.
-    pub largest_smoothing: f64,
-    /// Artificial viscosity, in shares of the dissipation of an unreconstructed Riemann problem.
-    pub viscosity: f64,
-    /// Whether the water at the start has closer and smaller particles towards its shores, so that it lies still between rough hills.
-    pub fine_shores: bool,
-}
-
-impl Default for Balanced {
-    fn default() -> Self {
-        Self { cfl: 0.4, smoothing: 1.25, largest_smoothing: 6.0, viscosity: 0.1, fine_shores: false }
-    }
 }
 
 /// Parameters of scheme `sph-swe`, defaults from its Table 1.
@@ -309,7 +312,7 @@ pub enum Edge {
     Wall,
     /// What leaves here comes in at the opposite side (which must be periodic too).
     Periodic,
-    /// The level is held at this value over time, m. Waves that are short beside the time in which they cross the terrain leave.
+    /// The level is held at this value over time, m (scheme voronoi). Waves that are short beside the time in which they cross the terrain leave.
     Stage(Series),
     /// So much comes in over time, m3/s, shared out by conveyance (scheme voronoi).
     Discharge(Series),

@@ -1,18 +1,25 @@
-//! Names of earlier versions that are still read: scheme `paper` of a flood is `sph-swe`, and its table `[flood.paper]` is
-//! `[flood.sph_swe]`. What is written out has the new names.
+//! What earlier versions called otherwise, or had.
+//!
+//! Scheme `paper` of a flood is `sph-swe`, and its table `[flood.paper]` is `[flood.sph_swe]`; what is written out has the new names. Scheme `balanced` is
+//! gone, and with it `[flood.refinement]`: both are refused. Scenes that a run wrote out held `[flood.balanced]` and `flood.rain.film_m` in every
+//! scheme; where another scheme is written these are passed over, as they did nothing there.
 
 use toml::Spanned;
-use toml::de::DeValue;
+use toml::de::{DeTable, DeValue};
 
 /// The table of scheme `sph-swe`, and what it was called.
 const TABLE: [&str; 2] = ["sph_swe", "paper"];
 /// The scheme, and what it was called.
 const SCHEME: [&str; 2] = ["sph-swe", "paper"];
 
-/// Gives the table and the scheme in a document their present names.
+/// Scheme `balanced`, and its tables.
+const GONE: &str = "balanced";
+const GONE_TABLES: [&str; 2] = [GONE, "refinement"];
+
+/// Gives the table and the scheme in a document their present names, and takes out what does nothing.
 ///
 /// # Errors
-/// The path of a table that is there by both names, and what to do.
+/// The path of a table that is there by both names, or of what is gone, and what to do.
 pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<(), (String, String)> {
     let DeValue::Table(root) = root.get_mut() else { return Ok(()) };
     let Some((_, flood)) = root.iter_mut().find(|(key, _)| key.get_ref() == "flood") else { return Ok(()) };
@@ -22,6 +29,7 @@ pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<(), (String, Str
     {
         *name = SCHEME[0].into();
     }
+    take_out(flood)?;
     if flood.contains_key(TABLE[1]) && flood.contains_key(TABLE[0]) {
         let what = format!(": this is an old name of flood.{}, which is there too; take out one of them", TABLE[0]);
         return Err((format!("flood.{}", TABLE[1]), what));
@@ -29,6 +37,28 @@ pub(crate) fn rename(root: &mut Spanned<DeValue<'_>>) -> Result<(), (String, Str
     if let Some((mut key, table)) = flood.remove_entry(TABLE[1]) {
         *key.get_mut() = TABLE[0].into();
         flood.insert(key, table);
+    }
+    Ok(())
+}
+
+/// Refuses scheme balanced, and takes out what does nothing in other schemes.
+fn take_out(flood: &mut DeTable<'_>) -> Result<(), (String, String)> {
+    let scheme = flood.get("scheme").and_then(|scheme| scheme.get_ref().as_str());
+    if scheme == Some(GONE) {
+        let what = " = \"balanced\": this scheme is gone; take \"voronoi\", which is right on any ground, or leave the line out";
+        return Err(("flood.scheme".into(), what.into()));
+    }
+    let is_written = scheme.is_some();
+    for table in GONE_TABLES.into_iter().filter(|table| flood.contains_key(*table)) {
+        if table != GONE || !is_written {
+            let what = ": this is of scheme balanced, which is gone; take it out (finer cells of scheme voronoi are in [[flood.finer]] and \
+                        [flood.adaptive])";
+            return Err((format!("flood.{table}"), what.into()));
+        }
+    }
+    flood.remove(GONE);
+    if let Some(DeValue::Table(rain)) = flood.get_mut("rain").map(Spanned::get_mut) {
+        rain.remove("film_m");
     }
     Ok(())
 }

@@ -33,7 +33,6 @@ impl Scene {
         let written = Written::deserialize(toml::de::ValueDeserializer::from(document.root()))
             .map_err(|error| explain(&error, document))?;
         let checked = written.into_scene().and_then(|scene| {
-            scheme_is_written(&scene, document)?;
             scene.find_problem()?;
             all_was_read(&scene, document)?;
             Ok(scene)
@@ -47,21 +46,6 @@ impl Scene {
         }
         Ok(scene)
     }
-}
-
-/// Refuses tables of scheme balanced in a scene that names no scheme: they are of the time when that scheme was the default.
-fn scheme_is_written(scene: &Scene, document: &Document<'_>) -> Result<(), Box<Problem>> {
-    if scene.flood().is_none() || document.has("flood.scheme") {
-        return Ok(());
-    }
-    let of_balanced = ["flood.balanced", "flood.refinement"].into_iter().find(|key| document.has(key));
-    of_balanced.map_or(Ok(()), |key| {
-        Err(Problem::new(
-            key,
-            ": this is for scheme balanced, and the scheme where none is written is voronoi now; write \
-             scheme = \"balanced\" into [flood], or take this out (finer cells of scheme voronoi are in [[flood.finer]])",
-        ))
-    })
 }
 
 /// Refuses what the deserialiser passes over in silence: a third number where two are meant, a list for a table.

@@ -14,7 +14,7 @@ frame_every_s = 1.0
 extent = { length_m = 100.0, width_m = 50.0, cell_m = 1.0 }
 
 [flood]
-scheme = "balanced"
+scheme = "voronoi"
 spacing_m = 1.0
 manning = 0.03
 
@@ -39,6 +39,9 @@ at = [1.0, 1.0]
 name = "S1"
 line = [[0.0, 0.0], [1.0, 0.0]]
 "#;
+
+/// What scheme sph-swe does not have in it.
+const EAST: &str = "east = { stage = [[0.0, 1.0], [10.0, 2.0]] }";
 
 fn refuse(text: &str, overrides: &[(&str, &str)]) -> String {
     let overrides: Vec<_> = overrides.iter().map(|(path, value)| (path.to_string(), value.to_string())).collect();
@@ -67,7 +70,7 @@ fn the_scene_that_the_tests_spoil_is_good() {
 #[test]
 fn syntax() {
     assert_refused("until_s = 60.0", "until_s =", &["this is not TOML"]);
-    assert_refused("scheme = \"balanced\"", "scheme = \"balanced", &["this is not TOML"]);
+    assert_refused("scheme = \"voronoi\"", "scheme = \"voronoi", &["this is not TOML"]);
     let twice = refuse(&GOOD.replace("seed = 1", "seed = 1\nseed = 2"), &[]);
     assert!(twice.contains("test.toml:3:1") && twice.contains("duplicate key"), "{twice}");
 }
@@ -90,7 +93,7 @@ fn unknown_words() {
     assert_refused("[terrain.plane]", "[terrain.plain]", &["did you mean `plane`", "rough-hills"]);
     assert_refused("west = \"wall\"", "west = \"wal\"", &["flood.edges.west", "did you mean `wall`"]);
     assert_refused("west = \"wall\"", "west = { stag = 1.0 }", &["flood.edges.west", "did you mean `stage`"]);
-    assert_refused("scheme = \"balanced\"", "scheme = \"balnced\"", &["flood.scheme", "did you mean `balanced`"]);
+    assert_refused("scheme = \"voronoi\"", "scheme = \"voroni\"", &["flood.scheme", "did you mean `voronoi`"]);
 }
 
 #[test]
@@ -202,8 +205,7 @@ fn series_in_the_scene() {
     spoil("[]", &[key, "no rows"]);
     spoil("[[0.0, inf]]", &[key, "finite"]);
     spoil("[[0.0, 1.0], [10.0]]", &[key, "rows of [time_s, value]"]);
-    let east = "east = { stage = [[0.0, 1.0], [10.0, 2.0]] }";
-    assert_refused(east, "east = { stage = [[9.0, 1.0], [1.0, 2.0]] }", &["flood.edges.east.stage.1", "sort the rows"]);
+    assert_refused(EAST, "east = { stage = [[9.0, 1.0], [1.0, 2.0]] }", &["flood.edges.east.stage.1", "sort the rows"]);
 }
 
 #[test]
@@ -220,7 +222,7 @@ fn overrides_are_named() {
     let others = ("flood.wet_depth_m", "0.5");
     for ((path, value), words) in [
         (("flood.scheme", "sph-sw"), "did you mean `sph-swe`"),
-        (("flood.scheme", ""), "known: voronoi, balanced, sph-swe"),
+        (("flood.scheme", ""), "known: voronoi, sph-swe"),
         (("flood.spacing_m", "-1"), "must be larger than 0"),
         (("flood.spcing_m", "1"), "did you mean `spacing_m`"),
         (("flood.gauge.5.name", "b"), "the number of a row, 0 to 1"),
@@ -253,7 +255,6 @@ fn rain_and_ground() {
     let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
     spoil("rain.intensity_mm_per_h = -1", &["flood.rain.intensity_mm_per_h = -1", "must not be negative"]);
     spoil("rain = { intensity_mm_per_h = [[9, 1], [1, 2]] }", &["flood.rain.intensity_mm_per_h.1", "sort the rows"]);
-    spoil("rain = { intensity_mm_per_h = 1, film_m = 0 }", &["flood.rain.film_m = 0", "larger than 0"]);
     spoil("rain = { raster = \"r.tif\" }", &["flood.rain.intensity_mm_per_h is missing"]);
     spoil("infiltration = { constant = { rate_mm_per_h = -1 } }", &["flood.infiltration.constant.rate_mm_per_h"]);
     let horton = "infiltration.horton = { first_mm_per_h = 1, last_mm_per_h = 2, decay_per_h = 1 }";
@@ -270,10 +271,7 @@ fn rain_and_ground() {
 
 #[test]
 fn sides_of_scheme_voronoi() {
-    let line = "manning = 0.03";
-    let spoil = |by: &str, words: &[&str]| assert_refused(line, by, words);
-    spoil("edge_part = [{ side = \"west\", from = 0, to = 1, edge = \"wall\" }]", &["flood.edge_part.0", "voronoi"]);
-    let spoil = |by: &str, words: &[&str]| assert_refused("scheme = \"balanced\"", by, words);
+    let spoil = |by: &str, words: &[&str]| assert_refused("scheme = \"voronoi\"", by, words);
     let part = |rest: &str| format!("edge_part = [{{ side = \"west\", {rest} }}]\nscheme = \"voronoi\"");
     spoil(&part("from = 2, to = 1, edge = \"wall\""), &["flood.edge_part.0.to", "larger than from = 2"]);
     spoil(&part("from = 0, to = 1, edge = \"periodic\""), &["flood.edge_part.0.edge", "whole sides"]);
@@ -296,8 +294,7 @@ fn structures() {
     spoil(&sluice("polygon = [[0, 0], [1, 0], [1, 1]], rating = [[0, 1]]"), &["not at and polygon together"]);
     let wall = |rest: &str| format!("obstacle = [{{ name = \"a\", {rest} }}]");
     let line = "line = [[0, 0], [1, 1]]";
-    spoil(&wall(line), &["flood.obstacle.0.line", "voronoi", "polygon"]);
-    let refused = |by: &str, words: &[&str]| assert_refused("scheme = \"balanced\"", by, words);
+    let refused = |by: &str, words: &[&str]| assert_refused("scheme = \"voronoi\"", by, words);
     let voronoi = |rest: &str| format!("{}\nscheme = \"voronoi\"", wall(rest));
     refused(&voronoi("line = [[0, 0]]"), &["flood.obstacle.0.line", "at least two points"]);
     refused(&voronoi(&format!("{line}, crest_m = 1, height_m = 1")), &["flood.obstacle.0.crest_m", "not both"]);
@@ -373,44 +370,62 @@ fn expressions_and_velocities_at_the_start() {
     assert!(message.contains("the velocity of a block is two numbers"), "{message}");
 }
 
-/// They were right where balanced was the default.
+/// Of earlier versions: what did nothing in another scheme is passed over, and the rest is refused with what to do.
 #[test]
-fn tables_of_scheme_balanced_without_a_scheme_are_refused_with_what_to_write() {
-    let unnamed = GOOD.replace("scheme = \"balanced\"\n", "");
-    Scene::parse(&unnamed, "test", &[]).unwrap();
-    for (table, key) in [("balanced = { cfl = 0.3 }", "flood.balanced"), ("refinement = {}", "flood.refinement")] {
-        let with = |text: &str| text.replace("manning = 0.03", &format!("manning = 0.03\n{table}"));
-        let message = refuse(&with(&unnamed), &[]);
-        let words =
-            ["test.toml:1", key, "where none is written is voronoi now", "write scheme = \"balanced\" into [flood]"];
-        assert!(words.iter().all(|word| message.contains(word)), "{message}");
-        Scene::parse(&with(GOOD), "test", &[]).unwrap();
-        let message = refuse(&unnamed, &[(key, table.split_once(" = ").unwrap().1)]);
-        assert!(message.starts_with(&format!("--set {key}=")) && message.contains(words[2]), "{message}");
+fn what_is_gone_with_scheme_balanced() {
+    let with = |by: &str| GOOD.replace("scheme = \"voronoi\"\n", by);
+    let written_by_a_run =
+        with("scheme = \"voronoi\"\nbalanced = { cfl = 0.3 }\nrain = { intensity_mm_per_h = 1.0, film_m = 0.001 }\n");
+    Scene::parse(&written_by_a_run, "test", &[]).unwrap();
+    let chosen = refuse(&with("scheme = \"balanced\"\n"), &[]);
+    let words = ["test.toml:12", "flood.scheme = \"balanced\"", "is gone", "take \"voronoi\""];
+    assert!(words.iter().all(|word| chosen.contains(word)), "{chosen}");
+    let by_hand = refuse(GOOD, &[("flood.scheme", "balanced")]);
+    assert!(by_hand.starts_with("--set flood.scheme=balanced") && by_hand.contains("is gone"), "{by_hand}");
+    for (text, key) in [
+        (with("balanced = { cfl = 0.3 }\n"), "flood.balanced"),
+        (with("refinement = {}\n"), "flood.refinement"),
+        (with("scheme = \"voronoi\"\nrefinement = {}\n"), "flood.refinement"),
+    ] {
+        let message = refuse(&text, &[]);
+        assert!(
+            message.contains("test.toml:1") && message.contains(key) && message.contains("take it out"),
+            "{message}"
+        );
     }
-    // As the scene that a run writes has it: all defaults, of both schemes.
-    let voronoi = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"\nbalanced = { cfl = 0.3 }");
-    Scene::parse(&voronoi, "test", &[]).unwrap();
 }
 
 #[test]
-fn what_only_cells_have() {
-    for key in ["storage = \"level-volume\"", "time_steps = \"local\""] {
-        let of_cells = GOOD.replace("scheme = \"balanced\"", &format!("scheme = \"voronoi\"\n{key}"));
-        Scene::parse(&of_cells, "test", &[]).unwrap();
-        let other = refuse(&of_cells.replace("\"voronoi\"", "\"balanced\""), &[]);
-        let name = key.split(' ').next().unwrap();
-        assert!(other.contains(&format!("flood.{name}")) && other.contains("is for scheme = \"voronoi\""), "{other}");
+fn what_only_scheme_voronoi_has() {
+    let rest = "raster = \"a.tif\", class = [{ code = 1 }, { code = 2, infiltration.constant.rate_mm_per_h = 1 }]";
+    for (key, value) in [
+        ("storage", "\"level-volume\""),
+        ("time_steps", "\"local\""),
+        ("adaptive", "{ finest_m = 0.5 }"),
+        ("rain", "{ intensity_mm_per_h = 1 }"),
+        ("infiltration", "{ constant = { rate_mm_per_h = 1 } }"),
+        ("finer", "[{ circle = { centre = [5, 5], radius_m = 2 }, spacing_m = 0.5 }]"),
+        ("edge_part", "[{ side = \"west\", from = 0, to = 1, edge = \"wall\" }]"),
+        ("edge_line", "[{ line = [[1, 1], [2, 2]], edge = \"open\" }]"),
+        ("outflow", "[{ name = \"a\", at = [1, 1], rating = [[0, 1]] }]"),
+        ("stage", "[{ name = \"a\", line = [[1, 1], [2, 2]], level_m = 1 }]"),
+        ("link", "[{ name = \"a\", from = [0, 0], to = [9, 9], law = { rating = [[0, 1]] } }]"),
+        ("obstacle", "[{ name = \"a\", line = [[0, 0], [1, 1]] }]"),
+        ("land_use", &format!("{{ {rest} }}")),
+    ] {
+        let text = GOOD.replace("scheme = \"voronoi\"", &format!("scheme = \"voronoi\"\n{key} = {value}"));
+        Scene::parse(&text, "test", &[]).unwrap();
+        let other = refuse(&text.replace("\"voronoi\"", "\"sph-swe\"").replace(EAST, "east = \"wall\""), &[]);
+        assert!(other.contains(&format!("flood.{key}")) && other.contains("is for scheme = \"voronoi\""), "{other}");
     }
+    let stage = refuse(&GOOD.replace("\"voronoi\"", "\"sph-swe\""), &[]);
+    assert!(stage.contains("flood.edges.east") && stage.contains("has open, wall and periodic"), "{stage}");
 }
 
 #[test]
 fn paddles() {
-    let good = GOOD.replace("scheme = \"balanced\"", "scheme = \"voronoi\"");
-    let with = |edge: &str| good.replace("west = \"wall\"", &format!("west = {edge}"));
+    let with = |edge: &str| GOOD.replace("west = \"wall\"", &format!("west = {edge}"));
     Scene::parse(&with("{ paddle = [[0, 0], [1, 0.1]] }"), "test", &[]).unwrap();
     let jump = refuse(&with("{ paddle = [[0, 0], [1, 0.1], [1, 0.2]] }"), &[]);
     assert!(jump.contains("flood.edges.west.paddle.2") && jump.contains("cannot jump"), "{jump}");
-    let other = refuse(&GOOD.replace("west = \"wall\"", "west = { paddle = 0 }"), &[]);
-    assert!(other.contains("is for scheme = \"voronoi\""), "{other}");
 }

@@ -98,7 +98,7 @@ fn full(terrain: Terrain) -> Scene {
     let in_the_air = Water { block: Some(block), velocity_m_per_s: rasters, ..water.clone() };
     let place = Some([0.0; 2]);
     let flood = Flood {
-        scheme: Scheme::Balanced,
+        scheme: Scheme::Voronoi,
         units: FloodUnits::Si,
         spacing_m: Some(1.0),
         spacing_depth_m: Some(1.0),
@@ -111,11 +111,9 @@ fn full(terrain: Terrain) -> Scene {
             class: vec![LandClass { code: 1, name: "a".into(), manning: Some(0.1), infiltration: None }],
         }),
         infiltration: None,
-        rain: Some(Rain { intensity_mm_per_h: Series::Constant(1.0), raster: Some("a".into()), film_m: 1.0 }),
-        refinement: Some(Refinement { spacing_m: Some(1.0), ..Refinement::default() }),
+        rain: Some(Rain { intensity_mm_per_h: Series::Constant(1.0), raster: Some("a".into()) }),
         wet_depth_m: 1.0,
         map_every_s: Some(1.0),
-        balanced: Balanced::default(),
         edges: Edges::default(),
         // What happens at a side is a word or a table.
         edge_part: vec![

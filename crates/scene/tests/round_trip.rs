@@ -251,7 +251,7 @@ fn feet_become_metres_and_defaults_stay() {
     near(flood.gravity_m_per_s2, 32.0 * 0.3048);
     let rain = flood.rain.as_ref().unwrap();
     assert_eq!(rain.intensity_mm_per_h, Series::Table(vec![[0.0, 25.4], [9.0, 50.8]]));
-    assert_eq!((rain.film_m, flood.wet_depth_m), (0.001, 0.01));
+    assert_eq!((rain.raster.as_ref(), flood.wet_depth_m), (None, 0.01));
     let Some(Infiltration::GreenAmpt(ground)) = flood.infiltration else { panic!() };
     near(ground.suction_m, 0.6096);
     assert_eq!((ground.conductivity_mm_per_h, ground.deficit), (25.4, 0.5));

@@ -1,7 +1,7 @@
 //! What a bench is and what it gives.
 
 use corpuscle_dew::Dew;
-use corpuscle_flood::{Flood, VoronoiFlood};
+use corpuscle_flood::{SphSweFlood, VoronoiFlood};
 use corpuscle_gpu::{Gpu, Taken};
 use corpuscle_model::{GpuModel, Model, ModelError};
 use serde::Serialize;
@@ -12,7 +12,7 @@ use std::time::Instant;
 /// A rate measured on this machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rate {
-    /// What was run: `flood/balanced-60k`.
+    /// What was run: `flood/voronoi-60k`.
     pub name: String,
     /// Number of particles.
     pub particles: usize,
@@ -51,7 +51,7 @@ pub struct PassTime {
 /// A scene whose cost matters.
 #[derive(Debug, Clone, Copy)]
 pub struct Bench {
-    /// Name: the model and words, `flood/balanced-60k`.
+    /// Name: the model and words, `flood/voronoi-60k`.
     pub name: &'static str,
     /// What it measures, in a sentence.
     pub about: &'static str,
@@ -102,7 +102,7 @@ macro_rules! stepped {
     };
 }
 
-stepped!(Flood, VoronoiFlood, Dew);
+stepped!(SphSweFlood, VoronoiFlood, Dew);
 
 /// Lets a GPU take the steps of a model.
 fn use_gpu(model: &mut dyn Model, gpu: Gpu) -> Result<(), ModelError> {

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// One measure of one case, against its bound.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// The case: `flood/stoker`.
+    /// The case: `flood/voronoi/stoker`.
     pub case: String,
     /// What is measured, in words joined by `_`: `relative_l1_error_1m`.
     pub measure: String,
@@ -31,7 +31,7 @@ pub struct Row {
 /// A case with a known answer.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
-    /// Name: the model and words, `flood/stoker`.
+    /// Name: the model and words, `flood/voronoi/stoker`.
     pub name: &'static str,
     /// What it tests and where the answer comes from, in a sentence.
     pub about: &'static str,

@@ -14,5 +14,5 @@ mod missed;
 
 pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
 pub use case::{Case, Options, Row, cases};
-pub use corpuscle_flood::Flood;
-pub use flood::bench::bench_water;
+pub use corpuscle_flood::FloodModel;
+pub use flood::bench::{BenchWater, bench_water};

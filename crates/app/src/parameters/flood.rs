@@ -8,8 +8,7 @@ use crate::physics::Change;
 use corpuscle::FloodByHand as ByHand;
 use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
 
-const SCHEMES: &[(&str, &str)] =
-    &[("voronoi", "\"voronoi\""), ("balanced", "\"balanced\""), ("sph-swe (published)", "\"sph-swe\"")];
+const SCHEMES: &[(&str, &str)] = &[("voronoi", "\"voronoi\""), ("sph-swe (published)", "\"sph-swe\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];
 
 /// The hardest rain that a slider offers at least, mm/h: a cloudburst.
@@ -39,7 +38,9 @@ pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
         );
     }
     levels(builder, flood);
-    rain(builder, flood.rain.as_ref());
+    if now.scheme == Scheme::Voronoi {
+        rain(builder, flood.rain.as_ref());
+    }
     builder.group("Ground").number(
         "flood.manning",
         "Manning's n",
@@ -51,28 +52,21 @@ pub(super) fn parameters(builder: &mut Builder, flood: &Flood, now: &Flood) {
         builder.live("flood.manning", roughen);
     }
     builder.number("flood.gravity_m_per_s2", "Gravity", "m/s²", [1.0, 25.0], "9.81 on Earth, 3.7 on Mars");
-    builder
-        .group("Method")
-        .add("flood.scheme", "Scheme", "", "Which formulation moves the water", Control::Choice(SCHEMES))
-        .add(
-            "flood.sph_swe.control_force",
-            "Control force (sph-swe)",
-            "",
-            "The published scheme's guard of particles",
-            Control::Choice(CONTROL),
-        );
-    if now.scheme == Scheme::SphSwe {
-        builder.live("flood.sph_swe.control_force", control);
-    }
+    method(builder, flood, now);
     builder.scaled("flood.spacing_m", "Distance of particles", "m", "Half of it: four times the particles");
-    if now.scheme == Scheme::Balanced {
-        builder.number(
-            "flood.balanced.viscosity",
-            "Viscosity (balanced)",
-            "",
-            [0.0, 1.0],
-            "Share of the dissipation of an unreconstructed Riemann problem",
-        );
+}
+
+/// The scheme, where the other one has all that the scene asks for, and what belongs to it.
+fn method(builder: &mut Builder, flood: &Flood, now: &Flood) {
+    builder.group("Method");
+    if flood.only_of_voronoi().is_none() {
+        let hint = "Which formulation moves the water";
+        builder.add("flood.scheme", "Scheme", "", hint, Control::Choice(SCHEMES));
+    }
+    if now.scheme == Scheme::SphSwe {
+        let path = "flood.sph_swe.control_force";
+        let hint = "The published scheme's force that holds water back on rough ground";
+        builder.add(path, "Control force", "", hint, Control::Choice(CONTROL)).live(path, control);
     }
 }
 

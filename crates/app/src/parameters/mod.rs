@@ -160,10 +160,6 @@ impl Parameters {
         let same = written.as_deref() == Some(&value)
             || written.and_then(|written| written.parse::<f64>().ok()).is_some_and(|w| value.parse() == Ok(w));
         set(&mut self.changes, path, (!same).then_some(value));
-        if path == "flood.scheme" {
-            // Numbers of scheme balanced are refused where no scheme is written.
-            self.changes.retain(|(changed, _)| !changed.starts_with("flood.balanced."));
-        }
     }
 
     /// The value now, as it is written in a scene.
@@ -277,27 +273,6 @@ mod tests {
             }
         }
         assert!(refused.is_empty(), "{}", refused.join("\n"));
-    }
-
-    #[test]
-    fn numbers_of_a_scheme_go_with_it() {
-        let builtin = corpuscle::scene::builtin("flood/city").unwrap();
-        let scene = Scene::parse(builtin.text, builtin.name, &[]).unwrap();
-        let mut parameters = Parameters::new(&scene, &scene, Vec::new());
-        let offers = |parameters: &Parameters| {
-            let mut all = parameters.groups.iter().flat_map(|group| &group.parameters);
-            all.any(|parameter| parameter.path == "flood.balanced.viscosity")
-        };
-        assert!(!offers(&parameters));
-        parameters.set("flood.scheme", "\"balanced\"".into());
-        let changes = parameters.changes().to_vec();
-        let balanced = Scene::parse(builtin.text, builtin.name, &changes).unwrap();
-        let mut parameters = Parameters::new(&scene, &balanced, changes);
-        assert!(offers(&parameters));
-        parameters.set("flood.balanced.viscosity", "0.2".into());
-        assert_eq!(parameters.changes().len(), 2);
-        parameters.set("flood.scheme", "\"voronoi\"".into());
-        assert!(parameters.changes().is_empty(), "{:?}", parameters.changes());
     }
 
     #[test]

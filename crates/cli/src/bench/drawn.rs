@@ -4,7 +4,7 @@ use crate::args::BenchOptions;
 use corpuscle::gpu::{Gpu, Taken, wgpu};
 use corpuscle::model::{Glance, GpuModel};
 use corpuscle::pictures::{Hand, Look, Moment, PictureSettings, Pictures};
-use corpuscle_validate::{Flood, PassTime, Rate, bench_water};
+use corpuscle_validate::{FloodModel, PassTime, Rate, bench_water};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -34,7 +34,7 @@ pub(super) fn drawn(name: &str, gpu: &Gpu, options: &BenchOptions) -> anyhow::Re
 /// The same for so many seconds; then so many pictures whose passes are timed.
 fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> anyhow::Result<Option<Rate>> {
     let Some((mut flood, ground)) = bench_water(name)? else { return Ok(None) };
-    flood.use_gpu(gpu.clone())?;
+    on_gpu(&mut *flood)?.use_gpu(gpu.clone())?;
     let settings = PictureSettings { samples: 1, ..PictureSettings::default() };
     let mut drawn = Drawn { pictures: Pictures::of_flood(gpu, flood.settings(), &ground, settings)?, flood };
     if splats {
@@ -43,7 +43,7 @@ fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> an
     let mut pace = Pace::new(gpu, seconds);
     drawn.go_on(|| pace.step())?;
     let Drawn { flood, .. } = &drawn;
-    let particles = flood.particles().len();
+    let particles = flood.particles();
     let rate = Rate {
         name: name.into(),
         particles,
@@ -53,15 +53,20 @@ fn draw_for(name: &str, gpu: &Gpu, seconds: f64, timed: u32, splats: bool) -> an
         device: Some(gpu.name.clone()),
         rate: pace.rate,
         rate_unit: "pictures_per_s".into(),
-        bytes_per_particle: flood.gpu_bytes().unwrap_or(0) as f64 / particles as f64,
+        bytes_per_particle: flood.on_gpu().and_then(GpuModel::gpu_bytes).unwrap_or(0) as f64 / particles as f64,
         passes: Vec::new(),
     };
     Ok(Some(if timed > 0 { Rate { passes: drawn.passes(timed)?, ..rate } } else { rate }))
 }
 
+/// A flood as a model whose steps a GPU takes.
+fn on_gpu(flood: &mut dyn FloodModel) -> anyhow::Result<&mut dyn GpuModel> {
+    flood.on_gpu_mut().ok_or_else(|| anyhow::anyhow!("this flood is computed on the CPU only"))
+}
+
 /// A flood and its pictures.
 struct Drawn {
-    flood: Flood,
+    flood: Box<dyn FloodModel>,
     pictures: Pictures,
 }
 
@@ -73,14 +78,20 @@ impl Drawn {
         let pictures = &mut self.pictures;
         // After each step.
         let always = 0.0;
-        self.flood.advance_shown(LONG, &stop, &mut (), (always, true), &mut |Glance { frame, on_device }| {
-            let moment = Moment { frame: &frame, on_device: on_device.as_ref(), paths: &[], container: None };
-            let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
-            let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
-            stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);
-            ended = over.map(|_| ());
-            always
-        })?;
+        on_gpu(&mut *self.flood)?.advance_shown(
+            LONG,
+            &stop,
+            &mut (),
+            (always, true),
+            &mut |Glance { frame, on_device }| {
+                let moment = Moment { frame: &frame, on_device: on_device.as_ref(), paths: &[], container: None };
+                let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
+                let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
+                stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);
+                ended = over.map(|_| ());
+                always
+            },
+        )?;
         ended
     }
 

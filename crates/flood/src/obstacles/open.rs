@@ -1,6 +1,6 @@
 //! Obstacles as a scene tells them.
 
-use super::{Obstacles, Outline};
+use super::{Outline, Outlines};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Circle, Flood as Settings, Obstacle};
@@ -11,19 +11,11 @@ use std::path::Path;
 /// Corners of a circle.
 const ROUND: usize = 360;
 
-/// Opens the obstacles of a scene for particles that stand `spacing` m apart where they are closest and reach at most `reach` m; `h0`
-/// is the kernel's reach in scheme sph-swe, m.
+/// Opens the outlines of a scene's obstacles for particles that reach at most `reach` m.
 ///
 /// # Errors
 /// [`ModelError::Setup`] for a file that holds no polygon, or one that lies outside the terrain.
-pub(crate) fn open(
-    flood: &Settings,
-    terrain: &Terrain,
-    folder: &Path,
-    spacing: f64,
-    reach: f64,
-    h0: f64,
-) -> Result<Obstacles, ModelError> {
+pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
     let mut outlines = Vec::new();
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
         let who = format!("the obstacle '{}'", obstacle.name);
@@ -35,11 +27,7 @@ pub(crate) fn open(
             outlines.push(Outline { obstacle: number, rings });
         }
     }
-    let names = flood.obstacle.iter().map(|obstacle| obstacle.name.clone()).collect();
-    let mut obstacles = Obstacles::new(names, outlines, spacing, reach, h0);
-    let heights: Vec<_> = flood.obstacle.iter().map(|obstacle| obstacle.height_m).collect();
-    obstacles.set_tops(&heights, |x, y| terrain.height(x, y));
-    Ok(obstacles)
+    Ok(Outlines::new(outlines, reach))
 }
 
 /// The polygons of an obstacle, in model coordinates.

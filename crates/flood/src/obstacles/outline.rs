@@ -141,6 +141,11 @@ impl Outlines {
         holding.next().map(|number| self.all[number].nearest(place, number))
     }
 
+    /// Whether a place is inside one.
+    pub fn hold(&self, place: [f64; 2]) -> bool {
+        self.around(place).is_some()
+    }
+
     /// The nearest wall of one outline.
     pub fn nearest_of(&self, number: usize, place: [f64; 2]) -> Nearest {
         self.all[number].nearest(place, number)

@@ -1,8 +1,8 @@
 //! The general forms of the paper for the smoothing length, (8) and (9), in two dimensions (`smoothing = "rate"`).
 
-use super::{Parcel, SphSwe, h_of_density};
-use crate::obstacles::Obstacles;
-use crate::particle::Particle;
+use super::obstacles::Obstacles;
+use super::particle::Particle;
+use super::solver::{Column, SphSwe, h_of_density};
 use corpuscle_sph::kernel::poly6_slope_over_r;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_SQRT_PI;
@@ -47,7 +47,7 @@ impl SphSwe {
         let mut volume = particle.volume;
         for (&other, &r) in near.index.iter().zip(near.distance) {
             if r < reach.min(particle.h) {
-                let Parcel { area, density, .. } = self.parcels[other as usize];
+                let Column { area, density, .. } = self.columns[other as usize];
                 volume += area * density / self.parameters.density_kg_per_m3;
             }
         }
@@ -58,13 +58,13 @@ impl SphSwe {
     /// Form (9) over h, (1/h_i) Dh_i/Dt = -1/(2 rho_i) sum_j m_j (v_i - v_j) . grad W_poly6(r_ij, h_i), 1/s: the kernel of the
     /// density, so that h follows how it changes. Boundary particles count as they do in the density.
     fn rate(&self, particle: &Particle, obstacles: &Obstacles, place: u32) -> f64 {
-        let own = &self.parcels[place as usize];
+        let own = &self.columns[place as usize];
         let near = self.arrangement.lists.of(place as usize);
         let mut sum = 0.0;
         for (&other, &r) in near.index.iter().zip(near.distance) {
             // Lists are filled up with numbers of nobody, far away.
             if r < own.h {
-                let other = &self.parcels[other as usize];
+                let other = &self.columns[other as usize];
                 let apart = (own.u - other.u) * (own.x - other.x) + (own.v - other.v) * (own.y - other.y);
                 sum -= other.area * other.density * apart * poly6_slope_over_r(r * r, own.h);
             }

@@ -3,7 +3,7 @@
 use super::mesh::{Ground, SOLID};
 use super::storage::{self, Heights};
 use super::walls::{Wall, Walls, no_data, of_outlines};
-use crate::obstacles::Obstacles;
+use crate::obstacles::Outlines;
 use corpuscle_scene::Storage;
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
@@ -20,7 +20,7 @@ const GRID: f64 = 2.0;
 /// Terrain, holes in it, and obstacles.
 pub(crate) struct Bed {
     pub terrain: Arc<Terrain>,
-    pub obstacles: Arc<Obstacles>,
+    pub obstacles: Arc<Outlines>,
     walls: Walls,
     mirrors: [bool; 4],
     periodic: [bool; 2],
@@ -32,14 +32,14 @@ impl Bed {
     /// Ground for cells about `spacing` m wide, with `lines` that are walls.
     pub fn new(
         terrain: Arc<Terrain>,
-        obstacles: Arc<Obstacles>,
+        obstacles: Arc<Outlines>,
         mirrors: [bool; 4],
         periodic: [bool; 2],
         lines: Vec<Wall>,
         spacing: f64,
         storage: Storage,
     ) -> Self {
-        let walls = of_outlines(obstacles.outlines()).chain(no_data(&terrain)).chain(lines);
+        let walls = of_outlines(&obstacles.all).chain(no_data(&terrain)).chain(lines);
         let walls = Walls::new(walls, terrain.bounds(), GRID * spacing);
         let lift = [0, 1].map(|axis| if periodic[axis] { lift(&terrain, axis) } else { 0.0 });
         Self { terrain, obstacles, walls, mirrors, periodic, lift, storage }
@@ -164,7 +164,7 @@ mod tests {
         let terrain = Arc::new(Terrain::analytic(bounds, 1.0, move |x, y| (height(x, y), [0.0; 2])));
         let wide = Bounds { x_min: -20.0, x_max: 40.0, y_min: -15.0, y_max: 15.0 };
         let endless = Terrain::analytic(wide, 1.0, move |x, y| (height(x, y), [0.0; 2]));
-        let obstacles = Arc::new(Obstacles::default());
+        let obstacles = Arc::new(Outlines::default());
         let bed = Bed::new(terrain, obstacles, [false; 4], [true; 2], Vec::new(), 1.0, Storage::Mean);
         for [x, y] in [[7.0, 0.0], [19.8, 1.0], [0.1, -4.9], [20.0, 5.0], [-0.2, 5.1]] {
             let corners = [[-0.6, -0.5], [0.7, -0.4], [0.5, 0.6], [-0.3, 0.7]].map(|[a, b]| [x + a, y + b]);

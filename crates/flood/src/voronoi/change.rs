@@ -6,7 +6,7 @@ use super::VoronoiFlood;
 use super::boundaries::Boundary;
 use super::friction::Slowing;
 use super::rain::Weather;
-use crate::flood::ByHand;
+use crate::ByHand;
 use crate::limits::span;
 use crate::setup::{load, setup};
 use corpuscle_model::ModelError;

@@ -47,14 +47,15 @@ mod to_come;
 mod walls;
 mod water;
 
+pub use rain::RainFunction;
 pub(crate) use start::of_scene;
 pub use start::{Filling, OfPosition, StartWater};
 pub(crate) use walls::of_lines;
 
+use self::structures::{Flows, Structures};
 use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::sampling::Sample;
-use crate::structures::{Flows, Structures};
 use crate::zone::Zone;
 use adaptive::Adaptive;
 use bed::Bed;

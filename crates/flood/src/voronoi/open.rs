@@ -9,16 +9,15 @@ use super::local::{HIGHEST, Local};
 use super::maps::{DRY, Record};
 use super::mesh::{Blocks, Grading, LINE, Layout, Mesh, NONE};
 use super::patch::Patch;
-use super::rain::{Soaked, Weather};
+use super::rain::{RainFunction, Soaked, Weather};
 use super::solver::Solver;
 use super::start::{self, StartWater};
 use super::step::drops;
 use super::structures::Patches;
+use super::structures::Structures;
 use super::{Inflow, State, VoronoiFlood, finer, walls};
 use crate::friction::Roughness;
-use crate::rain::RainFunction;
 use crate::setup::{self, setup};
-use crate::structures::Structures;
 use crate::zone::Zone;
 use crate::{limits, obstacles, spacing};
 use corpuscle_model::{Account, ModelError};
@@ -109,7 +108,7 @@ impl VoronoiFlood {
         limits::check_blocks(&settings, &terrain)?;
         let boundaries = Boundaries::open(&settings, &terrain, folder)?;
         let (periodic, mirrors, brings) = (boundaries.periodic(), boundaries.mirrors(), boundaries.brings());
-        let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, spacing, 4.0 * spacing, spacing)?);
+        let obstacles = Arc::new(obstacles::open(&settings, &terrain, folder, 4.0 * spacing)?);
         let mut layout = Layout::new(terrain.bounds(), periodic, spacing, seed);
         let roughness = Roughness::open(&settings, &terrain, folder)?;
         let slowing = Slowing::of(&roughness, gravity);
@@ -139,7 +138,7 @@ impl VoronoiFlood {
             remakes: 0,
         };
         let mut lines = walls::of_lines(&settings, &terrain, spacing)?;
-        let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), obstacles.outlines(), &lines))?;
+        let grading = finer::grading(&settings, &terrain, folder, (layout.spacing(), &obstacles.all, &lines))?;
         let adaptive = refine(&mut layout, grading, settings.adaptive)?;
         if settings.time_steps == TimeSteps::Local {
             // Many short steps are taken before tiles are made.
@@ -148,7 +147,7 @@ impl VoronoiFlood {
         let longest = longest_step(&layout, gravity);
         lines.extend(walls::of_sides(&settings, &terrain)?);
         let bed = Bed::new(Arc::clone(&terrain), obstacles, mirrors, periodic, lines, spacing, settings.storage);
-        let mut roofs = walls::areas(bed.obstacles.outlines(), settings.obstacle.len(), terrain.bounds());
+        let mut roofs = walls::areas(&bed.obstacles.all, settings.obstacle.len(), terrain.bounds());
         let flat = settings.obstacle.iter().map(|obstacle| obstacle.height_m.is_none());
         roofs.iter_mut().zip(flat).filter(|(_, flat)| *flat).for_each(|(area, _)| *area = 0.0);
         let mut mesh = Mesh::new(layout);

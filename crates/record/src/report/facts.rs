@@ -90,7 +90,6 @@ pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let [low, high] = whole.heights.map(short_number);
     let scheme = match scene.flood.scheme {
         Scheme::Voronoi => "voronoi",
-        Scheme::Balanced => "balanced",
         Scheme::SphSwe if scene.flood.sph_swe.control_force => "sph-swe, control force on",
         Scheme::SphSwe => "sph-swe, control force off",
     };

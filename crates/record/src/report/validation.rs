@@ -32,7 +32,7 @@ pub struct ValidatedMeasure {
 /// A case that was run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ValidatedCase {
-    /// Name: `flood/stoker`.
+    /// Name: `flood/voronoi/stoker`.
     pub name: &'static str,
     /// What it tests and where the answer comes from.
     pub about: &'static str,

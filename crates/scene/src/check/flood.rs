@@ -4,13 +4,16 @@ mod ground;
 
 use super::{Check, Checked};
 use crate::{
-    Adaptive, Balanced, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series,
-    SphSwe, StartVelocity, Storage, TimeSteps, Water,
+    Adaptive, Block, Edge, Field, Finer, Flood, Gauge, Inflow, Manning, Obstacle, Problem, Scheme, Series, SphSwe,
+    StartVelocity, Water,
 };
 use std::collections::HashMap;
 
 /// Manning's n of the roughest ground is about 0.2; what is above this is Strickler's 1/n.
 const LARGEST_MANNING: f64 = 1.0;
+
+/// Why scheme sph-swe is refused what it does not have.
+const OF_VORONOI: &str = "is for scheme = \"voronoi\", the default; scheme sph-swe is the published one, without it";
 
 /// Cells may be so many times finer than elsewhere.
 const FINEST: f64 = 64.0;
@@ -26,20 +29,11 @@ impl Check {
         self.above("flood.gravity_m_per_s2", flood.gravity_m_per_s2, 0.0)?;
         self.manning(&flood.manning)?;
         self.ground(flood)?;
-        self.refinement(flood)?;
-        self.require("flood.storage", flood.storage == Storage::Mean || flood.scheme == Scheme::Voronoi, || {
-            "is for scheme = \"voronoi\": particles of the other schemes have no cells".into()
-        })?;
-        self.require(
-            "flood.time_steps",
-            flood.time_steps == TimeSteps::Global || flood.scheme == Scheme::Voronoi,
-            || "is for scheme = \"voronoi\": particles of the other schemes all take the same step".into(),
-        )?;
+        self.of_voronoi(flood)?;
         self.above("flood.wet_depth_m", flood.wet_depth_m, 0.0)?;
         if let Some(period) = flood.map_every_s {
             self.above("flood.map_every_s", period, 0.0)?;
         }
-        self.balanced(&flood.balanced)?;
         self.sph_swe(&flood.sph_swe)?;
         self.edges(flood)?;
         for (index, water) in flood.water.iter().enumerate() {
@@ -64,7 +58,7 @@ impl Check {
             self.link(&format!("flood.link.{index}"), link)?;
         }
         for (index, obstacle) in flood.obstacle.iter().enumerate() {
-            self.obstacle(&format!("flood.obstacle.{index}"), obstacle, flood.scheme)?;
+            self.obstacle(&format!("flood.obstacle.{index}"), obstacle)?;
         }
         for (index, gauge) in flood.gauge.iter().enumerate() {
             self.gauge(&format!("flood.gauge.{index}"), gauge)?;
@@ -75,24 +69,12 @@ impl Check {
         self.names(flood)
     }
 
-    fn refinement(&self, flood: &Flood) -> Checked {
-        let Some(refinement) = &flood.refinement else { return Ok(()) };
-        self.require("flood.refinement", flood.scheme == Scheme::Balanced, || {
-            "is for scheme = \"balanced\": particles of the other schemes are not split".into()
-        })?;
-        if let Some(spacing) = refinement.spacing_m {
-            self.above("flood.refinement.spacing_m", spacing, 0.0)?;
-        }
-        let smallest = refinement.smallest;
-        self.require("flood.refinement.smallest", smallest > 0.0 && smallest <= 1.0, || {
-            "must be larger than 0 and at most 1".into()
-        })
+    fn of_voronoi(&self, flood: &Flood) -> Checked {
+        let key = flood.only_of_voronoi().filter(|_| flood.scheme != Scheme::Voronoi);
+        key.map_or(Ok(()), |key| self.require(&format!("flood.{key}"), false, || OF_VORONOI.into()))
     }
 
     fn finer(&self, key: &str, finer: &Finer, flood: &Flood) -> Checked {
-        self.require(key, flood.scheme == Scheme::Voronoi, || {
-            "is for scheme = \"voronoi\": particles of the other schemes move with the water".into()
-        })?;
         self.exactly_one(
             key,
             &[
@@ -125,9 +107,6 @@ impl Check {
     }
 
     fn adaptive(&self, adaptive: &Adaptive, flood: &Flood) -> Checked {
-        self.require("flood.adaptive", flood.scheme == Scheme::Voronoi, || {
-            "is for scheme = \"voronoi\": scheme balanced has flood.refinement".into()
-        })?;
         self.above("flood.adaptive.rise_over_depth", adaptive.rise_over_depth, 0.0)?;
         self.require("flood.adaptive.every_steps", adaptive.every_steps >= 1, || "must be at least 1".into())?;
         self.finer_spacing("flood.adaptive.finest_m", adaptive.finest_m, flood)
@@ -154,19 +133,6 @@ impl Check {
         })
     }
 
-    fn balanced(&self, balanced: &Balanced) -> Checked {
-        self.require("flood.balanced.cfl", balanced.cfl > 0.0 && balanced.cfl <= 1.0, || {
-            "must be larger than 0 and at most 1".into()
-        })?;
-        self.require("flood.balanced.smoothing", (1.0..=4.0).contains(&balanced.smoothing), || {
-            "must be from 1 to 4".into()
-        })?;
-        self.at_least("flood.balanced.largest_smoothing", balanced.largest_smoothing, 1.0)?;
-        self.require("flood.balanced.viscosity", (0.0..=1.0).contains(&balanced.viscosity), || {
-            "must be from 0 to 1".into()
-        })
-    }
-
     fn sph_swe(&self, sph_swe: &SphSwe) -> Checked {
         self.above("flood.sph_swe.time_step_s", sph_swe.time_step_s, 0.0)?;
         if let Some(length) = sph_swe.smoothing_length_m {
@@ -188,38 +154,32 @@ impl Check {
         for (side, edge) in
             [("west", &edges.west), ("east", &edges.east), ("south", &edges.south), ("north", &edges.north)]
         {
-            self.edge(&format!("flood.edges.{side}"), edge, flood.scheme)?;
+            self.edge(&format!("flood.edges.{side}"), edge)?;
         }
         for (index, part) in flood.edge_part.iter().enumerate() {
             let key = format!("flood.edge_part.{index}");
-            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\", the default".into())?;
             self.require(&format!("{key}.to"), part.from.is_finite() && part.to > part.from, || {
                 format!("must be larger than from = {}", part.from)
             })?;
             self.require(&format!("{key}.edge"), part.edge != Edge::Periodic, || {
                 "whole sides are periodic, not parts of them: see [flood.edges]".into()
             })?;
-            self.edge(&format!("{key}.edge"), &part.edge, flood.scheme)?;
+            self.edge(&format!("{key}.edge"), &part.edge)?;
         }
         for (index, line) in flood.edge_line.iter().enumerate() {
             let key = format!("flood.edge_line.{index}");
-            self.require(&key, flood.scheme == Scheme::Voronoi, || "is for scheme = \"voronoi\"".into())?;
             self.line(&format!("{key}.line"), &line.line)?;
             self.require(&format!("{key}.edge"), line.edge != Edge::Periodic, || {
                 "a line is joined to nothing: periodic sides are in [flood.edges]".into()
             })?;
-            self.edge(&format!("{key}.edge"), &line.edge, flood.scheme)?;
+            self.edge(&format!("{key}.edge"), &line.edge)?;
         }
         self.periodic(("west", &edges.west), ("east", &edges.east))?;
         self.periodic(("south", &edges.south), ("north", &edges.north))
     }
 
     /// What happens at a side or a part of one.
-    fn edge(&self, key: &str, edge: &Edge, scheme: Scheme) -> Checked {
-        let is_common = matches!(edge, Edge::Open | Edge::Wall | Edge::Periodic | Edge::Stage(_));
-        self.require(key, is_common || scheme == Scheme::Voronoi, || {
-            "is for scheme = \"voronoi\", the default; other schemes know open, wall, periodic and stage".into()
-        })?;
+    fn edge(&self, key: &str, edge: &Edge) -> Checked {
         match edge {
             Edge::Open | Edge::Wall | Edge::Periodic => Ok(()),
             Edge::Stage(level) => self.series(&format!("{key}.stage"), level),
@@ -338,7 +298,7 @@ impl Check {
         })
     }
 
-    fn obstacle(&self, key: &str, obstacle: &Obstacle, scheme: Scheme) -> Checked {
+    fn obstacle(&self, key: &str, obstacle: &Obstacle) -> Checked {
         self.exactly_one(
             key,
             &[
@@ -355,11 +315,7 @@ impl Check {
             self.above(&format!("{key}.circle.radius_m"), circle.radius_m, 0.0)?;
         }
         if let Some(line) = &obstacle.line {
-            let key = format!("{key}.line");
-            self.require(&key, scheme == Scheme::Voronoi, || {
-                "walls of no thickness are for scheme = \"voronoi\", the default; give a polygon".into()
-            })?;
-            self.line(&key, line)?;
+            self.line(&format!("{key}.line"), line)?;
         }
         self.require(&format!("{key}.crest_m"), obstacle.crest_m.is_none() || obstacle.line.is_some(), || {
             "only a line has a crest; give height_m".into()

@@ -14,13 +14,6 @@ pub struct Rain {
     /// where it has no data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub raster: Option<PathBuf>,
-    /// Depth of the film that rain leaves on dry ground before it runs, m.
-    #[serde(default = "default_film")]
-    pub film_m: f64,
-}
-
-fn default_film() -> f64 {
-    0.001
 }
 
 /// How fast water soaks into the ground, where there is enough of it.

@@ -1,7 +1,7 @@
-//! What an error costs: the dam breaks with exact solutions, by schemes voronoi and balanced at three spacings, and a vortex by scheme voronoi.
+//! What an error costs: the dam breaks with exact solutions, and a vortex, by scheme voronoi at three spacings.
 
-use super::dam_break::{self, TIME};
-use super::voronoi::{dam_breaks, vortex};
+use super::voronoi::dam_breaks::{self, TIME};
+use super::voronoi::vortex;
 use crate::Rate;
 use crate::bench::Stepped;
 use corpuscle_model::ModelError;
@@ -13,29 +13,17 @@ const SPACINGS: [f64; 3] = [4.0, 2.0, 1.0];
 /// Unit of the cost of a dam break.
 const PER_WIDTH: &str = "core_s_per_m";
 
-/// Error and cost of each dam break, scheme and spacing. The cost is that of all threads, for each metre of the channel's width; setting up does not count.
+/// Error and cost of each dam break and spacing. The cost is that of all threads, for each metre of the channel's width; setting up does not count.
 pub(super) fn measured() -> Vec<Rate> {
-    let mut rates = Vec::new();
-    for (name, downstream) in [("stoker", 1.0), ("ritter", 0.0)] {
-        for spacing in SPACINGS {
-            let name = |scheme: &str| format!("flood/error-cost/{name}-{scheme}-{spacing}m");
-            let by_cells = dam_breaks::broken(0.0, spacing, 1, downstream).and_then(|flood| {
-                let width = dam_breaks::WIDTH * spacing;
-                entries(name("voronoi"), flood, TIME, (1.0 / width, PER_WIDTH), |flood| {
-                    dam_breaks::error(flood, spacing, downstream)
-                })
-            });
-            let by_kernels = dam_break::run_until(0.0, spacing, downstream, None).and_then(|flood| {
-                let width = dam_break::WIDTH * spacing;
-                entries(name("balanced"), flood, TIME, (1.0 / width, PER_WIDTH), |flood| {
-                    dam_break::error(flood, spacing, downstream)
-                })
-            });
-            rates.extend(by_cells.unwrap_or_default());
-            rates.extend(by_kernels.unwrap_or_default());
-        }
-    }
-    rates
+    let of_one = |name: &str, downstream: f64, spacing: f64| {
+        let flood = dam_breaks::broken(0.0, spacing, 1, downstream)?;
+        let width = dam_breaks::WIDTH * spacing;
+        let name = format!("flood/error-cost/{name}-{spacing}m");
+        entries(name, flood, TIME, (1.0 / width, PER_WIDTH), |flood| dam_breaks::error(flood, spacing, downstream))
+    };
+    let breaks = [("stoker", 1.0), ("ritter", 0.0)];
+    let all = breaks.into_iter().flat_map(|(name, downstream)| SPACINGS.map(|spacing| (name, downstream, spacing)));
+    all.flat_map(|(name, downstream, spacing)| of_one(name, downstream, spacing).unwrap_or_default()).collect()
 }
 
 /// Error of the velocity and cost of the carried vortex at each spacing; the cost is that of all threads.

@@ -4,7 +4,7 @@ use super::device::ready;
 use super::{built_in, rows};
 use crate::device::is_reduced;
 use crate::{Case, Options, Row};
-use corpuscle_flood::Flood;
+use corpuscle_flood::SphSweFlood;
 use corpuscle_model::{Model, ModelError};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -50,7 +50,7 @@ fn rough_terrain(_: &Options) -> Vec<Row> {
 /// Standard deviation over mean of the density, and the fastest particle's speed, m/s, at the times of the table.
 fn measured(control: &str) -> Result<Vec<[f64; 2]>, ModelError> {
     let (scene, settings, terrain) = built_in(ROUGH_TERRAIN.name, &[("flood.sph_swe.control_force", control)])?;
-    let mut flood = ready(Flood::new(&settings, scene.seed, Path::new("."), terrain)?)?;
+    let mut flood = ready(SphSweFlood::new(&settings, scene.seed, Path::new("."), terrain)?)?;
     let look = |(time, ..): (f64, &str, &str)| {
         flood.advance_to(time, &AtomicBool::new(false))?;
         let particles = flood.particles();

@@ -36,14 +36,14 @@ const MOST_STEPS: u32 = 64;
 const BATCH: f64 = 0.2;
 
 const LIBRARY: ShaderLibrary<'_> = &[
-    ("voronoi_sums", include_str!("voronoi_sums.wgsl")),
+    ("flood_sums", include_str!("../../flood_sums.wgsl")),
     ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
-    ("infiltration_laws", include_str!("../../infiltration_laws.wgsl")),
+    ("infiltration_laws", include_str!("../rain/infiltration_laws.wgsl")),
     ("voronoi_water", include_str!("voronoi_water.wgsl")),
     ("voronoi_stable", include_str!("voronoi_stable.wgsl")),
     ("voronoi_change", include_str!("voronoi_change.wgsl")),
-    ("hydraulics", include_str!("../../hydraulics.wgsl")),
+    ("hydraulics", include_str!("../structures/hydraulics.wgsl")),
     ("voronoi_storage", include_str!("../voronoi_storage.wgsl")),
     ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
     ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),

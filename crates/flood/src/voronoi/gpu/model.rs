@@ -1,8 +1,8 @@
 //! A flood whose steps a GPU takes.
 
 use super::{Downloaded, GpuSolver, Halt, Input, Totals};
-use crate::rain::Intensity;
 use crate::voronoi::model::SHOWN;
+use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 use crate::voronoi::structures::upload::take_over;
 use crate::voronoi::{DENSITY, VoronoiFlood};

@@ -1,10 +1,10 @@
 //! What comes into cells and goes out of them beside the motion of the water, as it is uploaded.
 
+use super::super::rain::infiltration::{Law, MM_PER_H};
 use super::shared::{NONE, Supply};
 use super::tables::Tables;
 use super::upload::Input;
-use crate::infiltration::{Law, MM_PER_H};
-use crate::rain::Intensity;
+use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 
 /// The tables of what is supplied.

@@ -1,5 +1,6 @@
 //! A flood as it is uploaded.
 
+use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
     BATCH_START, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed,
@@ -7,7 +8,6 @@ use super::shared::{
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
-use crate::structures::{Flows, Structures};
 use crate::voronoi::Inflow;
 use crate::voronoi::boundaries::Boundaries;
 use crate::voronoi::friction::Slowing;
@@ -214,7 +214,7 @@ impl Input<'_> {
     fn discharges(&self) -> Vec<f32> {
         let held = vec![0.0; self.structures.held.len()];
         let [outflows, links] = [&self.flows.outflows, &self.flows.links]
-            .map(|flows| flows.iter().map(|flow| flow.discharge as f32).collect::<Vec<_>>());
+            .map(|flows| flows.iter().map(|flow| *flow as f32).collect::<Vec<_>>());
         [outflows, held, links].concat()
     }
 

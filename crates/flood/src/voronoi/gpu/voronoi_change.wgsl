@@ -1,6 +1,6 @@
 // Water that is added to columns and taken from them beside the motion.
 #import declared
-#import voronoi_sums
+#import flood_sums
 #import voronoi_storage
 
 fn kinetic(column: Column) -> f32 {

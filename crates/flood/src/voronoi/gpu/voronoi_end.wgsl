@@ -1,7 +1,7 @@
 // The end of a step: records what the water did in each cell, has water come and go beside its motion, and finds how long the next step may be. The piece
 // `exchange` is empty where nothing comes or goes; `IS_LOOKED_AT` comes with the stage, and holds where `voronoi_look.wgsl` has recorded the water.
 #import declared
-#import voronoi_sums
+#import flood_sums
 #import stage
 #import voronoi_record
 #import voronoi_stable

@@ -1,6 +1,6 @@
 // Books a step, and decides whether there is another before the time that the host waits for.
 #import declared
-#import voronoi_sums
+#import flood_sums
 #import voronoi_tables
 
 var<workgroup> volumes: array<vec4f, 256>;

@@ -2,7 +2,7 @@
 // `update` in `solver.rs`. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
-#import voronoi_sums
+#import flood_sums
 #import voronoi_friction
 #import voronoi_water
 

@@ -1,26 +1,39 @@
 //! Rain onto the cells, and what soaks into the ground under them.
 
+pub(super) mod infiltration;
+
+use self::infiltration::{Law, MM_PER_H, of_class};
 use super::mesh::Mesh;
 use super::patch::Change;
 use super::solver::Solver;
 use super::water::Column;
-use crate::infiltration::{Law, MM_PER_H, of_class};
-use crate::rain::{Intensity, RainFunction};
 use crate::setup::{load, setup};
 use corpuscle_model::{ExactSum, Map, ModelError};
 use corpuscle_scene::{Flood as Settings, Table};
 use corpuscle_terrain::{RasterField, Terrain};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The ground drinks once in so many steps: the laws of infiltration hold for any step of time.
 pub(crate) const STEPS_A_DRAUGHT: u64 = 8;
 
+/// Where and when it rains: intensity, m/s, over x, y, and time.
+pub type RainFunction = Box<dyn Fn(f64, f64, f64) -> f64 + Send + Sync>;
+
+/// How hard it rains.
+pub(crate) enum Intensity {
+    None,
+    /// mm/h over time.
+    Table(Table),
+    Function(RainFunction),
+}
+
 /// Rain and soils of a scene.
 pub(crate) struct Weather {
     pub(super) intensity: Intensity,
-    factor: Option<RasterField>,
+    /// The raster by which the intensity is multiplied, with its path.
+    factor: Option<(PathBuf, RasterField)>,
     classes: Option<RasterField>,
     codes: Vec<f64>,
     pub(super) laws: Vec<Option<Law>>,
@@ -64,7 +77,8 @@ impl Weather {
                 )));
             }
             weather.intensity = Intensity::Table(intensity);
-            weather.factor = rain.raster.as_deref().map(open).transpose()?;
+            let factor = rain.raster.as_deref().map(|path| Ok((path.to_owned(), open(path)?)));
+            weather.factor = factor.transpose()?;
         }
         let rest = scene.infiltration.as_ref().map(Law::of);
         weather.laws = std::iter::once(rest).chain(by_class.clone().map(|class| of_class(class, rest))).collect();
@@ -118,12 +132,13 @@ impl Weather {
     /// # Errors
     /// Where the raster of factors is negative.
     pub fn extend(&mut self, mesh: &Mesh, terrain: &Terrain, soaked: &mut Soaked) -> Result<(), ModelError> {
-        if let Some(raster) = &self.factor {
+        if let Some((path, raster)) = &self.factor {
             for [x, y] in &mesh.centroid[self.factors.len()..] {
                 let factor = raster.bilinear(*x, *y).unwrap_or(0.0);
                 if factor < 0.0 {
                     let place = terrain.to_own([*x, *y]);
-                    return Err(setup(format!("the factor of rain at {place:?} must not be negative")));
+                    let path = path.display();
+                    return Err(setup(format!("{path}: the factor of rain at {place:?} must not be negative")));
                 }
                 self.factors.push(factor as f32);
             }

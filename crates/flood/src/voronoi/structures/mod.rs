@@ -1,12 +1,15 @@
 //! Outflows by rating, held levels, culverts and weirs in a step.
 
+pub(super) mod hydraulics;
+mod kinds;
 #[cfg(feature = "gpu")]
 pub(super) mod upload;
+
+pub(super) use kinds::{Flows, Structures};
 
 use super::mesh::Mesh;
 use super::patch::{Change, Patch};
 use super::solver::Solver;
-use crate::structures::{Flows, Structures};
 
 /// The cells that each structure takes from and gives to.
 #[derive(Default)]
@@ -44,23 +47,23 @@ impl Patches {
         book: &mut impl FnMut(Change),
     ) {
         let levels = |patch: &Patch, solver: &Solver| patch.level(solver);
-        for ((outflow, patch), flow) in structures.outflows.iter().zip(&self.outflows).zip(&mut flows.outflows) {
+        for ((outflow, patch), discharge) in structures.outflows.iter().zip(&self.outflows).zip(&mut flows.outflows) {
             let wanted = levels(patch, solver).map_or(0.0, |level| outflow.rating.at(level).max(0.0));
             let change = patch.take(solver, wanted * step);
-            flow.discharge = -change.volume / step;
+            *discharge = -change.volume / step;
             book(change);
         }
         for (held, patch) in structures.held.iter().zip(&self.held) {
             book(patch.hold(solver, held.level.at(time)));
         }
-        for ((link, ends), flow) in structures.links.iter().zip(&self.links).zip(&mut flows.links) {
+        for ((link, ends), discharge) in structures.links.iter().zip(&self.links).zip(&mut flows.links) {
             let levels = [0, 1].map(|end| levels(&ends[end], solver));
-            let wanted = link.discharge_between(levels, solver.gravity);
+            let wanted = link.discharge(levels, solver.gravity);
             let [from, to] = if wanted >= 0.0 { [0, 1] } else { [1, 0] };
             let taken = ends[from].take(solver, wanted.abs() * step);
             // It comes out at rest.
             let given = ends[to].add(solver, -taken.volume, [0.0; 2]);
-            flow.discharge = (given.volume / step).copysign(wanted);
+            *discharge = (given.volume / step).copysign(wanted);
             book(Change {
                 volume: taken.volume + given.volume,
                 momentum: taken.momentum,

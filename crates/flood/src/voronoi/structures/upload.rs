@@ -4,8 +4,8 @@ use super::super::gpu::{CULVERT, HOLD, InPatch, LINK, NONE, OUTFLOW, RATING, Str
 use super::super::mesh::Mesh;
 use super::super::patch::Patch;
 use super::Patches;
-use crate::hydraulics::Law;
-use crate::structures::{Flows, Structures};
+use super::hydraulics::Law;
+use super::{Flows, Structures};
 use corpuscle_scene::Table;
 
 /// What is uploaded of structures.
@@ -92,6 +92,6 @@ pub(in crate::voronoi) fn take_over(discharges: &[f32], structures: &Structures,
     let held = structures.outflows.len()..structures.outflows.len() + structures.held.len();
     let of_flows = discharges.iter().enumerate().filter(|(k, _)| !held.contains(k));
     for (flow, (_, discharge)) in flows.outflows.iter_mut().chain(&mut flows.links).zip(of_flows) {
-        flow.discharge = f64::from(*discharge);
+        *flow = f64::from(*discharge);
     }
 }

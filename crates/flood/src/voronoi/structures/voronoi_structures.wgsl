@@ -1,6 +1,6 @@
 // Outflows by rating, held levels and links in a step, one after another: see `structures/mod.rs`. One group does all.
 #import declared
-#import voronoi_sums
+#import flood_sums
 #import voronoi_tables
 #import voronoi_change
 #import hydraulics
@@ -126,7 +126,7 @@ fn by_law(own: Structure, upper: f32, lower: f32, forward: bool) -> f32 {
     return value_at(own.table, vec2f(select(upper - lower, 0.0, lower == DRY), 0.0));
 }
 
-// Discharge wanted, positive from the first end to the second: see `Link::discharge_between`.
+// Discharge wanted, positive from the first end to the second: see `Link::discharge`.
 fn of_link(own: Structure, first: f32, second: f32) -> f32 {
     if first >= second {
         return select(by_law(own, first, second, true), 0.0, first == DRY);

@@ -1,6 +1,6 @@
 //! Water that flows over the crests of walls.
 
-use crate::hydraulics::over_weir;
+use super::super::structures::hydraulics::over_weir;
 use crate::voronoi::mesh::Mesh;
 use crate::voronoi::patch::Change;
 use crate::voronoi::solver::Solver;

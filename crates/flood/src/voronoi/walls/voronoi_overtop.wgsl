@@ -1,6 +1,6 @@
 // Gives each cell beside crests what flows over them.
 #import declared
-#import voronoi_sums
+#import flood_sums
 #import voronoi_storage
 
 @compute @workgroup_size(256)

@@ -1,7 +1,7 @@
 // What the water pushes obstacles with in a stage: each face at an obstacle adds up its own. See `pass_borders` in `solver.rs`. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
-#import voronoi_sums
+#import flood_sums
 
 @compute @workgroup_size(256)
 fn main(@builtin(global_invocation_id) id: vec3u) {

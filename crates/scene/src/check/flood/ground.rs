@@ -42,8 +42,7 @@ impl Check {
             Series::Table(rows) => rows.iter().map(|row| row[1]).fold(f64::INFINITY, f64::min),
             Series::File { .. } => 0.0,
         };
-        self.require(key, smallest >= 0.0, || format!("rain must not be negative ({smallest} here)"))?;
-        self.above("flood.rain.film_m", rain.film_m, 0.0)
+        self.require(key, smallest >= 0.0, || format!("rain must not be negative ({smallest} here)"))
     }
 
     fn infiltration(&self, key: &str, infiltration: &Infiltration) -> Checked {

@@ -1,9 +1,8 @@
 //! Cells that follow the water, beside cells of one size.
 
 use super::super::rows;
-use super::super::thacker::{Exact, omega, plane};
 use super::beach::run_up;
-use super::thacker::{error, swing_with};
+use super::thacker::{Exact, error, omega, plane, swing_with};
 use super::{all_sides, settings, worst};
 use crate::device::{rounding, sized};
 use crate::{Case, Options, Row};

@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub(in super::super) const MOMENTUM: Case = Case {
     name: "flood/voronoi/momentum",
     about: "Water 2 m deep with waves and whirls in a flat periodic box, and a column of water that falls onto dry ground there, 30 s by scheme \
-            voronoi, three seeds: drift of momentum over the sum of its magnitudes. Peer: scheme balanced 1.2e-2.",
+            voronoi, three seeds: drift of momentum over the sum of its magnitudes. Peer: smoothed particles of fixed volumes 1.2e-2.",
     slow: false,
     reduced: 2.0,
     run: |_: &Options| rows(MOMENTUM.name, momentum()),
@@ -147,7 +147,7 @@ fn everything(seed: u64) -> Result<VoronoiFlood, ModelError> {
     };
     let link = |name: &str, from, to, law| Link { name: name.into(), from, to, both_ways: true, law };
     let settings = Settings {
-        rain: Some(Rain { intensity_mm_per_h: Series::Constant(200.0), raster: None, film_m: 0.0 }),
+        rain: Some(Rain { intensity_mm_per_h: Series::Constant(200.0), raster: None }),
         infiltration: Some(Infiltration::GreenAmpt(ground)),
         inflow: vec![Inflow {
             name: "spring".into(),

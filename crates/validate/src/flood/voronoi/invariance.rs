@@ -1,7 +1,7 @@
 //! The same set-up turned, and in other units of length.
 
-use super::super::dam_break::exact_depth;
 use super::super::{GRAVITY, rows};
+use super::dam_breaks::exact_depth;
 use super::{all_sides, run, settings};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater};

@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub(in super::super) const BLOCKS: Case = Case {
     name: "flood/voronoi/lake-blocks",
     about: "A lake of level 1.5 m on blocks of 6 m at heights of 0 to 3 m, particles 1.5 m apart, n 0.05, 300 s by scheme voronoi, three seeds: \
-            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers: scheme balanced comes to 0.43 m/s, a variational \
-            one to 5e-4 m/s and 4e-3 m/s after waves.",
+            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers: smoothed particles of fixed volumes come to 0.43 m/s, in a \
+            variational scheme to 5e-4 m/s and 4e-3 m/s after waves.",
     slow: false,
     reduced: 2.0,
     run: blocks,
@@ -34,8 +34,8 @@ pub(in super::super) const ISLANDS: Case = Case {
 pub(in super::super) const JACKSBORO: Case = Case {
     name: "flood/voronoi/lake-jacksboro",
     about: "A lake of level 330 m on the Jacksboro terrain, particles 200 m and 100 m apart, n 0.05, 1800 s by scheme voronoi, three seeds: \
-            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers at 100 m: scheme balanced comes to 1.3 m/s and gains \
-            energy, a variational one to 6e-3 m/s and 1.3e-2 m/s after waves.",
+            undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers at 100 m: smoothed particles of fixed volumes come to 1.3 m/s and gain \
+            energy, in a variational scheme to 6e-3 m/s and 1.3e-2 m/s after waves.",
     slow: true,
     reduced: 4.0,
     run: jacksboro,

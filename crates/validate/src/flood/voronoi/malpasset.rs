@@ -1,6 +1,6 @@
 //! The dam of Malpasset, 2 December 1959, by scheme voronoi.
 
-use super::super::malpasset::{Place, mean_magnitude, read, root_mean_square, watch};
+use super::super::measured::Watched;
 use super::{SEEDS, ready, settings};
 use crate::device::rounding;
 use crate::flood::rows;
@@ -24,6 +24,20 @@ pub(in crate::flood) const MALPASSET: Case = Case {
 
 /// Distances of the particles, m.
 const SPACINGS: [f64; 3] = [56.0, 40.0, 28.0];
+
+/// Simulated time, s.
+const TIME: f64 = 4000.0;
+
+/// Time between looks at the water, s.
+const LOOK: f64 = 2.0;
+
+/// A place of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
+struct Place {
+    name: String,
+    at: [f64; 2],
+    level: f64,
+    arrival: Option<f64>,
+}
 
 fn malpasset(options: &Options) -> Vec<Row> {
     match &options.data {
@@ -99,4 +113,41 @@ fn run<'a>(
     let mut flood = ready(VoronoiFlood::new(&settings, seed, folder, Arc::new(terrain))?)?;
     let (highest, arrival) = watch(&mut flood, count)?;
     Ok(Found { highest, arrival, water: flood.ledger().balances[0].relative_error().abs() })
+}
+
+/// Highest level and time of arrival at each gauge; a gauge that stays dry has its bed's level and the end of the run.
+fn watch(flood: &mut impl Model, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
+    let mut highest = vec![f64::NEG_INFINITY; gauges];
+    let mut arrival = vec![TIME; gauges];
+    for (time, row) in Watched::run(flood, TIME, LOOK)?.rows() {
+        for (gauge, row) in row.chunks_exact(4).take(gauges).enumerate() {
+            highest[gauge] = highest[gauge].max(row[1]);
+            if row[0] >= 0.05 {
+                arrival[gauge] = arrival[gauge].min(time);
+            }
+        }
+    }
+    Ok((highest, arrival))
+}
+
+/// Reads name, x, y, highest level and, where there is one, arrival.
+fn read(path: &Path) -> Result<Vec<Place>, ModelError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| ModelError::Setup(format!("{} cannot be read: {error}", path.display())))?;
+    let place = |line: &str| {
+        let mut fields = line.split(',').map(str::trim);
+        let name = fields.next()?.to_string();
+        let mut number = || fields.next()?.parse::<f64>().ok();
+        Some(Place { name, at: [number()?, number()?], level: number()?, arrival: number() })
+    };
+    let parsed = text.lines().skip(1).filter(|line| !line.trim().is_empty()).map(place);
+    parsed.collect::<Option<_>>().ok_or_else(|| ModelError::Setup(format!("{} is not as expected", path.display())))
+}
+
+fn root_mean_square(errors: &[f64]) -> f64 {
+    (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+fn mean_magnitude(errors: &[f64]) -> f64 {
+    errors.iter().map(|error| error.abs()).sum::<f64>() / errors.len() as f64
 }

@@ -13,8 +13,8 @@ use std::sync::Arc;
 pub(in super::super) const SHEETS: Case = Case {
     name: "flood/voronoi/sheets",
     about: "A sheet of 2 cm, uneven by 20 %, at rest on endless slopes of 0.05, 0.1 and 0.3 (n 0.03, particles 2 m apart), after 60 s by scheme \
-            voronoi, three seeds: its mean velocity against Manning's formula, and its least depth. Peer: scheme balanced is 21, 57 and 78 % \
-            too fast, and breaks the sheet into clumps.",
+            voronoi, three seeds: its mean velocity against Manning's formula, and its least depth. Peer: smoothed particles of fixed volumes are 21, 57 and \
+            78 % too fast, and break into clumps.",
     slow: false,
     reduced: 2.0,
     run: |_: &Options| rows(SHEETS.name, measure()),

@@ -1,10 +1,9 @@
 //! Cells that hold water by volume against level.
 
 use super::super::rows;
-use super::super::thacker::{Exact, curved, omega, plane};
 use super::noise::squares;
 use super::rain::hydrograph;
-use super::thacker::{error, swing_with};
+use super::thacker::{Exact, curved, error, omega, plane, swing_with};
 use super::{all_sides, run, settings, worst};
 use crate::{Case, Options, Row};
 use corpuscle_flood::{Filling, StartWater};

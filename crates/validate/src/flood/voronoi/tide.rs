@@ -15,8 +15,7 @@ pub(in super::super) const TIDE: Case = Case {
     name: "flood/voronoi/tide",
     about: "A basin 60 m long, open to a tide of 0.3 m about a depth of 1.5 m with a period of 400 s by scheme voronoi, three seeds: the level in it \
             follows the tide, and exactly as much comes in and goes out as it holds. Long waves of small height (Lamb 1932, section 185): the level at x \
-            from the wall is cos(k x) / cos(k l) times the tide, within 0.8 % here. Two periods. \
-            Bound: that of scheme balanced.",
+            from the wall is cos(k x) / cos(k l) times the tide, within 0.8 % here. Two periods.",
     slow: false,
     reduced: 2.0,
     run: |_: &Options| rows(TIDE.name, measure()),

@@ -1,8 +1,7 @@
 //! Water swinging in a paraboloid.
 
-use super::super::super::swashes::numbers;
-use super::super::super::thacker;
-use super::super::thacker::swing;
+use super::super::thacker::{self, swing};
+use super::numbers;
 use corpuscle_model::ModelError;
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -1,9 +1,8 @@
 //! Dam breaks, a lake that comes to rest, and water swinging in a parabola, along a strip.
 
-use super::super::super::swashes::Profile;
 use super::super::super::{GRAVITY, strip};
 use super::super::{run, settings};
-use super::WIDTH;
+use super::{Profile, WIDTH};
 use corpuscle_flood::{Filling, StartWater};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Flood as Settings, Friction};
@@ -12,8 +11,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Place, depth, velocity, ground.
-const COLUMNS: [usize; 4] = [0, 1, 2, 3];
+/// Place, depth, ground.
+const COLUMNS: [usize; 3] = [0, 1, 3];
 
 /// Two pools before and behind a dam in the middle of a strip between walls, depths `[before, behind]`, m, after `time` s.
 struct Dam {

@@ -1,9 +1,8 @@
 //! Steady flow along channels, rain included, from dry ground or still water.
 
-use super::super::super::swashes::Profile;
 use super::super::super::{GRAVITY, strip};
 use super::super::{advance, cells, set_up, settings};
-use super::WIDTH;
+use super::{Profile, WIDTH};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Edge, Edges, Flood as Settings, Friction, Series, Wave};
@@ -11,8 +10,8 @@ use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Place, depth, velocity, ground.
-const COLUMNS: [usize; 4] = [0, 1, 2, 3];
+/// Place, depth, ground.
+const COLUMNS: [usize; 3] = [0, 1, 3];
 
 /// Flow is steady when depths change by less than this part of their mean while a wave crosses the channel.
 const STEADY: f64 = 3e-5;
@@ -160,7 +159,15 @@ pub(super) fn mobile_rain(path: &Path, spacing: f64, seed: u64) -> Result<f64, M
     let settings =
         Settings { friction: Some(Friction::Linear(0.01125)), ..settings(spacing, 0.0, strip(&Edge::Periodic)) };
     let mut flood = set_up(&settings, seed, &terrain, &[water])?;
-    flood.rain(Box::new(super::super::super::swashes::mobile_rain))?;
+    flood.rain(Box::new(mobile_rain_at))?;
     advance(&mut flood, 500.0)?;
     Ok(exact.error_of(|x, y| flood.sample(x, y).depth, width))
+}
+
+/// The rain of [`mobile_rain`], m/s, at a position, m, and a time, s.
+fn mobile_rain_at(x: f64, _: f64, time: f64) -> f64 {
+    let along = (x - 8.0 * time - 2250.0).rem_euclid(ROUND);
+    let shape = ((along - 900.0) * std::f64::consts::TAU / 3600.0).sin() + 1.0;
+    let swell = (std::f64::consts::PI * time / 1000.0).sin();
+    if along <= 3600.0 { 0.5 * 5e-5 * shape * swell } else { 0.0 }
 }

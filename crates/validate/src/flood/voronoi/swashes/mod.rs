@@ -4,6 +4,9 @@
 mod bowls;
 mod breaks;
 mod channels;
+mod profile;
+
+use profile::{Profile, numbers};
 
 use super::super::{order, rows};
 use super::worst;
@@ -15,8 +18,7 @@ use std::path::Path;
 pub(in super::super) const SWASHES: Case = Case {
     name: "flood/voronoi/swashes",
     about: "Every exact solution in the folder of reference data (SWASHES 1.05, Delestre et al. 2013) by scheme voronoi, three seeds, three spacings: mean \
-            |h - h_exact| / mean h_exact at the finest, and the order between the widest and the finest. Steady flows start dry or from still water. \
-            Bounds of the errors: those of scheme balanced.",
+            |h - h_exact| / mean h_exact at the finest, and the order between the widest and the finest. Steady flows start dry or from still water.",
     slow: true,
     reduced: 4.0,
     run: swashes,

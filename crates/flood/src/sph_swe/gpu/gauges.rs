@@ -1,0 +1,130 @@
+//! Gauges that the device reads itself: rows that wait there until the host takes them, together with what it learns of the steps.
+
+use super::OnGpu;
+use super::shared::{OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
+use super::tasks::{Shader, task};
+use crate::sampling::Sample;
+use crate::sph_swe::measured::Reading;
+use corpuscle_gpu::{GpuError, Pass, Task, read, read_together, storage, wgpu};
+
+/// Rows that wait at a time, at most.
+pub(super) const MOST_ROWS: usize = 64;
+
+/// What sums up the water, what tells of it and of obstacles, and what looks at positions.
+pub(super) const SHADERS: [Shader; 3] = [
+    ("sph_volumes", include_str!("../sph_volumes.wgsl")),
+    ("sph_totals", include_str!("../sph_totals.wgsl")),
+    ("sph_gauges", include_str!("../sph_gauges.wgsl")),
+];
+
+/// The slot of each in the numbers of groups: see `sph_finish.wgsl`.
+const SLOTS: [u64; 3] = [5, 6, 7];
+
+/// How much each row tells of.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    places: usize,
+    obstacles: usize,
+}
+
+impl Extent {
+    /// Words before the first row.
+    fn first(self) -> usize {
+        PLACES as usize + 2 * self.places
+    }
+
+    /// Words before the positions of a row.
+    fn before_places(self) -> usize {
+        (TOTALS + OF_OBSTACLE * self.obstacles as u32) as usize
+    }
+
+    /// Words of a row.
+    fn stride(self) -> usize {
+        self.before_places() + OF_PLACE as usize * self.places
+    }
+}
+
+/// What fills the rows.
+#[derive(Debug)]
+pub(super) struct Gauges {
+    /// The places in model coordinates.
+    places: Vec<[f64; 2]>,
+    extent: Extent,
+    tasks: [Task; 3],
+}
+
+impl Gauges {
+    /// Has what is due taken, if anything is.
+    pub fn take(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
+        self.tasks.iter().zip(SLOTS).for_each(|(task, slot)| task.run_as_told(pass, groups, slot));
+    }
+}
+
+impl OnGpu {
+    /// Has gauges look at these places from now on.
+    pub fn measure(&mut self, places: &[[f64; 2]]) -> Result<(), GpuError> {
+        if self.tasks.gauges.as_ref().is_some_and(|gauges| gauges.places == places) {
+            return Ok(());
+        }
+        let extent = Extent { places: places.len(), obstacles: self.obstacles.count };
+        let (first, stride) = (extent.first(), extent.stride());
+        let rows = storage::<u32>(&self.gpu, "rows of gauges", first + MOST_ROWS * stride)?;
+        let header = [first, stride, extent.obstacles].map(|number| number as u32);
+        let relative = places.iter().flat_map(|place| self.origin.relative(*place).map(f32::to_bits));
+        let told: Vec<u32> = header.into_iter().chain(relative).collect();
+        self.gpu.queue.write_buffer(&rows, 0, bytemuck::cast_slice(&told));
+        self.tasks.memory.rows = rows;
+        let tasks = SHADERS.map(|shader| task(&self.gpu, shader, &self.tasks.memory));
+        self.tasks.gauges = Some(Gauges { places: places.to_vec(), extent, tasks });
+        Ok(())
+    }
+
+    /// Says when rows are due, s from now.
+    pub(super) fn tell_due(&mut self, due: &[f64]) {
+        let due: Vec<f32> = due.iter().map(|&time| time as f32).collect();
+        self.gpu.queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
+        self.status.rows_told = due.len() as u32;
+        (self.status.rows_taken, self.status.rows_due) = (0, 0);
+        self.status.gauge_places = self.tasks.gauges.as_ref().map_or(0, |gauges| gauges.places.len() as u32);
+    }
+
+    /// What the host learns of the steps, and the rows that were taken in them, of `told` at most. What came and went, it did since the host last
+    /// spoke.
+    pub(super) fn learn(&self, told: usize) -> Result<(Status, Vec<Reading>), GpuError> {
+        let memory = &self.tasks.memory;
+        let of_steps = (&memory.status, size_of::<Status>());
+        let Some(gauges) = self.tasks.gauges.as_ref().filter(|_| told > 0) else {
+            return Ok((read::<Status>(&self.gpu, of_steps.0, 1)?[0], Vec::new()));
+        };
+        let (first, stride) = (gauges.extent.first(), gauges.extent.stride());
+        let of_gauges = (&memory.rows, 4 * (first + told * stride));
+        let [status, words] = read_together(&self.gpu, [of_steps, of_gauges], bytemuck::pod_collect_to_vec::<u8, u32>)?;
+        let status: Status = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&status));
+        let taken = (status.rows_taken + status.rows_due) as usize;
+        let rows = words[first..].chunks_exact(stride).take(taken);
+        Ok((status, rows.map(|row| self.reading(row, gauges.extent)).collect()))
+    }
+
+    fn reading(&self, row: &[u32], extent: Extent) -> Reading {
+        let number = |at: usize| f64::from(f32::from_bits(row[at]));
+        let pair = |at: usize| number(at) + number(at + 1);
+        let first = |obstacle: usize| (TOTALS + OF_OBSTACLE * obstacle as u32) as usize;
+        let force = |obstacle: usize| [0, 1].map(|axis| number(first(obstacle) + axis));
+        let impulse = |obstacle: usize| {
+            let at = first(obstacle);
+            [0, 1].map(|axis| self.impulse(obstacle, axis, pair(at + 2 + 2 * axis), row[at + 6 + axis] as i32))
+        };
+        let samples = row[extent.before_places()..].chunks_exact(OF_PLACE as usize).map(|sample| {
+            let [depth, east, north] = [0, 1, 2].map(|at| f64::from(f32::from_bits(sample[at])));
+            Sample { depth, velocity: [east, north] }
+        });
+        Reading {
+            samples: samples.collect(),
+            on_obstacles: (0..extent.obstacles).map(force).collect(),
+            impulses: (0..extent.obstacles).map(impulse).collect(),
+            inflow: pair(0),
+            outflow: pair(2),
+            stored: number(STORED as usize),
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The ground as the shaders have it: nodes of its height, and its roughness.
+
+use super::shared::{CHEZY, LINEAR, MANNING, MAPPED, Parameters, SMOOTH};
+use super::upload::Origin;
+use crate::friction::{Coefficient, Roughness};
+use crate::sph_swe::particle::Particle;
+use corpuscle_scene::Friction;
+use corpuscle_terrain::{Bounds, Terrain};
+use rayon::prelude::*;
+
+/// Roughness whose raster does not lie along the model's coordinates is met in so many cells along the longer side.
+const CELLS: f64 = 2048.0;
+
+/// The nodes of the ground's patches, heights above the origin's; where they lie is told in `parameters`.
+pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Parameters) -> Vec<[f32; 4]> {
+    let patches = terrain.patches_above(origin.level);
+    parameters.ground_corner = origin.relative(patches.corner);
+    parameters.ground_per_metre = patches.per_metre.map(|value| value as f32);
+    parameters.ground_patches = patches.size.map(|nodes| nodes as u32 - 1);
+    patches.nodes
+}
+
+/// How the ground slows the water, told in `parameters`; Manning's n over the ground where it is not one number.
+pub(super) fn roughness(
+    roughness: &Roughness,
+    bounds: Bounds,
+    origin: Origin,
+    parameters: &mut Parameters,
+) -> Vec<f32> {
+    let (law, number) = match roughness {
+        Roughness::Manning(Coefficient::Even(0.0)) => (SMOOTH, 0.0),
+        Roughness::Manning(Coefficient::Even(n)) => (MANNING, *n),
+        Roughness::Other(Friction::Chezy(c)) => (CHEZY, *c),
+        Roughness::Other(Friction::Linear(slope)) => (LINEAR, *slope),
+        Roughness::Manning(coefficient) => {
+            parameters.friction = MAPPED;
+            return mapped(coefficient, bounds, origin, parameters);
+        }
+    };
+    (parameters.friction, parameters.roughness) = (law, number as f32);
+    Vec::new()
+}
+
+/// Cells of the raster itself, over all the ground.
+fn mapped(coefficient: &Coefficient, bounds: Bounds, origin: Origin, parameters: &mut Parameters) -> Vec<f32> {
+    let low = [bounds.x_min, bounds.y_min];
+    let size = bounds.size();
+    let even = size[0].max(size[1]) / CELLS;
+    let lattice = coefficient.raster().and_then(corpuscle_terrain::RasterField::cells_in_model);
+    let (corner, cell) = lattice.unwrap_or((low, [even; 2]));
+    let first = [0, 1].map(|axis| ((low[axis] - corner[axis]) / cell[axis]).floor());
+    let count = [0, 1].map(|axis| ((low[axis] + size[axis] - corner[axis]) / cell[axis]).ceil().max(first[axis] + 1.0));
+    let [columns, rows] = [0, 1].map(|axis| (count[axis] - first[axis]) as u32);
+    let south_west = [0, 1].map(|axis| corner[axis] + first[axis] * cell[axis]);
+    let value = |number: u32| {
+        let at = [number % columns, number / columns];
+        let [x, y] = [0, 1].map(|axis| south_west[axis] + (f64::from(at[axis]) + 0.5) * cell[axis]);
+        coefficient.at(x, y) as f32
+    };
+    parameters.rough_corner = origin.relative(south_west);
+    parameters.rough_per_metre = cell.map(|size| (1.0 / size) as f32);
+    parameters.rough_cells = [columns, rows];
+    (0..columns * rows).into_par_iter().map(value).collect()
+}
+
+/// Completes what has come back from the GPU, on which the slope of the ground is not kept.
+pub(super) fn complete(particles: &mut [Particle], terrain: &Terrain) {
+    particles.par_iter_mut().with_min_len(1024).for_each(|particle| {
+        particle.ground_slope = terrain.height_and_slope(particle.x, particle.y).1;
+    });
+}

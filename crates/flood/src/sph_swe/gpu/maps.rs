@@ -1,0 +1,133 @@
+//! Maps that the device keeps: it looks at the water in each of their cells itself.
+
+use super::super::maps::{Maps, Record};
+use super::shared::MapCell;
+use super::tasks::{Shader, task};
+use super::upload::Origin;
+use super::{MOST_CELLS, OnGpu};
+use crate::sph_swe::obstacles::Obstacles;
+use corpuscle_gpu::{Gpu, GpuError, Pass, Task, read, storage, wgpu};
+use corpuscle_terrain::Terrain;
+
+/// Looks that the device can be told of at a time.
+pub(super) const MOST_LOOKS: usize = 64;
+
+/// The slot of cells of the maps: see `sph_finish.wgsl`.
+const CELLS: u64 = 8;
+
+pub(super) const SHADER: Shader = ("sph_maps", include_str!("../sph_maps.wgsl"));
+
+/// Maps on the device.
+#[derive(Debug)]
+pub(super) struct GpuMaps {
+    /// The cells that may become wet, by their numbers in the maps, and where they are.
+    numbers: Vec<u32>,
+    places: Vec<[f32; 2]>,
+    pub wet_depth: f64,
+    task: Task,
+}
+
+impl GpuMaps {
+    /// Cells that may become wet.
+    pub fn count(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// Has the device look, if it is time to.
+    pub fn look(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
+        self.task.run_as_told(pass, groups, CELLS);
+    }
+
+    /// The cells as the device is to have them.
+    fn begun(&self, maps: &Maps) -> Vec<MapCell> {
+        let cell = |(number, place): (&u32, &[f32; 2])| {
+            let record = maps.record(*number as usize);
+            MapCell {
+                place: *place,
+                max_depth: record.max_depth,
+                max_speed: record.max_speed,
+                hazard: record.hazard,
+                // No device need know what is not a number.
+                arrival: if record.arrival.is_nan() { -1.0 } else { record.arrival },
+                duration: record.duration,
+                unused: 0.0,
+            }
+        };
+        self.numbers.iter().zip(&self.places).map(cell).collect()
+    }
+
+    fn fetch(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
+        let cells: Vec<MapCell> = read(gpu, cells, self.numbers.len())?;
+        for (number, cell) in self.numbers.iter().zip(cells) {
+            let MapCell { max_depth, max_speed, hazard, arrival, duration, .. } = cell;
+            let arrival = if arrival < 0.0 { f32::NAN } else { arrival };
+            *maps.record_mut(*number as usize) = Record { max_depth, max_speed, hazard, arrival, duration };
+        }
+        Ok(())
+    }
+}
+
+/// The cells of the maps that may become wet, and where they are.
+fn cells<'a>(
+    terrain: &'a Terrain,
+    obstacles: &'a Obstacles,
+    origin: Origin,
+) -> impl Iterator<Item = (u32, [f32; 2])> + 'a {
+    let grid = terrain.map_grid();
+    let all = (0..grid.rows).flat_map(move |row| (0..grid.columns).map(move |column| (column, row)));
+    all.filter(|&(column, row)| terrain.is_valid_cell(column, row)).filter_map(move |(column, row)| {
+        let centre = grid.centre(column, row);
+        let number = (row * grid.columns + column) as u32;
+        (!obstacles.hold(centre)).then(|| (number, origin.relative(centre)))
+    })
+}
+
+impl OnGpu {
+    /// Keeps maps from now on, where there is room for them and threads enough.
+    pub fn keep_maps(&mut self, terrain: &Terrain, obstacles: &Obstacles, maps: &Maps) -> Result<(), GpuError> {
+        let (numbers, places): (Vec<u32>, Vec<[f32; 2]>) = cells(terrain, obstacles, self.origin).unzip();
+        let cells = match storage::<MapCell>(&self.gpu, "cells of maps", numbers.len()) {
+            Err(GpuError::Memory { .. }) => return Ok(()),
+            cells => cells?,
+        };
+        if numbers.len() > MOST_CELLS {
+            return Ok(());
+        }
+        self.tasks.memory.map_cells = cells;
+        let task = task(&self.gpu, SHADER, &self.tasks.memory);
+        self.tasks.maps = Some(GpuMaps { numbers, places, wet_depth: maps.wet_depth(), task });
+        Ok(())
+    }
+
+    /// Whether it looks for the maps itself.
+    pub fn keeps_maps(&self) -> bool {
+        self.tasks.maps.is_some()
+    }
+
+    /// Hands over what maps hold so far.
+    pub(super) fn begin_maps(&self, maps: &Maps) {
+        if let Some(kept) = &self.tasks.maps {
+            let cells = kept.begun(maps);
+            self.gpu.queue.write_buffer(&self.tasks.memory.map_cells, 0, bytemuck::cast_slice(&cells));
+        }
+    }
+
+    /// Brings that back.
+    pub fn maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
+        let cells = &self.tasks.memory.map_cells;
+        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.fetch(&self.gpu, cells, maps))
+    }
+
+    /// Says when to look, s from now, and when it was last done.
+    pub(super) fn tell_looks(&mut self, now: f64, looks: &[f64], looked: f64) {
+        let times: Vec<f32> = looks.iter().map(|&time| time as f32).collect();
+        self.gpu.queue.write_buffer(&self.tasks.memory.looks, 0, bytemuck::cast_slice(&times));
+        let maps = self.tasks.maps.as_ref();
+        self.status.looks_told = times.len() as u32;
+        self.status.looks_taken = 0;
+        self.status.looked = looked as f32;
+        self.status.map_cells = maps.map_or(0, |maps| maps.count() as u32);
+        self.status.wet_depth = maps.map_or(0.0, |maps| maps.wet_depth as f32);
+        self.status.began = now as f32;
+    }
+}

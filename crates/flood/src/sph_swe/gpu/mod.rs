@@ -1,0 +1,148 @@
+//! Scheme `sph-swe` on a GPU, in single precision: the water stays there while it takes steps.
+//!
+//! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it. Each pass is a WGSL file beside its
+//! CPU code.
+
+mod advance;
+mod gauges;
+mod ground;
+mod maps;
+mod measured;
+mod model;
+mod obstacles;
+mod seen;
+mod shared;
+mod span;
+mod state;
+mod tasks;
+#[cfg(test)]
+mod tests;
+mod upload;
+mod watch;
+mod zones;
+
+pub(super) use measured::Onlookers;
+pub(super) use model::failed;
+
+use corpuscle_gpu::{Buffers, Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS, wgpu};
+use corpuscle_terrain::Bounds;
+use obstacles::GpuObstacles;
+use seen::Seen;
+use shared::{Parameters, Status};
+use state::DoneToObstacles;
+use std::sync::OnceLock;
+use tasks::Tasks;
+use upload::{Origin, Setting};
+
+/// Cells a particle, and at least: what the sort goes through beside the particles.
+const CELLS_A_PARTICLE: usize = 4;
+const FEWEST_CELLS: usize = 65_536;
+
+/// More cells are no work for one thread each.
+const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
+
+/// Births that the GPU can be told of at once.
+const MOST_BIRTHS: usize = 16_384;
+
+/// Water on a GPU.
+#[derive(Debug)]
+pub(super) struct OnGpu {
+    gpu: Gpu,
+    tasks: Tasks,
+    obstacles: GpuObstacles,
+    /// The zone of each source.
+    zones: Vec<u32>,
+    /// What others draw, where they do.
+    seen: OnceLock<Seen>,
+    parameters: Parameters,
+    origin: Origin,
+    bounds: Bounds,
+    status: Status,
+    /// Particles, drops and cells that there is room for.
+    room: usize,
+    room_in_air: usize,
+    most_cells: usize,
+    /// Steps in all, to lay the cells out at the same ones however often the host looks.
+    steps: u64,
+    /// The time that the clock of the device counts from, s.
+    clock_began: f64,
+    /// Steps in a batch.
+    batch: u32,
+    /// Whether the host has not the state that is here.
+    ahead: bool,
+    /// Time spent on steps, s.
+    busy: f64,
+    /// Where passes are timed.
+    pub stopwatch: Option<Stopwatch>,
+    /// As it was when the water was handed over.
+    done_before: DoneToObstacles,
+}
+
+impl OnGpu {
+    /// Room for `count` particles.
+    ///
+    /// # Errors
+    /// [`GpuError::Memory`], [`GpuError::TooMany`].
+    pub fn new(gpu: Gpu, count: usize, setting: &Setting<'_>) -> Result<Self, GpuError> {
+        let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
+        let uploaded = setting.upload(&gpu, count, most_cells)?;
+        let (tasks, parameters) = (Tasks::new(&gpu, uploaded.memory, uploaded.sort, setting), uploaded.parameters);
+        Ok(Self {
+            gpu,
+            tasks,
+            obstacles: uploaded.obstacles,
+            zones: uploaded.zones,
+            seen: OnceLock::new(),
+            parameters,
+            origin: uploaded.origin,
+            bounds: setting.surroundings.edges.bounds,
+            status: Status::default(),
+            room: count,
+            room_in_air: setting.falling,
+            most_cells,
+            steps: 0,
+            clock_began: 0.0,
+            batch: 4,
+            ahead: false,
+            busy: 0.0,
+            stopwatch: None,
+            done_before: DoneToObstacles::default(),
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> Gpu {
+        self.gpu.clone()
+    }
+
+    /// Wall-clock time spent on steps, s.
+    pub fn busy(&self) -> f64 {
+        self.busy
+    }
+
+    /// Bytes held on the device.
+    pub fn bytes(&self) -> u64 {
+        self.tasks.memory.in_order().into_iter().map(wgpu::Buffer::size).sum()
+    }
+
+    /// Particles that there are, those in the air among them.
+    pub fn particles(&self) -> usize {
+        (self.status.particles + self.status.falling) as usize
+    }
+
+    /// Particles that there is room for.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
+    /// Drops that there is room for.
+    pub fn room_in_air(&self) -> usize {
+        self.room_in_air
+    }
+
+    /// Leaves the maps to the host.
+    #[cfg(test)]
+    pub fn forget_maps(&mut self) {
+        self.tasks.maps = None;
+    }
+}

@@ -1,0 +1,355 @@
+//! A flood whose steps a GPU takes.
+
+use super::gauges::MOST_ROWS;
+use super::maps::MOST_LOOKS;
+use super::measured::Onlookers;
+use super::span::{Birth, Progress, Span};
+use super::state::Water;
+use super::upload::Setting;
+use super::watch::Watch;
+use super::{MOST_BIRTHS, OnGpu};
+use crate::sph_swe::measured::Reading;
+use crate::sph_swe::particle::Particle;
+use crate::sph_swe::step::CELL_OVER_H;
+use crate::sph_swe::{DENSITY, SphSweFlood, State};
+use crate::zone::Source;
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_model::{Companion, ExactSum, Glance, GpuModel, Model, ModelError, Passed};
+use corpuscle_scene::{SmoothingForm, Table};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Births are looked for so many steps beyond the next look at the maps: the step that passes it may be longer than the last.
+const LONGEST_AHEAD: f64 = 10.0;
+
+pub(in crate::sph_swe) fn failed(error: &GpuError) -> ModelError {
+    ModelError::Device(error.to_string())
+}
+
+impl GpuModel for SphSweFlood {
+    fn use_gpu(&mut self, gpu: Gpu) -> Result<(), ModelError> {
+        if self.settings.sph_swe.smoothing == SmoothingForm::Rate {
+            let what = "flood.sph_swe.smoothing = \"rate\" computes on the CPU only: leave `--backend gpu` out, or take \"density\"";
+            return Err(ModelError::Setup(what.into()));
+        }
+        self.open_gpu(gpu).map_err(|error| ModelError::Setup(error.to_string()))
+    }
+
+    fn gpu_seconds(&self) -> Option<f64> {
+        self.on_gpu.as_ref().map(OnGpu::busy)
+    }
+
+    fn time_passes(&mut self) {
+        if let Some(on_gpu) = &mut self.on_gpu {
+            on_gpu.stopwatch = Stopwatch::new(&on_gpu.gpu());
+        }
+    }
+
+    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+        self.on_gpu.iter().filter_map(|on_gpu| on_gpu.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
+    }
+
+    fn gpu_bytes(&self) -> Option<u64> {
+        self.on_gpu.as_ref().map(OnGpu::bytes)
+    }
+
+    fn gpu(&self) -> Option<Gpu> {
+        self.on_gpu.as_ref().map(OnGpu::gpu)
+    }
+
+    fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
+        let of = |on_gpu: &OnGpu| on_gpu.seen(self.since(), self.spacing_shown(), self.spacing);
+        let seen = self.on_gpu.as_ref().map(of);
+        seen.transpose().map_err(|error| failed(&error))
+    }
+
+    fn advance_shown(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        companion: &mut dyn Companion,
+        (first, _): (f64, bool),
+        show: &mut dyn FnMut(Glance) -> f64,
+    ) -> Result<(), ModelError> {
+        if self.on_gpu.is_none() {
+            return self.advance_with(time, stop, companion);
+        }
+        let watch = Some(Watch { wanted: first, show });
+        self.advance_measured(time, stop, Onlookers { watch, ..Onlookers::of(companion) })
+    }
+}
+
+impl SphSweFlood {
+    /// Makes room on a GPU for the particles that there are, and for more where water comes in, and hands the state over.
+    pub(in crate::sph_swe) fn open_gpu(&mut self, gpu: Gpu) -> Result<(), GpuError> {
+        let (count, falling) = (self.state.particles.len(), self.state.falling.len());
+        let room = falling + if self.sources.is_empty() { count } else { 2 * count + MOST_BIRTHS };
+        self.open_gpu_with(gpu, room)
+    }
+
+    /// The same with room for so many particles.
+    pub(super) fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
+        let scheme = self.parameters();
+        let setting = Setting {
+            surroundings: &self.surroundings,
+            scheme: &scheme,
+            falling: self.state.falling.len(),
+            fall_step: self.fall_step(),
+            gravity: self.settings.gravity_m_per_s2,
+            roughness: &self.roughness,
+            sources: &self.sources,
+            seed: self.seed,
+            volume: self.volume,
+            h: self.h,
+            spacing: self.spacing,
+        };
+        let mut on_gpu = OnGpu::new(gpu, room, &setting)?;
+        if !self.looks_for_overtopping() {
+            on_gpu.keep_maps(&self.surroundings.terrain, &self.surroundings.obstacles, &self.state.maps)?;
+        }
+        self.on_gpu = Some(on_gpu);
+        self.send_to_gpu()
+    }
+
+    /// Hands the state to the GPU, and takes more room there if there is too little.
+    pub(in crate::sph_swe) fn send_to_gpu(&mut self) -> Result<(), GpuError> {
+        let State { particles, on_obstacles, impulses, .. } = &self.state;
+        let water = Water {
+            particles,
+            step: self.state.time_step,
+            external: self.state.external,
+            on_obstacles,
+            impulses,
+            put_back: self.state.put_back,
+            time: self.state.time,
+            next_id: self.state.next_id,
+            maps: &self.state.maps,
+            falling: &self.state.falling,
+        };
+        match &mut self.on_gpu {
+            Some(on_gpu) if on_gpu.room() < particles.len() || on_gpu.room_in_air() < water.falling.len() => {
+                let gpu = on_gpu.gpu();
+                self.open_gpu(gpu)
+            }
+            Some(on_gpu) => {
+                on_gpu.send(&water);
+                Ok(())
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// As many particles as can come from `now` on within `horizon` s, while sources owe `owed`.
+    fn most_births(&self, owed: &[ExactSum], now: f64, horizon: f64) -> usize {
+        let of_one =
+            |(source, owed): (&Source, &ExactSum)| owed.value() + source.discharge.integral(now, now + horizon);
+        let of_sources =
+            self.sources.iter().zip(owed).map(of_one).map(|come| (come / self.volume).max(0.0) as usize + 1);
+        of_sources.sum()
+    }
+
+    /// Takes more room on the GPU where the water that is to come might not find any.
+    fn make_room(&mut self) -> Result<(), GpuError> {
+        let Some(on_gpu) = &self.on_gpu else { return Ok(()) };
+        if on_gpu.lacks_room(|horizon| self.most_births(&self.state.owed, self.state.time, horizon)) {
+            let gpu = on_gpu.gpu();
+            self.open_gpu(gpu)?;
+        }
+        Ok(())
+    }
+
+    pub(in crate::sph_swe) fn advance_on_gpu(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        onlookers: &mut Onlookers<'_>,
+    ) -> Result<(), ModelError> {
+        onlookers.told = self.shown;
+        while self.state.time + self.state.time_step <= time {
+            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+                // Who has seen a row of gauges is not to see it again.
+                self.shown = onlookers.told.max(self.state.time);
+                return Ok(());
+            }
+            let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
+            let look = if keeps_maps { f64::INFINITY } else { self.state.next_look as f64 * self.map_period };
+            let before = (self.state.steps, onlookers.told);
+            self.make_room().map_err(|error| failed(&error))?;
+            if onlookers.measure() {
+                self.measure_on_gpu()?;
+            }
+            let done = self.advance_to_look(time, look, stop, onlookers)?;
+            if done.broken {
+                return Err(self.breakdown());
+            }
+            if self.state.time >= look {
+                self.look();
+            }
+            // To the GPU, which rounds more coarsely, a step that ends at that time may end after it.
+            let is_stopped = stop.load(Ordering::Relaxed) || onlookers.call_back;
+            if (self.state.steps, onlookers.told) == before && !is_stopped {
+                break;
+            }
+        }
+        self.show_to(onlookers, self.state.time, time.next_up()).map_err(|error| failed(&error))?;
+        self.shown = time;
+        Ok(())
+    }
+
+    /// Goes on to `time`, or to the first step that ends at `look` or after. What is here changes only when all of it has come back.
+    fn advance_to_look(
+        &mut self,
+        time: f64,
+        look: f64,
+        stop: &AtomicBool,
+        onlookers: &mut Onlookers<'_>,
+    ) -> Result<Progress, ModelError> {
+        let began = self.state.time;
+        let mut done = Progress::none(self.state.time_step);
+        let mut owed = self.state.owed.clone();
+        let mut looked = self.state.maps.last();
+        while began + done.elapsed + done.step <= time && began + done.elapsed < look {
+            let now = began + done.elapsed;
+            self.show_to(onlookers, now, now + done.step).map_err(|error| failed(&error))?;
+            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+                break;
+            }
+            let longest = self.on_gpu.as_ref().map_or(0.0, OnGpu::longest_batch);
+            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
+            let looks = self.looks(now, done.looks);
+            let due = onlookers.due(time);
+            let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
+            let (target, most) = onlookers.steps_to_look(now, until);
+            let from_now: Vec<f64> = due.iter().map(|due| due - now).collect();
+            let Some(on_gpu) = &mut self.on_gpu else { break };
+            let span = Span {
+                now,
+                until: target - now,
+                most,
+                look: looks.last().copied().unwrap_or(look - now),
+                looks: &looks,
+                looked: looked - now,
+                births: &births,
+                due: &from_now,
+            };
+            let (mut progress, mut readings) = on_gpu.advance(span).map_err(|error| failed(&error))?;
+            let particles = on_gpu.particles();
+            if !readings.iter().all(Reading::is_sound) {
+                progress.broken = true;
+                readings.clear();
+            }
+            for (due, reading) in due.iter().zip(&readings) {
+                onlookers.tell(*due, &self.row_of_gpu(reading, &done));
+            }
+            for (source, owed) in self.sources.iter().zip(&mut owed) {
+                owed.add(source.discharge.integral(now, now + progress.elapsed));
+            }
+            births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
+            if progress.looks > 0 {
+                looked = now + progress.looked;
+            }
+            done = done.and(progress);
+            let particle_steps = self.state.particle_steps + done.particle_steps;
+            onlookers.pass(Passed { time: began + done.elapsed, particles, particle_steps });
+            let lacks_room = |on_gpu: &OnGpu| on_gpu.lacks_room(|horizon| self.most_births(&owed, now, horizon));
+            let is_held = progress.steps == 0 && readings.is_empty();
+            if is_held && target < until && !done.broken {
+                // To the GPU, which rounds more coarsely, a step that ends when somebody looks may end after it.
+                self.show_to(onlookers, now, target.next_up()).map_err(|error| failed(&error))?;
+            } else if is_held || done.broken || self.on_gpu.as_ref().is_some_and(lacks_room) {
+                break;
+            }
+        }
+        if done.steps > 0 {
+            let particles = self.fetched().map_err(|error| failed(&error))?;
+            let (time, steps) = (began + done.elapsed, self.state.steps + done.steps);
+            if let Some(error) = self.defect_among(&particles, time, steps) {
+                return Err(error);
+            }
+            self.state.particles = particles;
+            self.take_over(&done, owed, looked).map_err(|error| failed(&error))?;
+        }
+        Ok(done)
+    }
+
+    /// The particles as the GPU has them.
+    fn fetched(&mut self) -> Result<Vec<Particle>, GpuError> {
+        let mut particles = Vec::new();
+        if let Some(on_gpu) = &mut self.on_gpu {
+            on_gpu.fetch(&mut particles, &self.surroundings.terrain)?;
+        }
+        Ok(particles)
+    }
+
+    /// Takes over what else the GPU has, after steps that did what `done` says: sources owe `owed`, and it was last
+    /// looked at the maps at `looked` s.
+    fn take_over(&mut self, done: &Progress, owed: Vec<ExactSum>, looked: f64) -> Result<(), GpuError> {
+        if let Some(on_gpu) = &self.on_gpu {
+            let state = &mut self.state;
+            on_gpu.falling(&mut state.falling)?;
+            if done.looks > 0 {
+                on_gpu.maps(&mut state.maps)?;
+                state.maps.set_last(looked);
+                state.next_look += done.looks as u64;
+            }
+            let pushed = on_gpu.on_obstacles()?;
+            (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
+            (self.state.owed, self.state.next_id) = (owed, done.next_id);
+            self.book(done);
+            self.arrange();
+        }
+        Ok(())
+    }
+
+    /// The next times at which the GPU is to look at the maps, s from `now`, when so many have passed; none where the host does.
+    fn looks(&self, now: f64, passed: usize) -> Vec<f64> {
+        let numbers = self.state.next_look + passed as u64..;
+        let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
+        let count = if keeps_maps { MOST_LOOKS } else { 0 };
+        numbers.take(count).map(|number| number as f64 * self.map_period - now).collect()
+    }
+
+    /// The particles that the sources bring from `now` to `until`, the earliest first.
+    fn births(&self, owed: &[ExactSum], now: f64, until: f64) -> Vec<Birth> {
+        let sources = self.sources.iter().zip(owed).enumerate();
+        let births = sources.flat_map(|(number, (source, owed))| {
+            let times = times(&source.discharge, owed.value(), self.volume, now, until);
+            times.into_iter().map(move |time| Birth { time: time - now, source: number, velocity: source.velocity })
+        });
+        let mut births: Vec<Birth> = births.collect();
+        births.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
+        births.truncate(MOST_BIRTHS);
+        births
+    }
+
+    fn book(&mut self, progress: &Progress) {
+        let state = &mut self.state;
+        state.time += progress.elapsed;
+        state.steps += progress.steps;
+        state.particle_steps += progress.particle_steps;
+        state.time_step = progress.step;
+        state.external = progress.external;
+        state.cell = CELL_OVER_H * progress.mean_h;
+        state.water.inflow.add(progress.inflow);
+        state.water.outflow.add(progress.outflow);
+        state.momentum.inflow.add(DENSITY * progress.momentum_gained);
+        state.momentum.outflow.add(DENSITY * progress.momentum_lost);
+    }
+}
+
+/// The times from `from` to `until` at which a discharge has brought another `volume` m3, with `owed` m3 at the start.
+fn times(discharge: &Table, owed: f64, volume: f64, from: f64, until: f64) -> Vec<f64> {
+    let come = |time: f64| owed + discharge.integral(from, time);
+    let count = (come(until) / volume).floor().max(0.0) as usize;
+    let mut earliest = from;
+    let time = |number: usize| {
+        let (mut low, mut high) = (earliest, until);
+        // To a billionth of the span.
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            *if come(middle) >= number as f64 * volume { &mut high } else { &mut low } = middle;
+        }
+        earliest = low;
+        high
+    };
+    (1..=count).map(time).collect()
+}

@@ -1,0 +1,50 @@
+//! Particles as they are seen, for whoever draws them on the same device.
+
+use super::OnGpu;
+use super::shared::{Memory, Shown};
+use super::tasks::{Shader, task};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Pass, THREADS, Task, wgpu};
+
+pub(super) const SHADER: Shader = ("sph_seen", include_str!("../sph_seen.wgsl"));
+
+/// Particles as they are seen, and what writes them.
+#[derive(Debug)]
+pub(super) struct Seen {
+    particles: DeviceParticles,
+    task: Task,
+}
+
+impl Seen {
+    fn new(on_gpu: &OnGpu) -> Result<Self, GpuError> {
+        let gpu = &on_gpu.gpu;
+        let origin = [on_gpu.origin.centre[0], on_gpu.origin.centre[1], on_gpu.origin.level];
+        let particles = DeviceParticles::new(gpu, on_gpu.room + on_gpu.room_in_air, origin, 0.0)?;
+        let memory = Memory { drawn: particles.buffer.clone(), ..on_gpu.tasks.memory.clone() };
+        Ok(Self { task: task(gpu, SHADER, &memory), particles })
+    }
+
+    /// Has the device write the particles.
+    fn write(&self, gpu: &Gpu) {
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        self.task.run(&mut pass, (self.particles.room as u32).div_ceil(THREADS));
+        drop(pass);
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+impl OnGpu {
+    /// The particles as they are seen `since` s after the last step, `spacing` m apart, those in the air `drop_spacing` m, on the device.
+    pub fn seen(&self, since: f64, spacing: f64, drop_spacing: f64) -> Result<DeviceParticles, GpuError> {
+        if self.seen.get().is_none() {
+            // Nobody else can have been faster and done otherwise.
+            let _ = self.seen.set(Seen::new(self)?);
+        }
+        let seen = self.seen.get().expect("it was set above");
+        let [since, of_particles, of_drops] = [since, spacing, drop_spacing].map(|value| value as f32);
+        let shown = Shown { since, spacing: of_particles, drop_spacing: of_drops, unused: 0.0 };
+        self.gpu.queue.write_buffer(&self.tasks.memory.shown, 0, bytemuck::bytes_of(&shown));
+        seen.write(&self.gpu);
+        Ok(DeviceParticles { spacing, ..seen.particles.clone() })
+    }
+}

@@ -1,0 +1,157 @@
+// Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for.
+//
+// `groups` has slots of three numbers: a thread for each particle, one for each cell, a group for each block of 1024 cells, one group, a thread for each drop in
+// the air; where a row of gauges is due, a thread for each particle and drop, a group for each row, a thread for each position and row; where it is time to look
+// at the maps, a thread for each of their cells.
+#import sph_common
+#import sph_rows
+
+const FAR = 3.0e38;
+
+// The first slot for gauges, and that for maps.
+const GAUGES = 5u;
+const MAPS = 8u;
+
+var<workgroup> sums: array<Partial, GROUP>;
+
+fn joined(a: Partial, b: Partial) -> Partial {
+    return Partial(
+        a.outflow + b.outflow,
+        a.inflow + b.inflow,
+        a.knocked + b.knocked,
+        a.gained_at_edges + b.gained_at_edges,
+        a.lost_at_edges + b.lost_at_edges,
+        a.slowed + b.slowed,
+        a.outer_force + b.outer_force,
+        min(a.low, b.low),
+        max(a.high, b.high),
+        a.sum_of_h + b.sum_of_h,
+        0.0,
+    );
+}
+
+// Books what the groups have summed up.
+fn book(all: Partial) {
+    status.outflow = add(status.outflow, all.outflow);
+    status.inflow = add(status.inflow, all.inflow);
+    status.elapsed = add(status.elapsed, status.step);
+    status.clock = add(status.clock, status.step);
+    book_momentum(all.knocked);
+    book_momentum(all.gained_at_edges);
+    book_momentum(-all.lost_at_edges);
+    book_momentum(all.slowed);
+    book_momentum(status.step * all.outer_force.x);
+    book_momentum(status.step * all.outer_force.y);
+    status.outer_force = all.outer_force;
+    status.steps += 1u;
+    let low = status.particle_steps.x + status.particles;
+    status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
+    status.step = select(parameters.time_step, min(parameters.time_step, parameters.fall_step), status.falling > 0u);
+    status.mean_h = all.sum_of_h / f32(max(status.particles, 1u));
+    status.low = all.low;
+    status.high = all.high;
+}
+
+fn elapsed() -> f32 {
+    return status.elapsed.x + status.elapsed.y;
+}
+
+fn decide() {
+    // Steps are of one length, whatever comes of the particles.
+    let is_sound = is_finite(status.mean_h) && is_finite(status.outer_force.x) && is_finite(status.outer_force.y);
+    let has_reach = status.particles == 0u || status.mean_h > 0.0;
+    if !is_sound || !has_reach {
+        status.halted = BROKEN;
+    } else if elapsed() + status.step > status.until || elapsed() >= status.look {
+        status.halted = ARRIVED;
+    } else {
+        status.halted = GOING;
+    }
+    let is_going = status.halted == GOING;
+    let counts = array(
+        (status.particles + GROUP - 1u) / GROUP,
+        (status.cells + GROUP - 1u) / GROUP,
+        (status.cells + 1023u) / 1024u,
+        1u,
+        select(0u, (parameters.in_air + GROUP - 1u) / GROUP, status.falling > 0u),
+    );
+    for (var slot = 0u; slot < GAUGES; slot++) {
+        order_groups(slot, select(0u, counts[slot], is_going), 1u);
+    }
+    take_gauges();
+}
+
+fn order_groups(slot: u32, along: u32, rows: u32) {
+    groups[3u * slot] = along;
+    groups[3u * slot + 1u] = rows;
+    groups[3u * slot + 2u] = 1u;
+}
+
+// Finds which rows of gauges show the water as it stands now, and has them taken: those due before the next step would end.
+fn take_gauges() {
+    status.rows_taken += status.rows_due;
+    var rows_due = 0u;
+    if status.halted != BROKEN {
+        for (var k = status.rows_taken; k < status.rows_told && due[k] < elapsed() + status.step; k++) {
+            rows_due += 1u;
+        }
+    }
+    status.rows_due = rows_due;
+    order_groups(GAUGES, select(0u, groups_of_water(status.particles), rows_due > 0u), 1u);
+    order_groups(GAUGES + 1u, select(0u, 1u, rows_due > 0u), rows_due);
+    order_groups(GAUGES + 2u, select(0u, (status.gauge_places + 63u) / 64u, rows_due > 0u), rows_due);
+}
+
+// Has it looked at the maps where the step has passed a time to.
+fn take_looks() {
+    var taken = status.looks_taken;
+    while taken < status.looks_told && looks[taken] <= elapsed() {
+        taken += 1u;
+    }
+    let is_time = taken > status.looks_taken;
+    if is_time {
+        status.looks_taken = taken;
+        status.since_look = elapsed() - status.looked;
+        status.looked = elapsed();
+    }
+    order_groups(MAPS, select(0u, (status.map_cells + GROUP - 1u) / GROUP, is_time), 1u);
+}
+
+// Nothing is due any more.
+fn rest() {
+    for (var slot = GAUGES; slot < MAPS; slot++) {
+        order_groups(slot, 0u, 0u);
+    }
+}
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(local_invocation_index) thread: u32) {
+    var own = Partial(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2f(0.0), vec2f(FAR), vec2f(-FAR), 0.0, 0.0);
+    if status.halted == GOING {
+        for (var group = thread; group < groups[0]; group += GROUP) {
+            own = joined(own, partials[group]);
+            // Births may call for more groups than there were in the drift.
+            partials[group].knocked = 0.0;
+        }
+    }
+    sums[thread] = own;
+    workgroupBarrier();
+    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] = joined(sums[thread], sums[thread + half]);
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        order_groups(MAPS, 0u, 1u);
+        if status.halted == GOING {
+            book(sums[0]);
+            take_looks();
+        }
+        if status.halted == GOING || status.halted == SPOKEN {
+            decide();
+        } else {
+            rest();
+        }
+    }
+}

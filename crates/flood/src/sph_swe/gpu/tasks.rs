@@ -1,0 +1,204 @@
+//! The passes of a step, and their order.
+
+use super::gauges::Gauges;
+use super::maps::GpuMaps;
+use super::shared::{Memory, Status};
+use super::upload::Setting;
+use corpuscle_gpu::{
+    CellSort, DeclaredKernel, Gpu, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS, Task, sort_blocks, wgpu,
+};
+
+/// Pieces that the shaders import.
+const LIBRARY: ShaderLibrary<'_> = &[
+    SUMS_BEFORE,
+    ("flood_sums", include_str!("../../flood_sums.wgsl")),
+    ("sph_common", include_str!("sph_common.wgsl")),
+    ("sph_ground", include_str!("sph_ground.wgsl")),
+    ("sph_friction", include_str!("sph_friction.wgsl")),
+    ("sph_rows", include_str!("sph_rows.wgsl")),
+    ("sph_kernels", include_str!("../sph_kernels.wgsl")),
+    ("sph_neighbours", include_str!("../sph_neighbours.wgsl")),
+    ("sph_outlines", include_str!("../obstacles/sph_outlines.wgsl")),
+    ("sph_water", include_str!("../sph_water.wgsl")),
+];
+
+/// Name and text of a shader.
+pub(super) type Shader = (&'static str, &'static str);
+
+const DRIFT: Shader = ("sph_drift", include_str!("../sph_drift.wgsl"));
+const BIRTHS: Shader = ("sph_births", include_str!("../sph_births.wgsl"));
+const LAND: Shader = ("sph_land", include_str!("../sph_land.wgsl"));
+const LANDED: Shader = ("sph_landed", include_str!("../sph_landed.wgsl"));
+const LEAVE: Shader = ("sph_leave", include_str!("../sph_leave.wgsl"));
+const REORDER: Shader = ("sph_reorder", include_str!("../sph_reorder.wgsl"));
+const REACH_OWN: Shader = ("sph_reach_own", include_str!("../sph_reach_own.wgsl"));
+const REACH_ROWS: Shader = ("sph_reach_rows", include_str!("../sph_reach_rows.wgsl"));
+const REACH: Shader = ("sph_reach", include_str!("../sph_reach.wgsl"));
+const DENSITY: Shader = ("sph_density", include_str!("../sph_density.wgsl"));
+const PUSH: Shader = ("sph_push", include_str!("../sph_push.wgsl"));
+const ON_OBSTACLES: Shader = ("sph_on_obstacles", include_str!("../obstacles/sph_on_obstacles.wgsl"));
+const FORCES: Shader = ("sph_forces", include_str!("../sph_forces.wgsl"));
+const FINISH: Shader = ("sph_finish", include_str!("sph_finish.wgsl"));
+
+/// Slots of the numbers of groups: see `sph_finish.wgsl`.
+const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
+
+/// The slot of drops in the air.
+const IN_AIR: u64 = 4;
+
+/// Everything on the device.
+#[derive(Debug)]
+pub(super) struct Tasks {
+    pub memory: Memory,
+    sort: CellSort,
+    drift: Task,
+    /// Where water comes in.
+    births: Option<Task>,
+    /// Where water falls: what falls, and what of it has landed.
+    land: Option<[Task; 2]>,
+    leave: Task,
+    reorder: Task,
+    /// In each cell, along rows, and in all.
+    reaches: [Task; 3],
+    density: Task,
+    /// Where there are obstacles: their push on particles, and the particles' on them.
+    push: Option<[Task; 2]>,
+    obstacles: u32,
+    forces: Task,
+    finish: Task,
+    /// Where gauges are asked for.
+    pub gauges: Option<Gauges>,
+    /// Where it keeps the maps.
+    pub maps: Option<GpuMaps>,
+}
+
+/// A shader with what it works on.
+pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
+    DeclaredKernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
+}
+
+impl Tasks {
+    /// The passes of a run that work on `memory`.
+    pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, setting: &Setting<'_>) -> Self {
+        let task = |shader: Shader| task(gpu, shader, &memory);
+        let obstacles = setting.surroundings.obstacles.names.len() as u32;
+        Self {
+            drift: task(DRIFT),
+            births: (!setting.sources.is_empty()).then(|| task(BIRTHS)),
+            land: (setting.falling > 0).then(|| [LAND, LANDED].map(task)),
+            leave: task(LEAVE),
+            reorder: task(REORDER),
+            reaches: [REACH_OWN, REACH_ROWS, REACH].map(task),
+            density: task(DENSITY),
+            push: (obstacles > 0).then(|| [PUSH, ON_OBSTACLES].map(task)),
+            obstacles,
+            forces: task(FORCES),
+            finish: task(FINISH),
+            gauges: None,
+            maps: None,
+            memory,
+            sort,
+        }
+    }
+
+    /// Decides whether to go on, and then takes so many steps, or fewer: from where it is to halt they do nothing.
+    pub fn steps(&self, pass: &mut Pass<'_>, count: u32) {
+        self.end_step(pass);
+        for _ in 0..count {
+            self.step(pass);
+        }
+    }
+
+    /// Decides whether to go on, reads the gauges where a row is due, and looks at the maps where it is time to.
+    fn end_step(&self, pass: &mut Pass<'_>) {
+        self.finish.run(pass, 1);
+        let groups = &self.memory.groups;
+        self.maps.iter().for_each(|maps| maps.look(pass, groups));
+        self.gauges.iter().for_each(|gauges| gauges.take(pass, groups));
+    }
+
+    /// Brings the particles into the order of new cells. The status says that the next step is 0 s long, so that nothing moves.
+    pub fn arrange(&self, gpu: &Gpu, status: &Status) {
+        let Memory { particles, sorted, groups, .. } = &self.memory;
+        let threads = |count: u32| [count.div_ceil(THREADS), 1, 1];
+        let blocks = [sort_blocks(status.cells as usize) as u32, 1, 1];
+        let counts = [threads(status.particles), threads(status.cells), blocks, [1, 1, 1]];
+        gpu.queue.write_buffer(&self.memory.status, 0, bytemuck::bytes_of(status));
+        gpu.queue.write_buffer(groups, 0, bytemuck::cast_slice(&counts));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
+        let mut pass = Pass::begin(&mut encoder, None);
+        self.leave.run_as_told(&mut pass, groups, SLOTS.particles);
+        self.sort(&mut pass);
+        drop(pass);
+        encoder.copy_buffer_to_buffer(sorted, 0, particles, 0, particles.size());
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Sorts what has counted itself, and finds how far each cell must look.
+    fn sort(&self, pass: &mut Pass<'_>) {
+        let groups = &self.memory.groups;
+        self.sort.sort(pass, groups, SLOTS);
+        self.reorder.run_as_told(pass, groups, SLOTS.particles);
+        self.reaches.iter().for_each(|task| task.run_as_told(pass, groups, SLOTS.cells));
+    }
+
+    /// Takes one step more, where there is to be one.
+    fn step(&self, pass: &mut Pass<'_>) {
+        let groups = &self.memory.groups;
+        self.drift.run_as_told(pass, groups, SLOTS.particles);
+        if let Some(births) = &self.births {
+            births.run(pass, 1);
+        }
+        if let Some([land, landed]) = &self.land {
+            land.run_as_told(pass, groups, IN_AIR);
+            landed.run(pass, 1);
+        }
+        self.leave.run_as_told(pass, groups, SLOTS.particles);
+        self.sort(pass);
+        self.density.run_as_told(pass, groups, SLOTS.particles);
+        if let Some([push, on_obstacles]) = &self.push {
+            push.run_as_told(pass, groups, SLOTS.particles);
+            on_obstacles.run(pass, self.obstacles);
+        }
+        self.forces.run_as_told(pass, groups, SLOTS.particles);
+        self.end_step(pass);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{gauges, maps, seen};
+    use super::*;
+    use corpuscle_gpu::{Buffers, check_shader};
+
+    /// Storage buffers a stage at most, as everywhere.
+    const MOST_STORAGE_BUFFERS: usize = 8;
+
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        let passes = [
+            DRIFT,
+            BIRTHS,
+            LAND,
+            LANDED,
+            LEAVE,
+            REORDER,
+            REACH_OWN,
+            REACH_ROWS,
+            REACH,
+            DENSITY,
+            PUSH,
+            ON_OBSTACLES,
+            FORCES,
+            FINISH,
+        ];
+        let others = gauges::SHADERS.into_iter().chain([maps::SHADER, seen::SHADER]);
+        for (name, text) in passes.into_iter().chain(others) {
+            let declaration = Memory::declaration();
+            let (text, used) = declaration.complete(name, text, LIBRARY).unwrap();
+            check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let stored = used.iter().filter(|number| !declaration.bindings[**number as usize].is_uniform).count();
+            assert!(stored <= MOST_STORAGE_BUFFERS, "{name} has {stored} storage buffers");
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Scheme `sph-swe`: the published stable SPH-SWE model.
+//!
+//! Source: "Real-time simulation of realistic fluid animation based on a stable SPH-SWE numerical model", Acta Physica Sinica (2021). Particles are columns of
+//! water of a fixed volume that move with it; depth, smoothing length and forces are formula by formula those of the paper (`solver.rs`). It has what the paper
+//! has, and what a film or a comparison needs beside it: inflows, friction, open, closed and periodic sides, gauges and maps.
+
+mod arrangement;
+mod breakdown;
+mod change;
+mod density;
+mod edges;
+mod exchange;
+mod falling;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod inflow;
+mod maps;
+mod measured;
+mod model;
+mod obstacles;
+mod open;
+mod particle;
+mod placed;
+mod sampler;
+mod seeding;
+mod smoothing;
+mod solver;
+mod step;
+mod surroundings;
+mod to_come;
+
+pub use particle::Particle;
+pub(crate) use sampler::Sampler;
+
+use self::maps::Maps;
+use crate::friction::Roughness;
+use crate::gauges::{LineGauge, PointGauge};
+use crate::sampling::Sample;
+use crate::zone::Source;
+use change::Hand;
+use corpuscle_model::{Account, ExactSum};
+use corpuscle_scene::{Flood as Settings, Table};
+use falling::Falling;
+use serde::{Deserialize, Serialize};
+use solver::SphSwe;
+use step::Renewal;
+use surroundings::Surroundings;
+
+/// Density of water, kg/m3.
+const DENSITY: f64 = 1000.0;
+
+/// Support of the sampling kernel over that of the scheme's: the paper's h is the whole support, not half of it.
+const SAMPLED: f64 = 0.5;
+
+/// Shallow water as particles of a fixed volume over terrain (scheme `sph-swe`).
+pub struct SphSweFlood {
+    settings: Settings,
+    seed: u64,
+    surroundings: Surroundings,
+    solver: SphSwe,
+    roughness: Roughness,
+    sources: Vec<Source>,
+    points: Vec<PointGauge>,
+    lines: Vec<LineGauge>,
+    /// Distance of particles in water of depth `spacing_depth_m`, m, and what goes with it.
+    spacing: f64,
+    volume: f64,
+    h: f64,
+    map_period: f64,
+    state: State,
+    /// What the scene says of the discharges that a hand has changed, by inflow.
+    written: Vec<(usize, Table)>,
+    /// Working memory.
+    of_blocks: Vec<f64>,
+    renewals: Vec<Renewal>,
+    /// The time shown, s; up to one step after the state's.
+    shown: f64,
+    /// The GPU that takes the steps, where one does.
+    #[cfg(feature = "gpu")]
+    on_gpu: Option<gpu::OnGpu>,
+}
+
+/// Everything that changes.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct State {
+    time: f64,
+    steps: u64,
+    particle_steps: u64,
+    particles: Vec<Particle>,
+    falling: Vec<Falling>,
+    /// Water that each source owes, less than a particle, m3.
+    owed: Vec<ExactSum>,
+    next_id: u64,
+    water: Account,
+    momentum: Account,
+    maps: Maps,
+    /// Number of the next look at the maps.
+    next_look: u64,
+    /// Next time step, s.
+    time_step: f64,
+    /// Size of a cell, m.
+    cell: f64,
+    /// Force of ground, edges and obstacles at the last evaluation, m4/s2.
+    external: [f64; 2],
+    /// Force on each obstacle at the last evaluation, m4/s2, and its sum over time, m4/s.
+    on_obstacles: Vec<[f64; 2]>,
+    impulses: Vec<[f64; 2]>,
+    /// How often a particle was put back to the wall of an obstacle.
+    put_back: u64,
+    /// When water was first seen to stand higher than each obstacle, s.
+    overtopped: Vec<Option<f64>>,
+    /// What a user should know of the water at the start.
+    warnings: Vec<String>,
+    /// What a hand has changed.
+    hand: Hand,
+}
+
+impl SphSweFlood {
+    /// Distance of particles as they are shown, m: they stand for no area.
+    fn spacing_shown(&self) -> f64 {
+        self.settings.sph_swe.radius_m.map_or(self.spacing, |radius| 2.0 * radius)
+    }
+
+    fn sampler(&self, since: f64) -> Sampler<'_> {
+        Sampler {
+            particles: &self.state.particles,
+            arrangement: self.solver.arrangement(),
+            terrain: &self.surroundings.terrain,
+            obstacles: &self.surroundings.obstacles,
+            since,
+        }
+    }
+
+    /// Time from the state to the time shown, s.
+    fn since(&self) -> f64 {
+        self.shown - self.state.time
+    }
+
+    /// The particles that have not left.
+    fn inside(&self) -> impl Iterator<Item = &Particle> {
+        self.state.particles.iter().filter(|particle| particle.outside.is_none())
+    }
+
+    /// Water in the model, m3.
+    fn stored(&self) -> f64 {
+        let airborne = self.state.falling.iter().map(|drop| drop.particle.volume);
+        self.inside().map(|particle| particle.volume).chain(airborne).collect::<ExactSum>().value()
+    }
+
+    /// Momentum of the water, sum of its two components, kg m/s.
+    fn momentum(&self) -> f64 {
+        let along = |particle: &Particle| DENSITY * particle.volume * (particle.u + particle.v);
+        self.inside().map(along).sum::<f64>() + self.state.falling.iter().map(|drop| along(&drop.particle)).sum::<f64>()
+    }
+
+    /// The `[flood]` of the scene with every default that depends on ground and water filled in.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The water at a place in model coordinates, at the time shown.
+    pub fn sample(&self, x: f64, y: f64) -> Sample {
+        self.sampler(self.since()).at(x, y)
+    }
+
+    /// The particles as they stand at the end of the last step.
+    pub fn particles(&self) -> &[Particle] {
+        &self.state.particles
+    }
+
+    /// How often so far a particle came into an obstacle in a step and was put back to its wall.
+    pub fn put_back(&self) -> u64 {
+        self.state.put_back
+    }
+
+    /// Bytes held for the particles and the work on them.
+    pub fn bytes(&self) -> usize {
+        self.solver.bytes() + self.state.particles.capacity() * size_of::<Particle>()
+    }
+
+    /// The time step from here, s.
+    pub fn time_step(&self) -> f64 {
+        self.state.time_step
+    }
+}

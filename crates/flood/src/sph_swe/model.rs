@@ -1,0 +1,176 @@
+//! What a flood shows of itself.
+
+use super::change::Hand;
+#[cfg(feature = "gpu")]
+use super::gpu::Onlookers;
+use super::particle::Particle;
+use super::{DENSITY, SphSweFlood, State};
+use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
+#[cfg(feature = "gpu")]
+use corpuscle_model::{Companion, CpuOnly, GpuModel, advance_with};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+impl Model for SphSweFlood {
+    fn name(&self) -> &'static str {
+        "flood"
+    }
+
+    #[cfg(feature = "gpu")]
+    fn backend(&self) -> &'static str {
+        if self.on_gpu.is_some() { "gpu" } else { "cpu" }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn cpu_only(&self) -> Option<CpuOnly> {
+        None
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu(&self) -> Option<&dyn GpuModel> {
+        Some(self)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_gpu_mut(&mut self) -> Option<&mut dyn GpuModel> {
+        Some(self)
+    }
+
+    fn time(&self) -> f64 {
+        self.shown
+    }
+
+    fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    fn particle_steps(&self) -> u64 {
+        self.state.particle_steps
+    }
+
+    fn particles(&self) -> usize {
+        self.inside().count() + self.state.falling.len()
+    }
+
+    fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
+        #[cfg(feature = "gpu")]
+        if self.on_gpu.is_some() {
+            return self.advance_on_gpu(time, stop, &mut Onlookers::default());
+        }
+        while self.state.time + self.state.time_step <= time {
+            if stop.load(Ordering::Relaxed) {
+                self.shown = self.shown.max(self.state.time);
+                return Ok(());
+            }
+            self.step()?;
+        }
+        self.shown = time;
+        Ok(())
+    }
+
+    #[cfg(feature = "gpu")]
+    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+        if self.on_gpu.is_some() {
+            self.advance_measured(time, stop, Onlookers::of(companion))
+        } else {
+            advance_with(self, time, stop, companion)
+        }
+    }
+
+    fn frame(&self) -> Frame {
+        let since = self.since();
+        let mut order: Vec<&Particle> = self.inside().collect();
+        order.sort_unstable_by_key(|particle| particle.id);
+        let count = order.len() + self.state.falling.len();
+        let mut set = ParticleSet { name: "water".into(), ..ParticleSet::default() };
+        let [mut depth, mut ground, mut speed] = [(); 3].map(|()| Vec::with_capacity(count));
+        let radius = 0.5 * self.spacing_shown();
+        let terrain = &self.surroundings.terrain;
+        let on_ground = order.into_iter().map(|particle| {
+            let (x, y) = (particle.x + since * particle.u, particle.y + since * particle.v);
+            // What comes into an obstacle is put back before it is shown.
+            let held = self.surroundings.obstacles.hold([x, y]);
+            let (x, y) = if held { (particle.x, particle.y) } else { (x, y) };
+            let height = terrain.height(x, y);
+            (particle, [x, y, height + particle.depth], 0.0, height, particle.depth, radius)
+        });
+        let in_air = self.state.falling.iter().map(|drop| {
+            let particle = &drop.particle;
+            let height = terrain.height(particle.x, particle.y);
+            (particle, [particle.x, particle.y, drop.z], drop.w, height, 0.0, 0.5 * self.spacing)
+        });
+        for (particle, position, w, height, deep, radius) in on_ground.chain(in_air) {
+            set.id.push(particle.id);
+            set.position.push(position);
+            set.velocity.push([particle.u, particle.v, w]);
+            set.radius.push(radius);
+            set.mass.push(DENSITY * particle.volume);
+            depth.push(deep);
+            ground.push(height);
+            speed.push(particle.speed());
+        }
+        set.columns = vec![
+            Column { name: "depth", unit: "m", values: Values::Scalar(depth) },
+            Column { name: "ground", unit: "m", values: Values::Scalar(ground) },
+            Column { name: "speed", unit: "m/s", values: Values::Scalar(speed) },
+        ];
+        Frame { time: self.shown, sets: vec![set] }
+    }
+
+    fn gauge_columns(&self) -> Vec<GaugeColumn> {
+        self.measured_columns()
+    }
+
+    fn gauge_row(&self) -> Vec<f64> {
+        self.row(&self.reading())
+    }
+
+    fn maps(&self) -> Vec<Map> {
+        self.state.maps.maps(&self.sampler(self.since()))
+    }
+
+    fn ledger(&self) -> Ledger {
+        let water = self.state.water.balance("water_m3", self.stored());
+        let momentum = self.state.momentum.balance("momentum", self.momentum());
+        Ledger { balances: vec![water, momentum] }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let names = self.surroundings.obstacles.names.iter().zip(&self.state.overtopped);
+        let told = |(name, time): (&String, &Option<f64>)| {
+            let time = (*time)?;
+            Some(format!(
+                "from t = {time:.0} s the water at the obstacle '{name}' stood higher than its height_m: it would have flowed over it, \
+                 and was held back"
+            ))
+        };
+        let terrain = self.surroundings.terrain.warnings().iter();
+        terrain.chain(&self.state.warnings).cloned().chain(names.filter_map(told)).collect()
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(self.shown, &self.state)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, state: &[u8]) -> Result<(), ModelError> {
+        let refused = |what: String| ModelError::Checkpoint(what);
+        let (shown, state): (f64, State) =
+            postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
+        if state.owed.len() != self.sources.len()
+            || state.impulses.len() != self.surroundings.obstacles.names.len()
+            || !state.maps.fit(&self.state.maps)
+        {
+            return Err(refused("it belongs to another scene".into()));
+        }
+        let by_hand = self.state.hand != Hand::default() || state.hand != Hand::default();
+        self.take_back_hand();
+        (self.shown, self.state) = (shown, state);
+        self.take_hand()?;
+        self.arrange();
+        if by_hand {
+            return self.renew_gpu();
+        }
+        #[cfg(feature = "gpu")]
+        self.send_to_gpu().map_err(|error| ModelError::Device(error.to_string()))?;
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+// What the water has done at each cell of the maps: a look at all of them. Twin of `Maps::look`.
+#import sph_water
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if id.x >= status.map_cells {
+        return;
+    }
+    var cell = map_cells[id.x];
+    let water = water_at(cell.place);
+    if !(water.x > status.wet_depth) {
+        return;
+    }
+    let speed = length(water.yz);
+    cell.max_depth = max(cell.max_depth, water.x);
+    cell.max_speed = max(cell.max_speed, speed);
+    cell.hazard = max(cell.hazard, water.x * (speed + 0.5));
+    if cell.arrival < 0.0 {
+        cell.arrival = status.began + status.elapsed.x + status.elapsed.y;
+    } else {
+        cell.duration += status.since_look;
+    }
+    map_cells[id.x] = cell;
+}

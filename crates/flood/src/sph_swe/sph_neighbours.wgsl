@@ -1,0 +1,119 @@
+// Who is near: cells to look through, and images of particles beyond the edges.
+//
+// Images are not stored as the CPU's are: who stands near an edge looks once more from where it would stand in the mirror, and turns
+// what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are.
+#import sph_common
+
+struct Mirror {
+    // The image of a place p stands at sign * p + shift.
+    sign: vec2f,
+    shift: vec2f,
+    // Beyond which side along x and y it stands: -1, 0 or 1.
+    beyond: vec2f,
+    // Whether there are images.
+    is_there: bool,
+}
+
+const MIRRORS = 9u;
+
+// How many of them there are to look into: amid the water the first alone.
+fn mirrors_round(place: vec2f) -> u32 {
+    let farthest = parameters.widest_h;
+    let is_amid = all(place - farthest > parameters.bounds.xz) && all(place + farthest < parameters.bounds.yw);
+    return select(MIRRORS, 1u, is_amid);
+}
+
+// Sign, shift and whether there are images beyond one side of an axis.
+fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
+    if beyond == 0 {
+        return vec3f(1.0, 0.0, 1.0);
+    }
+    let rule = select(rules.y, rules.x, beyond < 0);
+    if rule == PERIODIC {
+        return vec3f(1.0, f32(beyond) * (high - low), 1.0);
+    }
+    if rule == WALL {
+        return vec3f(-1.0, 2.0 * select(high, low, beyond < 0), 1.0);
+    }
+    return vec3f(1.0, 0.0, 0.0);
+}
+
+// The mirror of a number below MIRRORS, 0 being none.
+fn mirror(number: u32) -> Mirror {
+    if number == 0u {
+        return Mirror(vec2f(1.0), vec2f(0.0), vec2f(0.0), true);
+    }
+    let beyond = vec2i(i32((number + 1u) % 3u), i32(((number + 3u) / 3u) % 3u)) - 1;
+    let x = along(beyond.x, parameters.bounds.x, parameters.bounds.y, parameters.rules.xy);
+    let y = along(beyond.y, parameters.bounds.z, parameters.bounds.w, parameters.rules.zw);
+    return Mirror(vec2f(x.x, y.x), vec2f(x.y, y.y), vec2f(beyond), x.z * y.z > 0.0);
+}
+
+// Where what the mirror shows at `place` stands in truth.
+fn behind(mirror: Mirror, place: vec2f) -> vec2f {
+    return mirror.sign * (place - mirror.shift);
+}
+
+// Where the mirror shows what stands at `place`.
+fn image_of(mirror: Mirror, place: vec2f) -> vec2f {
+    return mirror.sign * place + mirror.shift;
+}
+
+// Whether the mirror shows anything within `reach` of a place.
+fn sees(mirror: Mirror, place: vec2f, reach: f32) -> bool {
+    if !mirror.is_there {
+        return false;
+    }
+    let truth = behind(mirror, place);
+    let bounds = parameters.bounds;
+    // Along an open side, particles that have left have images too.
+    let along = mirror.beyond == vec2f(0.0);
+    return all(along | ((truth + reach >= bounds.xz) & (truth - reach <= bounds.yw)));
+}
+
+// Whether a particle whose image stands at `place` has one: not too far from the edge.
+fn has_image(mirror: Mirror, place: vec2f, reach: f32) -> bool {
+    let bounds = parameters.bounds;
+    let out = max(bounds.xz - place, place - bounds.yw);
+    let near = (out >= vec2f(0.0)) & (out < vec2f(IMAGE_MARGIN * reach));
+    return all(near | (mirror.beyond == vec2f(0.0)));
+}
+
+// First and last column and row of the cells within `reach` of a place.
+fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
+    let last = vec2u(grid.columns, grid.rows) - 1u;
+    let low = max((place - reach - grid.corner) * grid.per_cell, vec2f(0.0));
+    let high = max((place + reach - grid.corner) * grid.per_cell, vec2f(0.0));
+    return vec4u(min(vec2u(low), last), min(vec2u(high), last));
+}
+
+// Cells are taken to be this much thicker than they are: who lies on their border may be in either.
+const BORDER = 0.01;
+
+// First and last column of those cells of a row in which there may be something within `reach` of a place: less than `cells_round` has, in
+// rows that pass the place by. None: the first comes after the last.
+fn columns_round(grid: Grid, place: vec2f, reach: f32, row: u32) -> vec2u {
+    let border = BORDER * grid.cell;
+    let south = grid.corner.y + f32(row) * grid.cell - border;
+    // What is beyond the first and the last row stands in these.
+    let from_south = select(south - place.y, 0.0, row == 0u);
+    let from_north = select(place.y - (south + grid.cell + 2.0 * border), 0.0, row + 1u == grid.rows);
+    let apart = max(max(from_south, from_north), 0.0);
+    if apart > reach {
+        return vec2u(1u, 0u);
+    }
+    let half = sqrt(reach * reach - apart * apart) + border;
+    let ends = max((place.x + vec2f(-half, half) - grid.corner.x) * grid.per_cell, vec2f(0.0));
+    return min(vec2u(ends), vec2u(grid.columns - 1u));
+}
+
+fn cell_at(grid: Grid, place: vec2f) -> u32 {
+    let cell = cells_round(grid, place, 0.0);
+    return cell.y * grid.columns + cell.x;
+}
+
+// Whether cells come within `reach` of a place.
+fn is_near(grid: Grid, place: vec2f, reach: f32) -> bool {
+    let high = grid.corner + grid.cell * vec2f(vec2u(grid.columns, grid.rows));
+    return grid.columns > 0u && all(place + reach >= grid.corner) && all(place - reach <= high);
+}

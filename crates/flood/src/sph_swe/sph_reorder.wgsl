@@ -1,0 +1,21 @@
+// Brings the particles into the order of their cells, with the smoothing lengths that they have come to need; those in the last cell, which have left, are
+// out of the count.
+#import sph_common
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let i = id.x;
+    let left = start[status.cells - 1u];
+    if i < left {
+        var particle = unpacked(particles[order[i]]);
+        // Where nothing moves, particles are only laid out anew.
+        if status.step > 0.0 {
+            particle.h = particle.next_h;
+        }
+        sorted[i] = packed(particle);
+        spots[i] = vec4f(particle.place, particle.volume, particle.h);
+    }
+    if i == 0u {
+        status.particles = left;
+    }
+}

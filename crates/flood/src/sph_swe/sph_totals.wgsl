@@ -1,0 +1,49 @@
+// What a row of gauges tells of all the water and of obstacles: one group for each row. Twin of `SphSweFlood::reading`.
+#import flood_sums
+#import sph_rows
+
+var<workgroup> sums: array<f32, GROUP>;
+
+fn tell(at: u32, number: f32) {
+    rows[at] = bitcast<u32>(number);
+}
+
+fn tell_pair(at: u32, pair: vec2f) {
+    tell(at, pair.x);
+    tell(at + 1u, pair.y);
+}
+
+fn tell_obstacle(at: u32, number: u32) {
+    tell_pair(at, obstacles[number].force);
+    tell_pair(at + 2u, obstacles[number].impulse_east);
+    tell_pair(at + 4u, obstacles[number].impulse_north);
+    rows[at + 6u] = bitcast<u32>(atomicLoad(&knocks[2u * number]));
+    rows[at + 7u] = bitcast<u32>(atomicLoad(&knocks[2u * number + 1u]));
+}
+
+@compute @workgroup_size(GROUP)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
+    let number = status.rows_taken + group.y;
+    let row = rows[ROWS] + number * rows[STRIDE];
+    for (var k = thread; k < rows[OBSTACLE_COUNT]; k += GROUP) {
+        tell_obstacle(row + TOTALS + OF_OBSTACLE * k, k);
+    }
+    var own = 0.0;
+    for (var k = thread; k < groups_of_water(status.particles); k += GROUP) {
+        own += volumes[k];
+    }
+    sums[thread] = own;
+    workgroupBarrier();
+    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
+        if thread < half {
+            sums[thread] += sums[thread + half];
+        }
+        workgroupBarrier();
+    }
+    if thread == 0u {
+        tell_pair(row, status.inflow);
+        tell_pair(row + 2u, status.outflow);
+        tell(row + STORED, sums[0]);
+        tell(row + SINCE, due[number] - status.elapsed.x - status.elapsed.y);
+    }
+}

@@ -1,0 +1,152 @@
+//! What lets water out by a rating, holds it at a level, or leads it from one point to another.
+
+use super::hydraulics::{Culvert, Law};
+use crate::limits::check_inside;
+use crate::setup::{load, setup};
+use crate::zone::Zone;
+use corpuscle_model::{GaugeColumn, ModelError};
+use corpuscle_scene::{Flood as Settings, Link as LinkScene, LinkLaw, Series, Table};
+use corpuscle_terrain::Terrain;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// An outflow by a rating.
+pub(crate) struct Outflow {
+    pub name: String,
+    pub zone: Zone,
+    /// Discharge, m3/s, over the level, m.
+    pub rating: Table,
+}
+
+/// Water held at a level.
+pub(crate) struct Held {
+    pub zone: Zone,
+    /// Level over time, m.
+    pub level: Table,
+}
+
+/// A way from one point to another.
+pub(crate) struct Link {
+    pub name: String,
+    pub ends: [Zone; 2],
+    pub both_ways: bool,
+    pub law: Law,
+}
+
+/// All of them.
+#[derive(Default)]
+pub(crate) struct Structures {
+    pub outflows: Vec<Outflow>,
+    pub held: Vec<Held>,
+    pub links: Vec<Link>,
+}
+
+/// Discharges now, m3/s.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(crate) struct Flows {
+    pub outflows: Vec<f64>,
+    pub links: Vec<f64>,
+}
+
+impl Structures {
+    pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path, spacing: f64) -> Result<Self, ModelError> {
+        let zone = |what: &str, line: &Option<Vec<[f64; 2]>>, polygon: &Option<Vec<[f64; 2]>>, at: Option<[f64; 2]>| {
+            let places = line.iter().chain(polygon).flatten().copied().chain(at).collect::<Vec<_>>();
+            check_inside(what, &places, terrain)?;
+            let places: Vec<_> = places.into_iter().map(|place| terrain.to_model(place)).collect();
+            Ok(match (line, polygon) {
+                (Some(_), _) => Zone::along(places, 0.0, 2.0 * spacing),
+                (_, Some(_)) => Zone::Polygon(places),
+                _ => Zone::at(places[0], 0.0, spacing),
+            })
+        };
+        let outflow = |outflow: &corpuscle_scene::Outflow| {
+            let what = format!("the outflow '{}'", outflow.name);
+            let rating = load(&Series::Table(outflow.rating.clone()), folder)?;
+            let zone = zone(&what, &outflow.line, &outflow.polygon, outflow.at)?;
+            Ok(Outflow { name: outflow.name.clone(), zone, rating })
+        };
+        let held = |stage: &corpuscle_scene::Stage| {
+            let zone = zone(&format!("the stage '{}'", stage.name), &stage.line, &stage.polygon, None)?;
+            Ok(Held { zone, level: load(&stage.level_m, folder)? })
+        };
+        let link = |link: &LinkScene| {
+            check_inside(&format!("the link '{}'", link.name), &[link.from, link.to], terrain)?;
+            let places = [link.from, link.to].map(|place| terrain.to_model(place));
+            let [from, to] = places;
+            let distance = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let law = match &link.law {
+                LinkLaw::Culvert(culvert) => {
+                    let ground = places.map(|[x, y]| terrain.height(x, y));
+                    Law::Culvert(Culvert::new(culvert, distance, ground))
+                }
+                LinkLaw::Weir(weir) => Law::Weir(weir.clone()),
+                LinkLaw::Rating(rows) => Law::Rating(load(&Series::Table(rows.clone()), folder)?),
+            };
+            let ends = places.map(|place| Zone::at(place, 0.0, spacing));
+            if distance < ends.iter().map(Zone::reach).sum() {
+                return Err(setup(format!(
+                    "the ends of the link '{}' are {distance:.3} m apart and take their water from {:.3} m round them: move \
+                     them apart, or take a smaller flood.spacing_m",
+                    link.name,
+                    ends[0].reach()
+                )));
+            }
+            Ok(Link { name: link.name.clone(), ends, both_ways: link.both_ways, law })
+        };
+        Ok(Self {
+            outflows: scene.outflow.iter().map(outflow).collect::<Result<_, ModelError>>()?,
+            held: scene.stage.iter().map(held).collect::<Result<_, ModelError>>()?,
+            links: scene.link.iter().map(link).collect::<Result<_, ModelError>>()?,
+        })
+    }
+
+    /// Nothing flows.
+    pub fn at_rest(&self) -> Flows {
+        Flows { outflows: vec![0.0; self.outflows.len()], links: vec![0.0; self.links.len()] }
+    }
+
+    /// Whether flows are those of these structures.
+    pub fn fit(&self, flows: &Flows) -> bool {
+        flows.outflows.len() == self.outflows.len() && flows.links.len() == self.links.len()
+    }
+
+    /// Number of them.
+    #[cfg(feature = "gpu")]
+    pub fn count(&self) -> usize {
+        self.outflows.len() + self.held.len() + self.links.len()
+    }
+
+    /// Whether there are none.
+    #[cfg(feature = "gpu")]
+    pub fn is_empty(&self) -> bool {
+        self.count() == 0
+    }
+
+    /// A column of the discharge of each outflow and link.
+    pub fn columns(&self) -> impl Iterator<Item = GaugeColumn> + '_ {
+        let names = self.outflows.iter().map(|outflow| &outflow.name).chain(self.links.iter().map(|link| &link.name));
+        names.map(|name| GaugeColumn { gauge: name.clone(), quantity: "discharge", unit: "m3_per_s" })
+    }
+}
+
+impl Flows {
+    /// What goes in the columns.
+    pub fn row(&self) -> impl Iterator<Item = f64> + '_ {
+        self.outflows.iter().chain(&self.links).copied()
+    }
+}
+
+impl Link {
+    /// Discharge, m3/s, positive from the first end to the second, where the water stands at these levels, m, or is away.
+    pub fn discharge(&self, [from, to]: [Option<f64>; 2], gravity: f64) -> f64 {
+        let dry = f64::NEG_INFINITY;
+        if from.unwrap_or(dry) >= to.unwrap_or(dry) {
+            from.map_or(0.0, |level| self.law.discharge(level, to, [0, 1], gravity))
+        } else if self.both_ways {
+            to.map_or(0.0, |level| -self.law.discharge(level, from, [1, 0], gravity))
+        } else {
+            0.0
+        }
+    }
+}
