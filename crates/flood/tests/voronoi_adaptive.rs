@@ -329,7 +329,7 @@ fn what_cannot_follow_the_water_is_told() {
         ("adaptive = { finest_m = 0.4, rise_over_depth = 0 }", "flood.adaptive.rise_over_depth"),
         ("adaptive = { finest_m = 0.4, every_steps = 0 }", "flood.adaptive.every_steps"),
         ("adaptive = { finest_m = 0.4, often = true }", "often"),
-        ("scheme = \"balanced\"\nadaptive = { finest_m = 0.4 }", "is for scheme = \"voronoi\""),
+        ("scheme = \"sph-swe\"\nadaptive = { finest_m = 0.4 }", "is for scheme = \"voronoi\""),
     ] {
         let error = settings(keys).err().map_or(String::new(), |error| error.to_string());
         assert!(error.contains(told), "{keys}: {error}");

@@ -419,7 +419,7 @@ fn what_only_scheme_voronoi_has() {
         assert!(other.contains(&format!("flood.{key}")) && other.contains("is for scheme = \"voronoi\""), "{other}");
     }
     let stage = refuse(&GOOD.replace("\"voronoi\"", "\"sph-swe\""), &[]);
-    assert!(stage.contains("flood.edges.east") && stage.contains("has open, wall and periodic"), "{stage}");
+    assert!(stage.contains("flood.edges.east") && stage.contains("is for scheme = \"voronoi\""), "{stage}");
 }
 
 #[test]

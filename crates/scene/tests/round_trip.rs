@@ -1,8 +1,8 @@
 //! A scene written and read again is the same scene, and no text makes the parser panic.
 
 use corpuscle_scene::{
-    BUILTIN, Edge, Field, FloodScene, Infiltration, LinkLaw, Manning, Scene, Scheme, Series, StartVelocity, Terrain,
-    VelocityRasters, builtin,
+    BUILTIN, Edge, Field, FloodScene, Infiltration, LinkLaw, Manning, Scene, Scheme, Series, StartVelocity, Storage,
+    Terrain, VelocityRasters, builtin,
 };
 use proptest::prelude::*;
 use std::path::Path;
@@ -133,7 +133,7 @@ fn overrides_change_numbers_words_rows_and_kinds() {
     };
     let scene = set(&[
         ("run.until_s", "10"),
-        ("flood.scheme", "sph-swe"),
+        ("flood.storage", "level-volume"),
         ("title", "Two words"),
         ("flood.inflow.0.discharge_m3_per_s", "[[0, 1], [5, 2]]"),
         ("flood.gauge.0.name", "P1"),
@@ -146,6 +146,7 @@ fn overrides_change_numbers_words_rows_and_kinds() {
     let flood = &scene.flood().unwrap().flood;
     assert_eq!(flood.inflow[0].discharge_m3_per_s, Series::Table(vec![[0.0, 1.0], [5.0, 2.0]]));
     assert_eq!(flood.gauge[1].at, Some([3.0, 4.0]));
+    assert_eq!(flood.storage, Storage::LevelVolume);
     assert!(!flood.sph_swe.control_force);
     assert_eq!(set(&[("terrain", "{ plane = {} }")]).flood().unwrap().terrain, Terrain::Plane(Default::default()));
 }
