@@ -46,7 +46,7 @@ fn more_room_is_taken_where_births_might_find_none() {
     pools[0].open_gpu_with(gpu.clone(), scarce).unwrap();
     pools[1].use_gpu(gpu).unwrap();
     for pool in &mut pools {
-        pool.advance_to(4.0, &AtomicBool::new(false)).unwrap();
+        pool.advance_to(4.003, &AtomicBool::new(false)).unwrap();
     }
     let [with_more, plain] = &pools;
     let room = with_more.on_gpu.as_ref().unwrap().room();
@@ -56,12 +56,13 @@ fn more_room_is_taken_where_births_might_find_none() {
     assert!((with_more.stored() / plain.stored() - 1.0).abs() < 1e-6);
 }
 
-/// Water that falls dry and comes back, an obstacle, and looks more often than steps, as often and less.
+/// Water that falls dry and comes back, an obstacle, and looks about as often as steps, and less often.
 #[test]
 fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
     let Some(gpu) = require_gpu("maps on the GPU") else { return };
     let text = POOL.replace("water = ", "wet_depth_m = 0.05\nwater = ") + OBSTACLE;
-    for period in [0.011, 0.1, 0.9] {
+    // Not when a step of 0.01 s ends: in single precision that may be just before or after.
+    for period in [0.0113, 0.1033, 0.9033] {
         let [by_gpu, by_host] = [true, false].map(|by_gpu| {
             let mut pool = opened(&format!("run.gauge_every_s = {period}\n{text}"));
             pool.use_gpu(gpu.clone()).unwrap();
@@ -71,7 +72,7 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
                 on_gpu.forget_maps();
             }
             // Some steps first, so that what maps hold is handed over.
-            for time in [1.3, 4.0] {
+            for time in [1.303, 4.003] {
                 pool.advance_to(time, &AtomicBool::new(false)).unwrap();
                 let state = pool.save();
                 pool.restore(&state).unwrap();
