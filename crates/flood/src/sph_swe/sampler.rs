@@ -67,12 +67,9 @@ impl Sampler<'_> {
         [x - since * u, y - since * v]
     }
 
-    /// The share that obstacles cover, seen as far as the particles here see.
-    fn covered_by_obstacles(&self, x: f64, y: f64) -> f64 {
-        let mean_h = |(sum, count): (f64, f64)| sum / f64::max(count, 1.0);
-        let near = self.near(x, y, 1.1 * self.arrangement.cells.reach_at(x, y));
-        let h = SAMPLED * mean_h(near.fold((0.0, 0.0), |(sum, count), particle| (sum + particle.h, count + 1.0)));
-        if h > 0.0 { self.obstacles.coverage([x, y], h).part } else { 0.0 }
+    /// The share that obstacles cover, seen with the mean smoothing length h of the particles that cover the rest.
+    fn covered_by_obstacles(&self, x: f64, y: f64, h: f64) -> f64 {
+        self.obstacles.coverage([x, y], SAMPLED * h).part
     }
 
     /// The water at (x, y): a Shepard mean over the particles (weights V W), of the surface's height where the surface
@@ -97,18 +94,19 @@ impl Sampler<'_> {
                 }
             }
         };
-        let mut total = 0.0;
+        let (mut total, mut lengths) = (0.0, 0.0);
         let [mut surface, mut depth, mut u, mut v] = [0.0; 4];
         near(&mut |particle, weight| {
             total += weight;
+            lengths += weight * particle.h;
             surface += weight * particle.surface();
             depth += weight * particle.depth;
             u += weight * particle.u;
             v += weight * particle.v;
         });
         let covers = |total: f64| {
-            total >= COVERED
-                || total > 0.0 && total + self.covered_by_images(x, y) + self.covered_by_obstacles(x, y) >= COVERED
+            let beside = || self.covered_by_images(x, y) + self.covered_by_obstacles(x, y, lengths / total);
+            total >= COVERED || total > 0.0 && total + beside() >= COVERED
         };
         if !covers(total) {
             return Sample::default();

@@ -29,22 +29,13 @@ fn covered_by_images(place: vec2f, look: f32) -> f32 {
     return sum;
 }
 
-// The share that obstacles cover, seen as far as the particles here see.
-fn covered_by_obstacles(place: vec2f, cells: vec4u) -> f32 {
+// The share that obstacles cover, seen with the mean smoothing length of the particles that cover the rest.
+fn covered_by_obstacles(place: vec2f, mean_h: f32) -> f32 {
     if parameters.walls.columns == 0u {
         return 0.0;
     }
-    var sum = 0.0;
-    var count = 0.0;
-    for (var row = cells.y; row <= cells.w; row++) {
-        let line = row * parameters.grid.columns;
-        for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
-            sum += unpacked(particles[j]).h;
-            count += 1.0;
-        }
-    }
-    let h = SAMPLED * sum / max(count, 1.0);
-    if h == 0.0 || !is_near(parameters.walls, place, 2.0 * h) {
+    let h = SAMPLED * mean_h;
+    if !is_near(parameters.walls, place, 2.0 * h) {
         return 0.0;
     }
     var part = 0.0;
@@ -107,6 +98,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
     let look = 1.1 * reach;
     let cells = cells_round(parameters.grid, before, look);
     var total = 0.0;
+    var lengths = 0.0;
     // Surface, depth and velocity.
     var sums = vec4f(0.0);
     for (var row = cells.y; row <= cells.w; row++) {
@@ -115,13 +107,13 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
             let particle = unpacked(particles[j]);
             let weight = weight_at(particle, place - particle.place - since * particle.velocity);
             total += weight;
+            lengths += weight * particle.h;
             sums += weight * vec4f(particle.ground + particle.depth, particle.depth, particle.velocity);
         }
     }
     var covered = total;
     if total > 0.0 && total < COVERED {
-        let here = 1.1 * reach_at(place);
-        covered += covered_by_images(place, here) + covered_by_obstacles(place, cells_round(parameters.grid, place, here));
+        covered += covered_by_images(place, 1.1 * reach_at(place)) + covered_by_obstacles(place, lengths / total);
     }
     if covered < COVERED {
         return vec3f(0.0);
