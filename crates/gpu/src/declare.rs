@@ -73,6 +73,12 @@ impl<const N: usize> Shared for [[u32; 4]; N] {
     }
 }
 
+impl<const N: usize> Shared for [[f32; 2]; N] {
+    fn wgsl() -> String {
+        format!("array<vec2f, {N}>")
+    }
+}
+
 impl<T: SharedStruct, const N: usize> Shared for [T; N] {
     fn wgsl() -> String {
         format!("array<{}, {N}>", T::wgsl())
@@ -132,6 +138,15 @@ impl Layout {
 pub trait SharedStruct: Shared {
     /// How Rust lays it out.
     fn layout() -> Layout;
+}
+
+/// Constants and structures that several declarations include: see [`declare!`](crate::declare).
+pub trait SharedPiece {
+    /// The constants as WGSL lines.
+    fn constants() -> Vec<String>;
+
+    /// The structures in their order.
+    fn structs() -> Vec<Layout>;
 }
 
 /// A buffer that shaders see.
@@ -249,9 +264,13 @@ pub trait Buffers {
 ///
 /// gives the constant, a `#[repr(C)]` structure that can be copied to the device, and `Memory`, with a buffer for each binding, numbered in their order.
 /// [`check_layouts`](crate::check_layouts) says in a test where WGSL would lay a structure out otherwise.
+///
+/// What several models share is declared with `pub piece Name;` in the place of the buffers. Declarations take it in by a first line `include [Name]`, as those of models
+/// that take steps do with [`Stepping`](crate::Stepping).
 #[macro_export]
 macro_rules! declare {
     (
+        $(include [$($included:ty),+ $(,)?])?
         constants { $($constants:tt)* }
         structs { $($structs:tt)* }
         $(#[$buffers_doc:meta])* $buffers_vis:vis buffers $buffers:ident {
@@ -269,9 +288,11 @@ macro_rules! declare {
 
         impl $crate::Buffers for $buffers {
             fn declaration() -> $crate::Declaration {
+                let constants = [$($(<$included as $crate::SharedPiece>::constants(),)+)? $crate::declare!(@lines $($constants)*)];
+                let structs = [$($(<$included as $crate::SharedPiece>::structs(),)+)? $crate::declare!(@layouts $($structs)*)];
                 $crate::Declaration {
-                    constants: $crate::declare!(@lines $($constants)*),
-                    structs: $crate::declare!(@layouts $($structs)*),
+                    constants: constants.into_iter().flatten().collect(),
+                    structs: structs.into_iter().flatten().collect(),
                     bindings: vec![$($crate::Binding {
                         name: stringify!($binding),
                         wgsl: <$binding_type as $crate::Shared>::wgsl(),
@@ -283,6 +304,28 @@ macro_rules! declare {
 
             fn in_order(&self) -> Vec<&$crate::wgpu::Buffer> {
                 vec![$(&self.$binding),+]
+            }
+        }
+    };
+    (
+        constants { $($constants:tt)* }
+        structs { $($structs:tt)* }
+        $(#[$piece_doc:meta])* $piece_vis:vis piece $piece:ident;
+    ) => {
+        $crate::declare!(@constants $($constants)*);
+        $crate::declare!(@structs $($structs)*);
+
+        $(#[$piece_doc])*
+        #[derive(Debug, Clone, Copy)]
+        $piece_vis struct $piece;
+
+        impl $crate::SharedPiece for $piece {
+            fn constants() -> Vec<String> {
+                $crate::declare!(@lines $($constants)*)
+            }
+
+            fn structs() -> Vec<$crate::Layout> {
+                $crate::declare!(@layouts $($structs)*)
             }
         }
     };

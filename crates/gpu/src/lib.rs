@@ -16,20 +16,26 @@ mod pass;
 mod reflect;
 mod shader;
 mod sort;
+mod steps;
 mod texture;
 
 pub use buffer::{filled, read, read_together, storage, uniform};
 pub use declare::{
-    AtomicI32, AtomicU32, Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedStruct,
+    AtomicI32, AtomicU32, Binding, Buffers, DECLARED, Declaration, Layout, Member, Shared, SharedConstant, SharedPiece,
+    SharedStruct,
 };
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;
 pub use kernel::{DeclaredKernel, Kernel, MOST_GROUPS, THREADS, Task};
 pub use particles::{DEVICE_PARTICLES, DeviceParticle, DeviceParticles};
-pub use pass::{Pass, Stopwatch, Taken};
+pub use pass::{Pass, Stopwatch, Taken, submit};
 pub use reflect::{check_layouts, check_layouts_in, check_shader};
-pub use shader::{SUMS_BEFORE, ShaderLibrary, join};
+pub use shader::{COMPENSATED_SUMS, OVER_GROUP, SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
+pub use steps::{
+    ARRIVED, BATCH_START, BROKEN, Batches, GOING, Halt, MOST_STEPS, NEEDS_HOST, Stepping, from_halves, from_pair,
+    to_pair,
+};
 pub use texture::{read_rgba8, texture_2d};
 pub use wgpu;

@@ -34,6 +34,16 @@ impl<'a> Pass<'a> {
     }
 }
 
+/// Has the device do tasks one after the other, timed by a stopwatch where there is one.
+pub fn submit(gpu: &Gpu, label: &str, mut stopwatch: Option<&mut Stopwatch>, work: impl FnOnce(&mut Pass<'_>)) {
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) });
+    let mut pass = Pass::begin(&mut encoder, stopwatch.as_deref_mut());
+    work(&mut pass);
+    drop(pass);
+    stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
+    gpu.queue.submit([encoder.finish()]);
+}
+
 /// What a kernel has taken on the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Taken {

@@ -12,6 +12,13 @@ pub type ShaderLibrary<'a> = &'a [(&'a str, &'a str)];
 /// The piece `sums_before`: the sum of a number over the threads of a group before each, and over all. Its groups have 256 threads.
 pub const SUMS_BEFORE: (&str, &str) = ("sums_before", include_str!("sums_before.wgsl"));
 
+/// The piece `compensated_sums`: sums without error in pairs of numbers (see [`to_pair`](crate::to_pair)), and counts of more than 32 bits. The declaration of who imports
+/// it has a buffer `parameters` with a member `zero`, which is always 0.
+pub const COMPENSATED_SUMS: (&str, &str) = ("compensated_sums", include_str!("compensated_sums.wgsl"));
+
+/// The piece `over_group`: what the threads of a group have, taken together.
+pub const OVER_GROUP: (&str, &str) = ("over_group", include_str!("over_group.wgsl"));
+
 /// The text of a shader with everything it imports before it; `name` is for errors.
 ///
 /// # Errors

@@ -10,10 +10,11 @@ const SPH_SWE: [(&str, f64); 3] = [("flood/rough-terrain", 0.1), ("flood/cuboid"
 
 /// Cases of scheme voronoi: both come to the same within rounding, but where thin fronts decide, or where a lake is stirred more than single precision itself
 /// stirs it.
-const VORONOI: [(&str, f64); 30] = [
+const VORONOI: [(&str, f64); 31] = [
     ("flood/voronoi/lake-blocks", 0.1),
     ("flood/voronoi/lake-islands", 0.1),
     ("flood/voronoi/lake-jacksboro", 0.1),
+    ("flood/voronoi/lake-long", 0.1),
     ("flood/voronoi/stoker", 0.01),
     ("flood/voronoi/ritter", 0.01),
     ("flood/voronoi/thacker-planar", 0.01),

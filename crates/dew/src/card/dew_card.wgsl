@@ -1,5 +1,6 @@
 // What the kernels of humid air share: numbers of the run, particles of air, and what the host learns of a step.
 #import declared
+#import compensated_sums
 
 fn unpacked(packed: Packed) -> Particle {
     let a = packed.place_and_density;
@@ -10,19 +11,17 @@ fn unpacked(packed: Packed) -> Particle {
     let f = packed.role_and_idle;
     let spreading = bitcast<vec3f>(d.xyz);
     return Particle(
-        a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, spreading, d.w, Account(e.x, e.y), Account(e.z, e.w), f.x, bitcast<f32>(f.y), vec2f(0.0)
+        a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, spreading, d.w, e.xy, e.zw, f.x, bitcast<f32>(f.y), vec2f(0.0)
     );
 }
 
 fn packed(particle: Particle) -> Packed {
-    let temperature = particle.temperature;
-    let vapour = particle.vapour;
     return Packed(
         vec4f(particle.place, particle.density),
         vec4f(particle.velocity, particle.fog),
         vec4f(particle.acceleration, particle.deposit),
         vec4u(bitcast<vec3u>(particle.spreading), particle.id),
-        vec4f(temperature.sum, temperature.lacking, vapour.sum, vapour.lacking),
+        vec4f(particle.temperature, particle.vapour),
         vec4u(particle.role, bitcast<u32>(particle.idle), 0u, 0u),
     );
 }
@@ -79,24 +78,13 @@ fn is_set(flag: u32) -> bool {
     return (parameters.flags & flag) != 0u;
 }
 
-// A number that compilers cannot tell: some take (a + b) - a for b, and what a sum has too much for 0.
-fn opaque(number: f32) -> f32 {
-    return bitcast<f32>(bitcast<u32>(number) ^ parameters.zero);
+// Adds four numbers (Kahan 1965).
+fn add_four(sums: FourSums, values: vec4f) -> FourSums {
+    let more = values + sums.lacking;
+    let sum = opaque_four(sums.values + more);
+    return FourSums(sum, more - opaque_four(sum - sums.values));
 }
 
-fn add(account: Account, value: f32) -> Account {
-    let more = value - account.lacking;
-    let sum = opaque(account.sum + more);
-    return Account(sum, opaque(sum - account.sum) - more);
-}
-
-fn add4(account: Account4, value: vec4f) -> Account4 {
-    let more = value - account.lacking;
-    let sum = bitcast<vec4f>(bitcast<vec4u>(account.sum + more) ^ vec4u(parameters.zero));
-    let added = bitcast<vec4f>(bitcast<vec4u>(sum - account.sum) ^ vec4u(parameters.zero));
-    return Account4(sum, added - more);
-}
-
-fn value(account: Account) -> f32 {
-    return account.sum - account.lacking;
+fn opaque_four(numbers: vec4f) -> vec4f {
+    return bitcast<vec4f>(bitcast<vec4u>(numbers) ^ vec4u(parameters.zero));
 }

@@ -3,11 +3,24 @@
 #import dew_neighbours
 #import dew_columns
 #import dew_utility
+#import over_group
 
 const NOWHERE = 6u;
 
-var<workgroup> came: array<vec4f, 256>;
-var<workgroup> went: array<vec4f, 256>;
+// What came and went with a particle: see `booked`.
+struct Crossed {
+    came: vec4f,
+    went: vec4f,
+}
+
+// By this thread's particle.
+var<private> crossed: Crossed;
+
+alias Summand = Crossed;
+
+fn both(a: Crossed, b: Crossed) -> Crossed {
+    return Crossed(a.came + b.came, a.went + b.went);
+}
 
 fn depth_beyond(place: vec3f, number: u32) -> f32 {
     let axis = number / 2u;
@@ -51,7 +64,7 @@ fn leave(particle: ptr<function, Particle>, number: u32, speed: f32) {
 }
 
 fn booked(particle: Particle) -> vec4f {
-    return vec4f(1.0, value(particle.temperature), value(particle.vapour), particle.fog);
+    return vec4f(1.0, total(particle.temperature), total(particle.vapour), particle.fog);
 }
 
 // Twin of `Room::hold_at_inlets`.
@@ -67,7 +80,7 @@ fn hold_at_inlets(particle: ptr<function, Particle>) {
 }
 
 // Whether it has gone for good.
-fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
+fn cross_over(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role & ROLE_MASK;
     if role == INSIDE {
         hold_at_inlets(particle);
@@ -77,7 +90,7 @@ fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
     let held = booked(*particle);
     if (role == INSIDE || role == IDLE) && number != NOWHERE {
         // What no longer mattered is booked as gone.
-        went[thread] = select(vec4f(0.0), held, role == INSIDE);
+        crossed.went = select(vec4f(0.0), held, role == INSIDE);
         if beyond.is_edge {
             return true;
         }
@@ -93,7 +106,7 @@ fn cross_over(particle: ptr<function, Particle>, thread: u32) -> bool {
         leave(particle, left, (*particle).velocity[left / 2u] + status.before[left]);
     } else if (role == COMING || role == OUTSIDE) && number == NOWHERE {
         (*particle).role = INSIDE;
-        came[thread] = held;
+        crossed.came = held;
     }
     let now = (*particle).role & ROLE_MASK;
     return (now == LEAVING || now == OUTSIDE) && !(depth_beyond((*particle).place, (*particle).role >> FACE_BITS) < BEYOND * parameters.h);
@@ -122,42 +135,40 @@ fn tell_columns(particle: Particle) {
 }
 
 // Whether a particle is taken out that has been of no use for long. Twin of `tend_utility`.
-fn tend(particle: ptr<function, Particle>, thread: u32) -> bool {
+fn tend(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role;
     if role != INSIDE && role != IDLE {
         return false;
     }
     let utility = utility(*particle);
     if role == INSIDE && utility != MATTERS {
-        went[thread] += booked(*particle);
+        crossed.went += booked(*particle);
         (*particle).role = IDLE;
         (*particle).idle = 0.0;
         (*particle).spreading = vec3f(0.0);
     } else if role == IDLE && utility == MATTERS {
-        came[thread] += booked(*particle);
+        crossed.came += booked(*particle);
         (*particle).role = INSIDE;
     } else if role == IDLE {
-        (*particle).idle += (status.time.sum - status.seen.sum) - (status.time.lacking - status.seen.lacking);
+        (*particle).idle += difference(status.time, status.seen);
     }
     return utility == USELESS;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    came[thread] = vec4f(0.0);
-    went[thread] = vec4f(0.0);
     let i = id.x;
     if i < status.particles {
         var particle = unpacked(particles[i]);
         var cell = status.cells - 1u;
-        if !cross_over(&particle, thread) {
+        if !cross_over(&particle) {
             tell_columns(particle);
             let is_turn = is_set(TENDS) && (status.turn + status.steps) % TURN == 0u;
-            if !(is_turn && tend(&particle, thread)) {
+            if !(is_turn && tend(&particle)) {
                 cell = cell_at(particle.place);
             }
         }
@@ -165,16 +176,9 @@ fn main(
         places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[i] = particle.id;
     }
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            came[thread] += came[thread + half];
-            went[thread] += went[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, crossed);
     if thread == 0u {
-        partials[group.x].came = came[0];
-        partials[group.x].went = went[0];
+        partials[group.x].came = all.came;
+        partials[group.x].went = all.went;
     }
 }

@@ -114,7 +114,7 @@ fn relative_humidity(vapour: f32) -> f32 {
     return (pressure - parameters.ambient_pressure) / parameters.saturated;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= status.particles {
@@ -131,8 +131,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let density = particle.density;
     let pressure = parameters.sound * parameters.sound * (density - parameters.rest_density) / (density * density);
-    let temperature = value(particle.temperature);
-    let vapour = value(particle.vapour);
+    let temperature = total(particle.temperature);
+    let vapour = total(particle.vapour);
     var humidity = vapour;
     if is_set(RELATIVE) {
         humidity = relative_humidity(vapour);

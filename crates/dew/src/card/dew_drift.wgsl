@@ -1,9 +1,13 @@
 // Half a kick with the old acceleration, then on by a whole step; and what the air before outlets does. Twin of `drift` in
 // `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `before_outlet` in `faces/mod.rs`.
 #import dew_card
+#import over_group
 
-var<workgroup> near: array<vec3f, 256>;
-var<workgroup> nearest: array<vec2f, 256>;
+alias Summand = BeforeOutlet;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return BeforeOutlet(a.near + b.near, 0.0, a.nearest + b.nearest, vec2f(0.0));
+}
 
 fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     let size = high - low;
@@ -48,7 +52,7 @@ fn counted(particle: Particle, number: u32) -> BeforeOutlet {
     );
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,
@@ -77,19 +81,9 @@ fn main(
         if is_there {
             own = counted(particle, number);
         }
-        near[thread] = own.near;
-        nearest[thread] = own.nearest;
-        workgroupBarrier();
-        for (var half = 128u; half > 0u; half /= 2u) {
-            if thread < half {
-                near[thread] += near[thread + half];
-                nearest[thread] += nearest[thread + half];
-            }
-            workgroupBarrier();
-        }
+        let all = over_group(thread, own);
         if thread == 0u {
-            before[group.x][number] = BeforeOutlet(near[0], 0.0, nearest[0], vec2f(0.0));
+            before[group.x][number] = all;
         }
-        workgroupBarrier();
     }
 }

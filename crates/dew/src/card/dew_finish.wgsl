@@ -1,12 +1,11 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
 // `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
 #import dew_card
+#import over_group
 
-const THREADS = 128u;
+alias Summand = Partial;
 
-var<workgroup> sums: array<Partial, 128>;
-
-fn joined(a: Partial, b: Partial) -> Partial {
+fn both(a: Summand, b: Summand) -> Summand {
     return Partial(
         a.came + b.came,
         a.went + b.went,
@@ -37,32 +36,30 @@ fn accelerate(step: f32) {
         let all = of_particle / f32(status.particles);
         status.drift = -vec2f((all.y - parameters.latent_heat * all.x) / parameters.heat_capacity, all.x);
     } else {
-        status.diffused = add4(status.diffused, max(vec4f(of_particle.x, -of_particle.x, of_particle.y, -of_particle.y), vec4f(0.0)));
+        status.diffused = add_four(status.diffused, max(vec4f(of_particle.x, -of_particle.x, of_particle.y, -of_particle.y), vec4f(0.0)));
     }
 }
 
 // Books what the groups have summed up.
 fn book(all: Partial) {
     let step = status.step;
-    status.came = add4(status.came, all.came);
-    status.went = add4(status.went, all.went);
+    status.came = add_four(status.came, all.came);
+    status.went = add_four(status.went, all.went);
     // Beyond faces, and to air of low utility.
     if is_set(IS_PASSED) || is_set(TENDS) {
         let water = step * all.diffused.y;
         let energy = step * (parameters.heat_capacity * all.diffused.x + parameters.latent_heat * all.diffused.y);
-        status.diffused = add4(status.diffused, max(vec4f(water, -water, energy, -energy), vec4f(0.0)));
+        status.diffused = add_four(status.diffused, max(vec4f(water, -water, energy, -energy), vec4f(0.0)));
     }
     accelerate(step);
     status.fogged = add(status.fogged, all.fogged);
     if (status.turn + status.steps) % TURN == 0u {
         status.seen = status.time;
     }
-    status.elapsed = add(status.elapsed, step);
-    status.time = add(status.time, step);
-    status.lengths[min(status.steps, MOST_STEPS - 1u)] = step;
+    status.time = tidy(add(status.time, step));
+    status.last_step = step;
     status.steps += 1u;
-    let low = status.particle_steps.x + status.particles;
-    status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
+    status.particle_steps = count_up(status.particle_steps, status.particles);
     var stiffest = 1e-30;
     for (var body = 0u; body < arrayLength(&bodies); body++) {
         stiffest = max(stiffest, bodies[body].stiff);
@@ -75,19 +72,20 @@ fn decide() {
     let is_fast = is_set(REFUSES_FAST) && status.fastest > parameters.sound * parameters.sound;
     if !(status.step > parameters.shortest_step) || is_fast {
         status.halted = BROKEN;
-    } else if status.elapsed.sum + status.step > status.until {
+    } else if difference(status.until, status.time) < status.step {
         status.halted = ARRIVED;
     } else if status.particles > parameters.full {
-        status.halted = FULL;
+        // There may be too little room for what comes in the next step.
+        status.halted = NEEDS_HOST;
     } else {
         status.halted = GOING;
     }
     let counts = array(
-        (status.particles + 255u) / 256u,
-        (status.cells + 255u) / 256u,
+        (status.particles + GROUP - 1u) / GROUP,
+        (status.cells + GROUP - 1u) / GROUP,
         (status.cells + 1023u) / 1024u,
         1u,
-        (arrayLength(&own) + 255u) / 256u,
+        (arrayLength(&own) + GROUP - 1u) / GROUP,
         arrayLength(&bodies),
     );
     for (var slot = 0u; slot < 6u; slot++) {
@@ -97,27 +95,20 @@ fn decide() {
     }
 }
 
-@compute @workgroup_size(128)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    var all = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0, 0.0, vec2f(0.0));
+    var own = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0, 0.0, vec2f(0.0));
     if status.halted == GOING {
-        for (var group = thread; group < groups[0]; group += THREADS) {
-            all = joined(all, partials[group]);
+        for (var group = thread; group < groups[0]; group += GROUP) {
+            own = both(own, partials[group]);
         }
     }
-    sums[thread] = all;
-    workgroupBarrier();
-    for (var half = THREADS / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
         if status.halted == GOING {
-            book(sums[0]);
+            book(all);
         }
-        if status.halted == GOING || status.halted == SPOKEN {
+        if status.halted == GOING || status.halted == BATCH_START {
             decide();
         }
     }

@@ -3,6 +3,7 @@
 #import dew_neighbours
 #import dew_humid
 #import dew_saturate
+#import over_group
 
 // What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
 struct Rates {
@@ -167,8 +168,8 @@ fn driving(particle: Particle) -> vec3f {
     }
     // Boussinesq, by differences from the ambient air (Stull 1988, equation 1.5.1).
     let moist = 1.0 + 0.608 * parameters.ambient_vapour;
-    let temperature = value(particle.temperature);
-    let lighter = temperature * moist + (parameters.ambient + temperature) * 0.608 * value(particle.vapour);
+    let temperature = total(particle.temperature);
+    let lighter = temperature * moist + (parameters.ambient + temperature) * 0.608 * total(particle.vapour);
     return driven - lighter / (parameters.ambient * moist) * parameters.gravity;
 }
 
@@ -189,8 +190,16 @@ fn longest_step(speed_squared: f32, acceleration_squared: f32, stiffest: f32) ->
     return select(0.0, min(min(by_sound, by_force), by_diffusion), are_numbers);
 }
 
+// What a particle adds to the sums of its group: what diffused and what became fog; the longest step, and the square of its speed.
+struct Kicked {
+    diffused: vec2f,
+    fogged: f32,
+    longest: f32,
+    fastest: f32,
+}
+
 // Kicks a particle; what it adds to the sums.
-fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial {
+fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Kicked {
     var rates = air;
     let given = of_solids(own, &rates);
     // What passes between air and images beyond is not of the solids.
@@ -214,22 +223,23 @@ fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Partial
     if (*particle).role == INSIDE && is_set(SATURATES) {
         fogged = saturate(particle);
     }
-    return Partial(vec4f(0.0), vec4f(0.0), diffused, fogged, longest_step(speed, acceleration, stiffest), speed, 0.0, vec2f(0.0));
+    return Kicked(diffused, fogged, longest_step(speed, acceleration, stiffest), speed);
 }
 
-// What diffused, and what became fog; the longest step and the fastest.
-var<workgroup> sums: array<vec3f, 256>;
-var<workgroup> limits: array<vec2f, 256>;
+alias Summand = Kicked;
 
-@compute @workgroup_size(256)
+fn both(a: Summand, b: Summand) -> Summand {
+    return Kicked(a.diffused + b.diffused, a.fogged + b.fogged, min(a.longest, b.longest), max(a.fastest, b.fastest));
+}
+
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
     let i = id.x;
-    sums[thread] = vec3f(0.0);
-    limits[thread] = vec2f(FAR, 0.0);
+    var part = Kicked(vec2f(0.0), 0.0, FAR, 0.0);
     if i < status.particles {
         let own = unpacked_column(columns[i]);
         var particle = unpacked(particles[i]);
@@ -237,24 +247,14 @@ fn main(
         if is_set(RELATIVE) {
             rates.moistening *= fraction_by_humidity(own.vapour);
         }
-        let part = kicked(&particle, own, rates);
+        part = kicked(&particle, own, rates);
         particles[i] = packed(particle);
-        sums[thread] = vec3f(part.diffused, part.fogged);
-        limits[thread] = vec2f(part.longest, part.fastest);
     }
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-            let other = limits[thread + half];
-            limits[thread] = vec2f(min(limits[thread].x, other.x), max(limits[thread].y, other.y));
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, part);
     if thread == 0u {
-        partials[group.x].diffused = sums[0].xy;
-        partials[group.x].fogged = sums[0].z;
-        partials[group.x].longest = limits[0].x;
-        partials[group.x].fastest = limits[0].y;
+        partials[group.x].diffused = all.diffused;
+        partials[group.x].fogged = all.fogged;
+        partials[group.x].longest = all.longest;
+        partials[group.x].fastest = all.fastest;
     }
 }

@@ -1,29 +1,22 @@
 // What air beyond outlets is faster and denser by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs`, and of
 // `before_outlet` and `update_outlet_pressure` in `faces/mod.rs`.
 #import dew_card
+#import over_group
 
-var<workgroup> near: array<vec3f, 256>;
-var<workgroup> nearest: array<vec2f, 256>;
+alias Summand = BeforeOutlet;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return BeforeOutlet(a.near + b.near, 0.0, a.nearest + b.nearest, vec2f(0.0));
+}
 
 // The mean acceleration, velocity and `spreading` before a face, by all threads together.
 fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
     var own = BeforeOutlet();
-    for (var group = thread; group < count; group += 256u) {
+    for (var group = thread; group < count; group += GROUP) {
         own.near += before[group][number].near;
         own.nearest += before[group][number].nearest;
     }
-    near[thread] = own.near;
-    nearest[thread] = own.nearest;
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            near[thread] += near[thread + half];
-            nearest[thread] += nearest[thread + half];
-        }
-        workgroupBarrier();
-    }
-    let all = BeforeOutlet(near[0], 0.0, nearest[0], vec2f(0.0));
-    workgroupBarrier();
+    let all = over_group(thread, own);
     return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
 
@@ -35,14 +28,14 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     let b = (axis + 2u) % 3u;
     let columns = parameters.counts[a];
     let all = columns * parameters.counts[b];
-    for (var k = thread; k < all; k += 256u) {
+    for (var k = thread; k < all; k += GROUP) {
         var particle: Particle;
         particle.place[axis] = select(parameters.high[axis] + behind, parameters.low[axis] - behind, number % 2u == 0u);
         particle.place[a] = parameters.low[a] + (f32(k % columns) + 0.5) * parameters.apart[a];
         particle.place[b] = parameters.low[b] + (f32(k / columns) + 0.5) * parameters.apart[b];
         particle.velocity = inlet.velocity;
-        particle.temperature = Account(inlet.temperature, 0.0);
-        particle.vapour = Account(inlet.vapour, 0.0);
+        particle.temperature = vec2f(inlet.temperature, 0.0);
+        particle.vapour = vec2f(inlet.vapour, 0.0);
         particle.id = first_id + k;
         particle.role = COMING | (number << FACE_BITS);
         if first + k < arrayLength(&particles) {
@@ -51,7 +44,7 @@ fn add_layer(number: u32, behind: f32, first: u32, first_id: u32, thread: u32) {
     }
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let old = status.particles;
     var count = old;
@@ -67,7 +60,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     for (var number = 0u; number < 6u; number++) {
         let rule = face(number);
         if rule == OUTLET {
-            let mean = mean_before(number, (old + 255u) / 256u, thread);
+            let mean = mean_before(number, (old + GROUP - 1u) / GROUP, thread);
             faster[number] = step * mean.x;
             spreading[number] = mean.z;
             let crossed = step * parameters.sound / (parameters.high[number / 2u] - parameters.low[number / 2u]);
@@ -78,9 +71,9 @@ fn main(@builtin(local_invocation_index) thread: u32) {
             let axis = number / 2u;
             let apart = parameters.apart[axis];
             phases[number] = add(phases[number], abs(parameters.inlets[number].velocity[axis]) * step);
-            if value(phases[number]) >= apart {
+            if total(phases[number]) >= apart {
                 phases[number] = add(phases[number], -apart);
-                let behind = parameters.inlets[number].behind - value(phases[number]);
+                let behind = parameters.inlets[number].behind - total(phases[number]);
                 add_layer(number, behind, count, id + count - old, thread);
                 count += parameters.counts[(axis + 1u) % 3u] * parameters.counts[(axis + 2u) % 3u];
             }
@@ -97,6 +90,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         status.running_mean_before = running_mean;
         status.particles = min(count, arrayLength(&particles));
         status.next_id = id + count - old;
-        groups[0] = (status.particles + 255u) / 256u;
+        groups[0] = (status.particles + GROUP - 1u) / GROUP;
     }
 }

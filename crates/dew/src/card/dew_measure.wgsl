@@ -1,9 +1,10 @@
 // What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures.rs`.
 #import dew_card
+#import over_group
 
-var<workgroup> sums: array<Measured, 256>;
+alias Summand = Measured;
 
-fn joined(a: Measured, b: Measured) -> Measured {
+fn both(a: Summand, b: Summand) -> Summand {
     return Measured(
         a.temperature + b.temperature,
         a.vapour + b.vapour,
@@ -18,28 +19,21 @@ fn measure(particle: Particle) -> Measured {
         return Measured();
     }
     let speed_squared = dot(particle.velocity, particle.velocity);
-    return Measured(value(particle.temperature), value(particle.vapour), particle.fog, speed_squared, 1u);
+    return Measured(total(particle.temperature), total(particle.vapour), particle.fog, speed_squared, 1u);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(local_invocation_index) thread: u32,
     @builtin(workgroup_id) group: vec3u,
 ) {
     var own = Measured();
-    for (var i = id.x; i < status.particles; i += 256u * MEASURING_GROUPS) {
-        own = joined(own, measure(unpacked(particles[i])));
+    for (var i = id.x; i < status.particles; i += GROUP * MEASURING_GROUPS) {
+        own = both(own, measure(unpacked(particles[i])));
     }
-    sums[thread] = own;
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
-        measured[group.x] = sums[0];
+        measured[group.x] = all;
     }
 }

@@ -68,7 +68,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
     let all = along.x * along.y;
     let first = first_column(number);
     var count = filled;
-    for (var chunk = 0u; chunk < all; chunk += 256u) {
+    for (var chunk = 0u; chunk < all; chunk += GROUP) {
         let column = chunk + thread;
         var more = 0u;
         if column < all {
@@ -84,7 +84,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
     }
     storageBarrier();
     workgroupBarrier();
-    for (var column = thread; column < all; column += 256u) {
+    for (var column = thread; column < all; column += GROUP) {
         atomicStore(&columns_before[first + column].velocity, 0);
         atomicStore(&columns_before[first + column].count, 0u);
         atomicStore(&columns_before[first + column].outermost, 0u);
@@ -92,7 +92,7 @@ fn tend_side(number: u32, filled: u32, id: u32, is_going: bool, thread: u32) -> 
     return count;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let old = status.particles;
     // Numbers go on from the last, so that a particle's is this and its place in memory.
@@ -110,6 +110,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     if thread == 0u && is_going {
         status.particles = min(count, arrayLength(&particles));
         status.next_id = id + count;
-        groups[0] = (status.particles + 255u) / 256u;
+        groups[0] = (status.particles + GROUP - 1u) / GROUP;
     }
 }

@@ -2,7 +2,7 @@
 // `Arrangement::arrange`. Air outside open sides gets its velocity. Twin of `move_outside` in `faces/open.rs`.
 #import dew_columns
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     let staying = start[status.cells - 1u];

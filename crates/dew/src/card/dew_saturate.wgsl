@@ -6,8 +6,8 @@
 // Twin of `exchange::excess`, whose slope is a difference that single precision would lose.
 fn excess(particle: Particle) -> f32 {
     let warming = parameters.latent_heat / parameters.heat_capacity;
-    let temperature = value(particle.temperature);
-    let vapour = value(particle.vapour);
+    let temperature = total(particle.temperature);
+    let vapour = total(particle.vapour);
     if !(particle.fog > 0.0 || vapour > saturation(temperature).x) {
         return 0.0;
     }

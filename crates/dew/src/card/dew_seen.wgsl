@@ -26,11 +26,11 @@ fn as_seen(particle: Particle) -> DeviceParticle {
     air.velocity = particle.velocity;
     air.volume = parameters.spacing * parameters.spacing * parameters.spacing;
     air.id = particle.id;
-    air.temperature = parameters.celsius + value(particle.temperature);
+    air.temperature = parameters.celsius + total(particle.temperature);
     return air;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i == 0u {

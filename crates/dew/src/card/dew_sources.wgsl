@@ -2,6 +2,7 @@
 // `Conditions::flux` in `solids/sources/mod.rs`.
 #import dew_card
 #import dew_rows
+#import over_group
 
 // Surroundings at a time; temperatures from the ambient air's, K.
 struct Conditions {
@@ -14,16 +15,21 @@ struct Conditions {
 var<workgroup> power: f32;
 var<workgroup> outside: Conditions;
 var<workgroup> radiation: Conditions;
-var<workgroup> sums: array<vec3f, 256>;
 
-fn value_of(first: u32, end: u32, time: Account) -> f32 {
+alias Summand = vec3f;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
+
+fn value_of(first: u32, end: u32, time: vec2f) -> f32 {
     if first >= end {
         return 0.0;
     }
     return value_at(first, end, time);
 }
 
-fn conditions_at(around: Surroundings, time: Account) -> Conditions {
+fn conditions_at(around: Surroundings, time: vec2f) -> Conditions {
     let air = value_of(around.air_first, around.air_end, time);
     let radiant = value_of(around.radiant_first, around.radiant_end, time);
     return Conditions(around.transfer_coefficient, around.emissivity_sigma, air, radiant);
@@ -60,7 +66,7 @@ fn heat(conditions: Conditions, part: Part, temperature: f32) -> vec2f {
     return part.area * vec2f(flux.x, flux.y / (1.0 + part.resistance * flux.y));
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let body = bodies[group.x];
     if thread == 0u {
@@ -72,9 +78,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     }
     workgroupBarrier();
     var own = vec3f(0.0);
-    for (var i = body.first + thread; i < body.end; i += 256u) {
+    for (var i = body.first + thread; i < body.end; i += GROUP) {
         let share = shares[i];
-        let temperature = value(solids[i].temperature);
+        let temperature = total(solids[i].temperature);
         let from_outside = heat(outside, share.outside, temperature);
         let radiated = heat(radiation, share.radiation, temperature);
         let all = vec3f(share.heater * power, from_outside.x, radiated.x);
@@ -82,16 +88,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         surfaces[i].conductance += from_outside.y + radiated.y;
         own += all;
     }
-    sums[thread] = own;
-    workgroupBarrier();
-    for (var half = 128u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
-        let supplied = parameters.time_factor * status.step * sums[0];
+        let supplied = parameters.time_factor * status.step * all;
         for (var kind = 0u; kind < 3u; kind++) {
             sources[group.x].supplied[kind] = add(sources[group.x].supplied[kind], supplied[kind]);
         }

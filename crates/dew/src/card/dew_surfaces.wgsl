@@ -5,7 +5,7 @@
 
 // Heat by difference of temperature, W, condensation and evaporation, kg/s, and the sum of conductances, W/K.
 fn from_air(site: Site, surface: Surface) -> vec4f {
-    var sums = Account4(vec4f(0.0), vec4f(0.0));
+    var sums = FourSums(vec4f(0.0), vec4f(0.0));
     let mirrors = mirrors_round(site.place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, site.place);
@@ -26,15 +26,15 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
                     let air = unpacked_column(columns[j]);
                     let flux = flux(site, surface, air, mirror.sign * away, q);
                     let heat = flux.to_solid * flux.difference;
-                    sums = add4(sums, vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid));
+                    sums = add_four(sums, vec4f(heat, max(flux.water, 0.0), max(-flux.water, 0.0), flux.to_solid));
                 }
             }
         }
     }
-    return sums.sum - sums.lacking;
+    return sums.values + sums.lacking;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= arrayLength(&own) {
@@ -42,8 +42,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let site = own[i];
     let solid = solids[i];
-    let water = max(waters[i].told + value(waters[i].gained), 0.0);
-    var surface = Surface(value(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, waters[i].evaporation);
+    let water = max(waters[i].told + total(waters[i].gained), 0.0);
+    var surface = Surface(total(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, waters[i].evaporation);
     if (site.flags & NEAR_SURFACE) != 0u {
         let sums = from_air(site, surface);
         let step = parameters.time_factor * status.step;
@@ -58,8 +58,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var k = site.first; k < site.end; k++) {
         let conductance = bitcast<f32>(pairs[k].y);
         let other = solids[pairs[k].x].temperature;
-        let warmer = (other.sum - solid.temperature.sum) - (other.lacking - solid.temperature.lacking);
-        surface.all_heat += conductance * warmer;
+        surface.all_heat += conductance * difference(other, solid.temperature);
         surface.conductance += conductance;
     }
     surfaces[i] = surface;

@@ -30,7 +30,7 @@ fn deposited(site: Site) -> f32 {
     return water;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= arrayLength(&own) {

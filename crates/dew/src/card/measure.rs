@@ -4,18 +4,14 @@ use super::shared::{self, MEASURING_GROUPS};
 use super::{Card, Origin};
 use crate::dew::State;
 use crate::measures::Totals;
-use corpuscle_gpu::{GpuError, Pass, read, wgpu};
+use corpuscle_gpu::{GpuError, read, submit};
 
 impl Card {
     /// What gauges tell of the air as a whole. What they tell of solids comes into `state`.
     pub fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
-        let mut encoder =
-            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("gauges") });
-        let mut pass = Pass::begin(&mut encoder, None);
-        self.tasks.measure.run(&mut pass, MEASURING_GROUPS);
-        drop(pass);
-        self.gpu.queue.submit([encoder.finish()]);
-        let groups: Vec<shared::Measured> = read(&self.gpu, &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
+        submit(self.batches.gpu(), "gauges", None, |pass| self.tasks.measure.run(pass, MEASURING_GROUPS));
+        let groups: Vec<shared::Measured> =
+            read(self.batches.gpu(), &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
         self.fetch_solids(state)?;
         Ok(totals(&groups, self.origin))
     }

@@ -23,20 +23,19 @@ pub(crate) use shared::MOST_FANS;
 use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
 use bytemuck::Zeroable;
-use corpuscle_gpu::{Gpu, GpuError, Pass, Stopwatch, read, wgpu};
+use corpuscle_gpu::{BATCH_START, Batches, Gpu, GpuError, Halt, from_halves, from_pair, read, to_pair, wgpu};
 use origin::Origin;
 use seen::Seen;
-use shared::{MOST_STEPS, OutsideColumn, Parameters, Status, TURN};
+use shared::{OutsideColumn, Parameters, Status, TURN};
 use solids::CardSolids;
 use sources::CardSources;
 use std::sync::OnceLock;
-use std::time::Instant;
 use tasks::Tasks;
 
 /// Humid air on a card.
 #[derive(Debug)]
 pub(crate) struct Card {
-    gpu: Gpu,
+    pub batches: Batches,
     tasks: Tasks,
     /// Where solids have any.
     sources: Option<CardSources>,
@@ -55,12 +54,8 @@ pub(crate) struct Card {
     held_before: Vec<f64>,
     /// Whether the host has not the air that is here.
     ahead: bool,
-    /// Wall-clock time spent on steps, s.
-    pub busy: f64,
     /// Once somebody draws the air.
     seen: OnceLock<Seen>,
-    /// Where passes are timed.
-    pub stopwatch: Option<Stopwatch>,
     /// Batches of steps until the device is lost.
     #[cfg(test)]
     pub lost_after: Option<u32>,
@@ -77,8 +72,11 @@ pub(crate) struct Crossed {
 /// What a batch of steps did.
 #[derive(Debug, Clone)]
 pub(crate) struct Progress {
-    /// How long each step was, s.
-    pub lengths: Vec<f64>,
+    pub steps: u64,
+    /// Time at the end of the last step, s.
+    pub time: f64,
+    /// Length of the last step, s.
+    pub last_step: f64,
     pub particle_steps: u64,
     /// The next step, s.
     pub step: f64,
@@ -134,7 +132,7 @@ impl Card {
         let cells = parameters.cells.iter().product::<u32>() + 1;
         let held_before = vec![0.0; bodies.len()];
         Ok(Self {
-            gpu,
+            batches: Batches::new(gpu, "dew"),
             tasks,
             sources,
             origin,
@@ -147,17 +145,10 @@ impl Card {
             water_told: vec![0.0; of_solids],
             held_before,
             ahead: false,
-            busy: 0.0,
             seen: OnceLock::new(),
-            stopwatch: None,
             #[cfg(test)]
             lost_after: None,
         })
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> Gpu {
-        self.gpu.clone()
     }
 
     /// Bytes held on the device.
@@ -180,11 +171,11 @@ impl Card {
     pub fn send(&mut self, state: &State, evaporation: &[f64]) {
         let air: Vec<shared::Particle> = state.air.iter().map(|particle| self.origin.to_card(particle)).collect();
         let temperature = |temperature: &f64| shared::Solid {
-            temperature: shared::Account::from(temperature - self.origin.temperature),
+            temperature: to_pair(temperature - self.origin.temperature),
             ..shared::Solid::default()
         };
         let solids: Vec<shared::Solid> = state.temperatures.iter().map(temperature).collect();
-        let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.gpu.queue.write_buffer(buffer, 0, bytes);
+        let write = |buffer: &wgpu::Buffer, bytes: &[u8]| self.batches.gpu().queue.write_buffer(buffer, 0, bytes);
         write(&self.tasks.memory.particles, bytemuck::cast_slice(&air));
         write(&self.tasks.memory.solids, bytemuck::cast_slice(&solids));
         write(&self.tasks.memory.bodies, bytemuck::cast_slice(&self.bodies));
@@ -192,7 +183,7 @@ impl Card {
         let rows: Vec<shared::Row> = self.rows.iter().map(row).collect();
         write(&self.tasks.memory.rows, bytemuck::cast_slice(&rows));
         if let Some(sources) = &mut self.sources {
-            sources.reset(&self.gpu, &self.tasks.memory);
+            sources.reset(self.batches.gpu(), &self.tasks.memory);
         }
         self.tell_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
@@ -203,16 +194,16 @@ impl Card {
             particles: air.len() as u32,
             step: state.time_step as f32,
             next_id: state.next_id as u32,
-            seen: shared::Account::from(state.utility_seen - state.time),
+            seen: to_pair(state.utility_seen - state.time),
             turn: (state.steps % u64::from(TURN)) as u32,
             drift: state.drift.map(|gain| gain as f32),
-            phase: std::array::from_fn(|number| shared::Account::from(phases[number])),
+            phase: std::array::from_fn(|number| to_pair(phases[number])),
             density_excess_beyond: narrow(state.density_excess_beyond),
             running_mean_before: narrow(state.running_mean_before),
             ..Status::zeroed()
         };
         // Who draws before the first step reads it too.
-        self.gpu.queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
+        self.batches.gpu().queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
         self.sent_at = state.time;
         self.ahead = false;
     }
@@ -225,17 +216,17 @@ impl Card {
             ..shared::Water::default()
         };
         let told: Vec<shared::Water> = water.iter().zip(evaporation).map(tell).collect();
-        self.gpu.queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&told));
+        self.batches.gpu().queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&told));
         self.water_told.clear();
         self.water_told.extend_from_slice(water);
     }
 
     /// Brings the water on the particles of the solids, kg.
     pub fn fetch_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
-        let waters: Vec<shared::Water> = read(&self.gpu, &self.tasks.memory.waters, self.water_told.len())?;
+        let waters: Vec<shared::Water> = read(self.batches.gpu(), &self.tasks.memory.waters, self.water_told.len())?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
-        let now = |(told, water): (&f64, &shared::Water)| (told + water.gained.value()).max(0.0);
+        let now = |(told, water): (&f64, &shared::Water)| (told + from_pair(water.gained)).max(0.0);
         water.extend(self.water_told.iter().zip(&waters).map(now));
         Ok(())
     }
@@ -245,7 +236,8 @@ impl Card {
         if !self.ahead {
             return Ok(());
         }
-        let air: Vec<shared::Particle> = read(&self.gpu, &self.tasks.memory.particles, self.status.particles as usize)?;
+        let air: Vec<shared::Particle> =
+            read(self.batches.gpu(), &self.tasks.memory.particles, self.status.particles as usize)?;
         self.fetch_solids(state)?;
         state.air.clear();
         state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
@@ -255,10 +247,10 @@ impl Card {
 
     /// Brings back what changes of the solids.
     fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
-        let solids: Vec<shared::Solid> = read(&self.gpu, &self.tasks.memory.solids, state.temperatures.len())?;
-        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.memory.bodies, self.bodies.len())?;
+        let solids: Vec<shared::Solid> = read(self.batches.gpu(), &self.tasks.memory.solids, state.temperatures.len())?;
+        let bodies: Vec<shared::Body> = read(self.batches.gpu(), &self.tasks.memory.bodies, self.bodies.len())?;
         self.fetch_water(&mut state.water_on)?;
-        let temperature = |solid: &shared::Solid| solid.temperature.value() + self.origin.temperature;
+        let temperature = |solid: &shared::Solid| from_pair(solid.temperature) + self.origin.temperature;
         state.temperatures.clear();
         state.temperatures.extend(solids.iter().map(temperature));
         state.heat_flow.clear();
@@ -266,17 +258,18 @@ impl Card {
         Ok(())
     }
 
-    /// Takes `count` steps, or fewer: only up to `until` s from now.
-    pub fn advance(&mut self, until: f64, count: usize) -> Result<Progress, GpuError> {
+    /// Takes steps up to a time, s, or as many as a batch has, `most` at most.
+    pub fn advance(&mut self, until: f64, most: u64) -> Result<Progress, GpuError> {
         #[cfg(test)]
         self.lose();
-        let count = count.min(MOST_STEPS as usize) as u32;
+        let left = until - self.time();
+        let count = self.batches.steps(left, f64::from(self.status.step), most);
         self.status = Status {
-            halted: shared::SPOKEN,
+            halted: BATCH_START,
             particles: self.status.particles,
             cells: self.status.cells,
             step: self.status.step,
-            until: until as f32,
+            until: to_pair(until - self.sent_at),
             next_id: self.status.next_id,
             phase: self.status.phase,
             density_excess_beyond: self.status.density_excess_beyond,
@@ -287,65 +280,66 @@ impl Card {
             drift: self.status.drift,
             ..Status::zeroed()
         };
-        let began = Instant::now();
-        self.gpu.queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
-        let mut encoder =
-            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("dew") });
-        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
-        self.tasks.steps(&mut pass, count);
-        drop(pass);
-        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
-        self.gpu.queue.submit([encoder.finish()]);
-        self.status = read(&self.gpu, &self.tasks.memory.status, 1)?[0];
-        let bodies: Vec<shared::Body> = read(&self.gpu, &self.tasks.memory.bodies, self.bodies.len())?;
-        let supplied = self
-            .sources
-            .as_mut()
-            .map(|sources| sources.download_supplied(&self.gpu, &self.tasks.memory))
-            .transpose()?
-            .unwrap_or_default();
-        self.busy += began.elapsed().as_secs_f64();
-        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
+        let Self { tasks, batches, status, bodies, sources, .. } = self;
+        let (done, bodies, supplied) = batches.take(
+            count,
+            (&tasks.memory.status, &*status),
+            |pass| tasks.steps(pass, count),
+            |gpu| {
+                let done = read(gpu, &tasks.memory.status, 1)?[0];
+                let bodies: Vec<shared::Body> = read(gpu, &tasks.memory.bodies, bodies.len())?;
+                let download = |sources: &mut CardSources| sources.download_supplied(gpu, &tasks.memory);
+                Ok((done, bodies, sources.as_mut().map(download).transpose()?.unwrap_or_default()))
+            },
+        )?;
+        self.status = done;
         self.ahead |= self.status.steps > 0;
         Ok(self.progress(&bodies, supplied))
+    }
+
+    /// Time at the end of the last step, s.
+    fn time(&self) -> f64 {
+        self.sent_at + from_pair(self.status.time)
     }
 
     /// Loses the device where it is time.
     #[cfg(test)]
     fn lose(&mut self) {
         match &mut self.lost_after {
-            Some(0) => self.gpu.device.destroy(),
+            Some(0) => self.batches.gpu().device.destroy(),
             Some(batches) => *batches -= 1,
             None => {}
         }
     }
 
     fn progress(&mut self, bodies: &[shared::Body], supplied: Vec<[f64; 3]>) -> Progress {
-        let Status { steps, particle_steps: [low, high], step, halted, fastest, .. } = self.status;
-        let held: Vec<f64> = bodies.iter().map(|body| body.held.value()).collect();
+        let Status { steps, particle_steps, step, last_step, halted, fastest, .. } = self.status;
+        let held: Vec<f64> = bodies.iter().map(|body| from_pair(body.held)).collect();
         let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
         self.held_before = held;
-        let phase = |axis: usize, side: usize| self.status.phase[2 * axis + side].value();
+        let phase = |axis: usize, side: usize| from_pair(self.status.phase[2 * axis + side]);
         let wide = |by_face: [f32; 6]| [0, 1, 2].map(|axis| [0, 1].map(|side| f64::from(by_face[2 * axis + side])));
         Progress {
-            lengths: self.status.lengths[..steps as usize].iter().map(|&step| f64::from(step)).collect(),
-            particle_steps: (u64::from(high) << 32) + u64::from(low),
+            steps: u64::from(steps),
+            time: self.time(),
+            last_step: f64::from(last_step),
+            particle_steps: from_halves(particle_steps),
             step: f64::from(step),
             next_id: u64::from(self.status.next_id),
             came: self.crossed(self.status.came.values()),
             went: self.crossed(self.status.went.values()),
             diffused: self.status.diffused.values(),
-            fogged: self.status.fogged.value(),
+            fogged: from_pair(self.status.fogged),
             held_heat,
             supplied,
             drift: self.status.drift.map(f64::from),
-            utility_seen: self.sent_at + self.status.seen.value(),
+            utility_seen: self.sent_at + from_pair(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
             density_excess_beyond: wide(self.status.density_excess_beyond),
             running_mean_before: wide(self.status.running_mean_before),
             fastest: f64::from(fastest).sqrt(),
-            broken: halted == shared::BROKEN,
-            full: halted == shared::FULL,
+            broken: Halt::of(halted) == Halt::Broken,
+            full: Halt::of(halted) == Halt::NeedsHost,
         }
     }
 

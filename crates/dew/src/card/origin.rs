@@ -3,6 +3,7 @@
 use super::shared::{self, COMING, FACE_BITS, IDLE, INSIDE, LEAVING, OUTSIDE, ROLE_MASK, STILL};
 use crate::air::{Particle, Role};
 use crate::room::Room;
+use corpuscle_gpu::{from_pair, to_pair};
 
 /// Where the shaders count from.
 #[derive(Debug, Clone, Copy)]
@@ -44,8 +45,8 @@ impl Origin {
             acceleration: narrow(particle.acceleration),
             spreading: narrow(particle.spreading),
             id: particle.id as u32,
-            temperature: (particle.temperature - self.temperature).into(),
-            vapour: (particle.vapour - self.vapour).into(),
+            temperature: to_pair(particle.temperature - self.temperature),
+            vapour: to_pair(particle.vapour - self.vapour),
             role: role(particle.role),
             idle: particle.idle as f32,
             ..shared::Particle::default()
@@ -60,8 +61,8 @@ impl Origin {
             velocity: wide(particle.velocity),
             acceleration: wide(particle.acceleration),
             spreading: wide(particle.spreading),
-            temperature: particle.temperature.value() + self.temperature,
-            vapour: particle.vapour.value() + self.vapour,
+            temperature: from_pair(particle.temperature) + self.temperature,
+            vapour: from_pair(particle.vapour) + self.vapour,
             fog: f64::from(particle.fog),
             density: f64::from(particle.density),
             id: u64::from(particle.id),

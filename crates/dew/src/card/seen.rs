@@ -3,7 +3,7 @@
 use super::Card;
 use super::shared::Memory;
 use super::tasks::with_types;
-use corpuscle_gpu::{Buffers, DeviceParticles, GpuError, Kernel, Pass, THREADS, Task, uniform, wgpu};
+use corpuscle_gpu::{Buffers, DeviceParticles, GpuError, Kernel, THREADS, Task, submit, uniform, wgpu};
 
 /// Air as it is seen, and what writes it.
 #[derive(Debug)]
@@ -15,7 +15,7 @@ pub(super) struct Seen {
 
 impl Seen {
     fn new(card: &Card, spacing: f64) -> Result<Self, GpuError> {
-        let gpu = &card.gpu;
+        let gpu = card.batches.gpu();
         let air = DeviceParticles::new(gpu, card.room, card.origin.middle(), spacing)?;
         let shown = uniform(gpu, "time shown", &[0.0_f32; 4]);
         let types = Memory::declaration().types();
@@ -35,14 +35,11 @@ impl Card {
             // Nobody else can have been faster and done otherwise.
             let _ = self.seen.set(Seen::new(self, spacing)?);
         }
+        let gpu = self.batches.gpu();
         let Seen { air, task, shown } = self.seen.get().expect("it was set above");
-        self.gpu.queue.write_buffer(shown, 0, bytemuck::bytes_of(&(since as f32)));
-        let mut encoder =
-            self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
-        let mut pass = Pass::begin(&mut encoder, None);
-        task.run(&mut pass, (air.room as u32).div_ceil(THREADS));
-        drop(pass);
-        self.gpu.queue.submit([encoder.finish()]);
+        gpu.queue.write_buffer(shown, 0, bytemuck::bytes_of(&(since as f32)));
+        let groups = (air.room as u32).div_ceil(THREADS);
+        submit(gpu, "seen", None, |pass| task.run(pass, groups));
         Ok(air.clone())
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! Single precision has some 7 digits. They are not to be spent on where the room is, nor on the 300 K and the part of vapour that all
 //! air has in common: positions are counted from the middle of the room, temperature and vapour from those of the ambient air. What grows by
-//! little in a step is kept as a sum with what it has too much.
+//! little in a step is kept as a pair of a value and what it lacks.
 
-use corpuscle_gpu::{AtomicI32, AtomicU32};
+use corpuscle_gpu::{AtomicI32, AtomicU32, Stepping, from_pair, to_pair};
 
 corpuscle_gpu::declare! {
+    include [Stepping]
     constants {
         /// Flag of [`Parameters::flags`]: air comes and goes by faces.
         pub const IS_PASSED: u32 = 1;
@@ -66,20 +67,8 @@ corpuscle_gpu::declare! {
         pub const HELD: u32 = 32;
         /// An image beyond a side that air passes.
         pub const IMAGE_BEYOND: u32 = 64;
-        /// Value of [`Status::halted`]: the batch goes on.
-        pub const GOING: u32 = 0;
-        /// The time asked for is reached.
-        pub const ARRIVED: u32 = 1;
-        /// The step is too short to go on, or the air faster than sound.
-        pub const BROKEN: u32 = 2;
-        /// The host has said until when to go on.
-        pub const SPOKEN: u32 = 3;
-        /// There may be too little room for what comes in the next step.
-        pub const FULL: u32 = 4;
         /// It is looked for air of low utility once in so many steps.
         pub const TURN: u32 = crate::utility::STEPS as u32;
-        /// Steps that can be ordered at once.
-        pub const MOST_STEPS: u32 = 64;
         /// Groups that share the particles when they are summed up for gauges.
         pub const MEASURING_GROUPS: u32 = 64;
         /// Fans that there is room for: 48 KiB of the 64 that every device has for numbers of this kind.
@@ -112,19 +101,11 @@ corpuscle_gpu::declare! {
         pub const MASS_RATIO: f32 = crate::humid_air::MASS_RATIO as f32;
     }
     structs {
-        /// A sum that does not forget what is small (Kahan 1965).
-        pub struct Account {
-            /// The sum.
-            pub sum: f32,
-            /// What it has too much.
-            pub lacking: f32,
-        }
-
-        /// Sums of four numbers.
-        pub struct Account4 {
-            /// The sums.
-            pub sum: [f32; 4],
-            /// What they have too much.
+        /// Compensated sums of four numbers: values, and what they lack.
+        pub struct FourSums {
+            /// The values.
+            pub values: [f32; 4],
+            /// What is to be added to them.
             pub lacking: [f32; 4],
         }
 
@@ -301,9 +282,9 @@ corpuscle_gpu::declare! {
             /// Its number.
             pub id: u32,
             /// K.
-            pub temperature: Account,
+            pub temperature: [f32; 2],
             /// Part of the mass.
-            pub vapour: Account,
+            pub vapour: [f32; 2],
             /// [`INSIDE`] and those after it.
             pub role: u32,
             /// For how long it has been of low utility, s.
@@ -413,13 +394,13 @@ corpuscle_gpu::declare! {
             /// Part of the evaporation of a wet surface that it lets go.
             pub evaporation: f32,
             /// Gained since, kg.
-            pub gained: Account,
+            pub gained: [f32; 2],
         }
 
         /// What else changes of a particle of a solid.
         pub struct Solid {
             /// From the ambient air's, K.
-            pub temperature: Account,
+            pub temperature: [f32; 2],
             /// Heat through the surface in the last step, W.
             pub flow: f32,
             /// Heat that it was held against in the last step, J.
@@ -461,7 +442,7 @@ corpuscle_gpu::declare! {
             /// How stiff diffusion was, 1/s.
             pub stiff: f32,
             /// Heat that it was held against, J.
-            pub held: Account,
+            pub held: [f32; 2],
             /// First of its rows, where the temperature at which it is held changes.
             pub first_row: u32,
             /// After the last of them.
@@ -475,7 +456,7 @@ corpuscle_gpu::declare! {
         /// A value at a time.
         pub struct Row {
             /// s since the state was sent.
-            pub time: Account,
+            pub time: [f32; 2],
             /// Temperatures are counted from the ambient air's, K.
             pub value: f32,
             /// Fills up.
@@ -533,7 +514,7 @@ corpuscle_gpu::declare! {
             /// In the box.
             pub radiation: Surroundings,
             /// Heat that each kind has supplied, J.
-            pub supplied: [Account; 3],
+            pub supplied: [[f32; 2]; 3],
         }
 
         /// A column of air outside an open side.
@@ -564,7 +545,7 @@ corpuscle_gpu::declare! {
             pub particles: u32,
             /// Number of cells.
             pub cells: u32,
-            /// [`GOING`] and those after it.
+            /// [`GOING`](corpuscle_gpu::GOING) and those after it.
             pub halted: u32,
             /// Steps since the start of the batch.
             pub steps: u32,
@@ -572,26 +553,24 @@ corpuscle_gpu::declare! {
             pub particle_steps: [u32; 2],
             /// The next step, s.
             pub step: f32,
-            /// When to halt, s since the host last spoke.
-            pub until: f32,
-            /// Time since the host last spoke, s.
-            pub elapsed: Account,
             /// Number of the next particle that comes in.
             pub next_id: u32,
-            /// Square of the largest speed in the last step, m2/s2.
-            pub fastest: f32,
-            /// Of particles that came: number, temperature, K, vapour and fog, parts of the mass.
-            pub came: Account4,
-            /// The same of those that went.
-            pub went: Account4,
-            /// Over the mass of a particle: water that diffused in and out over faces, and energy, J/kg.
-            pub diffused: Account4,
-            /// Vapour that became fog, part of a particle's mass.
-            pub fogged: Account,
             /// Time since the state was sent, s.
-            pub time: Account,
+            pub time: [f32; 2],
+            /// Time at which to halt, s since the state was sent.
+            pub until: [f32; 2],
+            /// When it was last looked for air of low utility, s since the state was sent.
+            pub seen: [f32; 2],
+            /// Vapour that became fog, part of a particle's mass.
+            pub fogged: [f32; 2],
+            /// Of particles that came: number, temperature, K, vapour and fog, parts of the mass.
+            pub came: FourSums,
+            /// The same of those that went.
+            pub went: FourSums,
+            /// Over the mass of a particle: water that diffused in and out over faces, and energy, J/kg.
+            pub diffused: FourSums,
             /// How far the air before each inlet has come since its last layer, m.
-            pub phase: [Account; 6],
+            pub phase: [[f32; 2]; 6],
             /// What air beyond each outlet is faster by, m/s.
             pub before: [f32; 6],
             /// The mean `spreading` nearest to each outlet along its axis, m/s2.
@@ -600,18 +579,18 @@ corpuscle_gpu::declare! {
             pub density_excess_beyond: [f32; 6],
             /// Running mean of the velocity along its axis of the air before each outlet, m/s.
             pub running_mean_before: [f32; 6],
-            /// When it was last looked for air of low utility, s since the state was sent.
-            pub seen: Account,
             /// What all air of a closed room gains in the next step for accelerated time: temperature, K, and vapour, part of the mass.
             pub drift: [f32; 2],
             /// Number of the batch's first step, from one that is a multiple of [`TURN`].
             pub turn: u32,
+            /// Length of the last step, s.
+            pub last_step: f32,
+            /// Square of the largest speed in the last step, m2/s2.
+            pub fastest: f32,
             /// Fills up.
             pub unused: u32,
             /// Fills up.
             pub unused_more: [u32; 2],
-            /// How long the steps were, s.
-            pub lengths: [f32; MOST_STEPS as usize],
         }
     }
 
@@ -683,32 +662,17 @@ corpuscle_gpu::declare! {
 
 const _: () = assert!(size_of::<Particle>() == size_of::<Packed>(), "two forms of one thing");
 
-impl Account {
-    /// The value of the sum.
-    pub fn value(self) -> f64 {
-        f64::from(self.sum) - f64::from(self.lacking)
-    }
-}
-
-/// A number as a sum of two.
-impl From<f64> for Account {
-    fn from(value: f64) -> Self {
-        let sum = value as f32;
-        Self { sum, lacking: (f64::from(sum) - value) as f32 }
-    }
-}
-
-impl Account4 {
+impl FourSums {
     /// The values of the sums.
     pub fn values(&self) -> [f64; 4] {
-        std::array::from_fn(|k| Account { sum: self.sum[k], lacking: self.lacking[k] }.value())
+        std::array::from_fn(|k| from_pair([self.values[k], self.lacking[k]]))
     }
 }
 
 impl Row {
     /// A value at a time, counted from `start`, s.
     pub fn new([time, value]: [f64; 2], start: f64) -> Self {
-        Self { time: (time - start).into(), value: value as f32, unused: 0.0 }
+        Self { time: to_pair(time - start), value: value as f32, unused: 0.0 }
     }
 }
 
@@ -744,11 +708,5 @@ mod tests {
     #[test]
     fn rust_and_wgsl_lay_structures_out_alike() {
         corpuscle_gpu::check_layouts(&Memory::declaration()).unwrap();
-    }
-
-    #[test]
-    fn sums_keep_what_is_small() {
-        let value = 300.000_000_123;
-        assert!((Account::from(value).value() - value).abs() < 1e-13 * value);
     }
 }

@@ -5,7 +5,7 @@ use super::shared::{self, Memory};
 use crate::dew::Dew;
 use crate::humid_air::ZERO_CELSIUS;
 use crate::solids::sources::{BodySources, ParticleShare, STEFAN_BOLTZMANN, SurfacePart, Surroundings};
-use corpuscle_gpu::{Gpu, GpuError, read};
+use corpuscle_gpu::{Gpu, GpuError, from_pair, read};
 use corpuscle_scene::Table;
 
 /// Sources of heat.
@@ -51,7 +51,7 @@ impl CardSources {
     /// Downloads the heat that each solid and wall got since the last time, J.
     pub fn download_supplied(&mut self, gpu: &Gpu, memory: &Memory) -> Result<Vec<[f64; 3]>, GpuError> {
         let now: Vec<shared::Source> = read(gpu, &memory.sources, self.initial.len())?;
-        let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(shared::Account::value)).collect();
+        let now: Vec<[f64; 3]> = now.iter().map(|source| source.supplied.map(from_pair)).collect();
         let since = |(now, before): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|kind| now[kind] - before[kind]);
         let supplied = now.iter().zip(&self.before).map(since).collect();
         self.before = now;

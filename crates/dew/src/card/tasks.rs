@@ -7,13 +7,15 @@ use super::shared::{
 use super::solids::{CardSolids, filled};
 use super::sources::CardSources;
 use corpuscle_gpu::{
-    Buffers, CellSort, DECLARED, DEVICE_PARTICLES, DeclaredKernel, Gpu, GpuError, Pass, SUMS_BEFORE, SortSlots,
-    THREADS, Task, storage, uniform, wgpu,
+    Buffers, COMPENSATED_SUMS, CellSort, DECLARED, DEVICE_PARTICLES, DeclaredKernel, Gpu, GpuError, OVER_GROUP, Pass,
+    SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
 };
 
 /// Pieces that the shaders import, but for what they share with the host.
 pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
+    COMPENSATED_SUMS,
+    OVER_GROUP,
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_columns", include_str!("dew_columns.wgsl")),
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),

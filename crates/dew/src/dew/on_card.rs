@@ -8,13 +8,10 @@ use crate::card::{Card, Crossed, MOST_FANS, Progress};
 use crate::faces::deepest_outside;
 use crate::room::Face;
 use crate::wetting::WettingState;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Taken};
 use corpuscle_model::{Companion, Glance, GpuModel, Model, ModelError};
 use on_device::Watch;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// So many steps are ordered at once where there are no drops to be told of.
-const TOGETHER: u64 = 64;
 
 /// Room for particles that come beside those that there are.
 const SPARE_ROOM: usize = 1024;
@@ -36,24 +33,25 @@ impl GpuModel for Dew {
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
-        self.card.as_ref().map(|card| card.busy)
+        self.card.as_ref().map(|card| card.batches.seconds())
     }
 
     fn time_passes(&mut self) {
         if let Some(card) = &mut self.card {
-            card.stopwatch = Stopwatch::new(&card.gpu());
+            card.batches.time_passes();
         }
     }
 
     fn pass_times(&self) -> Vec<(&'static str, Taken)> {
-        self.card.iter().filter_map(|card| card.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
+        self.card.iter().flat_map(|card| card.batches.pass_times()).collect()
     }
 
     fn gpu_bytes(&self) -> Option<u64> {
         self.card.as_ref().map(Card::bytes)
     }
+
     fn gpu(&self) -> Option<Gpu> {
-        self.card.as_ref().map(Card::gpu)
+        self.card.as_ref().map(|card| card.batches.gpu().clone())
     }
 
     fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
@@ -92,7 +90,7 @@ impl Dew {
     fn open_card_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut card = Card::new(gpu, room, self)?;
         card.send(&self.state, &self.evaporation);
-        card.busy = self.gpu_seconds().unwrap_or(0.0);
+        card.batches = card.batches.after(self.card.take().map(|before| before.batches));
         self.card = Some(card);
         Ok(())
     }
@@ -108,7 +106,7 @@ impl Dew {
                 Ok(())
             }
             Some(card) => {
-                let gpu = card.gpu();
+                let gpu = card.batches.gpu().clone();
                 self.open_card(gpu).map_err(|error| failed(&error))
             }
         }
@@ -169,15 +167,13 @@ impl Dew {
                 self.shown = self.shown.max(self.state.time);
                 return Ok(None);
             }
-            let left = time - self.state.time;
-            let planned = (left / self.state.time_step).ceil().clamp(1.0, TOGETHER as f64) as u64;
-            let count = self.steps_to_drops().min(planned);
+            let most = self.steps_to_drops();
             let Some(card) = &mut self.card else { break };
-            let progress = card.advance(left, count as usize)?;
+            let progress = card.advance(time, most)?;
             self.book_progress(&progress);
             self.tend_drops_beside_card()?;
             if progress.broken {
-                let last = progress.lengths.last().copied().unwrap_or(progress.step);
+                let last = if progress.steps > 0 { progress.last_step } else { progress.step };
                 return Ok(self.check_step(progress.fastest, last, progress.step).err());
             }
             if progress.full {
@@ -185,7 +181,7 @@ impl Dew {
                 continue;
             }
             // To the card, which rounds more coarsely, a step that ends at that time may end after it.
-            if progress.lengths.is_empty() {
+            if progress.steps == 0 {
                 break;
             }
         }
@@ -197,14 +193,14 @@ impl Dew {
     fn steps_to_drops(&self) -> u64 {
         match &self.wetting {
             Some(wetting) => wetting.steps() - wetting.steps_since(self.state.steps) % wetting.steps(),
-            None => TOGETHER - self.state.steps % TOGETHER,
+            None => u64::MAX,
         }
     }
 
     /// Takes more room on the card where the air that is to come might not find any.
     fn make_room(&mut self) -> Result<(), GpuError> {
         self.fetch_from_card()?;
-        match self.card.as_ref().map(Card::gpu) {
+        match self.card.as_ref().map(|card| card.batches.gpu().clone()) {
             Some(gpu) => self.open_card(gpu),
             None => Ok(()),
         }
@@ -267,8 +263,8 @@ impl Dew {
         }
         let state = &mut self.state;
         state.fogged.add(mass * progress.fogged);
-        progress.lengths.iter().for_each(|step| state.time += step);
-        state.steps += progress.lengths.len() as u64;
+        state.time = progress.time;
+        state.steps += progress.steps;
         state.particle_steps += progress.particle_steps;
         state.time_step = progress.step;
         state.next_id = progress.next_id;

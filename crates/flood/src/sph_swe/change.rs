@@ -111,7 +111,7 @@ impl SphSweFlood {
     pub(super) fn renew_gpu(&mut self) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if let Some(on_gpu) = &self.on_gpu {
-            let gpu = on_gpu.gpu();
+            let gpu = on_gpu.gpu().clone();
             self.open_gpu(gpu).map_err(|error| super::gpu::failed(&error))?;
         }
         Ok(())

@@ -180,7 +180,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
             let is_told = status.halted == GOING && turn.birth < status.births;
             let has_room = turn.particles < arrayLength(&particles);
             turn.is_due = 0u;
-            if is_told && has_room && births[turn.birth].time <= status.clock.x + status.clock.y + status.step {
+            if is_told && has_room && births[turn.birth].time <= total(status.clock) + status.step {
                 turn.is_due = 1u;
             }
         }

@@ -51,7 +51,7 @@ fn covered(place: vec2f, h: f32) -> f32 {
     return sum;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= status.particles {

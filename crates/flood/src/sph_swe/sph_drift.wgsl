@@ -1,6 +1,7 @@
 // The particles move, and those that came into obstacles are put back. Twin of `move_particles` and `keep_out` in `step.rs`.
 #import sph_common
 #import sph_outlines
+#import over_group
 
 // Where a place is to an outline: the way to it from the nearest wall, that wall, and whether it is inside.
 struct Within {
@@ -66,7 +67,11 @@ fn kept_out(particle: ptr<function, Particle>) -> vec2f {
     return vec2f(0.0);
 }
 
-var<workgroup> sums: array<f32, GROUP>;
+alias Summand = f32;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
 
 @compute @workgroup_size(GROUP)
 fn main(
@@ -74,23 +79,17 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    sums[thread] = 0.0;
+    var own = 0.0;
     if id.x < status.particles {
         var particle = unpacked(particles[id.x]);
         particle.place += status.step * particle.velocity;
         if particle.outside == 0u {
-            sums[thread] = -sum(kept_out(&particle));
+            own = -sum(kept_out(&particle));
         }
         particles[id.x] = packed(particle);
     }
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
-        partials[group.x].knocked = sums[0];
+        partials[group.x].knocked = all;
     }
 }

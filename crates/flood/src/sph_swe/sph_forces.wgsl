@@ -5,6 +5,7 @@
 #import sph_kernels
 #import sph_ground
 #import sph_friction
+#import over_group
 
 struct Sums {
     slowed: f32,
@@ -16,9 +17,9 @@ struct Sums {
 
 const FAR = 3.0e38;
 
-var<workgroup> sums: array<Sums, GROUP>;
+alias Summand = Sums;
 
-fn joined(a: Sums, b: Sums) -> Sums {
+fn both(a: Summand, b: Summand) -> Summand {
     return Sums(
         a.slowed + b.slowed,
         a.sum_of_h + b.sum_of_h,
@@ -115,19 +116,12 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    sums[thread] = Sums(0.0, 0.0, vec2f(0.0), vec2f(FAR), vec2f(-FAR));
+    var own = Sums(0.0, 0.0, vec2f(0.0), vec2f(FAR), vec2f(-FAR));
     if id.x < status.particles {
-        sums[thread] = pushed(id.x);
+        own = pushed(id.x);
     }
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
-        let all = sums[0];
         partials[group.x].slowed = all.slowed;
         partials[group.x].outer_force = all.outer_force;
         partials[group.x].sum_of_h = all.sum_of_h;

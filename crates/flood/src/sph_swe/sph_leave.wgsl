@@ -1,5 +1,6 @@
 // What crosses the edges is put back or booked, and each particle counts itself in its cell. Twin of `lose` in `exchange.rs`.
 #import sph_common
+#import over_group
 
 // Puts a coordinate that has left over a periodic side or a wall back: its new value, the sign of its velocity, and whether it has
 // left for good, over the low side (1) or the high one (2).
@@ -71,7 +72,11 @@ fn count(i: u32, particle: Particle) {
     keys[i] = particle.id;
 }
 
-var<workgroup> sums: array<vec4f, GROUP>;
+alias Summand = vec4f;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
 
 @compute @workgroup_size(GROUP)
 fn main(
@@ -79,25 +84,19 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    sums[thread] = vec4f(0.0);
+    var own = vec4f(0.0);
     if id.x < status.particles {
         var particle = unpacked(particles[id.x]);
         let booked = put_back(&particle);
-        sums[thread] = vec4f(booked.xy, max(booked.z, 0.0), max(-booked.z, 0.0));
+        own = vec4f(booked.xy, max(booked.z, 0.0), max(-booked.z, 0.0));
         particles[id.x] = packed(particle);
         count(id.x, particle);
     }
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
-        partials[group.x].outflow = sums[0].x;
-        partials[group.x].inflow = sums[0].y;
-        partials[group.x].gained_at_edges = sums[0].z;
-        partials[group.x].lost_at_edges = sums[0].w;
+        partials[group.x].outflow = all.x;
+        partials[group.x].inflow = all.y;
+        partials[group.x].gained_at_edges = all.z;
+        partials[group.x].lost_at_edges = all.w;
     }
 }

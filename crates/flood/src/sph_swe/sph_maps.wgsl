@@ -16,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     cell.max_speed = max(cell.max_speed, speed);
     cell.hazard = max(cell.hazard, water.x * (speed + 0.5));
     if cell.arrival < 0.0 {
-        cell.arrival = status.began + status.elapsed.x + status.elapsed.y;
+        cell.arrival = status.clock_began + total(status.clock);
     } else {
         cell.duration += status.since_look;
     }

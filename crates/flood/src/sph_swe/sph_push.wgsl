@@ -3,7 +3,7 @@
 #import sph_neighbours
 #import sph_kernels
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= status.particles {

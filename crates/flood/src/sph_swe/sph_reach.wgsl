@@ -1,7 +1,7 @@
 // How far a particle in each cell must look to find all that reach it. Twin of `Cells::set_reach` in the crate sph.
 #import declared
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let cell = id.x;
     if cell >= parameters.grid.columns * parameters.grid.rows {

@@ -1,7 +1,7 @@
 // The longest reach in each cell, m.
 #import declared
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let cell = id.x;
     if cell >= parameters.grid.columns * parameters.grid.rows {

@@ -1,8 +1,13 @@
 // What a row of gauges tells of all the water and of obstacles: one group for each row. Twin of `SphSweFlood::reading`.
-#import flood_sums
+#import compensated_sums
 #import sph_rows
+#import over_group
 
-var<workgroup> sums: array<f32, GROUP>;
+alias Summand = f32;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
 
 fn tell(at: u32, number: f32) {
     rows[at] = bitcast<u32>(number);
@@ -32,18 +37,11 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     for (var k = thread; k < groups_of_water(status.particles); k += GROUP) {
         own += volumes[k];
     }
-    sums[thread] = own;
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
         tell_pair(row, status.inflow);
         tell_pair(row + 2u, status.outflow);
-        tell(row + STORED, sums[0]);
-        tell(row + SINCE, due[number] - status.elapsed.x - status.elapsed.y);
+        tell(row + STORED, all);
+        tell(row + SINCE, difference(due[number], status.clock));
     }
 }

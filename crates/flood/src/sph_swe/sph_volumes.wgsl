@@ -1,7 +1,12 @@
 // Sums up the water for a row of gauges, group by group, m3. Twin of `SphSweFlood::stored`.
 #import sph_common
+#import over_group
 
-var<workgroup> sums: array<f32, GROUP>;
+alias Summand = f32;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
 
 fn own(i: u32) -> f32 {
     var own = 0.0;
@@ -21,15 +26,8 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
     @builtin(workgroup_id) group: vec3u,
 ) {
-    sums[thread] = own(id.x);
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own(id.x));
     if thread == 0u {
-        volumes[group.x] = sums[0];
+        volumes[group.x] = all;
     }
 }

@@ -27,6 +27,7 @@ pub(crate) const CASES: &[Case] = &[
     voronoi::BLOCKS,
     voronoi::ISLANDS,
     voronoi::JACKSBORO,
+    voronoi::LONG,
     voronoi::STOKER,
     voronoi::RITTER,
     voronoi::PLANAR,

@@ -1,11 +1,11 @@
 //! Gauges that the device reads itself: rows that wait there until the host takes them, together with what it learns of the steps.
 
 use super::OnGpu;
-use super::shared::{OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
-use super::tasks::{Shader, task};
+use super::shared::{Memory, OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
+use super::tasks::{Shader, Tasks, task};
 use crate::sampling::Sample;
 use crate::sph_swe::measured::Reading;
-use corpuscle_gpu::{GpuError, Pass, Task, read, read_together, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Pass, Task, from_pair, read_together, storage, to_pair, wgpu};
 
 /// Rows that wait at a time, at most.
 pub(super) const MOST_ROWS: usize = 64;
@@ -60,6 +60,18 @@ impl Gauges {
     }
 }
 
+impl Tasks {
+    /// The status after a batch, and the words of `told` rows of gauges.
+    pub(super) fn download(&self, gpu: &Gpu, told: usize) -> Result<(Status, Vec<u32>), GpuError> {
+        let Memory { status, rows, .. } = &self.memory;
+        let extent = self.gauges.as_ref().filter(|_| told > 0).map(|gauges| gauges.extent);
+        let [first, end] = extent.map_or([0; 2], |extent| [extent.first(), extent.first() + told * extent.stride()]);
+        let parts = [(status, size_of::<Status>()), (rows, 4 * end)];
+        let [status, words] = read_together(gpu, parts, bytemuck::pod_collect_to_vec::<u8, u32>)?;
+        Ok((bytemuck::pod_read_unaligned(bytemuck::cast_slice(&status)), words[first..].to_vec()))
+    }
+}
+
 impl OnGpu {
     /// Has gauges look at these places from now on.
     pub fn measure(&mut self, places: &[[f64; 2]]) -> Result<(), GpuError> {
@@ -68,46 +80,37 @@ impl OnGpu {
         }
         let extent = Extent { places: places.len(), obstacles: self.obstacles.count };
         let (first, stride) = (extent.first(), extent.stride());
-        let rows = storage::<u32>(&self.gpu, "rows of gauges", first + MOST_ROWS * stride)?;
+        let rows = storage::<u32>(self.gpu(), "rows of gauges", first + MOST_ROWS * stride)?;
         let header = [first, stride, extent.obstacles].map(|number| number as u32);
         let relative = places.iter().flat_map(|place| self.origin.relative(*place).map(f32::to_bits));
         let told: Vec<u32> = header.into_iter().chain(relative).collect();
-        self.gpu.queue.write_buffer(&rows, 0, bytemuck::cast_slice(&told));
+        self.gpu().queue.write_buffer(&rows, 0, bytemuck::cast_slice(&told));
         self.tasks.memory.rows = rows;
-        let tasks = SHADERS.map(|shader| task(&self.gpu, shader, &self.tasks.memory));
+        let tasks = SHADERS.map(|shader| task(self.gpu(), shader, &self.tasks.memory));
         self.tasks.gauges = Some(Gauges { places: places.to_vec(), extent, tasks });
         Ok(())
     }
 
-    /// Says when rows are due, s from now.
+    /// Says when rows are due, s.
     pub(super) fn tell_due(&mut self, due: &[f64]) {
-        let due: Vec<f32> = due.iter().map(|&time| time as f32).collect();
-        self.gpu.queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
+        let due: Vec<[f32; 2]> = due.iter().map(|&time| to_pair(time - self.clock_began)).collect();
+        self.gpu().queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
         self.status.rows_told = due.len() as u32;
         (self.status.rows_taken, self.status.rows_due) = (0, 0);
         self.status.gauge_places = self.tasks.gauges.as_ref().map_or(0, |gauges| gauges.places.len() as u32);
     }
 
-    /// What the host learns of the steps, and the rows that were taken in them, of `told` at most. What came and went, it did since the host last
-    /// spoke.
-    pub(super) fn learn(&self, told: usize) -> Result<(Status, Vec<Reading>), GpuError> {
-        let memory = &self.tasks.memory;
-        let of_steps = (&memory.status, size_of::<Status>());
-        let Some(gauges) = self.tasks.gauges.as_ref().filter(|_| told > 0) else {
-            return Ok((read::<Status>(&self.gpu, of_steps.0, 1)?[0], Vec::new()));
-        };
-        let (first, stride) = (gauges.extent.first(), gauges.extent.stride());
-        let of_gauges = (&memory.rows, 4 * (first + told * stride));
-        let [status, words] = read_together(&self.gpu, [of_steps, of_gauges], bytemuck::pod_collect_to_vec::<u8, u32>)?;
-        let status: Status = bytemuck::pod_read_unaligned(bytemuck::cast_slice(&status));
-        let taken = (status.rows_taken + status.rows_due) as usize;
-        let rows = words[first..].chunks_exact(stride).take(taken);
-        Ok((status, rows.map(|row| self.reading(row, gauges.extent)).collect()))
+    /// The rows of gauges that a batch has taken. What came and went, it did since the batch began.
+    pub(super) fn readings(&self, words: &[u32]) -> Vec<Reading> {
+        let Some(gauges) = &self.tasks.gauges else { return Vec::new() };
+        let taken = (self.status.rows_taken + self.status.rows_due) as usize;
+        let rows = words.chunks_exact(gauges.extent.stride()).take(taken);
+        rows.map(|row| self.reading(row, gauges.extent)).collect()
     }
 
     fn reading(&self, row: &[u32], extent: Extent) -> Reading {
         let number = |at: usize| f64::from(f32::from_bits(row[at]));
-        let pair = |at: usize| number(at) + number(at + 1);
+        let pair = |at: usize| from_pair([at, at + 1].map(|at| f32::from_bits(row[at])));
         let first = |obstacle: usize| (TOTALS + OF_OBSTACLE * obstacle as u32) as usize;
         let force = |obstacle: usize| [0, 1].map(|axis| number(first(obstacle) + axis));
         let impulse = |obstacle: usize| {

@@ -6,7 +6,7 @@ use super::tasks::{Shader, task};
 use super::upload::Origin;
 use super::{MOST_CELLS, OnGpu};
 use crate::sph_swe::obstacles::Obstacles;
-use corpuscle_gpu::{Gpu, GpuError, Pass, Task, read, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Pass, Task, read, storage, to_pair, wgpu};
 use corpuscle_terrain::Terrain;
 
 /// Looks that the device can be told of at a time.
@@ -86,7 +86,7 @@ impl OnGpu {
     /// Keeps maps from now on, where there is room for them and threads enough.
     pub fn keep_maps(&mut self, terrain: &Terrain, obstacles: &Obstacles, maps: &Maps) -> Result<(), GpuError> {
         let (numbers, places): (Vec<u32>, Vec<[f32; 2]>) = cells(terrain, obstacles, self.origin).unzip();
-        let cells = match storage::<MapCell>(&self.gpu, "cells of maps", numbers.len()) {
+        let cells = match storage::<MapCell>(self.gpu(), "cells of maps", numbers.len()) {
             Err(GpuError::Memory { .. }) => return Ok(()),
             cells => cells?,
         };
@@ -94,7 +94,7 @@ impl OnGpu {
             return Ok(());
         }
         self.tasks.memory.map_cells = cells;
-        let task = task(&self.gpu, SHADER, &self.tasks.memory);
+        let task = task(self.gpu(), SHADER, &self.tasks.memory);
         self.tasks.maps = Some(GpuMaps { numbers, places, wet_depth: maps.wet_depth(), task });
         Ok(())
     }
@@ -108,26 +108,25 @@ impl OnGpu {
     pub(super) fn begin_maps(&self, maps: &Maps) {
         if let Some(kept) = &self.tasks.maps {
             let cells = kept.begun(maps);
-            self.gpu.queue.write_buffer(&self.tasks.memory.map_cells, 0, bytemuck::cast_slice(&cells));
+            self.gpu().queue.write_buffer(&self.tasks.memory.map_cells, 0, bytemuck::cast_slice(&cells));
         }
     }
 
     /// Brings that back.
     pub fn maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
         let cells = &self.tasks.memory.map_cells;
-        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.fetch(&self.gpu, cells, maps))
+        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.fetch(self.gpu(), cells, maps))
     }
 
-    /// Says when to look, s from now, and when it was last done.
-    pub(super) fn tell_looks(&mut self, now: f64, looks: &[f64], looked: f64) {
-        let times: Vec<f32> = looks.iter().map(|&time| time as f32).collect();
-        self.gpu.queue.write_buffer(&self.tasks.memory.looks, 0, bytemuck::cast_slice(&times));
+    /// Says when to look, s, and when it was last done.
+    pub(super) fn tell_looks(&mut self, looks: &[f64], looked: f64) {
+        let times: Vec<[f32; 2]> = looks.iter().map(|&time| to_pair(time - self.clock_began)).collect();
+        self.gpu().queue.write_buffer(&self.tasks.memory.looks, 0, bytemuck::cast_slice(&times));
         let maps = self.tasks.maps.as_ref();
         self.status.looks_told = times.len() as u32;
         self.status.looks_taken = 0;
-        self.status.looked = looked as f32;
+        self.status.looked = to_pair(looked - self.clock_began);
         self.status.map_cells = maps.map_or(0, |maps| maps.count() as u32);
         self.status.wet_depth = maps.map_or(0.0, |maps| maps.wet_depth as f32);
-        self.status.began = now as f32;
     }
 }

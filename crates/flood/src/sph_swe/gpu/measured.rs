@@ -28,11 +28,11 @@ impl<'a> Onlookers<'a> {
     }
 
     /// From `now` until when to go on, s, and how many steps at most, before somebody looks at the particles, or `until`.
-    pub fn steps_to_look(&self, now: f64, until: f64) -> (f64, u32) {
+    pub fn steps_to_look(&self, now: f64, until: f64) -> (f64, u64) {
         match &self.watch {
-            Some(watch) if watch.wanted > now => (until.min(watch.wanted), u32::MAX),
+            Some(watch) if watch.wanted > now => (until.min(watch.wanted), u64::MAX),
             Some(_) => (until, 1),
-            None => (until, u32::MAX),
+            None => (until, u64::MAX),
         }
     }
 

@@ -24,7 +24,7 @@ mod zones;
 pub(super) use measured::Onlookers;
 pub(super) use model::failed;
 
-use corpuscle_gpu::{Buffers, Gpu, GpuError, MOST_GROUPS, Stopwatch, THREADS, wgpu};
+use corpuscle_gpu::{Batches, Buffers, Gpu, GpuError, MOST_GROUPS, THREADS, wgpu};
 use corpuscle_terrain::Bounds;
 use obstacles::GpuObstacles;
 use seen::Seen;
@@ -47,7 +47,7 @@ const MOST_BIRTHS: usize = 16_384;
 /// Water on a GPU.
 #[derive(Debug)]
 pub(super) struct OnGpu {
-    gpu: Gpu,
+    batches: Batches,
     tasks: Tasks,
     obstacles: GpuObstacles,
     /// The zone of each source.
@@ -64,16 +64,10 @@ pub(super) struct OnGpu {
     most_cells: usize,
     /// Steps in all, to lay the cells out at the same ones however often the host looks.
     steps: u64,
-    /// The time that the clock of the device counts from, s.
+    /// What the device's times count from, s.
     clock_began: f64,
-    /// Steps in a batch.
-    batch: u32,
     /// Whether the host has not the state that is here.
     ahead: bool,
-    /// Time spent on steps, s.
-    busy: f64,
-    /// Where passes are timed.
-    pub stopwatch: Option<Stopwatch>,
     /// As it was when the water was handed over.
     done_before: DoneToObstacles,
 }
@@ -88,7 +82,7 @@ impl OnGpu {
         let uploaded = setting.upload(&gpu, count, most_cells)?;
         let (tasks, parameters) = (Tasks::new(&gpu, uploaded.memory, uploaded.sort, setting), uploaded.parameters);
         Ok(Self {
-            gpu,
+            batches: Batches::new(gpu, "sph-swe"),
             tasks,
             obstacles: uploaded.obstacles,
             zones: uploaded.zones,
@@ -102,22 +96,14 @@ impl OnGpu {
             most_cells,
             steps: 0,
             clock_began: 0.0,
-            batch: 4,
             ahead: false,
-            busy: 0.0,
-            stopwatch: None,
             done_before: DoneToObstacles::default(),
         })
     }
 
     /// The device.
-    pub fn gpu(&self) -> Gpu {
-        self.gpu.clone()
-    }
-
-    /// Wall-clock time spent on steps, s.
-    pub fn busy(&self) -> f64 {
-        self.busy
+    pub fn gpu(&self) -> &Gpu {
+        self.batches.gpu()
     }
 
     /// Bytes held on the device.

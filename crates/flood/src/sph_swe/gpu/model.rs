@@ -13,7 +13,7 @@ use crate::sph_swe::particle::Particle;
 use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};
 use crate::zone::Source;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Taken};
 use corpuscle_model::{Companion, ExactSum, Glance, GpuModel, Model, ModelError, Passed};
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,17 +35,17 @@ impl GpuModel for SphSweFlood {
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
-        self.on_gpu.as_ref().map(OnGpu::busy)
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.batches.seconds())
     }
 
     fn time_passes(&mut self) {
         if let Some(on_gpu) = &mut self.on_gpu {
-            on_gpu.stopwatch = Stopwatch::new(&on_gpu.gpu());
+            on_gpu.batches.time_passes();
         }
     }
 
     fn pass_times(&self) -> Vec<(&'static str, Taken)> {
-        self.on_gpu.iter().filter_map(|on_gpu| on_gpu.stopwatch.as_ref()).flat_map(Stopwatch::taken).collect()
+        self.on_gpu.iter().flat_map(|on_gpu| on_gpu.batches.pass_times()).collect()
     }
 
     fn gpu_bytes(&self) -> Option<u64> {
@@ -53,7 +53,7 @@ impl GpuModel for SphSweFlood {
     }
 
     fn gpu(&self) -> Option<Gpu> {
-        self.on_gpu.as_ref().map(OnGpu::gpu)
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.gpu().clone())
     }
 
     fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
@@ -106,6 +106,7 @@ impl SphSweFlood {
         if !self.looks_for_overtopping() {
             on_gpu.keep_maps(&self.surroundings.terrain, &self.surroundings.obstacles, &self.state.maps)?;
         }
+        on_gpu.batches = on_gpu.batches.after(self.on_gpu.take().map(|before| before.batches));
         self.on_gpu = Some(on_gpu);
         self.send_to_gpu()
     }
@@ -127,7 +128,7 @@ impl SphSweFlood {
         };
         match &mut self.on_gpu {
             Some(on_gpu) if on_gpu.room() < particles.len() || on_gpu.room_in_air() < water.falling.len() => {
-                let gpu = on_gpu.gpu();
+                let gpu = on_gpu.gpu().clone();
                 self.open_gpu(gpu)
             }
             Some(on_gpu) => {
@@ -151,7 +152,7 @@ impl SphSweFlood {
     fn make_room(&mut self) -> Result<(), GpuError> {
         let Some(on_gpu) = &self.on_gpu else { return Ok(()) };
         if on_gpu.lacks_room(|horizon| self.most_births(&self.state.owed, self.state.time, horizon)) {
-            let gpu = on_gpu.gpu();
+            let gpu = on_gpu.gpu().clone();
             self.open_gpu(gpu)?;
         }
         Ok(())
@@ -203,34 +204,24 @@ impl SphSweFlood {
         stop: &AtomicBool,
         onlookers: &mut Onlookers<'_>,
     ) -> Result<Progress, ModelError> {
-        let began = self.state.time;
-        let mut done = Progress::none(self.state.time_step);
+        let mut done = Progress::none(self.state.time, self.state.time_step);
         let mut owed = self.state.owed.clone();
         let mut looked = self.state.maps.last();
-        while began + done.elapsed + done.step <= time && began + done.elapsed < look {
-            let now = began + done.elapsed;
+        while done.time + done.step <= time && done.time < look {
+            let now = done.time;
             self.show_to(onlookers, now, now + done.step).map_err(|error| failed(&error))?;
             if stop.load(Ordering::Relaxed) || onlookers.call_back {
                 break;
             }
             let longest = self.on_gpu.as_ref().map_or(0.0, OnGpu::longest_batch);
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
-            let looks = self.looks(now, done.looks);
+            let looks = self.looks(done.looks);
             let due = onlookers.due(time);
             let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
             let (target, most) = onlookers.steps_to_look(now, until);
-            let from_now: Vec<f64> = due.iter().map(|due| due - now).collect();
             let Some(on_gpu) = &mut self.on_gpu else { break };
-            let span = Span {
-                now,
-                until: target - now,
-                most,
-                look: looks.last().copied().unwrap_or(look - now),
-                looks: &looks,
-                looked: looked - now,
-                births: &births,
-                due: &from_now,
-            };
+            let look = looks.last().copied().unwrap_or(look);
+            let span = Span { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
             let (mut progress, mut readings) = on_gpu.advance(span).map_err(|error| failed(&error))?;
             let particles = on_gpu.particles();
             if !readings.iter().all(Reading::is_sound) {
@@ -241,15 +232,15 @@ impl SphSweFlood {
                 onlookers.tell(*due, &self.row_of_gpu(reading, &done));
             }
             for (source, owed) in self.sources.iter().zip(&mut owed) {
-                owed.add(source.discharge.integral(now, now + progress.elapsed));
+                owed.add(source.discharge.integral(now, progress.time));
             }
             births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
             if progress.looks > 0 {
-                looked = now + progress.looked;
+                looked = progress.looked;
             }
             done = done.and(progress);
             let particle_steps = self.state.particle_steps + done.particle_steps;
-            onlookers.pass(Passed { time: began + done.elapsed, particles, particle_steps });
+            onlookers.pass(Passed { time: done.time, particles, particle_steps });
             let lacks_room = |on_gpu: &OnGpu| on_gpu.lacks_room(|horizon| self.most_births(&owed, now, horizon));
             let is_held = progress.steps == 0 && readings.is_empty();
             if is_held && target < until && !done.broken {
@@ -261,8 +252,8 @@ impl SphSweFlood {
         }
         if done.steps > 0 {
             let particles = self.fetched().map_err(|error| failed(&error))?;
-            let (time, steps) = (began + done.elapsed, self.state.steps + done.steps);
-            if let Some(error) = self.defect_among(&particles, time, steps) {
+            let steps = self.state.steps + done.steps;
+            if let Some(error) = self.defect_among(&particles, done.time, steps) {
                 return Err(error);
             }
             self.state.particles = particles;
@@ -300,12 +291,12 @@ impl SphSweFlood {
         Ok(())
     }
 
-    /// The next times at which the GPU is to look at the maps, s from `now`, when so many have passed; none where the host does.
-    fn looks(&self, now: f64, passed: usize) -> Vec<f64> {
+    /// The next times at which the GPU is to look at the maps, s, when so many have passed; none where the host does.
+    fn looks(&self, passed: usize) -> Vec<f64> {
         let numbers = self.state.next_look + passed as u64..;
         let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
         let count = if keeps_maps { MOST_LOOKS } else { 0 };
-        numbers.take(count).map(|number| number as f64 * self.map_period - now).collect()
+        numbers.take(count).map(|number| number as f64 * self.map_period).collect()
     }
 
     /// The particles that the sources bring from `now` to `until`, the earliest first.
@@ -313,7 +304,7 @@ impl SphSweFlood {
         let sources = self.sources.iter().zip(owed).enumerate();
         let births = sources.flat_map(|(number, (source, owed))| {
             let times = times(&source.discharge, owed.value(), self.volume, now, until);
-            times.into_iter().map(move |time| Birth { time: time - now, source: number, velocity: source.velocity })
+            times.into_iter().map(move |time| Birth { time, source: number, velocity: source.velocity })
         });
         let mut births: Vec<Birth> = births.collect();
         births.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
@@ -323,7 +314,7 @@ impl SphSweFlood {
 
     fn book(&mut self, progress: &Progress) {
         let state = &mut self.state;
-        state.time += progress.elapsed;
+        state.time = progress.time;
         state.steps += progress.steps;
         state.particle_steps += progress.particle_steps;
         state.time_step = progress.step;

@@ -3,7 +3,7 @@
 use super::OnGpu;
 use super::shared::{Memory, Shown};
 use super::tasks::{Shader, task};
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Pass, THREADS, Task, wgpu};
+use corpuscle_gpu::{DeviceParticles, GpuError, THREADS, Task, submit};
 
 pub(super) const SHADER: Shader = ("sph_seen", include_str!("../sph_seen.wgsl"));
 
@@ -16,20 +16,11 @@ pub(super) struct Seen {
 
 impl Seen {
     fn new(on_gpu: &OnGpu) -> Result<Self, GpuError> {
-        let gpu = &on_gpu.gpu;
+        let gpu = on_gpu.gpu();
         let origin = [on_gpu.origin.centre[0], on_gpu.origin.centre[1], on_gpu.origin.level];
         let particles = DeviceParticles::new(gpu, on_gpu.room + on_gpu.room_in_air, origin, 0.0)?;
         let memory = Memory { drawn: particles.buffer.clone(), ..on_gpu.tasks.memory.clone() };
         Ok(Self { task: task(gpu, SHADER, &memory), particles })
-    }
-
-    /// Has the device write the particles.
-    fn write(&self, gpu: &Gpu) {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
-        let mut pass = Pass::begin(&mut encoder, None);
-        self.task.run(&mut pass, (self.particles.room as u32).div_ceil(THREADS));
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
     }
 }
 
@@ -43,8 +34,9 @@ impl OnGpu {
         let seen = self.seen.get().expect("it was set above");
         let [since, of_particles, of_drops] = [since, spacing, drop_spacing].map(|value| value as f32);
         let shown = Shown { since, spacing: of_particles, drop_spacing: of_drops, unused: 0.0 };
-        self.gpu.queue.write_buffer(&self.tasks.memory.shown, 0, bytemuck::bytes_of(&shown));
-        seen.write(&self.gpu);
+        self.gpu().queue.write_buffer(&self.tasks.memory.shown, 0, bytemuck::bytes_of(&shown));
+        let groups = (seen.particles.room as u32).div_ceil(THREADS);
+        submit(self.gpu(), "seen", None, |pass| seen.task.run(pass, groups));
         Ok(DeviceParticles { spacing, ..seen.particles.clone() })
     }
 }

@@ -1,17 +1,10 @@
 //! What the host and the shaders of scheme `sph-swe` share: one declaration, from which the WGSL comes too.
 
-use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles};
+use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping};
 
 corpuscle_gpu::declare! {
+    include [Stepping]
     constants {
-        /// There is a next step.
-        pub const GOING: u32 = 0;
-        /// The time that the host waits for is reached.
-        pub const ARRIVED: u32 = 1;
-        /// Something is no number.
-        pub const BROKEN: u32 = 2;
-        /// The host has said until when to go on.
-        pub const SPOKEN: u32 = 3;
         /// Stands for no cell.
         pub const NONE: u32 = u32::MAX;
         /// Water leaves over the side.
@@ -40,8 +33,6 @@ corpuscle_gpu::declare! {
         pub const FALLS: u32 = 1;
         /// A drop that has met ground or water in this step.
         pub const LANDS: u32 = 2;
-        /// Threads of a group.
-        pub const GROUP: u32 = corpuscle_gpu::THREADS;
         /// The part of a particle's volume times m/s in which impulses of particles put back are counted: whole numbers add up to the same in any order.
         pub const KNOCK: f32 = 1e-4;
         /// A particle that has come into an obstacle is put this far before its wall, over the particles' distance.
@@ -176,20 +167,18 @@ corpuscle_gpu::declare! {
             pub particles: u32,
             /// Number of cells.
             pub cells: u32,
-            /// [`GOING`], [`ARRIVED`], [`BROKEN`], [`SPOKEN`].
+            /// [`GOING`](corpuscle_gpu::GOING) and those after it.
             pub halted: u32,
-            /// Steps since the host last spoke.
+            /// Steps since the batch began.
             pub steps: u32,
-            /// Particle-steps, low and high half.
+            /// Particle-steps since then, low and high half.
             pub particle_steps: [u32; 2],
-            /// The next step, s.
-            pub step: f32,
-            /// Time since the host last spoke at which to halt, s.
-            pub until: f32,
-            /// Time since the host last spoke, s.
-            pub elapsed: [f32; 2],
-            /// Time since the cells were last laid out, s: births count from there, as how often the host speaks must not matter.
+            /// Time since the cells were last laid out, s. All times count from there, so that it does not matter how many steps a batch has.
             pub clock: [f32; 2],
+            /// Time at which to halt, s.
+            pub until: [f32; 2],
+            /// Time at which the host is to look at the maps, s: the step that passes it is the last.
+            pub look: [f32; 2],
             /// Water that went out, m3.
             pub outflow: [f32; 2],
             /// Water that came in, m3.
@@ -204,10 +193,14 @@ corpuscle_gpu::declare! {
             pub low: [f32; 2],
             /// North-east corner of the water.
             pub high: [f32; 2],
+            /// When it was last looked at the maps, s.
+            pub looked: [f32; 2],
+            /// For how long it had not been before that, s.
+            pub since_look: f32,
+            /// The next step, s.
+            pub step: f32,
             /// Mean smoothing length, m.
             pub mean_h: f32,
-            /// Time since the host last spoke at which the host is to look at the maps, s: the step that passes it is the last.
-            pub look: f32,
             /// Particles that are to come from sources.
             pub births: u32,
             /// How many of them have.
@@ -228,18 +221,12 @@ corpuscle_gpu::declare! {
             pub looks_told: u32,
             /// How many of them have passed.
             pub looks_taken: u32,
-            /// When it was last looked at the maps, s since the host spoke.
-            pub looked: f32,
-            /// For how long it had not been before that, s.
-            pub since_look: f32,
             /// Cells of the maps.
             pub map_cells: u32,
             /// Depth above which one is wet, m.
             pub wet_depth: f32,
-            /// When the host spoke, s.
-            pub began: f32,
-            /// Fills up.
-            pub unused: u32,
+            /// What the clock counts from, s.
+            pub clock_began: f32,
         }
 
         /// A particle as it lies in memory, sixteen bytes at a time.
@@ -441,10 +428,10 @@ corpuscle_gpu::declare! {
         storage births: [Birth],
         /// Water in the air.
         storage drops: [Drop],
-        /// Times since the host last spoke at which rows of gauges are due, s.
-        storage due: [f32],
-        /// The same at which it is to be looked at the maps.
-        storage looks: [f32],
+        /// Times at which rows of gauges are due, s.
+        storage due: [[f32; 2]],
+        /// Times at which to look at the maps, s.
+        storage looks: [[f32; 2]],
         /// Sums of the water of groups, m3.
         storage volumes: [f32],
         /// Rows of gauges: see `sph_rows.wgsl`.

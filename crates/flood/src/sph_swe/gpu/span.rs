@@ -3,19 +3,18 @@
 /// A particle that is to come from a source.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Birth {
-    /// Time from now, s.
+    /// s.
     pub time: f64,
     pub source: usize,
     pub velocity: [f64; 2],
 }
 
-/// The time that steps are to go through, from the time `now`, s; all others count from there, s.
+/// The time that steps are to go through, s.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span<'a> {
-    pub now: f64,
     pub until: f64,
     /// Steps at most.
-    pub most: u32,
+    pub most: u64,
     /// The first step that ends then or after is the last: the host is to look at the maps.
     pub look: f64,
     /// When the GPU is to look at the maps itself, [`MOST_LOOKS`](super::maps::MOST_LOOKS) at most, and when it last did.
@@ -32,7 +31,8 @@ pub(crate) struct Span<'a> {
 pub(crate) struct Progress {
     pub steps: u64,
     pub particle_steps: u64,
-    pub elapsed: f64,
+    /// Time at the end of the last step, s.
+    pub time: f64,
     /// The next step, s.
     pub step: f64,
     /// Volumes, m3, and momentum over density, m4/s.
@@ -45,7 +45,7 @@ pub(crate) struct Progress {
     /// How many of the births have been, and the identity of the next new particle.
     pub born: usize,
     pub next_id: u64,
-    /// How many of the times to look at the maps have passed, and when it was last looked, since the time that they were told at, s.
+    /// How many of the times to look at the maps have passed, and when it was last looked, s.
     pub looks: usize,
     pub looked: f64,
     /// Whether something is no number.
@@ -53,12 +53,12 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Nothing yet; `step` is the next one.
-    pub fn none(step: f64) -> Self {
+    /// Nothing yet at a time, s; `step` is the next one.
+    pub fn none(time: f64, step: f64) -> Self {
         Self {
             steps: 0,
             particle_steps: 0,
-            elapsed: 0.0,
+            time,
             step,
             outflow: 0.0,
             inflow: 0.0,
@@ -79,7 +79,6 @@ impl Progress {
         Self {
             steps: self.steps + later.steps,
             particle_steps: self.particle_steps + later.particle_steps,
-            elapsed: self.elapsed + later.elapsed,
             outflow: self.outflow + later.outflow,
             inflow: self.inflow + later.inflow,
             momentum_lost: self.momentum_lost + later.momentum_lost,

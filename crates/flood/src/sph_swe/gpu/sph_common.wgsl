@@ -1,5 +1,5 @@
 // A particle, and how it lies in memory.
-#import flood_sums
+#import compensated_sums
 
 // A column of water; `outside` is 0 for one inside, or the side over which it has left, from 1.
 struct Particle {

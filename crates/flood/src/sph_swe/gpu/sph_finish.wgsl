@@ -5,6 +5,7 @@
 // at the maps, a thread for each of their cells.
 #import sph_common
 #import sph_rows
+#import over_group
 
 const FAR = 3.0e38;
 
@@ -12,9 +13,9 @@ const FAR = 3.0e38;
 const GAUGES = 5u;
 const MAPS = 8u;
 
-var<workgroup> sums: array<Partial, GROUP>;
+alias Summand = Partial;
 
-fn joined(a: Partial, b: Partial) -> Partial {
+fn both(a: Summand, b: Summand) -> Summand {
     return Partial(
         a.outflow + b.outflow,
         a.inflow + b.inflow,
@@ -34,7 +35,6 @@ fn joined(a: Partial, b: Partial) -> Partial {
 fn book(all: Partial) {
     status.outflow = add(status.outflow, all.outflow);
     status.inflow = add(status.inflow, all.inflow);
-    status.elapsed = add(status.elapsed, status.step);
     status.clock = add(status.clock, status.step);
     book_momentum(all.knocked);
     book_momentum(all.gained_at_edges);
@@ -44,16 +44,11 @@ fn book(all: Partial) {
     book_momentum(status.step * all.outer_force.y);
     status.outer_force = all.outer_force;
     status.steps += 1u;
-    let low = status.particle_steps.x + status.particles;
-    status.particle_steps = vec2u(low, status.particle_steps.y + select(0u, 1u, low < status.particles));
+    status.particle_steps = count_up(status.particle_steps, status.particles);
     status.step = select(parameters.time_step, min(parameters.time_step, parameters.fall_step), status.falling > 0u);
     status.mean_h = all.sum_of_h / f32(max(status.particles, 1u));
     status.low = all.low;
     status.high = all.high;
-}
-
-fn elapsed() -> f32 {
-    return status.elapsed.x + status.elapsed.y;
 }
 
 fn decide() {
@@ -62,7 +57,7 @@ fn decide() {
     let has_reach = status.particles == 0u || status.mean_h > 0.0;
     if !is_sound || !has_reach {
         status.halted = BROKEN;
-    } else if elapsed() + status.step > status.until || elapsed() >= status.look {
+    } else if difference(status.until, status.clock) < status.step || difference(status.look, status.clock) <= 0.0 {
         status.halted = ARRIVED;
     } else {
         status.halted = GOING;
@@ -92,7 +87,7 @@ fn take_gauges() {
     status.rows_taken += status.rows_due;
     var rows_due = 0u;
     if status.halted != BROKEN {
-        for (var k = status.rows_taken; k < status.rows_told && due[k] < elapsed() + status.step; k++) {
+        for (var k = status.rows_taken; k < status.rows_told && difference(due[k], status.clock) < status.step; k++) {
             rows_due += 1u;
         }
     }
@@ -105,14 +100,14 @@ fn take_gauges() {
 // Has it looked at the maps where the step has passed a time to.
 fn take_looks() {
     var taken = status.looks_taken;
-    while taken < status.looks_told && looks[taken] <= elapsed() {
+    while taken < status.looks_told && difference(looks[taken], status.clock) <= 0.0 {
         taken += 1u;
     }
     let is_time = taken > status.looks_taken;
     if is_time {
         status.looks_taken = taken;
-        status.since_look = elapsed() - status.looked;
-        status.looked = elapsed();
+        status.since_look = difference(status.clock, status.looked);
+        status.looked = status.clock;
     }
     order_groups(MAPS, select(0u, (status.map_cells + GROUP - 1u) / GROUP, is_time), 1u);
 }
@@ -129,26 +124,19 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var own = Partial(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2f(0.0), vec2f(FAR), vec2f(-FAR), 0.0, 0.0);
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += GROUP) {
-            own = joined(own, partials[group]);
+            own = both(own, partials[group]);
             // Births may call for more groups than there were in the drift.
             partials[group].knocked = 0.0;
         }
     }
-    sums[thread] = own;
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] = joined(sums[thread], sums[thread + half]);
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u {
         order_groups(MAPS, 0u, 1u);
         if status.halted == GOING {
-            book(sums[0]);
+            book(all);
             take_looks();
         }
-        if status.halted == GOING || status.halted == SPOKEN {
+        if status.halted == GOING || status.halted == BATCH_START {
             decide();
         } else {
             rest();

@@ -5,7 +5,7 @@ use super::shared::{Drop, FALLS, GONE, KNOCK, OnObstacle, Packed, Status};
 use super::{OnGpu, ground};
 use crate::sph_swe::falling::Falling;
 use crate::sph_swe::particle::Particle;
-use corpuscle_gpu::{GpuError, read};
+use corpuscle_gpu::{GpuError, from_pair, read};
 use corpuscle_terrain::Terrain;
 
 /// Water to be handed over.
@@ -43,7 +43,8 @@ impl OnGpu {
     pub fn send(&mut self, water: &Water<'_>) {
         let Water { particles, step, external, on_obstacles, impulses, put_back, falling, .. } = *water;
         let memory = &self.tasks.memory;
-        let write = |buffer, bytes: &[u8]| self.gpu.queue.write_buffer(buffer, 0, bytes);
+        let gpu = self.gpu().clone();
+        let write = |buffer, bytes: &[u8]| gpu.queue.write_buffer(buffer, 0, bytes);
         write(&memory.obstacles, bytemuck::cast_slice(&self.obstacles.begun(on_obstacles)));
         write(&memory.knocks, bytemuck::cast_slice(&vec![0_i32; 2 * self.obstacles.count + 1]));
         let mut drops: Vec<Drop> = falling.iter().map(|drop| self.origin.drop(drop)).collect();
@@ -78,7 +79,7 @@ impl OnGpu {
         if !self.ahead {
             return Ok(());
         }
-        let sent: Vec<Packed> = read(&self.gpu, &self.tasks.memory.particles, self.status.particles as usize)?;
+        let sent: Vec<Packed> = read(self.gpu(), &self.tasks.memory.particles, self.status.particles as usize)?;
         particles.clear();
         particles.extend(sent.iter().map(|particle| self.origin.unpacked(particle)));
         ground::complete(particles, terrain);
@@ -91,7 +92,7 @@ impl OnGpu {
         if self.room_in_air == 0 {
             return Ok(());
         }
-        let drops: Vec<Drop> = read(&self.gpu, &self.tasks.memory.drops, self.room_in_air)?;
+        let drops: Vec<Drop> = read(self.gpu(), &self.tasks.memory.drops, self.room_in_air)?;
         falling.clear();
         falling.extend(drops.iter().filter(|drop| drop.state == FALLS).map(|drop| self.origin.falling(drop)));
         Ok(())
@@ -106,10 +107,10 @@ impl OnGpu {
     /// What was done to obstacles.
     pub fn on_obstacles(&self) -> Result<DoneToObstacles, GpuError> {
         let (count, memory) = (self.obstacles.count, &self.tasks.memory);
-        let pushed: Vec<OnObstacle> = read(&self.gpu, &memory.obstacles, count)?;
-        let knocks: Vec<i32> = read(&self.gpu, &memory.knocks, 2 * count + 1)?;
+        let pushed: Vec<OnObstacle> = read(self.gpu(), &memory.obstacles, count)?;
+        let knocks: Vec<i32> = read(self.gpu(), &memory.knocks, 2 * count + 1)?;
         let impulses = pushed.iter().enumerate().map(|(number, pushed)| {
-            let sums = [pushed.impulse_east, pushed.impulse_north].map(|[sum, rest]| f64::from(sum) + f64::from(rest));
+            let sums = [pushed.impulse_east, pushed.impulse_north].map(from_pair);
             [0, 1].map(|axis| self.impulse(number, axis, sums[axis], knocks[2 * number + axis]))
         });
         let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();

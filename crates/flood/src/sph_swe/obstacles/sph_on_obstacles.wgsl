@@ -1,35 +1,33 @@
 // Sums the force on each obstacle, one group of threads for each, and over time. Twin of `push_obstacles` in `step.rs`.
-#import flood_sums
+#import compensated_sums
 #import sph_neighbours
+#import over_group
 
-var<workgroup> sums: array<vec2f, GROUP>;
+alias Summand = vec2f;
+
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
+}
 
 @compute @workgroup_size(GROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let number = group.x;
     let low = cells_round(parameters.grid, obstacles[number].low, 0.0).xy;
     let high = cells_round(parameters.grid, obstacles[number].high, 0.0).xy;
-    var sum = vec2f(0.0);
+    var own = vec2f(0.0);
     for (var row = low.y; row <= high.y; row++) {
         let line = row * parameters.grid.columns;
         let end = min(start[line + high.x + 1u], status.particles);
         for (var i = start[line + low.x] + thread; i < end; i += GROUP) {
             if u32(pushes[i].z) == number + 1u {
-                sum += pushes[i].xy;
+                own += pushes[i].xy;
             }
         }
     }
-    sums[thread] = sum;
-    workgroupBarrier();
-    for (var half = GROUP / 2u; half > 0u; half /= 2u) {
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-        workgroupBarrier();
-    }
+    let all = over_group(thread, own);
     if thread == 0u && status.halted == GOING {
-        obstacles[number].impulse_east = add(obstacles[number].impulse_east, status.step * sums[0].x);
-        obstacles[number].impulse_north = add(obstacles[number].impulse_north, status.step * sums[0].y);
-        obstacles[number].force = sums[0];
+        obstacles[number].impulse_east = add(obstacles[number].impulse_east, status.step * all.x);
+        obstacles[number].impulse_north = add(obstacles[number].impulse_north, status.step * all.y);
+        obstacles[number].force = all;
     }
 }

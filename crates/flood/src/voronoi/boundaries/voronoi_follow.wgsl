@@ -27,7 +27,7 @@ fn velocity_beyond(written: Border, before: f32) -> f32 {
     return risen + min(status.step / relaxation, 1.0) * (found.y - risen);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x < parameters.borders && borders[id.x].kind == LEVEL {
         beyond[id.x] = velocity_beyond(borders[id.x], beyond[id.x]);

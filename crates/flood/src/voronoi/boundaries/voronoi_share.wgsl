@@ -1,20 +1,12 @@
 // Shares discharges out over border faces by conveyance: see `share` in `boundaries/open.rs`. A group does one.
 #import declared
 #import voronoi_storage
+#import over_group
 
-var<workgroup> sums: array<vec2f, 256>;
+alias Summand = vec2f;
 
-// The sum of what all threads have, for all of them.
-fn sum_of(thread: u32, own: vec2f) -> vec2f {
-    sums[thread] = own;
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            sums[thread] += sums[thread + half];
-        }
-    }
-    let sum = workgroupUniformLoad(&sums[0]);
-    return sum;
+fn both(a: Summand, b: Summand) -> Summand {
+    return a + b;
 }
 
 // Length times depth to 5/3 over the length: the depth is that below a level, or the cell's own.
@@ -23,7 +15,7 @@ fn conveyance(part: Part, level: f32, is_own: bool) -> f32 {
     return pow(depth, 5.0 / 3.0);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     let own = discharges[group.x];
     var along = vec2f(0.0);
@@ -37,8 +29,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
             by_depth += part.length * depth * vec2f(1.0, level);
         }
     }
-    along = sum_of(thread, along);
-    by_depth = sum_of(thread, by_depth);
+    along = over_group(thread, along);
+    by_depth = over_group(thread, by_depth);
     var discharge = 0.0;
     if own.is_rating == 0u {
         discharge = in_step(own.table, MEAN);
@@ -51,7 +43,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     for (var k = own.first + thread; k < own.end; k += GROUP) {
         all.x += parts[k].length * conveyance(parts[k], level, is_out);
     }
-    all = sum_of(thread, all);
+    all = over_group(thread, all);
     for (var k = own.first + thread; k < own.end; k += GROUP) {
         var part = parts[k].when_dry;
         if all.x > 0.0 {

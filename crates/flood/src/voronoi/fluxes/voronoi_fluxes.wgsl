@@ -61,7 +61,7 @@ fn over_border(face: Face, here: Water) -> Flux {
     return Flux(length * turned_back(found.carried, normal), vec2f(found.thrust, 0.0), length * found.volume, 0.0);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.faces {
         return;

@@ -1,7 +1,7 @@
 // The part of its outflow in a step that each cell has the water for: see `kept_of_cell` in `solver.rs`.
 #import declared
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.cells {
         return;

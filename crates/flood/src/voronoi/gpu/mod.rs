@@ -21,22 +21,17 @@ pub(super) use tables::Tables;
 
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
-    Buffers, DeclaredKernel, Gpu, GpuError, Pass, ShaderLibrary, Stopwatch, THREADS, Task, read_together, wgpu,
+    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, DeclaredKernel, Gpu, GpuError, Halt, OVER_GROUP, Pass,
+    ShaderLibrary, THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
 };
 use seen::Seen;
-use shared::{ARRIVED, AT_RIM, BATCH_START, BROKEN, Column, Memory, Push, Record, Status, Supply};
+use shared::{Column, Memory, Push, Record, Status, Supply};
 use std::sync::OnceLock;
-use std::time::Instant;
-use upload::{Input, pair};
-
-/// Steps of a batch at most.
-const MOST_STEPS: u32 = 64;
-
-/// A batch takes about so long at most, s: then the host looks whether it is to stop.
-const BATCH: f64 = 0.2;
+use upload::Input;
 
 const LIBRARY: ShaderLibrary<'_> = &[
-    ("flood_sums", include_str!("../../flood_sums.wgsl")),
+    COMPENSATED_SUMS,
+    OVER_GROUP,
     ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../rain/infiltration_laws.wgsl")),
@@ -109,18 +104,13 @@ type Tasks = [Task; SHADERS.len()];
 
 /// A flood on a GPU.
 pub(crate) struct GpuSolver {
-    gpu: Gpu,
+    pub batches: Batches,
     kernels: [DeclaredKernel<Memory>; SHADERS.len()],
     memory: Memory,
     tasks: Tasks,
     cells: usize,
     sides: Sides,
     status: Status,
-    /// Steps of the next batch at most.
-    batch: u32,
-    /// Wall-clock time of all batches, s.
-    busy: f64,
-    pub stopwatch: Option<Stopwatch>,
     /// The water as it is drawn, once somebody has looked.
     seen: OnceLock<Seen>,
 }
@@ -143,16 +133,6 @@ pub(super) struct Sides {
     holds_levels: bool,
     /// Whether discharges are shared out over border faces.
     shares_discharges: bool,
-}
-
-/// Why a batch ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Halt {
-    /// All its steps are done.
-    Full,
-    Arrived,
-    AtRim,
-    Broken,
 }
 
 /// The state of a flood as it came back.
@@ -204,16 +184,13 @@ impl GpuSolver {
         let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
         let (cells, sides) = (input.cells(), input.sides());
         let mut solver = Self {
-            gpu,
+            batches: Batches::new(gpu, "voronoi"),
             kernels,
             memory,
             tasks,
             cells,
             sides,
             status,
-            batch: 1,
-            busy: 0.0,
-            stopwatch: None,
             seen: OnceLock::new(),
         };
         solver.begin();
@@ -225,8 +202,9 @@ impl GpuSolver {
     /// # Errors
     /// As [`GpuSolver::new`].
     pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
-        (self.memory, self.status) = input.upload(&self.gpu)?;
-        self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(&self.gpu, &self.memory));
+        let gpu = self.batches.gpu();
+        (self.memory, self.status) = input.upload(gpu)?;
+        self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(gpu, &self.memory));
         self.seen = OnceLock::new();
         (self.cells, self.sides) = (input.cells(), input.sides());
         self.begin();
@@ -236,7 +214,7 @@ impl GpuSolver {
     /// Finds the water of the columns that were uploaded.
     fn begin(&mut self) {
         let groups = self.cells.div_ceil(THREADS as usize) as u32;
-        self.submit(|tasks, _, pass| tasks[BEGIN].run(pass, groups));
+        self.batches.submit(|pass| self.tasks[BEGIN].run(pass, groups));
     }
 
     /// Takes steps up to a time, s, or as many as a batch has, `most` at most. The number of steps.
@@ -244,61 +222,35 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn advance(&mut self, until: f64, most: u64) -> Result<(u64, Halt), GpuError> {
-        let left = (until - self.totals().time) / f64::from(self.status.step);
-        let count = (left.ceil().clamp(1.0, f64::from(MOST_STEPS)) as u32).min(self.batch);
-        let count = u64::from(count).min(most) as u32;
-        self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: pair(until), ..self.status };
-        let began = Instant::now();
-        self.gpu.queue.write_buffer(&self.memory.status, 0, bytemuck::bytes_of(&self.status));
-        self.order(count);
-        let [status] = read_together(&self.gpu, [(&self.memory.status, size_of::<Status>())], status_of)?;
-        self.status = status;
-        let took = began.elapsed().as_secs_f64();
-        self.busy += took;
-        self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
-        self.batch = (if took < 0.5 * BATCH { 2 * count.max(self.batch / 2) } else { count / 2 }).clamp(1, MOST_STEPS);
-        let halt = match status.halted {
-            ARRIVED => Halt::Arrived,
-            AT_RIM => Halt::AtRim,
-            BROKEN => Halt::Broken,
-            _ => Halt::Full,
-        };
-        Ok((u64::from(status.steps), halt))
+        let left = until - from_pair(self.status.clock);
+        let count = self.batches.steps(left, f64::from(self.status.step), most);
+        self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: to_pair(until), ..self.status };
+        let Self { tasks, memory, sides, batches, status, .. } = self;
+        *status = batches.take(
+            count,
+            (&memory.status, &*status),
+            |pass| steps((tasks, *sides), memory, pass, count),
+            |gpu| Ok(read(gpu, &memory.status, 1)?[0]),
+        )?;
+        Ok((u64::from(self.status.steps), Halt::of(self.status.halted)))
     }
 
-    /// Has the device take so many steps, or fewer: from where it is to halt the passes run with no groups.
-    fn order(&mut self, count: u32) {
-        let sides = self.sides;
-        self.submit(|tasks, memory, pass| steps((tasks, sides), memory, pass, count));
-    }
-
-    /// Has the device do something.
-    fn submit(&mut self, work: impl FnOnce(&Tasks, &Memory, &mut Pass<'_>)) {
-        let label = wgpu::CommandEncoderDescriptor { label: Some("voronoi") };
-        let mut encoder = self.gpu.device.create_command_encoder(&label);
-        let mut pass = Pass::begin(&mut encoder, self.stopwatch.as_mut());
-        work(&self.tasks, &self.memory, &mut pass);
-        drop(pass);
-        self.stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
-        self.gpu.queue.submit([encoder.finish()]);
-    }
     /// What passed so far, of both values each in and out.
     pub fn totals(&self) -> Totals {
         let Status {
             clock, step, last_step, outflow, inflow, energy_out, energy_in, momentum_out, momentum_in, ..
         } = self.status;
-        let [low, high] = self.status.cell_steps;
         Totals {
-            time: sum(clock),
+            time: from_pair(clock),
             step: f64::from(step),
             last_step: f64::from(last_step),
             wet: self.status.wet as usize,
-            cell_steps: (u64::from(high) << 32) + u64::from(low),
-            water: [inflow, outflow].map(sum),
-            energy: [energy_in, energy_out].map(sum),
-            momentum: [momentum_in, momentum_out].map(sum),
-            rained: sum(self.status.rained),
-            infiltrated: sum(self.status.infiltrated),
+            cell_steps: from_halves(self.status.cell_steps),
+            water: [inflow, outflow].map(from_pair),
+            energy: [energy_in, energy_out].map(from_pair),
+            momentum: [momentum_in, momentum_out].map(from_pair),
+            rained: from_pair(self.status.rained),
+            infiltrated: from_pair(self.status.infiltrated),
             since_draught: f64::from(self.status.since_draught),
         }
     }
@@ -320,7 +272,8 @@ impl GpuSolver {
             (beyond, held * size_of::<f32>()),
             (structure_discharges, self.sides.structures * size_of::<f32>()),
         ];
-        let [columns, records, supplies, pushes, beyond, discharges] = read_together(&self.gpu, parts, <[u8]>::to_vec)?;
+        let [columns, records, supplies, pushes, beyond, discharges] =
+            read_together(self.batches.gpu(), parts, <[u8]>::to_vec)?;
         let columns = bytemuck::pod_collect_to_vec::<u8, Column>(&columns);
         let (now, before) = columns.split_at(self.cells);
         let columns = [now, before].map(|columns| columns.iter().map(column_of).collect());
@@ -330,16 +283,6 @@ impl GpuSolver {
         let pushes = bytemuck::pod_collect_to_vec::<u8, Push>(&pushes).iter().map(push_of).collect();
         let [beyond, discharges] = [beyond, discharges].map(|bytes| bytemuck::pod_collect_to_vec(&bytes));
         Ok(Downloaded { columns, records, soaked, pushes, beyond, discharges })
-    }
-
-    /// The device.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
-    }
-
-    /// Wall-clock time of all batches, s.
-    pub fn busy(&self) -> f64 {
-        self.busy
     }
 
     /// Bytes held on the device.
@@ -413,21 +356,12 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
     }
 }
 
-fn status_of(bytes: &[u8]) -> Status {
-    bytemuck::pod_read_unaligned(bytes)
-}
-
-/// A compensated sum in double precision.
-fn sum([value, lacking]: [f32; 2]) -> f64 {
-    f64::from(value) + f64::from(lacking)
-}
-
 fn column_of(column: &Column) -> ColumnOfCpu {
-    ColumnOfCpu { volume: sum(column.volume), momentum: column.momentum.map(f64::from) }
+    ColumnOfCpu { volume: from_pair(column.volume), momentum: column.momentum.map(f64::from) }
 }
 
 fn push_of(push: &Push) -> [[f64; 2]; 2] {
-    [[push.east, push.north].map(sum), push.last.map(f64::from)]
+    [[push.east, push.north].map(from_pair), push.last.map(f64::from)]
 }
 
 fn record_of(record: &Record) -> super::maps::Record {

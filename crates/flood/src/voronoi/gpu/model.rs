@@ -1,12 +1,12 @@
 //! A flood whose steps a GPU takes.
 
-use super::{Downloaded, GpuSolver, Halt, Input, Totals};
+use super::{Downloaded, GpuSolver, Input, Totals};
 use crate::voronoi::model::SHOWN;
 use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 use crate::voronoi::structures::upload::take_over;
 use crate::voronoi::{DENSITY, VoronoiFlood};
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Stopwatch, Taken};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, Taken};
 use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, Passed};
 use corpuscle_scene::TimeSteps;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -60,7 +60,7 @@ impl GpuModel for VoronoiFlood {
     }
 
     fn gpu(&self) -> Option<Gpu> {
-        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.gpu().clone())
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.batches.gpu().clone())
     }
 
     fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError> {
@@ -110,7 +110,7 @@ impl GpuModel for VoronoiFlood {
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
-        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.busy())
+        self.on_gpu.as_ref().map(|on_gpu| on_gpu.solver.batches.seconds())
     }
 
     fn gpu_bytes(&self) -> Option<u64> {
@@ -119,13 +119,12 @@ impl GpuModel for VoronoiFlood {
 
     fn time_passes(&mut self) {
         if let Some(on_gpu) = &mut self.on_gpu {
-            on_gpu.solver.stopwatch = Stopwatch::new(on_gpu.solver.gpu());
+            on_gpu.solver.batches.time_passes();
         }
     }
 
     fn pass_times(&self) -> Vec<(&'static str, Taken)> {
-        let stopwatch = self.on_gpu.iter().filter_map(|on_gpu| on_gpu.solver.stopwatch.as_ref());
-        stopwatch.flat_map(Stopwatch::taken).collect()
+        self.on_gpu.iter().flat_map(|on_gpu| on_gpu.solver.batches.pass_times()).collect()
     }
 }
 
@@ -222,7 +221,7 @@ impl VoronoiFlood {
         match halt {
             Halt::Full => Ok(false),
             Halt::Arrived => Ok(true),
-            Halt::AtRim => self.go_beyond_rim(on_gpu).map(|()| false),
+            Halt::NeedsHost => self.go_beyond_rim(on_gpu).map(|()| false),
             Halt::Broken => Err(self.broken_on_gpu(on_gpu)),
         }
     }

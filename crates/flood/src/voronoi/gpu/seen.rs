@@ -3,7 +3,7 @@
 use super::shared::{Memory, Place, Shown};
 use super::{GpuSolver, LIBRARY};
 use crate::voronoi::mesh::Mesh;
-use corpuscle_gpu::{DeclaredKernel, DeviceParticles, Gpu, GpuError, Pass, THREADS, Task, filled, uniform, wgpu};
+use corpuscle_gpu::{DeclaredKernel, DeviceParticles, Gpu, GpuError, THREADS, Task, filled, submit, uniform};
 
 /// The water as it is seen, and what writes it.
 pub(super) struct Seen {
@@ -14,7 +14,7 @@ pub(super) struct Seen {
 
 impl Seen {
     fn new(solver: &GpuSolver, mesh: &Mesh) -> Result<Self, GpuError> {
-        let gpu = &solver.gpu;
+        let gpu = solver.batches.gpu();
         let [x, y] = mesh.layout.bounds.centre();
         let level = mesh.bed.first().copied().unwrap_or(0.0);
         let particles = DeviceParticles::new(gpu, mesh.len(), [x, y, level], mesh.layout.spacing())?;
@@ -39,11 +39,8 @@ impl Seen {
     /// Has the device write the particles as they are seen.
     fn write(&self, gpu: &Gpu, shown: Shown) {
         gpu.queue.write_buffer(&self.memory.shown, 0, bytemuck::bytes_of(&shown));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("seen") });
-        let mut pass = Pass::begin(&mut encoder, None);
-        self.task.run(&mut pass, (self.particles.room as u32).div_ceil(THREADS));
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+        let groups = (self.particles.room as u32).div_ceil(THREADS);
+        submit(gpu, "seen", None, |pass| self.task.run(pass, groups));
     }
 }
 
@@ -68,7 +65,10 @@ impl GpuSolver {
         let totals = self.totals();
         let share = (time - (totals.time - totals.last_step)) / totals.last_step;
         let share = if totals.last_step > 0.0 { share.clamp(0.0, 1.0) } else { 1.0 };
-        seen.write(&self.gpu, Shown { share: share as f32, least_depth: least_depth as f32, ..Shown::default() });
+        seen.write(
+            self.batches.gpu(),
+            Shown { share: share as f32, least_depth: least_depth as f32, ..Shown::default() },
+        );
         Ok(seen.particles.clone())
     }
 }

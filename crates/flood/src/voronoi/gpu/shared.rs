@@ -1,20 +1,11 @@
 //! What the host and the shaders of scheme `voronoi` share: one declaration, from which the WGSL comes too.
 
 use super::super::{friction, water};
-use corpuscle_gpu::DeviceParticles;
+use corpuscle_gpu::{DeviceParticles, Stepping};
 
 corpuscle_gpu::declare! {
+    include [Stepping]
     constants {
-        /// The batch of steps goes on.
-        pub const GOING: u32 = 0;
-        /// The host has just started a batch.
-        pub const BATCH_START: u32 = 1;
-        /// The time asked for is reached.
-        pub const ARRIVED: u32 = 2;
-        /// Water stands beside tiles that are not made yet.
-        pub const AT_RIM: u32 = 3;
-        /// Something is no number.
-        pub const BROKEN: u32 = 4;
         /// Stands for no cell, no face, no border.
         pub const NONE: u32 = u32::MAX;
         /// The border reflects.
@@ -87,8 +78,6 @@ corpuscle_gpu::declare! {
         pub const SOURCE: u32 = 4;
         /// Parts of a cell whose heights count.
         pub const PARTS: u32 = super::super::storage::PARTS as u32;
-        /// Threads of a group.
-        pub const GROUP: u32 = corpuscle_gpu::THREADS;
     }
     structs {
         /// Numbers that stay as they are while the device steps.
@@ -151,7 +140,7 @@ corpuscle_gpu::declare! {
             pub infiltrated: [f32; 2],
             /// Steps of wet cells: low and high part.
             pub cell_steps: [u32; 2],
-            /// Whether the batch goes on: [`GOING`] and those after it.
+            /// Whether the batch goes on: [`GOING`](corpuscle_gpu::GOING) and those after it.
             pub halted: u32,
             /// Steps since the start of the batch.
             pub steps: u32,

@@ -1,7 +1,7 @@
 //! Tables over time, or over a level, as they are uploaded.
 
 use super::shared::TABLE;
-use super::upload::pair;
+use corpuscle_gpu::to_pair;
 
 /// Tables by number.
 #[derive(Default)]
@@ -29,7 +29,7 @@ impl Tables {
             words[header] = words.len() as u32;
             words[header + 1] = rows.len() as u32;
             for &[place, value] in rows {
-                let [high, low] = pair(place);
+                let [high, low] = to_pair(place);
                 words.extend([high, low, value as f32].map(f32::to_bits));
             }
         }

@@ -3,8 +3,8 @@
 use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
-    BATCH_START, CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed,
-    Place, Push, Record, Shown, Slopes, Status, Water,
+    CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed, Place, Push,
+    Record, Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
@@ -17,7 +17,7 @@ use crate::voronoi::rain::{Soaked, Weather};
 use crate::voronoi::solver::Solver;
 use crate::voronoi::structures::Patches;
 use crate::voronoi::{walls, water};
-use corpuscle_gpu::{Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, uniform};
+use corpuscle_gpu::{BATCH_START, Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, to_pair, uniform};
 
 /// What is uploaded.
 pub(crate) struct Input<'a> {
@@ -160,7 +160,7 @@ impl Input<'_> {
     fn status(&self) -> Status {
         let wet = self.solver.wet_cells() as u32;
         Status {
-            clock: pair(self.time),
+            clock: to_pair(self.time),
             step: self.step as f32,
             last_step: self.last_step as f32,
             halted: BATCH_START,
@@ -219,15 +219,10 @@ impl Input<'_> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let column = |column: &water::Column| Column { volume: pair(column.volume), momentum: single(column.momentum) };
+        let column =
+            |column: &water::Column| Column { volume: to_pair(column.volume), momentum: single(column.momentum) };
         self.solver.columns.iter().chain(self.solver.before()).map(column).collect()
     }
-}
-
-/// A number as two of single precision: the value, and what it lacks.
-pub(super) fn pair(value: f64) -> [f32; 2] {
-    let high = value as f32;
-    [high, (value - f64::from(high)) as f32]
 }
 
 fn single(pair: [f64; 2]) -> [f32; 2] {

@@ -2,7 +2,7 @@
 #import declared
 #import voronoi_storage
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x < parameters.cells {
         water[id.x] = water_in(id.x, columns[id.x], ground[id.x].area);

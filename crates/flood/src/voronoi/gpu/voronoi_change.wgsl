@@ -1,6 +1,6 @@
 // Water that is added to columns and taken from them beside the motion.
 #import declared
-#import flood_sums
+#import compensated_sums
 #import voronoi_storage
 
 fn kinetic(column: Column) -> f32 {

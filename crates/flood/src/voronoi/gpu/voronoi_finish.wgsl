@@ -1,87 +1,101 @@
 // Books a step, and decides whether there is another before the time that the host waits for.
 #import declared
-#import flood_sums
+#import compensated_sums
 #import voronoi_tables
+#import over_group
 
-var<workgroup> volumes: array<vec4f, 256>;
-var<workgroup> others: array<vec4f, 256>;
-var<workgroup> rains: array<vec4f, 256>;
-var<workgroup> steps: array<f32, 256>;
-var<workgroup> counts: array<vec2u, 256>;
+// What happened in a step: see `Passed` and `Found`. Energy is what left and what came in, of both.
+struct Sums {
+    outflow: vec2f,
+    inflow: vec2f,
+    energy: vec2f,
+    rained: vec2f,
+    infiltrated: vec2f,
+    momentum: f32,
+    step: f32,
+    wet: u32,
+    at_rim: u32,
+    is_broken: u32,
+}
+
+alias Summand = Sums;
+
+fn both(a: Sums, b: Sums) -> Sums {
+    return Sums(
+        add_pair(a.outflow, b.outflow),
+        add_pair(a.inflow, b.inflow),
+        a.energy + b.energy,
+        add_pair(a.rained, b.rained),
+        add_pair(a.infiltrated, b.infiltrated),
+        a.momentum + b.momentum,
+        min(a.step, b.step),
+        a.wet + b.wet,
+        a.at_rim + b.at_rim,
+        a.is_broken | b.is_broken,
+    );
+}
 
 fn groups_for(count: u32) -> u32 {
     return (count + GROUP - 1u) / GROUP;
 }
 
-// Sums up over the groups of cells.
-fn collect(thread: u32) {
-    let zero = vec4f(0.0);
-    var volume = zero;
-    var other = zero;
-    var rain = zero;
-    var step = 3.0e38;
-    var count = vec2u(0u);
-    let all = groups_for(parameters.cells);
-    if thread == 0u {
-        // What structures did.
-        volume = vec4f(passed[all].outflow, passed[all].inflow);
-        other = vec4f(passed[all].energy, passed[all].momentum, 0.0);
-    }
-    for (var group = thread; group < all; group += 256u) {
-        let of_group = passed[group];
-        volume = vec4f(add_pair(volume.xy, of_group.outflow), add_pair(volume.zw, of_group.inflow));
-        other += vec4f(of_group.energy, of_group.momentum, f32(of_group.is_broken));
-        let energy = found[group].energy;
-        other += vec4f(max(-energy, 0.0), max(energy, 0.0), found[group].momentum, 0.0);
-        volume = vec4f(volume.xy, add_pair(volume.zw, found[group].supplied));
-        rain = vec4f(add_pair(rain.xy, found[group].rained), add_pair(rain.zw, found[group].infiltrated));
-        step = min(step, found[group].step);
-        count += vec2u(found[group].wet, found[group].at_rim);
-    }
-    volumes[thread] = volume;
-    others[thread] = other;
-    rains[thread] = rain;
-    steps[thread] = step;
-    counts[thread] = count;
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            let own = volumes[thread];
-            let more = volumes[thread + half];
-            volumes[thread] = vec4f(add_pair(own.xy, more.xy), add_pair(own.zw, more.zw));
-            others[thread] += others[thread + half];
-            let fell = rains[thread];
-            let fell_too = rains[thread + half];
-            rains[thread] = vec4f(add_pair(fell.xy, fell_too.xy), add_pair(fell.zw, fell_too.zw));
-            steps[thread] = min(steps[thread], steps[thread + half]);
-            counts[thread] += counts[thread + half];
-        }
-    }
+// What motion and end of the step did in a group of cells.
+fn of_group(group: u32) -> Sums {
+    let moved = passed[group];
+    let ended = found[group];
+    let energy = moved.energy + vec2f(max(-ended.energy, 0.0), max(ended.energy, 0.0));
+    return Sums(
+        moved.outflow,
+        add_pair(moved.inflow, ended.supplied),
+        energy,
+        ended.rained,
+        ended.infiltrated,
+        moved.momentum + ended.momentum,
+        ended.step,
+        ended.wet,
+        ended.at_rim,
+        moved.is_broken,
+    );
 }
 
-fn book() {
-    let volume = volumes[0];
-    let other = others[0];
+// What a thread finds of all groups of cells, and the first of structures.
+fn collected(thread: u32) -> Sums {
+    var own = Sums();
+    own.step = 3.0e38;
+    let all = groups_for(parameters.cells);
+    if thread == 0u {
+        let by_structures = passed[all];
+        own.outflow = by_structures.outflow;
+        own.inflow = by_structures.inflow;
+        own.energy = by_structures.energy;
+        own.momentum = by_structures.momentum;
+    }
+    for (var group = thread; group < all; group += GROUP) {
+        own = both(own, of_group(group));
+    }
+    return own;
+}
+
+fn book(all: Sums) {
     status.last_step = status.step;
     status.clock = tidy(add(status.clock, status.step));
-    status.outflow = tidy(add_pair(status.outflow, volume.xy));
-    status.inflow = tidy(add_pair(status.inflow, volume.zw));
-    status.energy_out = tidy(add(status.energy_out, other.x));
-    status.energy_in = tidy(add(status.energy_in, other.y));
-    status.momentum_in = tidy(add(status.momentum_in, max(other.z, 0.0)));
-    status.momentum_out = tidy(add(status.momentum_out, max(-other.z, 0.0)));
-    status.rained = tidy(add_pair(status.rained, rains[0].xy));
-    status.infiltrated = tidy(add_pair(status.infiltrated, rains[0].zw));
+    status.outflow = tidy(add_pair(status.outflow, all.outflow));
+    status.inflow = tidy(add_pair(status.inflow, all.inflow));
+    status.energy_out = tidy(add(status.energy_out, all.energy.x));
+    status.energy_in = tidy(add(status.energy_in, all.energy.y));
+    status.momentum_in = tidy(add(status.momentum_in, max(all.momentum, 0.0)));
+    status.momentum_out = tidy(add(status.momentum_out, max(-all.momentum, 0.0)));
+    status.rained = tidy(add_pair(status.rained, all.rained));
+    status.infiltrated = tidy(add_pair(status.infiltrated, all.infiltrated));
     status.steps += 1u;
     status.all_steps += 1u;
     let drank = status.all_steps % STEPS_A_DRAUGHT == 0u;
     status.since_draught = select(status.since_draught + status.step, 0.0, drank);
-    status.wet = counts[0].x;
-    status.at_rim = counts[0].y;
-    status.is_broken = u32(other.w > 0.0);
-    let low = status.cell_steps.x + status.wet;
-    status.cell_steps = vec2u(low, status.cell_steps.y + u32(low < status.wet));
-    status.step = min(COURANT * steps[0], parameters.longest);
+    status.wet = all.wet;
+    status.at_rim = all.at_rim;
+    status.is_broken = all.is_broken;
+    status.cell_steps = count_up(status.cell_steps, status.wet);
+    status.step = min(COURANT * all.step, parameters.longest);
 }
 
 fn decide() -> u32 {
@@ -89,10 +103,10 @@ fn decide() -> u32 {
         return BROKEN;
     }
     if status.at_rim != 0u {
-        return AT_RIM;
+        // Water stands beside tiles that are not made yet.
+        return NEEDS_HOST;
     }
-    let left = (status.until.x - status.clock.x) + (status.until.y - status.clock.y);
-    return select(ARRIVED, GOING, left > 0.0);
+    return select(ARRIVED, GOING, difference(status.until, status.clock) > 0.0);
 }
 
 // What a table comes to in the next step.
@@ -105,13 +119,13 @@ fn look_up(table: u32) {
     tables[header + AT_BEGINNING + 1u] = bitcast<u32>(value_at(table, add(status.clock, status.step)));
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let was = status.halted;
-    collect(thread);
+    let all = over_group(thread, collected(thread));
     if thread == 0u {
         if was == GOING {
-            book();
+            book(all);
         }
         if was == GOING || was == BATCH_START {
             status.halted = decide();

@@ -2,27 +2,27 @@
 #import declared
 #import voronoi_record
 #import voronoi_stable
+#import over_group
 
-var<workgroup> steps: array<f32, 256>;
+alias Summand = f32;
 
-@compute @workgroup_size(256)
+fn both(a: Summand, b: Summand) -> Summand {
+    return min(a, b);
+}
+
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    steps[thread] = 3.0e38;
+    var own = 3.0e38;
     if id.x < parameters.cells {
         record(id.x, water[id.x]);
-        steps[thread] = stable_step(id.x);
+        own = stable_step(id.x);
     }
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            steps[thread] = min(steps[thread], steps[thread + half]);
-        }
-    }
+    let step = over_group(thread, own);
     if thread == 0u {
-        found[group.x].step = steps[0];
+        found[group.x].step = step;
     }
 }

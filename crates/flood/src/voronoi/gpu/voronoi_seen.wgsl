@@ -23,7 +23,7 @@ fn particle_of(cell: u32) -> DeviceParticle {
     return particle;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x == 0u {
         drawn.count = parameters.cells;

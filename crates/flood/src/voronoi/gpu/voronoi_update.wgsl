@@ -2,12 +2,12 @@
 // `update` in `solver.rs`. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
-#import flood_sums
+#import compensated_sums
 #import voronoi_friction
 #import voronoi_water
+#import over_group
 
-var<workgroup> volumes: array<vec4f, 256>;
-var<workgroup> others: array<vec4f, 256>;
+alias Summand = Passed;
 
 // What faces brought a cell in a step: volume, momentum that volume carries, momentum of thrusts, and what passed borders.
 struct Gathered {
@@ -92,8 +92,8 @@ fn next_column(cell: u32, all: Gathered, gained: ptr<function, vec2f>) -> Column
     return Column(volume, bounded);
 }
 
-// Takes a cell on by the stage.
-fn go_on(cell: u32, thread: u32) {
+// Takes a cell on by the stage; what passed.
+fn go_on(cell: u32) -> Passed {
     let all = gather(cell);
     var gained = vec2f(0.0);
     let next = next_column(cell, all, &gained);
@@ -104,45 +104,35 @@ fn go_on(cell: u32, thread: u32) {
     water[cell] = water_of(next, ground[cell].area);
     let change = all.carried + all.thrust;
     let is_sound = is_finite(all.volume.x) && is_finite(change.x) && is_finite(change.y);
-    volumes[thread] = vec4f(all.outflow, all.inflow);
-    others[thread] = vec4f(all.energy, gained.x + gained.y, select(1.0, 0.0, is_sound));
+    return Passed(all.outflow, all.inflow, all.energy, gained.x + gained.y, select(1u, 0u, is_sound));
 }
 
-// Adds what the second half of the threads has to what the first has, until one has all.
-fn sum_up(thread: u32) {
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            let own = volumes[thread];
-            let more = volumes[thread + half];
-            volumes[thread] = vec4f(add_pair(own.xy, more.xy), add_pair(own.zw, more.zw));
-            others[thread] += others[thread + half];
-        }
-    }
+fn both(a: Passed, b: Passed) -> Passed {
+    return Passed(
+        add_pair(a.outflow, b.outflow),
+        add_pair(a.inflow, b.inflow),
+        a.energy + b.energy,
+        a.momentum + b.momentum,
+        a.is_broken | b.is_broken,
+    );
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(
     @builtin(global_invocation_id) id: vec3u,
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    volumes[thread] = vec4f(0.0);
-    others[thread] = vec4f(0.0);
+    var own = Passed();
     if id.x < parameters.cells {
-        go_on(id.x, thread);
+        own = go_on(id.x);
     }
-    sum_up(thread);
+    let all = over_group(thread, own);
     if thread == 0u {
-        var all = Passed(volumes[0].xy, volumes[0].zw, others[0].xy, others[0].z, u32(others[0].w > 0.0));
         if IS_SECOND {
-            let first = passed[group.x];
-            all.outflow = add_pair(all.outflow, first.outflow);
-            all.inflow = add_pair(all.inflow, first.inflow);
-            all.energy += first.energy;
-            all.momentum += first.momentum;
-            all.is_broken |= first.is_broken;
+            passed[group.x] = both(all, passed[group.x]);
+        } else {
+            passed[group.x] = all;
         }
-        passed[group.x] = all;
     }
 }

@@ -1,6 +1,6 @@
 // Water that comes into a cell and goes out of it beside its motion: sources, rain, infiltration. See `patch.rs` and `rain/mod.rs`.
 #import declared
-#import flood_sums
+#import compensated_sums
 #import voronoi_tables
 #import voronoi_change
 #import infiltration_laws

@@ -18,7 +18,7 @@ fn difference(link: Link, here: Water) -> vec4f {
     return vec4f(differences(here, there, link.rise), velocity);
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.cells {
         return;

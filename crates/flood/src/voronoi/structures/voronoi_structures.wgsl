@@ -1,27 +1,16 @@
 // Outflows by rating, held levels and links in a step, one after another: see `structures/mod.rs`. One group does all.
 #import declared
-#import flood_sums
+#import compensated_sums
 #import voronoi_tables
 #import voronoi_change
 #import hydraulics
+#import over_group
 
 // Changes: volume as a compensated sum, energy and momentum over density.
-var<workgroup> changes: array<vec4f, 256>;
+alias Summand = vec4f;
 
-fn both(a: vec4f, b: vec4f) -> vec4f {
+fn both(a: Summand, b: Summand) -> Summand {
     return vec4f(add_pair(a.xy, b.xy), a.zw + b.zw);
-}
-
-// What all threads have together, for all of them.
-fn together(thread: u32, own: vec4f) -> vec4f {
-    changes[thread] = own;
-    for (var half = 128u; half > 0u; half /= 2u) {
-        workgroupBarrier();
-        if thread < half {
-            changes[thread] = both(changes[thread], changes[thread + half]);
-        }
-    }
-    return workgroupUniformLoad(&changes[0]);
 }
 
 // Adds water to a cell of a patch; the change.
@@ -51,7 +40,7 @@ fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
             sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth + water[place.cell].shift));
         }
     }
-    sums = together(thread, sums);
+    sums = over_group(thread, sums);
     return select(DRY, sums.w / sums.z, sums.z > 0.0);
 }
 
@@ -61,7 +50,7 @@ fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
         held.z += columns[in_patches[k].cell].volume.x;
     }
-    held = together(thread, held);
+    held = over_group(thread, held);
     var change = vec4f(0.0);
     if held.z > 0.0 && wanted > 0.0 {
         let share = min(wanted / held.z, 1.0);
@@ -72,7 +61,7 @@ fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
             change = both(change, apply(in_patches[k], -volume, -share * column.momentum));
         }
     }
-    return together(thread, change);
+    return over_group(thread, change);
 }
 
 // Raises the surface evenly by a volume at rest; the first cell gets what rounding leaves.
@@ -83,13 +72,13 @@ fn give(thread: u32, own: Structure, end: u32, volume: vec2f) -> vec4f {
         let part = opaque(volume.x * (place.area / own.areas[end]));
         change = both(change, apply(place, vec2f(part, 0.0), vec2f(0.0)));
     }
-    var all = together(thread, change);
+    var all = over_group(thread, change);
     var rest = vec4f(0.0);
     if thread == 0u && own.firsts[end] < own.ends[end] {
         let left = tidy(add_pair(volume, -all.xy));
         rest = apply(in_patches[own.firsts[end]], left, vec2f(0.0));
     }
-    return both(all, together(thread, rest));
+    return both(all, over_group(thread, rest));
 }
 
 // Brings each cell to a level; what is added has the velocity of the water there.
@@ -102,7 +91,7 @@ fn hold(thread: u32, own: Structure) -> vec4f {
         let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[place.cell].volume));
         change = both(change, apply(place, volume, volume.x * water[place.cell].velocity));
     }
-    return together(thread, change);
+    return over_group(thread, change);
 }
 
 fn culvert_of(word: u32) -> Culvert {
@@ -171,7 +160,7 @@ fn book(books: ptr<function, Passed>, change: vec4f) {
     (*books).momentum += change.w;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     var books = Passed();
     for (var k = 0u; k < parameters.structures; k++) {

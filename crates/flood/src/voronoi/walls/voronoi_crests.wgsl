@@ -32,7 +32,7 @@ fn flow_over(crest: Crest) -> vec3f {
     return vec3f(volume / held * columns[giver].momentum, select(volume, -volume, is_back));
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x < parameters.crests {
         let flow = flow_over(crests[id.x]);

@@ -1,9 +1,9 @@
 // Gives each cell beside crests what flows over them.
 #import declared
-#import flood_sums
+#import compensated_sums
 #import voronoi_storage
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.beside_crests {
         return;

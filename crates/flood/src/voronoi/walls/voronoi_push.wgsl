@@ -1,9 +1,9 @@
 // What the water pushes obstacles with in a stage: each face at an obstacle adds up its own. See `pass_borders` in `solver.rs`. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
-#import flood_sums
+#import compensated_sums
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.borders {
         return;

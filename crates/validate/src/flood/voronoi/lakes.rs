@@ -3,10 +3,10 @@
 use super::super::rows;
 use super::noise::squares;
 use super::{SEEDS, advance, all_sides, set_up, settings};
-use crate::device::{reduced, rounding};
+use crate::device::{is_reduced, reduced, reduction, rounding};
 use crate::{Case, Options, Row};
-use corpuscle_flood::{Filling, StartWater};
-use corpuscle_model::ModelError;
+use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
+use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Edge, NoData, Terrain as TerrainScene, TerrainFile};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
@@ -41,6 +41,15 @@ pub(in super::super) const JACKSBORO: Case = Case {
     run: jacksboro,
 };
 
+pub(in super::super) const LONG: Case = Case {
+    name: "flood/voronoi/lake-long",
+    about: "The lake on the Jacksboro terrain, particles 200 m apart, through 100,000 steps by scheme voronoi, n 0.05, undisturbed and after waves of 0.2 m: what the \
+            rounding of so many steps adds up to, which is for single precision on a GPU to show.",
+    slow: true,
+    reduced: 4.0,
+    run: long,
+};
+
 fn blocks(options: &Options) -> Vec<Row> {
     let Some(data) = &options.data else { return vec![Row::without_data(BLOCKS.name, options)] };
     let lake = || {
@@ -60,6 +69,43 @@ fn jacksboro(options: &Options) -> Vec<Row> {
         Ok(rows)
     };
     rows(JACKSBORO.name, lakes())
+}
+
+/// A step of that lake takes about so long, s: how often it is looked whether there have been enough.
+const STEP_AT_200M: f64 = 2.0;
+
+/// Steps of the long run, and of it at its reduced size.
+const STEPS: [u64; 2] = [100_000, 2_000];
+
+fn long(options: &Options) -> Vec<Row> {
+    let Some(data) = &options.data else { return vec![Row::without_data(LONG.name, options)] };
+    rows(LONG.name, file(&data.join("jacksboro/dem.tif")).and_then(|terrain| after_many_steps(&terrain)))
+}
+
+fn after_many_steps(terrain: &Arc<Terrain>) -> Result<Vec<Row>, ModelError> {
+    let steps = STEPS[usize::from(is_reduced())];
+    let lake = Lake { case: LONG.name, level: 330.0, spacing: 200.0, time: 0.0 };
+    let mut rows = Vec::new();
+    for (stir, name) in [(Stir::Nothing, "undisturbed"), (Stir::Surface(0.2), "after_waves")] {
+        let mut flood = lake.set_up(terrain, SEEDS[0], stir)?;
+        let mut taken = 0;
+        while taken < steps {
+            // Some hundred looks.
+            let time = flood.time() + 0.01 * steps as f64 * STEP_AT_200M * reduction();
+            advance(&mut flood, time)?;
+            taken = flood.particle_steps() / flood.wet_cells().count() as u64;
+        }
+        let water = flood.ledger().balances[0].relative_error().abs();
+        let settled = lake.settled(&flood, 0.0);
+        let row = |measure: &str, value, unit, bound| {
+            Row::at_most(LONG.name, &format!("{measure}_{name}"), value, unit, bound)
+        };
+        rows.push(Row::at_least(LONG.name, &format!("steps_{name}"), taken as f64, "", steps as f64));
+        rows.push(row("rms_speed", settled.rms, "m/s", rounding(1e-9, 1e-4)));
+        rows.push(row("farthest_level", settled.level, "m", rounding(1e-6, 1e-3)));
+        rows.push(row("water_relative_error", water, "", rounding(1e-13, 1e-7)));
+    }
+    Ok(rows)
 }
 
 fn islands() -> Result<Vec<Row>, ModelError> {
@@ -138,6 +184,30 @@ impl Lake {
     }
 
     fn settle(&self, terrain: &Arc<Terrain>, seed: u64, stir: Stir) -> Result<Settled, ModelError> {
+        let mut flood = self.set_up(terrain, seed, stir)?;
+        let start = flood.energy_above_lake(self.level);
+        let mut most = f64::NEG_INFINITY;
+        for look in 1..=LOOKS {
+            advance(&mut flood, self.time * look as f64 / LOOKS as f64)?;
+            most = most.max(flood.energy_above_lake(self.level));
+        }
+        let gained = if start > 0.0 { most / start - 1.0 } else { 0.0 };
+        Ok(self.settled(&flood, gained))
+    }
+
+    /// How it stands at its end.
+    fn settled(&self, flood: &VoronoiFlood, gained: f64) -> Settled {
+        let (mut moving, mut volume, mut farthest) = (0.0, 0.0, 0.0_f64);
+        for cell in flood.wet_cells() {
+            let [u, v] = cell.velocity;
+            moving += cell.area * cell.depth * (u * u + v * v);
+            volume += cell.area * cell.depth;
+            farthest = farthest.max((cell.level - self.level).abs());
+        }
+        Settled { rms: (moving / volume).sqrt(), level: farthest, gained }
+    }
+
+    fn set_up(&self, terrain: &Arc<Terrain>, seed: u64, stir: Stir) -> Result<VoronoiFlood, ModelError> {
         let noise = [1, 2, 3].map(|k| squares(self.spacing, 10 * seed + k));
         let level = self.level;
         let [surface, velocity] = match stir {
@@ -146,29 +216,11 @@ impl Lake {
             Stir::Surface(most) => [most, 0.0],
         };
         let settings = settings(self.spacing, 0.05, all_sides(&Edge::Wall));
-        let lake = |surface: f64, velocity: f64| {
-            let water = StartWater {
-                filling: Filling::Level(Box::new(move |x, y| level + surface * noise[0](x, y))),
-                polygon: None,
-                velocity: Box::new(move |x, y| [noise[1], noise[2]].map(|noise| velocity * noise(x, y))),
-            };
-            set_up(&settings, seed, terrain, &[water])
+        let water = StartWater {
+            filling: Filling::Level(Box::new(move |x, y| level + surface * noise[0](x, y))),
+            polygon: None,
+            velocity: Box::new(move |x, y| [noise[1], noise[2]].map(|noise| velocity * noise(x, y))),
         };
-        let mut flood = lake(surface, velocity)?;
-        let start = flood.energy_above_lake(level);
-        let mut most = f64::NEG_INFINITY;
-        for look in 1..=LOOKS {
-            advance(&mut flood, self.time * look as f64 / LOOKS as f64)?;
-            most = most.max(flood.energy_above_lake(level));
-        }
-        let (mut moving, mut volume, mut farthest) = (0.0, 0.0, 0.0_f64);
-        for cell in flood.wet_cells() {
-            let [u, v] = cell.velocity;
-            moving += cell.area * cell.depth * (u * u + v * v);
-            volume += cell.area * cell.depth;
-            farthest = farthest.max((cell.level - level).abs());
-        }
-        let gained = if start > 0.0 { most / start - 1.0 } else { 0.0 };
-        Ok(Settled { rms: (moving / volume).sqrt(), level: farthest, gained })
+        set_up(&settings, seed, terrain, &[water])
     }
 }

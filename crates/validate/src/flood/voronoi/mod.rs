@@ -33,7 +33,7 @@ pub(super) use ea_test5::EA_TEST5;
 pub(super) use infiltration::INFILTRATION;
 pub(super) use invariance::INVARIANCE;
 pub(super) use isolated_building::ISOLATED_BUILDING;
-pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO};
+pub(super) use lakes::{BLOCKS, ISLANDS, JACKSBORO, LONG};
 pub(super) use malpasset::MALPASSET;
 pub(super) use rain::RAIN;
 pub(super) use sheets::SHEETS;

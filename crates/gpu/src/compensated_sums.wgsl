@@ -1,4 +1,4 @@
-// Compensated sums: pairs of a value and what it lacks, to be added.
+// Compensated sums: pairs of a value and what it lacks, to be added; and counts of more than 32 bits. The importing declaration has `parameters.zero`, always 0.
 #import declared
 
 // The number itself; the optimiser cannot tell, and so keeps (a + b) - a as it is.
@@ -26,6 +26,22 @@ fn tidy(pair: vec2f) -> vec2f {
 fn add_pair(a: vec2f, b: vec2f) -> vec2f {
     let sum = add(a, b.x);
     return vec2f(sum.x, sum.y + b.y);
+}
+
+// The number that a pair stands for.
+fn total(pair: vec2f) -> f32 {
+    return pair.x + pair.y;
+}
+
+// a - b, exact where both are near each other.
+fn difference(a: vec2f, b: vec2f) -> f32 {
+    return (a.x - b.x) + (a.y - b.y);
+}
+
+// Adds to a count of which the low and the high half are kept.
+fn count_up(halves: vec2u, more: u32) -> vec2u {
+    let low = halves.x + more;
+    return vec2u(low, halves.y + u32(low < more));
 }
 
 // By its bits: compilers take a comparison that does not hold for its opposite.
