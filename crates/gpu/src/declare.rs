@@ -15,7 +15,7 @@ pub trait Shared {
     fn wgsl() -> String;
 
     /// Name and text of the piece of a shader that defines it; none where the declaration itself does.
-    fn piece() -> Option<(&'static str, &'static str)> {
+    fn piece() -> Option<(&'static str, String)> {
         None
     }
 }
@@ -61,9 +61,29 @@ impl<const N: usize> Shared for [f32; N] {
     }
 }
 
+/// A matrix, column by column.
+impl Shared for [[f32; 4]; 4] {
+    fn wgsl() -> String {
+        "mat4x4f".into()
+    }
+}
+
 impl<const N: usize> Shared for [u32; N] {
     fn wgsl() -> String {
         vector("u32", 'u', N)
+    }
+}
+
+impl<const N: usize> Shared for [i32; N] {
+    fn wgsl() -> String {
+        vector("i32", 'i', N)
+    }
+}
+
+/// Two numbers.
+impl SharedConstant for [f32; 2] {
+    fn literal(self) -> String {
+        format!("vec2f({}, {})", self[0].literal(), self[1].literal())
     }
 }
 
@@ -128,10 +148,42 @@ pub struct Layout {
 }
 
 impl Layout {
-    fn wgsl(&self) -> String {
+    /// The structure in WGSL.
+    pub fn wgsl(&self) -> String {
         let members: String = self.members.iter().map(|m| format!("    {}: {},\n", m.name, m.wgsl)).collect();
         format!("struct {} {{\n{members}}}\n", self.name)
     }
+
+    /// The same as vertex shaders take it in: member by member, at locations from 0 on.
+    pub fn wgsl_of_vertex(&self) -> String {
+        let line = |(number, m): (usize, &Member)| format!("    @location({number}) {}: {},\n", m.name, m.wgsl);
+        format!("struct {} {{\n{}}}\n", self.name, self.members.iter().enumerate().map(line).collect::<String>())
+    }
+
+    /// Where a vertex shader finds the members in a vertex buffer of such structures.
+    ///
+    /// # Panics
+    /// Where a member is no number or vector of `f32` or `u32`: vertex shaders take in nothing else.
+    pub fn vertex_attributes(&self) -> Vec<wgpu::VertexAttribute> {
+        let attribute = |(location, member): (u32, &Member)| wgpu::VertexAttribute {
+            format: vertex_format(&member.wgsl).expect("members of vertices are numbers or vectors"),
+            offset: member.offset as u64,
+            shader_location: location,
+        };
+        (0..).zip(&self.members).map(attribute).collect()
+    }
+}
+
+fn vertex_format(wgsl: &str) -> Option<wgpu::VertexFormat> {
+    Some(match wgsl {
+        "f32" => wgpu::VertexFormat::Float32,
+        "vec2f" => wgpu::VertexFormat::Float32x2,
+        "vec3f" => wgpu::VertexFormat::Float32x3,
+        "vec4f" => wgpu::VertexFormat::Float32x4,
+        "u32" => wgpu::VertexFormat::Uint32,
+        "vec2u" => wgpu::VertexFormat::Uint32x2,
+        _ => return None,
+    })
 }
 
 /// A structure of [`declare!`](crate::declare).
@@ -147,6 +199,11 @@ pub trait SharedPiece {
 
     /// The structures in their order.
     fn structs() -> Vec<Layout>;
+
+    /// All in WGSL.
+    fn wgsl() -> String {
+        Self::constants().into_iter().chain(Self::structs().iter().map(Layout::wgsl)).collect()
+    }
 }
 
 /// A buffer that shaders see.
@@ -159,7 +216,7 @@ pub struct Binding {
     /// A uniform buffer; else a storage buffer.
     pub is_uniform: bool,
     /// See [`Shared::piece`].
-    pub piece: Option<(&'static str, &'static str)>,
+    pub piece: Option<(&'static str, String)>,
 }
 
 /// What [`declare!`](crate::declare) tells of a declaration.
@@ -180,10 +237,19 @@ impl Declaration {
     }
 
     /// Pieces that define types of bindings.
-    fn pieces(&self) -> Vec<(&'static str, &'static str)> {
-        let mut pieces: Vec<_> = self.bindings.iter().filter_map(|binding| binding.piece).collect();
+    fn pieces(&self) -> Vec<(&'static str, &str)> {
+        let all = self.bindings.iter().filter_map(|binding| binding.piece.as_ref());
+        let mut pieces: Vec<_> = all.map(|(name, text)| (*name, text.as_str())).collect();
         pieces.dedup();
         pieces
+    }
+
+    /// Whether some of it is atomic, which WGSL has only where shaders may write.
+    fn has_atomics(&self, binding: &Binding) -> bool {
+        let is_atomic = |wgsl: &str| wgsl.contains("atomic<");
+        let holds = |layout: &&Layout| binding.wgsl.contains(layout.name);
+        let members = self.structs.iter().filter(holds).flat_map(|layout| &layout.members);
+        is_atomic(&binding.wgsl) || members.map(|member| member.wgsl.as_str()).any(is_atomic)
     }
 
     /// All in WGSL, with the bindings for which `used` tells how a shader uses them.
@@ -191,8 +257,8 @@ impl Declaration {
         let line = |(number, binding): (u32, &Binding)| {
             let space = match (binding.is_uniform, used(number)?) {
                 (true, _) => "uniform",
-                (false, Use::Read) => "storage, read",
-                (false, Use::Written) => "storage, read_write",
+                (false, Use::Read) if !self.has_atomics(binding) => "storage, read",
+                (false, _) => "storage, read_write",
             };
             let Binding { name, wgsl, .. } = binding;
             Some(format!("@group(0) @binding({number}) var<{space}> {name}: {wgsl};\n"))

@@ -1,6 +1,6 @@
 //! Programs that compute.
 
-use crate::{Buffers, Gpu, GpuKind, Pass, ShaderLibrary, join};
+use crate::{Buffers, Gpu, GpuKind, Pass, ShaderLibrary};
 use std::marker::PhantomData;
 
 /// Threads in a group of every kernel that has one thread for each particle or cell.
@@ -9,17 +9,11 @@ pub const THREADS: u32 = 256;
 /// Groups in one dimension at most (WebGPU's own limit).
 pub const MOST_GROUPS: u32 = 65_535;
 
-/// A compute shader, whose entry is `main` and whose bindings are all in group 0, numbered from 0.
+/// A compute shader, whose entry is `main` and whose bindings a declaration names: see [`declare!`](crate::declare).
 #[derive(Debug)]
-pub struct Kernel {
+pub struct Kernel<B> {
     name: &'static str,
     pipeline: wgpu::ComputePipeline,
-}
-
-/// A kernel whose bindings a declaration names: see [`declare!`](crate::declare).
-#[derive(Debug)]
-pub struct DeclaredKernel<B> {
-    kernel: Kernel,
     /// Numbers of the bindings that it uses.
     used: Vec<u32>,
     of: PhantomData<B>,
@@ -33,21 +27,16 @@ pub struct Task {
     bindings: wgpu::BindGroup,
 }
 
-impl Kernel {
-    /// Compiles the shader `text`, joined from its pieces.
+impl<B: Buffers> Kernel<B> {
+    /// Compiles the shader `text`, joined from its pieces, which imports the declaration.
     ///
     /// # Panics
     /// Where a piece is missing from `library` or the shader is wrong, which a test of all shaders finds.
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
-        Self::compiled(gpu, name, join(name, text, library).expect("a test joins every shader"))
-    }
-
-    fn compiled(gpu: &Gpu, name: &'static str, text: String) -> Self {
-        let joined = for_device(gpu, text);
-        let module = module(
-            gpu,
-            wgpu::ShaderModuleDescriptor { label: Some(name), source: wgpu::ShaderSource::Wgsl(joined.into()) },
-        );
+        let complete = B::declaration().complete(name, text, library);
+        let (text, used) = complete.expect("a test completes every shader");
+        let source = wgpu::ShaderSource::Wgsl(for_device(gpu, text).into());
+        let module = module(gpu, wgpu::ShaderModuleDescriptor { label: Some(name), source });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
             layout: None,
@@ -56,35 +45,7 @@ impl Kernel {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        Self { name, pipeline }
-    }
-
-    /// Gives it what it works on, in the order of its bindings.
-    pub fn on(&self, gpu: &Gpu, resources: &[wgpu::BindingResource<'_>]) -> Task {
-        let numbered = resources.iter().cloned().zip(0..);
-        let entries: Vec<_> = numbered.map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
-        self.task(gpu, &entries)
-    }
-
-    fn task(&self, gpu: &Gpu, entries: &[wgpu::BindGroupEntry<'_>]) -> Task {
-        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.name),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries,
-        });
-        Task { name: self.name, pipeline: self.pipeline.clone(), bindings }
-    }
-}
-
-impl<B: Buffers> DeclaredKernel<B> {
-    /// Compiles the shader `text`, joined from its pieces, which imports the declaration.
-    ///
-    /// # Panics
-    /// As [`Kernel::new`].
-    pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
-        let complete = B::declaration().complete(name, text, library);
-        let (text, used) = complete.expect("a test completes every shader");
-        Self { kernel: Kernel::compiled(gpu, name, text), used, of: PhantomData }
+        Self { name, pipeline, used, of: PhantomData }
     }
 
     /// Gives it the buffers that it uses.
@@ -94,7 +55,12 @@ impl<B: Buffers> DeclaredKernel<B> {
             let resource = buffers[binding as usize].as_entire_binding();
             wgpu::BindGroupEntry { binding, resource }
         };
-        self.kernel.task(gpu, &self.used.iter().map(entry).collect::<Vec<_>>())
+        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(self.name),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &self.used.iter().map(entry).collect::<Vec<_>>(),
+        });
+        Task { name: self.name, pipeline: self.pipeline.clone(), bindings }
     }
 }
 
@@ -133,9 +99,9 @@ impl Task {
     }
 
     /// Does it with as many groups as the three numbers at `slot` of `groups` say, each slot being 12 bytes: the device itself decides.
-    pub fn run_as_told(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slot: u64) {
+    pub fn run_as_told(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slot: u32) {
         self.set(pass);
-        pass.pass.dispatch_workgroups_indirect(groups, 12 * slot);
+        pass.pass.dispatch_workgroups_indirect(groups, 12 * u64::from(slot));
         pass.mark(self.name);
     }
 

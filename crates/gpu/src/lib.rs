@@ -27,15 +27,15 @@ pub use declare::{
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
 pub use image::Image;
-pub use kernel::{DeclaredKernel, Kernel, MOST_GROUPS, THREADS, Task};
-pub use particles::{DEVICE_PARTICLES, DeviceParticle, DeviceParticles};
+pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
+pub use particles::{DeviceParticle, DeviceParticles};
 pub use pass::{Pass, Stopwatch, Taken, submit};
 pub use reflect::{check_layouts, check_layouts_in, check_shader};
 pub use shader::{COMPENSATED_SUMS, OVER_GROUP, SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use steps::{
-    ARRIVED, BATCH_START, BROKEN, Batches, GOING, Halt, MOST_STEPS, NEEDS_HOST, Stepping, from_halves, from_pair,
-    to_pair,
+    ARRIVED, BATCH_START, BROKEN, Batches, GOING, Halt, MOST_STEPS, NEEDS_HOST, SORT_BLOCK, Stepping, from_halves,
+    from_pair, to_pair,
 };
 pub use texture::{read_rgba8, texture_2d};
 pub use wgpu;

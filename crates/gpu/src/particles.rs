@@ -1,10 +1,35 @@
 //! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
 //! nothing comes to the host.
 
-use crate::{Gpu, GpuError, Shared, read, storage};
+use crate::{Gpu, GpuError, Shared, SharedPiece, read, storage};
 
-/// The piece `device_particles`: a buffer of particles as shaders have it.
-pub const DEVICE_PARTICLES: (&str, &str) = ("device_particles", include_str!("device_particles.wgsl"));
+crate::declare! {
+    constants {}
+    structs {
+        /// A particle as the device has it.
+        pub struct DeviceParticle {
+            /// Place from [`DeviceParticles::origin`], m.
+            pub place: [f32; 3],
+            /// Distance to its neighbours, m.
+            pub spacing: f32,
+            /// Velocity, m/s.
+            pub velocity: [f32; 3],
+            /// Depth of the water under it, m; 0 for one in the air.
+            pub depth: f32,
+            /// Its volume, m3; 0 where there is no particle.
+            pub volume: f32,
+            /// Lasting identity: its lowest 32 bits.
+            pub id: u32,
+            /// Of air, degrees Celsius; of water 0.
+            pub temperature: f32,
+            /// Fills up.
+            pub unused: u32,
+        }
+    }
+
+    /// What particles on a device consist of.
+    pub piece Particle;
+}
 
 /// A binding to [`DeviceParticles::buffer`].
 impl Shared for DeviceParticles {
@@ -12,35 +37,20 @@ impl Shared for DeviceParticles {
         "DeviceParticles".into()
     }
 
-    fn piece() -> Option<(&'static str, &'static str)> {
-        Some(DEVICE_PARTICLES)
+    fn piece() -> Option<(&'static str, String)> {
+        Some(("device_particles", format!("{}{ALL}", Particle::wgsl())))
     }
 }
 
-/// Bytes before the first particle.
-const HEADER: usize = 16;
-
-/// A particle as the device has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct DeviceParticle {
-    /// Place from [`DeviceParticles::origin`], m.
-    pub place: [f32; 3],
-    /// Distance to its neighbours, m.
-    pub spacing: f32,
-    /// Velocity, m/s.
-    pub velocity: [f32; 3],
-    /// Depth of the water under it, m; 0 for one in the air.
-    pub depth: f32,
-    /// Its volume, m3; 0 where there is no particle.
-    pub volume: f32,
-    /// Lasting identity: its lowest 32 bits.
-    pub id: u32,
-    /// Of air, degrees Celsius; of water 0.
-    pub temperature: f32,
-    /// Nothing.
-    pub unused: u32,
+/// The buffer as shaders have it.
+const ALL: &str = "struct DeviceParticles {
+    count: u32,
+    all: array<DeviceParticle>,
 }
+";
+
+/// Bytes before the first particle: the number of particles, and what aligns the first.
+const HEADER: usize = 16;
 
 /// Particles on a device.
 #[derive(Debug, Clone)]

@@ -20,8 +20,14 @@ crate::declare! {
         pub const NEEDS_HOST: u32 = 3;
         /// Something is no number, or the step is too short to go on.
         pub const BROKEN: u32 = 4;
+        /// Larger than whatever is found: the least of nothing.
+        pub const FAR: f32 = 3.0e38;
+        /// Cells of a search are taken to be this part thicker than they are: who lies on their border may be in either.
+        pub const CELL_BORDER: f32 = 0.01;
         /// Threads of a group.
         pub const GROUP: u32 = crate::THREADS;
+        /// Cells whose counts one group of the sort adds up.
+        pub const SORT_BLOCK: u32 = crate::sort::BLOCK as u32;
     }
     structs {}
 

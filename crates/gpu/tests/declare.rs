@@ -1,8 +1,8 @@
 //! One declaration for host and shaders.
 
 use corpuscle_gpu::{
-    Buffers, DeclaredKernel, Gpu, Pass, check_layouts, check_layouts_in, check_shader, filled, read, require_gpu,
-    storage, uniform, wgpu,
+    Buffers, Gpu, Kernel, Pass, check_layouts, check_layouts_in, check_shader, filled, read, require_gpu, storage,
+    uniform, wgpu,
 };
 
 corpuscle_gpu::declare! {
@@ -142,7 +142,7 @@ fn what_the_host_writes_the_device_reads() {
     let inner = Mixed { pair: [1.0, 2.0], first: 7.5, second: 3.25, count: 30, unused: 0 };
     let outer = Outer { row: [0.0, 0.0, 0.0, 9.0], inner, unused: [0; 2] };
     let memory = memory(&gpu, &[Outer::default(), outer]);
-    let task = DeclaredKernel::new(&gpu, "test", KERNEL, &[]).on(&gpu, &memory);
+    let task = Kernel::new(&gpu, "test", KERNEL, &[]).on(&gpu, &memory);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     task.run(&mut Pass::begin(&mut encoder, None), 1);
     gpu.queue.submit([encoder.finish()]);

@@ -22,6 +22,7 @@ mod overlay;
 mod pipeline;
 mod renderer;
 mod shaders;
+mod shared;
 mod solids;
 mod stage;
 mod standing;

@@ -4,8 +4,6 @@
 const SHADOW_TAPS: i32 = 16;
 // The same on what shows shadows less.
 const FEW_SHADOW_TAPS: i32 = 6;
-const GOLDEN_ANGLE: f32 = 2.39996323;
-const PI: f32 = 3.14159265;
 
 // A number from 0 to 1 that differs from pixel to pixel (interleaved gradient noise: Jimenez, SIGGRAPH 2014 course).
 fn noise(pixel: vec2f) -> f32 {

@@ -1,9 +1,10 @@
 //! The pieces that shaders of this crate import.
 
-use corpuscle_gpu::{Gpu, join, wgpu};
+use crate::shared::declared;
+use corpuscle_gpu::{DECLARED, Gpu, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 14] = [
+const LIBRARY: [(&str, &str); 16] = [
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),
@@ -16,15 +17,61 @@ const LIBRARY: [(&str, &str); 14] = [
     ("fluid", include_str!("fluid/fluid.wgsl")),
     ("press", include_str!("tone/press.wgsl")),
     ("smoothing", include_str!("fluid/smoothing.wgsl")),
+    ("surface", include_str!("solids/surface.wgsl")),
+    ("cut", include_str!("terrain/cut.wgsl")),
     ("splat", include_str!("fluid/splat.wgsl")),
     ("splat_sums", include_str!("fluid/splat_sums.wgsl")),
 ];
 
-/// A shader of this crate, joined from its pieces. `text` is the file of the same name.
+/// The text of a shader of this crate, joined from its pieces. `text` is the file of the same name.
+fn joined(name: &str, text: &str) -> Result<String, ImportError> {
+    let declared = declared();
+    let library: Vec<_> = LIBRARY.into_iter().chain([(DECLARED, declared.as_str())]).collect();
+    join(name, text, &library)
+}
+
+/// A shader of this crate. `text` is the file of the same name.
 pub(crate) fn module(gpu: &Gpu, name: &str, text: &str) -> wgpu::ShaderModule {
-    let joined = join(name, text, &LIBRARY).expect("a test joins every shader");
     gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(joined.into()),
+        source: wgpu::ShaderSource::Wgsl(joined(name, text).expect("a test joins every shader").into()),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::{SharedPiece, check_layouts_in, check_shader};
+    use std::path::Path;
+
+    /// Name and text of every shader below a folder, but for those of kernels that have a declaration of their own.
+    fn shaders_below(folder: &Path) -> Vec<(String, String)> {
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let of = |path: std::path::PathBuf| {
+            if path.is_dir() && !path.ends_with("fluid/device") {
+                return shaders_below(&path);
+            }
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let is_shader = path.extension().is_some_and(|extension| extension == "wgsl") && name != "balls_device";
+            is_shader.then(|| (name, std::fs::read_to_string(&path).unwrap())).into_iter().collect()
+        };
+        entries.flat_map(of).collect()
+    }
+
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        let all = shaders_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+        for (name, text) in &all {
+            let text = joined(name, text).unwrap();
+            check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+        assert!(all.len() > 30, "{} shaders", all.len());
+    }
+
+    #[test]
+    fn host_and_device_lay_structures_out_alike() {
+        use crate::shared::{Bound, Vertices};
+        check_layouts_in(&Bound::wgsl(), &Bound::structs()).unwrap();
+        check_layouts_in(&Vertices::wgsl(), &Vertices::structs()).unwrap();
+    }
 }

@@ -1,39 +1,14 @@
 //! What every shader knows of the picture: camera, light, and the sun's depth map. Group 0 of every pipeline; in WGSL `#import view`.
 
+use crate::shared::CameraAndLight;
 use crate::{Backdrop, Camera, Lens, Light, Stage};
 use corpuscle_gpu::Gpu;
 use corpuscle_gpu::wgpu;
 use glam::camera::rh::{proj::directx, view};
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3};
 
 /// Pixels of the sun's depth map, each way.
 pub(crate) const SHADOW_PIXELS: u32 = 4096;
-
-/// What every shader knows, as `view.wgsl` has it. All in stage coordinates.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Uniform {
-    clip_from_world: Mat4,
-    world_from_clip: Mat4,
-    view_from_world: Mat4,
-    world_from_view: Mat4,
-    clip_from_view: Mat4,
-    view_from_clip: Mat4,
-    sun_from_world: Mat4,
-    /// Place of the eye; 1 with perspective, 0 without.
-    eye: Vec4,
-    /// Line of sight; height of a pixel, at distance 1 where there is perspective.
-    forward: Vec4,
-    /// Direction towards the sun; tangent of half the angle it fills.
-    sun: Vec4,
-    /// Its light; strength of the light from all round.
-    sunlight: Vec4,
-    above: Vec4,
-    horizon: Vec4,
-    below: Vec4,
-    /// Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 1.25 room, 2 paper.
-    frame: Vec4,
-}
 
 /// Camera and light of one picture on the device.
 #[derive(Debug)]
@@ -44,7 +19,7 @@ pub struct View {
     pub(crate) sun_group: wgpu::BindGroup,
     /// The sun's depth map.
     pub(crate) shadow: wgpu::TextureView,
-    uniform: Uniform,
+    uniform: CameraAndLight,
 }
 
 impl View {
@@ -60,12 +35,12 @@ impl View {
     ) -> Self {
         let sun_from_world = sun_from_world(light);
         let seen = uniform(stage, camera, light, size, sun_from_world);
-        let from_sun = Uniform {
-            clip_from_world: sun_from_world,
-            world_from_clip: sun_from_world.inverse(),
-            eye: (light.towards_sun() * 4.0).extend(0.0),
-            forward: (-light.towards_sun()).extend(2.0 / SHADOW_PIXELS as f32),
-            frame: Vec4::new(SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame.z, seen.frame.w),
+        let from_sun = CameraAndLight {
+            clip_from_world: columns(sun_from_world),
+            world_from_clip: columns(sun_from_world.inverse()),
+            eye: (light.towards_sun() * 4.0).extend(0.0).into(),
+            forward: (-light.towards_sun()).extend(2.0 / SHADOW_PIXELS as f32).into(),
+            frame: [SHADOW_PIXELS as f32, SHADOW_PIXELS as f32, seen.frame[2], seen.frame[3]],
             ..seen
         };
         let nothing = depth_map(gpu, 1);
@@ -101,7 +76,17 @@ impl View {
     }
 }
 
-fn uniform(stage: &Stage, camera: &Camera, light: &Light, [width, height]: [u32; 2], sun_from_world: Mat4) -> Uniform {
+fn columns(matrix: Mat4) -> [[f32; 4]; 4] {
+    matrix.to_cols_array_2d()
+}
+
+fn uniform(
+    stage: &Stage,
+    camera: &Camera,
+    light: &Light,
+    [width, height]: [u32; 2],
+    sun_from_world: Mat4,
+) -> CameraAndLight {
     let view_from_world = camera.view_from_world(stage);
     let clip_from_view = camera.clip_from_view(stage, width as f32 / height as f32);
     let (perspective, tall) = match camera.lens {
@@ -115,22 +100,22 @@ fn uniform(stage: &Stage, camera: &Camera, light: &Light, [width, height]: [u32;
         Backdrop::Paper(colour) => ([colour; 3], 2.0),
     };
     let clip_from_world = clip_from_view * view_from_world;
-    Uniform {
-        clip_from_world,
-        world_from_clip: clip_from_world.inverse(),
-        view_from_world,
-        world_from_view: view_from_world.inverse(),
-        clip_from_view,
-        view_from_clip: clip_from_view.inverse(),
-        sun_from_world,
-        eye: stage.place(camera.eye.into()).extend(perspective),
-        forward: camera.forward().extend(tall / height as f32),
-        sun: light.towards_sun().extend(light.softness.tan()),
-        sunlight: Vec3::from(light.sunlight).extend(light.ambient),
-        above: Vec3::from(above).extend(0.0),
-        horizon: Vec3::from(horizon).extend(0.0),
-        below: Vec3::from(below).extend(0.0),
-        frame: Vec4::new(width as f32, height as f32, stage.unit() as f32, kind),
+    CameraAndLight {
+        clip_from_world: columns(clip_from_world),
+        world_from_clip: columns(clip_from_world.inverse()),
+        view_from_world: columns(view_from_world),
+        world_from_view: columns(view_from_world.inverse()),
+        clip_from_view: columns(clip_from_view),
+        view_from_clip: columns(clip_from_view.inverse()),
+        sun_from_world: columns(sun_from_world),
+        eye: stage.place(camera.eye.into()).extend(perspective).into(),
+        forward: camera.forward().extend(tall / height as f32).into(),
+        sun: light.towards_sun().extend(light.softness.tan()).into(),
+        sunlight: Vec3::from(light.sunlight).extend(light.ambient).into(),
+        above: Vec3::from(above).extend(0.0).into(),
+        horizon: Vec3::from(horizon).extend(0.0).into(),
+        below: Vec3::from(below).extend(0.0).into(),
+        frame: [width as f32, height as f32, stage.unit() as f32, kind],
     }
 }
 
@@ -159,10 +144,15 @@ pub(crate) fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, uniform: &Uniform, shadow: &wgpu::TextureView) -> wgpu::BindGroup {
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    uniform: &CameraAndLight,
+    shadow: &wgpu::TextureView,
+) -> wgpu::BindGroup {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
-        size: size_of::<Uniform>() as u64,
+        size: size_of::<CameraAndLight>() as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     });

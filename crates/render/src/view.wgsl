@@ -1,32 +1,15 @@
-// What every shader knows of the picture (view.rs). Group 0. All in stage coordinates: the half diagonal of what is shown is 1.
-// Depth is 1 near and 0 far; nothing drawn is 0.
+// What every shader knows of the picture (view.rs): group 0.
+#import declared
 
-struct View {
-    clip_from_world: mat4x4f,
-    world_from_clip: mat4x4f,
-    view_from_world: mat4x4f,
-    world_from_view: mat4x4f,
-    clip_from_view: mat4x4f,
-    view_from_clip: mat4x4f,
-    sun_from_world: mat4x4f,
-    // Place of the eye; 1 with perspective, 0 without.
-    eye: vec4f,
-    // Line of sight; height of a pixel, at distance 1 where there is perspective.
-    forward: vec4f,
-    // Direction towards the sun; tangent of half the angle it fills.
-    sun: vec4f,
-    // Its light; strength of the light from all round.
-    sunlight: vec4f,
-    above: vec4f,
-    horizon: vec4f,
-    below: vec4f,
-    // Width and height of the target, pixels; metres in a stage unit; 0 sky, 1 studio, 1.25 room, 2 paper.
-    frame: vec4f,
-}
-
-@group(0) @binding(0) var<uniform> view: View;
+@group(0) @binding(0) var<uniform> view: CameraAndLight;
 @group(0) @binding(1) var sun_depth: texture_depth_2d;
 @group(0) @binding(2) var sun_compare: sampler_comparison;
+
+// What a fragment shader draws.
+struct Drawn {
+    @location(0) colour: vec4f,
+    @builtin(frag_depth) depth: f32,
+}
 
 // A line of sight: a place on it and its direction, of length 1.
 struct Ray {

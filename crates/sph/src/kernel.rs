@@ -14,7 +14,7 @@ pub mod cubic_spline {
     use super::*;
 
     /// Normalisation in two dimensions over h^2.
-    const SIGMA: f64 = 10.0 / (28.0 * PI);
+    pub const SIGMA: f64 = 10.0 / (28.0 * PI);
 
     /// W(r, h), 1/m2.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! How fast a graphics card copies its own memory: what the passes of a step are measured against.
 
 use crate::{Bench, BenchOptions, Rate};
-use corpuscle_gpu::{Gpu, GpuError, Kernel, Pass, THREADS, Task, read, storage, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, Kernel, THREADS, Task, read, storage, submit, wgpu};
 use std::time::Instant;
 
 pub(crate) const BENCHES: &[Bench] = &[Bench {
@@ -17,9 +17,26 @@ const BYTES: u64 = 1 << 30;
 /// Copies that are ordered at once.
 const COPIES: u32 = 16;
 
-/// Bytes that a thread takes at a time, and how often: as `card_copy.wgsl` has it.
-const BYTES_AT_ONCE: u64 = 16;
-const TIMES_A_THREAD: u64 = 16;
+/// Bytes that a thread takes at a time.
+const BYTES_AT_ONCE: u64 = size_of::<[u32; 4]>() as u64;
+
+corpuscle_gpu::declare! {
+    constants {
+        /// Threads of a group.
+        const GROUP: u32 = THREADS;
+        /// How often a thread copies, so that a gibibyte is within the groups that there can be.
+        const EACH: u32 = 16;
+    }
+    structs {}
+
+    /// What is copied.
+    buffers Memory {
+        /// From here.
+        storage source: [[u32; 4]],
+        /// To here.
+        storage copied: [[u32; 4]],
+    }
+}
 
 /// A buffer that is copied to another of the same size.
 struct Copying {
@@ -30,17 +47,13 @@ struct Copying {
 impl Copying {
     fn of(gpu: &Gpu, from: &wgpu::Buffer, to: &wgpu::Buffer) -> Self {
         let kernel = Kernel::new(gpu, "card_copy", include_str!("card_copy.wgsl"), &[]);
-        let groups = to.size().div_ceil(BYTES_AT_ONCE * TIMES_A_THREAD * u64::from(THREADS)) as u32;
-        Self { task: kernel.on(gpu, &[from.as_entire_binding(), to.as_entire_binding()]), groups }
+        let groups = to.size().div_ceil(BYTES_AT_ONCE * u64::from(EACH * THREADS)) as u32;
+        Self { task: kernel.on(gpu, &Memory { source: from.clone(), copied: to.clone() }), groups }
     }
 
     /// Orders so many copies.
     fn order(&self, gpu: &Gpu, times: u32) {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("copies") });
-        let mut pass = Pass::begin(&mut encoder, None);
-        (0..times).for_each(|_| self.task.run(&mut pass, self.groups));
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
+        submit(gpu, "copies", None, |pass| (0..times).for_each(|_| self.task.run(pass, self.groups)));
     }
 }
 

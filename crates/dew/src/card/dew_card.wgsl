@@ -54,8 +54,6 @@ fn factor(diagonal: vec3f, doubled: vec3f, offset: vec3f) -> f32 {
     return (dot(diagonal, offset * offset) + dot(doubled, across)) / max(dot(offset, offset), 1e-30);
 }
 
-const FAR = 3.0e38;
-
 // Temperature from that at which the air's properties are as told, K.
 fn from_reference(temperature: f32) -> f32 {
     return temperature - parameters.reference;

@@ -83,7 +83,7 @@ fn decide() {
     let counts = array(
         (status.particles + GROUP - 1u) / GROUP,
         (status.cells + GROUP - 1u) / GROUP,
-        (status.cells + 1023u) / 1024u,
+        (status.cells + SORT_BLOCK - 1u) / SORT_BLOCK,
         1u,
         (arrayLength(&own) + GROUP - 1u) / GROUP,
         arrayLength(&bodies),

@@ -77,14 +77,11 @@ fn row_of(y: u32, z: u32) -> u32 {
     return (z * parameters.cells.y + y) * parameters.cells.x;
 }
 
-// Cells are taken to be this much thicker than they are: who lies on their border may be in either.
-const BORDER = 0.01;
-
 // First and last column of those cells of a row in which there may be something within reach of a place. None: the first comes after
 // the last.
 fn columns_round(place: vec3f, y: u32, z: u32) -> vec2u {
     let size = 1.0 / parameters.per_cell;
-    let border = BORDER * size;
+    let border = CELL_BORDER * size;
     let row = vec2u(y, z);
     let low = parameters.corner.yz + size * vec2f(row);
     // What is beyond the first and the last row stands in these.

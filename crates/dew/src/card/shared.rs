@@ -4,7 +4,7 @@
 //! air has in common: positions are counted from the middle of the room, temperature and vapour from those of the ambient air. What grows by
 //! little in a step is kept as a pair of a value and what it lacks.
 
-use corpuscle_gpu::{AtomicI32, AtomicU32, Stepping, from_pair, to_pair};
+use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping, from_pair, to_pair};
 
 corpuscle_gpu::declare! {
     include [Stepping]
@@ -539,6 +539,16 @@ corpuscle_gpu::declare! {
             pub count: u32,
         }
 
+        /// When the air is seen.
+        pub struct Shown {
+            /// Time from the last step to the time shown, s.
+            pub since: f32,
+            /// Fills up.
+            pub unused: f32,
+            /// Fills up.
+            pub unused_more: [f32; 2],
+        }
+
         /// What the host learns, and says.
         pub struct Status {
             /// Particles of air; this and the next first: the sort reads them.
@@ -657,6 +667,10 @@ corpuscle_gpu::declare! {
         storage field: [f32],
         /// The fans.
         uniform fans: [Fan; MOST_FANS as usize],
+        /// When the air is seen.
+        uniform seen_at: Shown,
+        /// The air as it is drawn.
+        storage drawn: DeviceParticles,
     }
 }
 
@@ -679,7 +693,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::card::tasks::{PIECES, with_types};
+    use crate::card::tasks::PIECES;
     use corpuscle_gpu::Buffers;
 
     /// Each pass with what it imports and the bindings that it uses.
@@ -693,12 +707,7 @@ mod tests {
                 continue;
             }
             let name = path.file_stem().unwrap().to_str().unwrap();
-            let whole = if text.contains("@group") {
-                let types = Memory::declaration().types();
-                corpuscle_gpu::join(name, &text, &with_types(&types)).unwrap()
-            } else {
-                Memory::declaration().complete(name, &text, PIECES).unwrap().0
-            };
+            let whole = Memory::declaration().complete(name, &text, PIECES).unwrap().0;
             corpuscle_gpu::check_shader(&whole).unwrap_or_else(|error| panic!("{name}.wgsl: {error}"));
             count += 1;
         }

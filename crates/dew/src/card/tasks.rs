@@ -2,13 +2,13 @@
 
 use super::shared::{
     BeforeColumn, BeforeOutlet, Body, Fan, IS_PASSED, MEASURING_GROUPS, MOST_FANS, Measured, Memory, OutsideColumn,
-    Packed, PackedColumn, Parameters, Partial, Row, Solid, Status, Surface, Water,
+    Packed, PackedColumn, Parameters, Partial, Row, Shown, Solid, Status, Surface, Water,
 };
 use super::solids::{CardSolids, filled};
 use super::sources::CardSources;
 use corpuscle_gpu::{
-    Buffers, COMPENSATED_SUMS, CellSort, DECLARED, DEVICE_PARTICLES, DeclaredKernel, Gpu, GpuError, OVER_GROUP, Pass,
-    SUMS_BEFORE, SortSlots, THREADS, Task, storage, uniform, wgpu,
+    Buffers, COMPENSATED_SUMS, CellSort, Gpu, GpuError, Kernel, OVER_GROUP, Pass, SUMS_BEFORE, SortSlots, THREADS,
+    Task, storage, uniform, wgpu,
 };
 
 /// Pieces that the shaders import, but for what they share with the host.
@@ -26,15 +26,10 @@ pub(super) const PIECES: &[(&str, &str)] = &[
     ("dew_utility", include_str!("dew_utility.wgsl")),
 ];
 
-/// The same with the constants and structures that they share with the host, for a shader that writes its bindings itself.
-pub(super) fn with_types(types: &str) -> Vec<(&'static str, &str)> {
-    PIECES.iter().copied().chain([(DECLARED, types), DEVICE_PARTICLES]).collect()
-}
-
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
-const SOLIDS: u64 = 4;
-const BODIES: u64 = 5;
+const SOLIDS: u32 = 4;
+const BODIES: u32 = 5;
 
 /// Everything on the device.
 #[derive(Debug)]
@@ -110,8 +105,10 @@ impl Tasks {
             measured: storage::<Measured>(gpu, "sums for gauges", MEASURING_GROUPS as usize)?,
             field: filled(gpu, "distances to solids", field)?,
             fans: uniform(gpu, "fans", fans),
+            seen_at: uniform(gpu, "time shown", &Shown::default()),
+            drawn: storage::<[u32; 16]>(gpu, "nothing drawn", 1)?,
         };
-        let task = |name, text| DeclaredKernel::<Memory>::new(gpu, name, text, PIECES).on(gpu, &memory);
+        let task = |name, text| Kernel::<Memory>::new(gpu, name, text, PIECES).on(gpu, &memory);
         macro_rules! shader {
             ($name:literal) => {
                 task($name, include_str!(concat!($name, ".wgsl")))

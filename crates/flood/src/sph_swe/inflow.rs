@@ -10,7 +10,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// Places tried for each new particle; the lowest surface is taken.
-const TRIES: usize = 12;
+pub(super) const TRIES: usize = 12;
 
 /// New particles: what they are like, and whom to ask where they fit.
 pub(crate) struct Nursery<'a> {

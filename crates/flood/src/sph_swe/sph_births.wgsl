@@ -13,10 +13,6 @@ const THREADS = 64u;
 // At most so many in a step: the rest comes in the next.
 const MOST = 256u;
 
-// Places drawn for each.
-const TRIES = 12u;
-const TAU = 6.283185307179586;
-
 var<workgroup> tried: array<vec2f, TRIES>;
 var<workgroup> surfaces: array<f32, TRIES>;
 
@@ -85,7 +81,7 @@ fn any_place(zone: u32, stream: vec2u, number: u32) -> vec2f {
     let draw = random_pair(stream, number);
     if zones[zone] == DISC {
         let r = value(zone + 3u) * sqrt(draw.x);
-        return pair(zone + 4u) + r * vec2f(cos(TAU * draw.y), sin(TAU * draw.y));
+        return pair(zone + 4u) + r * vec2f(cos(2.0 * PI * draw.y), sin(2.0 * PI * draw.y));
     }
     let first = zones[zone + 1u];
     let pieces = zones[zone + 2u] - 1u;

@@ -13,7 +13,7 @@ struct Within {
 // Of an outline from its first side to its last.
 fn within(place: vec2f, first: u32, end: u32) -> Within {
     var found = Within(vec2f(0.0), vec4f(0.0), false);
-    var nearest = 3e38;
+    var nearest = FAR;
     for (var number = first; number < end; number++) {
         let wall = side(number);
         let way = way_from(place, wall);

@@ -15,8 +15,6 @@ struct Sums {
     high: vec2f,
 }
 
-const FAR = 3.0e38;
-
 alias Summand = Sums;
 
 fn both(a: Summand, b: Summand) -> Summand {

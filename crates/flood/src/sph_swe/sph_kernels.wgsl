@@ -1,8 +1,6 @@
 // The kernels of the paper in the plane, and the cubic spline by which water is sampled. Twins of those in the crate sph, which names the sources.
 #import declared
 
-const PI = 3.14159265358979;
-
 fn poly6(r: f32, h: f32) -> f32 {
     let q = r / h;
     let inside = max(1.0 - q * q, 0.0);
@@ -26,8 +24,6 @@ fn pressure_of(density: f32) -> f32 {
 }
 
 // Cubic spline (Monaghan & Lattanzio 1985) as in the crate sph: W(r, h), 1/m2.
-const SIGMA = 10.0 / (28.0 * 3.14159265358979);
-
 fn spline(r: f32, per_h: f32) -> f32 {
     let q = r * per_h;
     let outer = max(2.0 - q, 0.0);

@@ -87,13 +87,10 @@ fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
     return vec4u(min(vec2u(low), last), min(vec2u(high), last));
 }
 
-// Cells are taken to be this much thicker than they are: who lies on their border may be in either.
-const BORDER = 0.01;
-
 // First and last column of those cells of a row in which there may be something within `reach` of a place: less than `cells_round` has, in
 // rows that pass the place by. None: the first comes after the last.
 fn columns_round(grid: Grid, place: vec2f, reach: f32, row: u32) -> vec2u {
-    let border = BORDER * grid.cell;
+    let border = CELL_BORDER * grid.cell;
     let south = grid.corner.y + f32(row) * grid.cell - border;
     // What is beyond the first and the last row stands in these.
     let from_south = select(south - place.y, 0.0, row == 0u);

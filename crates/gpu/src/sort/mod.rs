@@ -4,12 +4,46 @@
 //! [`CellSort::places`], the cell and what the count was before. [`CellSort::sort`] does the rest and leaves the counts at zero.
 //! Particles of one cell come in the order of their keys, so that the result is the same however the threads ran.
 
-use crate::{Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, ShaderLibrary, THREADS, Task, storage};
+use crate::{Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, THREADS, Task, storage};
 
 /// Counts that one group of threads adds up.
-const BLOCK: usize = 1024;
+pub(crate) const BLOCK: usize = 1024;
 
-const LIBRARY: ShaderLibrary<'_> = &[("sort_groups", include_str!("sort_groups.wgsl")), SUMS_BEFORE];
+crate::declare! {
+    constants {
+        /// Threads of a group.
+        const GROUP: u32 = THREADS;
+        /// Counts that one group adds up.
+        const SORT_BLOCK: u32 = BLOCK as u32;
+    }
+    structs {
+        /// How many there are: the beginning of what the model tells its own kernels.
+        struct Sizes {
+            /// Particles.
+            particles: u32,
+            /// Cells.
+            cells: u32,
+        }
+    }
+
+    /// What the kernels of the sort work on.
+    buffers Memory {
+        /// How many there are.
+        storage sizes: Sizes,
+        /// Particles of each cell.
+        storage counts: [u32],
+        /// The cell of each particle, and how many of that cell were counted before.
+        storage places: [[u32; 2]],
+        /// First particle of each cell.
+        storage start: [u32],
+        /// The particles in sorted order.
+        storage order: [u32],
+        /// Particles in each block of cells, then in all before it.
+        storage totals: [u32],
+        /// What orders the particles of a cell.
+        storage keys: [u32],
+    }
+}
 
 /// Memory and kernels for sorting at most so many particles into at most so many cells.
 #[derive(Debug)]
@@ -38,13 +72,13 @@ struct Tasks {
 #[derive(Debug, Clone, Copy)]
 pub struct SortSlots {
     /// One thread a particle.
-    pub particles: u64,
+    pub particles: u32,
     /// One thread a cell.
-    pub cells: u64,
+    pub cells: u32,
     /// One group for [`sort_blocks`] cells.
-    pub blocks: u64,
+    pub blocks: u32,
     /// One group in all, or none.
-    pub once: u64,
+    pub once: u32,
 }
 
 /// Groups that add up the counts of so many cells.
@@ -69,22 +103,28 @@ impl CellSort {
         if particles.max(cells) > most {
             return Err(GpuError::TooMany { count: particles.max(cells), most });
         }
-        let counts = storage::<u32>(gpu, "counts of cells", cells)?;
-        let places = storage::<[u32; 2]>(gpu, "places in cells", particles)?;
-        let start = storage::<u32>(gpu, "starts of cells", cells + 1)?;
-        let order = storage::<u32>(gpu, "order", particles)?;
-        let totals = storage::<u32>(gpu, "totals of blocks", sort_blocks(cells))?;
-        let task = |name, text, buffers: &[&wgpu::Buffer]| {
-            let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
-            Kernel::new(gpu, name, text, LIBRARY).on(gpu, &resources)
+        let memory = Memory {
+            sizes: sizes.clone(),
+            counts: storage::<u32>(gpu, "counts of cells", cells)?,
+            places: storage::<[u32; 2]>(gpu, "places in cells", particles)?,
+            start: storage::<u32>(gpu, "starts of cells", cells + 1)?,
+            order: storage::<u32>(gpu, "order", particles)?,
+            totals: storage::<u32>(gpu, "totals of blocks", sort_blocks(cells))?,
+            keys: keys.clone(),
         };
+        macro_rules! task {
+            ($name:literal) => {
+                Kernel::new(gpu, $name, include_str!(concat!($name, ".wgsl")), &[SUMS_BEFORE]).on(gpu, &memory)
+            };
+        }
         let tasks = Tasks {
-            blocks: task("sort_blocks", include_str!("sort_blocks.wgsl"), &[sizes, &counts, &start, &totals]),
-            totals: task("sort_totals", include_str!("sort_totals.wgsl"), &[sizes, &totals]),
-            starts: task("sort_starts", include_str!("sort_starts.wgsl"), &[sizes, &start, &totals]),
-            scatter: task("sort_scatter", include_str!("sort_scatter.wgsl"), &[sizes, &places, &start, &order]),
-            tidy: task("sort_tidy", include_str!("sort_tidy.wgsl"), &[sizes, &start, keys, &order]),
+            blocks: task!("sort_blocks"),
+            totals: task!("sort_totals"),
+            starts: task!("sort_starts"),
+            scatter: task!("sort_scatter"),
+            tidy: task!("sort_tidy"),
         };
+        let Memory { counts, places, start, order, .. } = memory;
         Ok(Self { counts, places, start, order, tasks })
     }
 
@@ -95,5 +135,24 @@ impl CellSort {
         self.tasks.starts.run_as_told(pass, groups, slots.cells);
         self.tasks.scatter.run_as_told(pass, groups, slots.particles);
         self.tasks.tidy.run_as_told(pass, groups, slots.cells);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Buffers, check_layouts, check_shader};
+
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        check_layouts(&Memory::declaration()).unwrap();
+        macro_rules! check {
+            ($($name:literal),*) => {$(
+                let text = include_str!(concat!($name, ".wgsl"));
+                let (text, _) = Memory::declaration().complete($name, text, &[SUMS_BEFORE]).unwrap();
+                check_shader(&text).unwrap();
+            )*};
+        }
+        check!("sort_blocks", "sort_totals", "sort_starts", "sort_scatter", "sort_tidy");
     }
 }

@@ -1,13 +1,8 @@
 // Orders the few particles of each cell by their keys, by insertion. (Software Vulkan goes through a loop 65535 times at most: there
 // some 350 particles of one cell are put in order, and what more there are stays as it came.)
-#import sort_groups
+#import declared
 
-@group(0) @binding(0) var<storage, read> sizes: Sizes;
-@group(0) @binding(1) var<storage, read> start: array<u32>;
-@group(0) @binding(2) var<storage, read> keys: array<u32>;
-@group(0) @binding(3) var<storage, read_write> order: array<u32>;
-
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) thread: vec3u) {
     let cell = thread.x;
     if cell >= sizes.cells {

@@ -1,14 +1,12 @@
 // Turns the totals of the blocks into sums over the blocks before, in one group.
-#import sort_groups
+#import declared
+#import sums_before
 
-@group(0) @binding(0) var<storage, read> sizes: Sizes;
-@group(0) @binding(1) var<storage, read_write> totals: array<u32>;
-
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    let blocks = (sizes.cells + 1023u) / 1024u;
+    let blocks = (sizes.cells + SORT_BLOCK - 1u) / SORT_BLOCK;
     var before = 0u;
-    for (var first = 0u; first < blocks; first += 256u) {
+    for (var first = 0u; first < blocks; first += GROUP) {
         let block = first + thread;
         let inside = block < blocks;
         var own = 0u;

@@ -1,26 +1,9 @@
 // Balls as the device has them (balls/mod.rs): group 1; and how they are lit.
 #import light
 
-struct Ball {
-    x: f32,
-    y: f32,
-    z: f32,
-    // Below 0 where there is none.
-    radius: f32,
-    value: f32,
-}
-
-struct Style {
-    // The numbers of the first and last colour; part of light that the coat mirrors; least radius, pixels.
-    low: f32,
-    high: f32,
-    gloss: f32,
-    least: f32,
-}
-
-@group(1) @binding(0) var<uniform> style: Style;
+@group(1) @binding(0) var<uniform> style: BallLook;
 @group(1) @binding(1) var colours: texture_2d<f32>;
-@group(1) @binding(2) var<storage, read> balls: array<Ball>;
+@group(1) @binding(2) var<storage, read> balls: array<DrawnBall>;
 
 struct Hit {
     place: vec3f,
@@ -84,11 +67,6 @@ fn hit(sight: Ray, ball: vec4f) -> Hit {
     let inside = max(ball.w * ball.w - dot(aside, aside), 0.0);
     let normal = (aside - sqrt(inside) * sight.direction) / ball.w;
     return Hit(ball.xyz + ball.w * normal, normal);
-}
-
-struct Drawn {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
 }
 
 fn shaded(found: Hit, colour: vec3f, sight: Ray, pixel: vec2f) -> Drawn {

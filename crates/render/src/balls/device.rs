@@ -1,8 +1,9 @@
 //! Balls of particles that lie on the device.
 
-use super::{BallPainter, BallStyle, Balls, Instance};
+use super::{BallPainter, BallStyle, Balls};
+use crate::shared::{Bound, DrawnBall};
 use crate::{RenderError, Stage};
-use corpuscle_gpu::{DEVICE_PARTICLES, DeviceParticles, Gpu, Kernel, Pass, THREADS, Task, storage, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, Kernel, THREADS, storage, submit, uniform};
 use glam::DVec3;
 
 /// What balls of particles on the device show.
@@ -25,21 +26,48 @@ pub enum ValueOfDevice {
     Temperature,
 }
 
-/// `Settings` of balls_device.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Settings {
-    shift: [f32; 3],
-    raise: f32,
-    unit: f32,
-    radius: f32,
-    value: u32,
-    room: u32,
+corpuscle_gpu::declare! {
+    include [Bound]
+    constants {
+        /// Threads of a group.
+        const GROUP: u32 = THREADS;
+        /// The number that shows is the depth of water.
+        const DEPTH: u32 = 0;
+        /// It is the temperature of air.
+        const TEMPERATURE: u32 = 1;
+    }
+    structs {
+        /// How balls are made.
+        struct Settings {
+            /// From the origin of the particles to the middle of the stage, m, heights raised.
+            shift: [f32; 3],
+            /// How many times higher than they are heights are drawn.
+            raise: f32,
+            /// Length of a stage unit, m.
+            unit: f32,
+            /// Radius over the distance of particles.
+            radius: f32,
+            /// The number that shows: [`DEPTH`] or [`TEMPERATURE`].
+            value: u32,
+            /// Particles that there is room for.
+            room: u32,
+        }
+    }
+
+    /// What makes balls of particles works on.
+    pub(super) buffers Memory {
+        /// How they are made.
+        uniform settings: Settings,
+        /// The particles.
+        storage particles: DeviceParticles,
+        /// The balls.
+        storage balls: [DrawnBall],
+    }
 }
 
 /// What makes balls of particles on the device.
-fn maker(gpu: &Gpu) -> Kernel {
-    Kernel::new(gpu, "balls_device", include_str!("balls_device.wgsl"), &[DEVICE_PARTICLES])
+fn maker(gpu: &Gpu) -> Kernel<Memory> {
+    Kernel::new(gpu, "balls_device", include_str!("balls_device.wgsl"), &[])
 }
 
 impl BallPainter {
@@ -62,30 +90,36 @@ impl BallPainter {
             raise: raise as f32,
             unit: stage.unit() as f32,
             radius: radius as f32,
-            value: u32::from(value == ValueOfDevice::Temperature),
+            value: match value {
+                ValueOfDevice::Depth => DEPTH,
+                ValueOfDevice::Temperature => TEMPERATURE,
+            },
             room: particles.room as u32,
         };
-        let settings = uniform(gpu, "balls of the device", &settings);
-        let balls = storage::<Instance>(gpu, "balls of the device", particles.room)?;
-        let buffers = [&settings, &particles.buffer, &balls].map(wgpu::Buffer::as_entire_binding);
-        make(gpu, &self.maker.get_or_init(|| maker(gpu)).on(gpu, &buffers), particles.room);
-        Ok(self.balls_in(gpu, style, [(&balls, particles.room as u32)]))
+        let memory = Memory {
+            settings: uniform(gpu, "balls of the device", &settings),
+            particles: particles.buffer.clone(),
+            balls: storage::<DrawnBall>(gpu, "balls of the device", particles.room)?,
+        };
+        let task = self.maker.get_or_init(|| maker(gpu)).on(gpu, &memory);
+        submit(gpu, "balls", None, |pass| task.run(pass, (particles.room as u32).div_ceil(THREADS)));
+        Ok(self.balls_in(gpu, style, [(&memory.balls, particles.room as u32)]))
     }
-}
-
-fn make(gpu: &Gpu, task: &Task, room: usize) {
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("balls") });
-    let mut pass = Pass::begin(&mut encoder, None);
-    task.run(&mut pass, (room as u32).div_ceil(THREADS));
-    drop(pass);
-    gpu.queue.submit([encoder.finish()]);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Camera, ColourTable, Drawable, Light, Renderer, Shading, Target};
-    use corpuscle_gpu::{DeviceParticle, require_gpu};
+    use corpuscle_gpu::{Buffers, DeviceParticle, check_layouts, check_shader, require_gpu};
+
+    #[test]
+    fn the_shader_is_valid_and_within_the_floor() {
+        let text = include_str!("balls_device.wgsl");
+        let (text, _) = Memory::declaration().complete("balls_device", text, &[]).unwrap();
+        check_shader(&text).unwrap();
+        check_layouts(&Memory::declaration()).unwrap();
+    }
 
     #[test]
     fn balls_of_the_device_are_those_of_the_host() {

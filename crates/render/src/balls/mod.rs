@@ -5,6 +5,7 @@ mod seen;
 
 use crate::buffer::{storage, uniform};
 use crate::pipeline::Recipe;
+use crate::shared::{BallLook, DrawnBall};
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, Kernel, wgpu};
 pub use device::{BallsOfDevice, ValueOfDevice};
@@ -17,16 +18,6 @@ const CORNERS: u32 = 3;
 const MOST: usize = 6 << 20;
 /// From so many on, one before the other, they are shaded only where they are seen.
 const MANY: u32 = 20_000;
-
-/// A ball as the device has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Instance {
-    /// Place and radius, in stage coordinates; where that is below 0 there is no ball.
-    ball: [f32; 4],
-    /// The number that its colour shows.
-    value: f32,
-}
 
 /// How much work balls may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -70,7 +61,7 @@ pub struct BallPainter {
     cast: wgpu::RenderPipeline,
     seen: Arc<SeenPainter>,
     /// What makes balls of particles on the device, once somebody has some.
-    maker: OnceLock<Kernel>,
+    maker: OnceLock<Kernel<device::Memory>>,
 }
 
 /// Balls of one style, on the device.
@@ -121,11 +112,11 @@ impl BallPainter {
     ) -> Balls {
         let instance = |(place, radius, value): ([f64; 3], f64, f64)| {
             let [x, y, z] = stage.place(place).into();
-            Instance { ball: [x, y, z, stage.length(radius)], value: value as f32 }
+            DrawnBall { x, y, z, radius: stage.length(radius), value: value as f32 }
         };
-        let drawn = |instance: &Instance| instance.ball.iter().all(|number| number.is_finite());
-        let all: Vec<Instance> = balls.into_iter().map(instance).filter(drawn).collect();
-        let part = |part: &[Instance]| (storage(gpu, "balls", part), part.len() as u32);
+        let drawn = |ball: &DrawnBall| [ball.x, ball.y, ball.z, ball.radius].iter().all(|number| number.is_finite());
+        let all: Vec<DrawnBall> = balls.into_iter().map(instance).filter(drawn).collect();
+        let part = |part: &[DrawnBall]| (storage(gpu, "balls", part), part.len() as u32);
         let parts: Vec<_> = all.chunks(MOST).map(part).collect();
         self.balls_in(gpu, style, parts.iter().map(|(buffer, count)| (buffer, *count)))
     }
@@ -137,8 +128,9 @@ impl BallPainter {
         style: &BallStyle,
         parts: impl IntoIterator<Item = (&'a wgpu::Buffer, u32)>,
     ) -> Balls {
-        let numbers = [style.colours.low, style.colours.high, style.gloss, style.least_radius];
-        let settings = uniform(gpu, "balls", &numbers);
+        let ColourTable { low, high, .. } = style.colours;
+        let look = BallLook { low, high, gloss: style.gloss, least: style.least_radius };
+        let settings = uniform(gpu, "balls", &look);
         let colours = style.colours.upload(gpu);
         let part = |(buffer, count): (&wgpu::Buffer, u32)| {
             let resources = [

@@ -1,42 +1,21 @@
 // Drops as the device has them (caps/mod.rs). Group 1.
 #import view
 
-struct Cap {
-    // Middle of the covered disc, and its radius.
-    place: vec3f,
-    radius: f32,
-    // The way out of the surface, and the cap's height.
-    out: vec3f,
-    height: f32,
-    // Its neighbours: where their numbers begin, and how many.
-    first: u32,
-    count: u32,
-    unused: vec2u,
-}
-
-struct CapSettings {
-    // How far drops reach for each other.
-    neck: f32,
-    // Drops of smaller radius are fog, samples.
-    finest: f32,
-    unused: vec2f,
-}
-
-@group(1) @binding(0) var<storage, read> caps: array<Cap>;
+@group(1) @binding(0) var<storage, read> caps: array<DrawnCap>;
 @group(1) @binding(1) var<storage, read> neighbours: array<u32>;
-@group(1) @binding(2) var<uniform> settings: CapSettings;
+@group(1) @binding(2) var<uniform> settings: CapLook;
 
 // Radius of the sphere from those of the disc and the cap's height.
-fn sphere_radius(cap: Cap) -> f32 {
+fn sphere_radius(cap: DrawnCap) -> f32 {
     return (cap.radius * cap.radius + cap.height * cap.height) / (2.0 * cap.height);
 }
 
-fn sphere_centre(cap: Cap) -> vec3f {
+fn sphere_centre(cap: DrawnCap) -> vec3f {
     return cap.place + (cap.height - sphere_radius(cap)) * cap.out;
 }
 
 // True for drops too small to be seen one by one.
-fn is_fine(cap: Cap) -> bool {
+fn is_fine(cap: DrawnCap) -> bool {
     return cap.radius < settings.finest * pixel_at(cap.place);
 }
 

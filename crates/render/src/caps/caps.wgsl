@@ -29,12 +29,12 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u3
 
 // Distance from the joint surface of a cap and its neighbours, and its slope: spheres joined by the logarithm of the sum of
 // exponentials, which does not depend on their order (Quilez, "Smooth minimum", 2013).
-fn from_drops(cap: Cap, place: vec3f) -> vec4f {
+fn from_drops(cap: DrawnCap, place: vec3f) -> vec4f {
     let own = place - sphere_centre(cap);
     let own_distance = length(own) - sphere_radius(cap);
     var sum = 1.0;
     var slope = normalize(own);
-    for (var at = cap.first; at < cap.first + cap.count; at++) {
+    for (var at = cap.neighbours.x; at < cap.neighbours.x + cap.neighbours.y; at++) {
         let other = caps[neighbours[at]];
         let offset = place - sphere_centre(other);
         let distance = length(offset) - sphere_radius(other);
@@ -46,7 +46,7 @@ fn from_drops(cap: Cap, place: vec3f) -> vec4f {
 }
 
 // Where the line of sight comes into reach of a cap's sphere, and where it goes out; out before in where it misses.
-fn reach_of(cap: Cap, sight: Ray) -> vec2f {
+fn reach_of(cap: DrawnCap, sight: Ray) -> vec2f {
     let from_centre = sight.origin - sphere_centre(cap);
     let along = dot(from_centre, sight.direction);
     let aside = from_centre - along * sight.direction;
@@ -58,17 +58,12 @@ fn reach_of(cap: Cap, sight: Ray) -> vec2f {
     return vec2f(-along - sqrt(inside), -along + sqrt(inside));
 }
 
-struct Drawn {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
 @fragment
 fn fragment(corner: Corner) -> Drawn {
     let cap = caps[corner.number];
     let sight = ray_through(corner.place);
     var reach = reach_of(cap, sight);
-    for (var at = cap.first; at < cap.first + cap.count; at++) {
+    for (var at = cap.neighbours.x; at < cap.neighbours.x + cap.neighbours.y; at++) {
         let other = reach_of(caps[neighbours[at]], sight);
         reach = vec2f(min(reach.x, other.x), max(reach.y, other.y));
     }
@@ -90,7 +85,7 @@ fn fragment(corner: Corner) -> Drawn {
 }
 
 // Light from a place on a drop.
-fn water(cap: Cap, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
+fn water(cap: DrawnCap, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
     // A drop is a lens: what is near behind it is seen smaller, and the room upside down.
     let bent = refract(direction, normal, 1.0 / 1.33) - direction;
     let clip = view.clip_from_world * vec4f(place + bent * max(6.0 * cap.radius, 0.02), 1.0);

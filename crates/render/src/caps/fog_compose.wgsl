@@ -6,7 +6,6 @@
 @group(1) @binding(2) var behind_sampler: sampler;
 
 const TAPS: i32 = 32;
-const GOLDEN_ANGLE: f32 = 2.39996323;
 // Radius of the blur behind dense fog, part of the picture's height, and the part of light that comes back from it.
 const BLUR: f32 = 0.03;
 const WHITE: f32 = 0.42;

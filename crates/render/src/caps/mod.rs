@@ -5,6 +5,7 @@ mod neighbours;
 
 use crate::buffer::{UNIFORM, storage, uniform};
 use crate::pipeline::Recipe;
+use crate::shared::{CapLook, DrawnCap};
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
 use corpuscle_gpu::{Gpu, wgpu};
@@ -29,17 +30,6 @@ pub struct Cap {
     pub normal: [f64; 3],
     /// Height above the surface, m.
     pub height: f64,
-}
-
-/// A cap as the device has it, in stage coordinates.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Instance {
-    disc: [f32; 4],
-    cap: [f32; 4],
-    /// Where its neighbours' numbers begin, and how many there are.
-    neighbours: [u32; 2],
-    unused: [u32; 2],
 }
 
 /// Draws drops; holds what all of them share.
@@ -83,24 +73,26 @@ impl CapPainter {
 
     /// Drops; those without height are left out.
     pub fn caps(&self, gpu: &Gpu, stage: &Stage, caps: impl IntoIterator<Item = Cap>) -> Caps {
-        let instance = |cap: Cap| {
-            let ([x, y, z], normal) = (<[f32; 3]>::from(stage.place(cap.position)), cap.normal.map(|part| part as f32));
-            let height = stage.length(cap.height);
-            let disc = [x, y, z, stage.length(cap.radius)];
-            Instance { disc, cap: [normal[0], normal[1], normal[2], height], neighbours: [0; 2], unused: [0; 2] }
+        let drawn = |cap: Cap| DrawnCap {
+            place: stage.place(cap.position).into(),
+            radius: stage.length(cap.radius),
+            out: cap.normal.map(|part| part as f32),
+            height: stage.length(cap.height),
+            ..DrawnCap::default()
         };
-        let drawn = |instance: &Instance| {
-            instance.disc.iter().chain(&instance.cap).all(|number| number.is_finite()) && instance.cap[3] > 0.0
+        let is_finite = |cap: &DrawnCap| {
+            let DrawnCap { place, radius, out, height, .. } = cap;
+            place.iter().chain(out).chain([radius, height]).all(|number| number.is_finite()) && *height > 0.0
         };
-        let mut all: Vec<Instance> = caps.into_iter().map(instance).filter(drawn).collect();
-        let neck = NECK * all.iter().map(|cap| cap.disc[3]).sum::<f32>() / all.len().max(1) as f32;
-        let discs: Vec<_> = all.iter().map(|cap| (Vec3::from_slice(&cap.disc), cap.disc[3])).collect();
+        let mut all: Vec<DrawnCap> = caps.into_iter().map(drawn).filter(is_finite).collect();
+        let neck = NECK * all.iter().map(|cap| cap.radius).sum::<f32>() / all.len().max(1) as f32;
+        let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.place), cap.radius)).collect();
         let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
         all.iter_mut().zip(spans).for_each(|(cap, span)| cap.neighbours = span);
         let buffers = [
             storage(gpu, "caps", &all),
             storage(gpu, "caps' neighbours", &list),
-            uniform(gpu, "caps", &[neck.max(1e-9), FINEST, 0.0, 0.0]),
+            uniform(gpu, "caps", &CapLook { neck: neck.max(1e-9), finest: FINEST, ..CapLook::default() }),
         ];
         let entries: Vec<_> = (0..)
             .zip(&buffers)

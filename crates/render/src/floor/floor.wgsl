@@ -1,23 +1,12 @@
 // A floor that cannot be told from the backdrop but by the shadows on it.
 #import light
 
-struct Floor {
-    // Height in stage coordinates; how dark the darkest shadow is.
-    height: f32,
-    darkness: f32,
-}
-
 @group(1) @binding(0) var<uniform> plane: Floor;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let corner = vec2f(f32(index & 1u), f32(index >> 1u));
     return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
-
-struct Drawn {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
 }
 
 @fragment

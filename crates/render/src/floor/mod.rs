@@ -1,8 +1,8 @@
 //! A floor that only its shadows show.
 
-use crate::buffer::{UNIFORM, filled};
+use crate::buffer::{UNIFORM, uniform};
 use crate::pipeline::Recipe;
-use crate::{Camera, Drawable, Renderer, Stage, shaders, standing};
+use crate::{Camera, Drawable, Renderer, Stage, shaders, shared, standing};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// Part of the light that the darkest shadow takes.
@@ -39,9 +39,7 @@ impl Floor {
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        let bytes = [0.0, DARKNESS, 0.0, 0.0].map(f32::to_le_bytes);
-        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-        let place = filled(gpu, "floor", bytes.as_flattened(), usage);
+        let place = uniform(gpu, "floor", &shared::Floor { darkness: DARKNESS, ..shared::Floor::default() });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("floor"),
             layout: &layout,

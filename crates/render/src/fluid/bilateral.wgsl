@@ -2,7 +2,7 @@
 // van der Laan, Green and Sainz 2009 and the flood paper of 2021, which repeats it).
 #import smoothing
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn along(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     if any(pixel >= vec2i(textureDimensions(distances))) {

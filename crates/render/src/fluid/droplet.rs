@@ -2,6 +2,7 @@
 
 use crate::Stage;
 use crate::buffer::{filled, storage};
+use crate::shared::{DrawnDroplet, SPLAT_COUNT, SPLAT_GROUP};
 use corpuscle_gpu::{Gpu, wgpu};
 use glam::{DVec2, DVec3};
 
@@ -41,28 +42,19 @@ impl Droplet {
     }
 
     /// As the device has it; none where a number is not finite.
-    pub(super) fn instance(&self, stage: &Stage) -> Option<Instance> {
+    pub(super) fn drawn(&self, stage: &Stage) -> Option<DrawnDroplet> {
         // Poly6 in the plane is 4 / (pi h^2) in its middle (Mueller, Charypar and Gross 2003).
         let depth = 4.0 * self.volume / (std::f64::consts::PI * self.reach * self.reach);
-        let [x, y, z] = stage.place(self.place).into();
-        let normal = DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3();
-        let instance = Instance {
-            place: [x, y, z, stage.length(self.radius)],
-            normal: [normal.x, normal.y, normal.z, self.flatness as f32],
+        let drawn = DrawnDroplet {
+            place: stage.place(self.place).into(),
+            radius: stage.length(self.radius),
+            normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
+            flatness: self.flatness as f32,
             matter: [depth as f32, self.foam as f32, stage.length(self.reach), (self.id % 4096) as f32],
         };
-        let all = [instance.place, instance.normal, instance.matter];
-        all.as_flattened().iter().all(|number| number.is_finite()).then_some(instance)
+        let all: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&drawn));
+        all.iter().all(|number| number.is_finite()).then_some(drawn)
     }
-}
-
-/// A particle as the device has it, in stage coordinates but for the depth, m: `Droplet` of droplet.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct Instance {
-    pub place: [f32; 4],
-    pub normal: [f32; 4],
-    pub matter: [f32; 4],
 }
 
 /// Particles on the device that are drawn in one go.
@@ -75,14 +67,12 @@ pub(super) enum Batch {
     Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64, splats: u64 },
 }
 
-/// Threads in a group of those that splat particles: `GROUP` of splat.wgsl.
-const SPLAT_THREADS: u32 = 128;
-/// Which of the numbers that splats are told is that of particles: `COUNT` of splat.wgsl.
-const COUNT: usize = 25;
+/// See [`SPLAT_COUNT`].
+const COUNT: usize = SPLAT_COUNT as usize;
 
 impl Batch {
     /// These.
-    pub fn counted(gpu: &Gpu, all: &[Instance]) -> Self {
+    pub fn counted(gpu: &Gpu, all: &[DrawnDroplet]) -> Self {
         let count = all.len() as u32;
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
         let instances = filled(gpu, "droplets", bytemuck::cast_slice(all), usage);
@@ -101,7 +91,7 @@ impl Batch {
     /// Runs a kernel with a thread for each.
     pub fn splat(&self, pass: &mut wgpu::ComputePass<'_>) {
         match self {
-            Self::Counted { count, .. } => pass.dispatch_workgroups(count.div_ceil(SPLAT_THREADS), 1, 1),
+            Self::Counted { count, .. } => pass.dispatch_workgroups(count.div_ceil(SPLAT_GROUP), 1, 1),
             Self::Told { told, splats, .. } => pass.dispatch_workgroups_indirect(told, *splats),
         }
     }

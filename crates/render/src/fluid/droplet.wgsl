@@ -1,16 +1,6 @@
 // A particle as a quad that just covers it. Particles are balls, or flattened along a direction.
 #import view
 
-struct Droplet {
-    @location(0) place: vec3f,
-    @location(1) radius: f32,
-    @location(2) normal: vec3f,
-    // Thickness over width: 1 for a ball.
-    @location(3) flatness: f32,
-    // What pass thickness adds up: depth in the middle (0: a ball, whose chord counts), foam, radius of the footprint, seed.
-    @location(4) matter: vec4f,
-}
-
 struct Sprite {
     @builtin(position) clip: vec4f,
     // A place on the quad, from the particle's middle.
@@ -34,7 +24,7 @@ struct Quad {
 }
 
 // The quad round a particle of this radius.
-fn quad_round(droplet: Droplet, radius: f32, flatness: f32) -> Quad {
+fn quad_round(droplet: DrawnDroplet, radius: f32, flatness: f32) -> Quad {
     // No smaller than a pixel, or it would fall between them.
     let least = 0.75 * pixel_at(droplet.place);
     let wide = max(radius, least);
@@ -59,7 +49,7 @@ fn quad_round(droplet: Droplet, radius: f32, flatness: f32) -> Quad {
 }
 
 // A place on the quad, `offset` from its middle.
-fn sprite_at(droplet: Droplet, quad: Quad, offset: vec3f) -> Sprite {
+fn sprite_at(droplet: DrawnDroplet, quad: Quad, offset: vec3f) -> Sprite {
     var out: Sprite;
     out.clip = view.clip_from_world * vec4f(quad.middle + offset, 1.0);
     out.offset = offset;

@@ -1,20 +1,7 @@
 // What the passes over pixels know of the fluid (settings.rs).
 #import view
 
-struct Fluid {
-    // Part of light that is lost in a metre of water (1/m); density of foam that hides what is below.
-    absorption: vec4f,
-    // Light that deep water gives back in full light; strength of the sun's highlight.
-    colour: vec4f,
-    // Half the width of the smoothing, how far depths may part, what is farther is taken for (stage units); most pixels.
-    smoothing: vec4f,
-    // Exponent of the highlight; depth over which a film begins to be seen, m.
-    surface: vec4f,
-    // West, south, east and north end of what is drawn.
-    within: vec4f,
-}
-
-@group(1) @binding(0) var<uniform> fluid: Fluid;
+@group(1) @binding(0) var<uniform> fluid: FluidLook;
 
 // Height of a pixel at a distance.
 fn pixel_size(distance: f32) -> f32 {

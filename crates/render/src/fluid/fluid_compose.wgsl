@@ -4,11 +4,6 @@
 @group(1) @binding(1) var distances: texture_2d<f32>;
 @group(1) @binding(2) var shaded: texture_2d<f32>;
 
-struct Composed {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
-}
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     // One triangle that covers the target.
@@ -17,11 +12,11 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 }
 
 @fragment
-fn fragment(@builtin(position) at: vec4f) -> Composed {
+fn fragment(@builtin(position) at: vec4f) -> Drawn {
     let pixel = vec2i(at.xy);
     let colour = textureLoad(shaded, pixel, 0);
     if colour.a == 0.0 {
         discard;
     }
-    return Composed(vec4f(colour.rgb, 1.0), depth_at(place_at(pixel, textureLoad(distances, pixel, 0).r)));
+    return Drawn(vec4f(colour.rgb, 1.0), depth_at(place_at(pixel, textureLoad(distances, pixel, 0).r)));
 }

@@ -36,7 +36,7 @@ fn fold(normal: vec3f) -> u32 {
     return pack2x16snorm(select((1.0 - abs(flat.yx)) * signs, flat.xy, flat.z >= 0.0));
 }
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     if any(pixel >= vec2i(textureDimensions(distances))) {

@@ -56,7 +56,7 @@ fn whole_thickness(matter: vec4f, place: vec3f) -> f32 {
     return matter.r * mix(1.0, clamp(CLOSED / max(matter.a, 0.1), 1.0, 4.0), beside);
 }
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     if any(pixel >= vec2i(textureDimensions(distances))) {

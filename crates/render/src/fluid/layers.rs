@@ -1,5 +1,6 @@
 //! The pictures between the passes.
 
+use crate::shared::SUMS;
 use crate::{DEPTH_FORMAT, RenderError};
 use corpuscle_gpu::{Gpu, GpuError, storage, texture_2d, wgpu};
 use wgpu::{TextureFormat, TextureUsages as Usage};
@@ -36,15 +37,12 @@ pub(super) struct Splats {
     pub sums: wgpu::Buffer,
 }
 
-/// `SUMS` of splat_sums.wgsl.
-const SUMS: usize = 5;
-
 impl Splats {
     pub(super) fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
         let pixels = |[width, height]: [u32; 2]| width as usize * height as usize;
         Ok(Self {
             nearest: storage::<u32>(gpu, "splats", pixels(size))?,
-            sums: storage::<[u32; SUMS]>(gpu, "sums of splats", pixels(half(size)))?,
+            sums: storage::<[u32; SUMS as usize]>(gpu, "sums of splats", pixels(half(size)))?,
         })
     }
 }

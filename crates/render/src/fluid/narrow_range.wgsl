@@ -41,7 +41,7 @@ fn taken(one: Side, other: Side, here: f32) -> f32 {
     return max(here + fluid.smoothing.z, select(2.0 * here - other.there, here, other.beyond));
 }
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn along(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     if any(pixel >= vec2i(textureDimensions(distances))) {
@@ -73,7 +73,7 @@ fn along(@builtin(global_invocation_id) id: vec3u) {
     textureStore(smoothed, pixel, vec4f(sum / weights));
 }
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn square(@builtin(global_invocation_id) id: vec3u) {
     let pixel = vec2i(id.xy);
     if any(pixel >= vec2i(textureDimensions(distances))) {

@@ -1,12 +1,12 @@
 //! What all fluids share: pipelines, layouts.
 
 use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOLE, layout, written};
-use super::droplet::Instance;
 use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
 use super::{Fluid, FluidStyle};
 use crate::pipeline::Recipe;
+use crate::shared::{DrawnDroplet, buffer_layout};
 use crate::{Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use wgpu::ShaderStages;
 
 /// Draws fluids; holds what all of them share.
@@ -120,13 +120,9 @@ impl Filter {
 
 /// The pipelines that draw particles: nearest depth, and thickness.
 fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
-    let attributes =
-        wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Float32x3, 3 => Float32, 4 => Float32x4];
-    let buffers = [wgpu::VertexBufferLayout {
-        array_stride: size_of::<Instance>() as u64,
-        step_mode: wgpu::VertexStepMode::Instance,
-        attributes: &attributes,
-    }];
+    let layout = DrawnDroplet::layout();
+    let attributes = layout.vertex_attributes();
+    let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
     let groups = [view, settings];
     let recipe = |label, module| Recipe {
         label,

@@ -5,11 +5,9 @@ use super::layers::{Layers, whole};
 use super::painter::Filter;
 use super::{Fluid, Smoothing};
 use crate::Through;
+use crate::shared::{PIXELS_ACROSS, PIXELS_DOWN};
 use corpuscle_gpu::wgpu;
 use wgpu::BindingResource::{Sampler, TextureView};
-
-/// Pixels of a workgroup of every filter.
-const GROUP: [u32; 2] = [32, 2];
 
 /// A pass of a fluid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -201,5 +199,5 @@ fn run(filter: &Filter, bound: &[wgpu::BindingResource<'_>], size: [u32; 2], fra
     pass.set_pipeline(&filter.pipeline);
     pass.set_bind_group(0, frame.view, &[]);
     pass.set_bind_group(1, &group, &[]);
-    pass.dispatch_workgroups(size[0].div_ceil(GROUP[0]), size[1].div_ceil(GROUP[1]), 1);
+    pass.dispatch_workgroups(size[0].div_ceil(PIXELS_ACROSS), size[1].div_ceil(PIXELS_DOWN), 1);
 }

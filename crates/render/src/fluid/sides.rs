@@ -3,13 +3,14 @@
 use super::{DeviceWater, Droplet};
 use crate::buffer::instances;
 use crate::pipeline::Recipe;
+use crate::shared::{Vertex, buffer_layout};
 use crate::{Drawable, HeightField, Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use glam::{DVec2, DVec3};
 
 /// How well particles must cover a place at the border for water to be there: half of what the middle of a shore has, since beyond
 /// the border there are none.
-const COVERED: f64 = 0.3;
+pub(super) const COVERED: f64 = 0.3;
 
 /// The faces of water at the four borders of the ground, filled in anew for each frame.
 #[derive(Debug)]
@@ -17,14 +18,6 @@ pub struct WaterSides {
     pipeline: wgpu::RenderPipeline,
     stage: Stage,
     buffer: Option<(wgpu::Buffer, u32)>,
-}
-
-/// A corner as the device has it: place, and depth below the surface, all in stage units; the direction outwards.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct Vertex {
-    pub place: [f32; 4],
-    pub outwards: [f32; 4],
 }
 
 /// A border of the ground.
@@ -40,16 +33,13 @@ impl WaterSides {
     /// Faces of a stage, still without water.
     pub fn new(renderer: &Renderer, stage: &Stage) -> Self {
         let gpu = renderer.gpu();
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let layout = Vertex::layout();
+        let attributes = layout.vertex_attributes();
         let recipe = Recipe {
             label: "sides of water",
             module: &shaders::module(gpu, "sides", include_str!("sides.wgsl")),
             groups: &[renderer.view_layout()],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &attributes,
-            }],
+            buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
         Self { pipeline: recipe.opaque(gpu), stage: *stage, buffer: None }
@@ -87,7 +77,7 @@ fn face(stage: &Stage, field: &HeightField, ends: [(usize, f64); 2], [x, y]: [f3
         let ground = f64::from(field.heights[node]).min(level);
         let [px, py, pz] = stage.place([east, north, if is_low { ground } else { level }]).into();
         let deep = if is_low { stage.length(level - ground) } else { 0.0 };
-        Vertex { place: [px, py, pz, deep], outwards: [x, y, 0.0, 0.0] }
+        Vertex { place: [px, py, pz, deep], normal: [x, y, 0.0, 0.0] }
     };
     let [a, b] = ends;
     [(a, false), (b, false), (a, true), (a, true), (b, false), (b, true)].map(|(end, is_low)| vertex(end, is_low))

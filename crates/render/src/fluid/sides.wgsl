@@ -1,18 +1,6 @@
 // Upright faces of water, cut off where the ground is.
 #import light
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
-    @location(1) @interpolate(flat) normal: vec3f,
-    // Depth below the surface, in stage units.
-    @location(2) deep: f32,
-}
-
-@vertex
-fn vertex(@location(0) place: vec4f, @location(1) outwards: vec4f) -> Corner {
-    return Corner(view.clip_from_world * vec4f(place.xyz, 1.0), place.xyz, outwards.xyz, place.w);
-}
+#import cut
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {

@@ -3,11 +3,6 @@
 
 @group(1) @binding(1) var distances: texture_2d<f32>;
 @group(1) @binding(2) var smoothed: texture_storage_2d<r32float, write>;
-struct Direction {
-    // The way a pass goes: (1, 0) or (0, 1).
-    step: vec2i,
-    unused: vec2i,
-}
 @group(1) @binding(3) var<uniform> direction: Direction;
 
 fn distance_at(pixel: vec2i) -> f32 {

@@ -3,9 +3,6 @@
 
 // A quad of more pixels is drawn by all threads of a group.
 const MOST_ALONE = 1024;
-const GROUP = 128u;
-// Where the number of particles is told: see water_told.wgsl.
-const COUNT = 25u;
 
 // Pixels from `low` on, before `high`.
 struct Box {

@@ -5,7 +5,7 @@
 @group(1) @binding(0) var<storage, read> sums: array<u32>;
 @group(1) @binding(1) var thickness: texture_storage_2d<rgba16float, write>;
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let size = textureDimensions(thickness);
     if any(id.xy >= size) {

@@ -2,18 +2,18 @@
 #import droplet_depth
 #import splat
 
-@group(1) @binding(1) var<storage, read> droplets: array<Droplet>;
-// How many there are, at COUNT.
+@group(1) @binding(1) var<storage, read> droplets: array<DrawnDroplet>;
+// How many there are, at SPLAT_COUNT.
 @group(1) @binding(2) var<storage, read> told: array<u32>;
 // The bits of the distance at each pixel, the other way round, so that the nearest is the greatest and 0 is nothing: positive numbers
 // are in the order of their bits.
 @group(1) @binding(3) var<storage, read_write> nearest: array<atomic<u32>>;
 
 // Particles of the group that all of its threads draw together.
-var<workgroup> large: array<u32, GROUP>;
+var<workgroup> large: array<u32, SPLAT_GROUP>;
 var<workgroup> larges: atomic<u32>;
 
-fn splat(droplet: Droplet, quad: Quad, pixel: vec2i, size: vec2f) {
+fn splat(droplet: DrawnDroplet, quad: Quad, pixel: vec2i, size: vec2f) {
     let at = meeting(quad, pixel, size);
     if !at.met {
         return;
@@ -25,10 +25,10 @@ fn splat(droplet: Droplet, quad: Quad, pixel: vec2i, size: vec2f) {
     }
 }
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(SPLAT_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) thread: u32) {
     let size = view.frame.xy;
-    if id.x < told[COUNT] {
+    if id.x < told[SPLAT_COUNT] {
         let droplet = droplets[id.x];
         let quad = surface_quad(droplet);
         let box = box_of(quad, size);
@@ -48,7 +48,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         let quad = surface_quad(droplet);
         let box = box_of(quad, size);
         let pixels = pixels_in(box);
-        for (var index = i32(thread); index < pixels; index += i32(GROUP)) {
+        for (var index = i32(thread); index < pixels; index += i32(SPLAT_GROUP)) {
             splat(droplet, quad, pixel_in(box, index), size);
         }
     }

@@ -4,7 +4,7 @@
 @group(1) @binding(0) var<storage, read> nearest: array<u32>;
 @group(1) @binding(1) var distances: texture_storage_2d<r32float, write>;
 
-@compute @workgroup_size(32, 2)
+@compute @workgroup_size(PIXELS_ACROSS, PIXELS_DOWN)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let size = textureDimensions(distances);
     if any(id.xy >= size) {

@@ -2,5 +2,3 @@
 const PER_UNIT = 1048576.0;
 // The greatest number below 2^32 in single precision.
 const MOST_ADDED = 4294967040.0;
-// Numbers a pixel.
-const SUMS = 5u;

@@ -5,17 +5,17 @@
 #import splat
 #import splat_sums
 
-@group(1) @binding(1) var<storage, read> droplets: array<Droplet>;
-// How many there are, at COUNT.
+@group(1) @binding(1) var<storage, read> droplets: array<DrawnDroplet>;
+// How many there are, at SPLAT_COUNT.
 @group(1) @binding(2) var<storage, read> told: array<u32>;
 // Four sums a pixel, and which of them are beyond what they hold.
 @group(1) @binding(3) var<storage, read_write> sums: array<atomic<u32>>;
 
 // Particles of the group that all of its threads draw together.
-var<workgroup> large: array<u32, GROUP>;
+var<workgroup> large: array<u32, SPLAT_GROUP>;
 var<workgroup> larges: atomic<u32>;
 
-fn splat(droplet: Droplet, quad: Quad, pixel: vec2i, size: vec2f) {
+fn splat(droplet: DrawnDroplet, quad: Quad, pixel: vec2i, size: vec2f) {
     let at = meeting(quad, pixel, size);
     if !at.met {
         return;
@@ -34,10 +34,10 @@ fn splat(droplet: Droplet, quad: Quad, pixel: vec2i, size: vec2f) {
     }
 }
 
-@compute @workgroup_size(GROUP)
+@compute @workgroup_size(SPLAT_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) thread: u32) {
     let size = ceil(0.5 * view.frame.xy);
-    if id.x < told[COUNT] {
+    if id.x < told[SPLAT_COUNT] {
         let droplet = droplets[id.x];
         let quad = matter_quad(droplet);
         let box = box_of(quad, size);
@@ -57,7 +57,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
         let quad = matter_quad(droplet);
         let box = box_of(quad, size);
         let pixels = pixels_in(box);
-        for (var index = i32(thread); index < pixels; index += i32(GROUP)) {
+        for (var index = i32(thread); index < pixels; index += i32(SPLAT_GROUP)) {
             splat(droplet, quad, pixel_in(box, index), size);
         }
     }

@@ -1,6 +1,7 @@
 //! How a fluid looks.
 
 use crate::Stage;
+use crate::shared::FluidLook;
 
 /// How the nearest surface of the particles is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -67,8 +68,8 @@ impl FluidStyle {
         Self { absorption: self.absorption.map(|part| part * times as f32), film: self.film / times, ..self }
     }
 
-    /// `Fluid` of fluid.wgsl.
-    pub(super) fn uniform(&self, stage: &Stage) -> [[f32; 4]; 5] {
+    /// The same as shaders have it.
+    pub(super) fn look(&self, stage: &Stage) -> FluidLook {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
@@ -76,12 +77,12 @@ impl FluidStyle {
             Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
             None => [[f32::MIN; 2], [f32::MAX; 2]],
         };
-        [
-            [red, green, blue, self.foam],
-            [own_red, own_green, own_blue, self.highlight],
-            [width, range, rounding, self.most_pixels as f32],
-            [self.exponent, self.film as f32, 0.0, 0.0],
-            [west, south, east, north],
-        ]
+        FluidLook {
+            absorption: [red, green, blue, self.foam],
+            colour: [own_red, own_green, own_blue, self.highlight],
+            smoothing: [width, range, rounding, self.most_pixels as f32],
+            surface: [self.exponent, self.film as f32, 0.0, 0.0],
+            within: [west, south, east, north],
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! A fluid in a picture.
 
-use super::droplet::{Batch, Instance};
+use super::droplet::Batch;
 use super::layers::{Layers, Splats};
 use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::buffer::uniform;
+use crate::shared::{Direction, DrawnDroplet};
 use crate::{Drawable, RenderError, Stage, Through};
 use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
 use std::time::{Duration, Instant};
@@ -38,9 +39,9 @@ impl Fluid {
             painter,
             stage,
             style,
-            settings: uniform(gpu, "fluid", &style.uniform(&stage)),
-            along_rows: uniform(gpu, "along rows", &[1, 0, 0, 0]),
-            along_columns: uniform(gpu, "along columns", &[0, 1, 0, 0]),
+            settings: uniform(gpu, "fluid", &style.look(&stage)),
+            along_rows: uniform(gpu, "along rows", &Direction { step: [1, 0], unused: [0; 2] }),
+            along_columns: uniform(gpu, "along columns", &Direction { step: [0, 1], unused: [0; 2] }),
             droplets: Vec::new(),
             layers: None,
             splats: false,
@@ -52,7 +53,7 @@ impl Fluid {
 
     /// Takes these particles instead of those before. What has no finite place is left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
-        let all: Vec<Instance> = droplets.into_iter().filter_map(|droplet| droplet.instance(&self.stage)).collect();
+        let all: Vec<DrawnDroplet> = droplets.into_iter().filter_map(|droplet| droplet.drawn(&self.stage)).collect();
         self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
     }
 

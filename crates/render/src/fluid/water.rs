@@ -8,23 +8,23 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Radius of the discs that the surface is drawn with, in distances between particles: they overlap.
-const DISC: f64 = 1.4;
+pub(super) const DISC: f64 = 1.4;
 /// Their thickness over their width.
-const FLATNESS: f64 = 0.12;
+pub(super) const FLATNESS: f64 = 0.12;
 /// How far a particle looks, and its water is spread, in distances between particles.
 pub(super) const REACH: f64 = 2.0;
 /// Steeper than this no water stands.
-const STEEPEST: f64 = 1.0;
+pub(super) const STEEPEST: f64 = 1.0;
 /// How often it is looked whether some does: each time what is within reach of each particle.
 const SETTLINGS: usize = 12;
 /// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
-const LEVEL: f64 = 0.02;
+pub(super) const LEVEL: f64 = 0.02;
 /// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
-const TRAPPED: [f64; 2] = [1.2, 5.0];
+pub(super) const TRAPPED: [f64; 2] = [1.2, 5.0];
 /// Sum of poly6 weights (3.1 in closed water) from which on there is foam, and from which on all of it: drops that run alone have none.
-const CLOSED: [f64; 2] = [1.6, 2.8];
+pub(super) const CLOSED: [f64; 2] = [1.6, 2.8];
 /// Kinetic energy of a mass of 1 between which the same happens, m2/s2.
-const ENERGY: [f64; 2] = [0.5, 6.0];
+pub(super) const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
 pub(super) const LIFE: f64 = 4.0;
 

@@ -1,26 +1,10 @@
 // Solids of glass: what is behind is seen through them, shifted as by a slab, and what is before is mirrored.
 #import light
+#import surface
 
-struct Style {
-    // What is left of light straight through.
-    colour: vec4f,
-    gloss: vec4f,
-}
-
-@group(1) @binding(0) var<uniform> style: Style;
+@group(1) @binding(0) var<uniform> style: SolidLook;
 @group(2) @binding(0) var behind: texture_2d<f32>;
 @group(2) @binding(1) var behind_sampler: sampler;
-
-struct Corner {
-    @builtin(position) clip: vec4f,
-    @location(0) place: vec3f,
-    @location(1) normal: vec3f,
-}
-
-@vertex
-fn vertex(@location(0) place: vec4f, @location(1) normal: vec4f) -> Corner {
-    return Corner(view.clip_from_world * vec4f(place.xyz, 1.0), place.xyz, normal.xyz);
-}
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {

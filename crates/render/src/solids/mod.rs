@@ -5,17 +5,10 @@ mod mesh;
 use crate::buffer::{UNIFORM, instances, uniform};
 use crate::colour::linear;
 use crate::pipeline::Recipe;
+use crate::shared::{SolidLook, Vertex, buffer_layout};
 use crate::{Drawable, Renderer, Stage, Through, shaders, standing};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use corpuscle_model::SolidShape;
-
-/// A corner as the device has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Vertex {
-    place: [f32; 4],
-    normal: [f32; 4],
-}
 
 /// What a solid looks like.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,18 +106,15 @@ impl Solid {
             SolidStyle::Glass(colour) => (colour, 1.0, true),
         };
         let [r, g, b] = linear(colour);
-        let settings = uniform(gpu, "solid", &[[r, g, b, 1.0], [gloss, 0.0, 0.0, 0.0]]);
+        let settings = uniform(gpu, "solid", &SolidLook { colour: [r, g, b, 1.0], gloss: [gloss, 0.0, 0.0, 0.0] });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("solid"),
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: settings.as_entire_binding() }],
         });
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
-        let buffers = [wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &attributes,
-        }];
+        let of_vertices = Vertex::layout();
+        let attributes = of_vertices.vertex_attributes();
+        let buffers = [buffer_layout(&of_vertices, wgpu::VertexStepMode::Vertex, &attributes)];
         let behind = Behind::new(gpu);
         let (name, text) = match is_glass {
             true => ("glass", include_str!("glass.wgsl")),

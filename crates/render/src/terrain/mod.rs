@@ -7,9 +7,11 @@ mod walls;
 
 pub use field::HeightField;
 pub use natural::natural_colours;
+pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
 use crate::buffer::{TEXTURE, UNIFORM, indices, instances, uniform};
 use crate::pipeline::Recipe;
+use crate::shared::Ground;
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, standing};
 use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
 use half::f16;
@@ -38,15 +40,6 @@ pub struct Terrain {
     /// The tiles of the picture that is drawn now, and how many.
     tiles: Option<(wgpu::Buffer, u32)>,
     walls: Walls,
-}
-
-/// As `terrain.wgsl` has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Ground {
-    origin: [f32; 4],
-    cell: [f32; 4],
-    nodes: [u32; 4],
 }
 
 impl Terrain {

@@ -1,22 +1,11 @@
 // The ground: tiles of a height field, coarser far away, with skirts that hide where two of them meet.
 #import light
 
-struct Ground {
-    // West and south end, height of a stage unit's zero, and the length of a cell east and north, all in stage units.
-    origin: vec4f,
-    cell: vec4f,
-    // Nodes east and north.
-    nodes: vec4u,
-}
-
 @group(1) @binding(0) var<uniform> ground: Ground;
 @group(1) @binding(1) var heights: texture_2d<f32>;
 @group(1) @binding(2) var slopes: texture_2d<f32>;
 @group(1) @binding(3) var colours: texture_2d<f32>;
 @group(1) @binding(4) var smooth_sampler: sampler;
-
-// Quads along a side of a tile.
-const QUADS: u32 = 64u;
 
 struct Corner {
     @builtin(position) clip: vec4f,

@@ -8,7 +8,7 @@ use crate::{Camera, Lens, Stage};
 use glam::DVec3;
 
 /// Quads along a side of a tile; as in `terrain.wgsl`.
-const QUADS: u32 = 64;
+pub(crate) const QUADS: u32 = 64;
 /// Indices of the triangles of a tile with its skirt.
 pub(super) const INDICES: u32 = 6 * QUADS * QUADS + 4 * 6 * QUADS;
 /// A quad may be seen so large, samples; and one of a tile at the border, where the upright sides end at the finest nodes.

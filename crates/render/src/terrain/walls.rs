@@ -4,17 +4,9 @@ use super::HeightField;
 use super::field::Edge;
 use crate::buffer::instances;
 use crate::pipeline::Recipe;
+use crate::shared::{Vertex, buffer_layout};
 use crate::{Renderer, Stage, shaders};
-use corpuscle_gpu::wgpu;
-
-/// A corner as the device has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Vertex {
-    /// Place and depth below the surface, in stage units.
-    place: [f32; 4],
-    normal: [f32; 4],
-}
+use corpuscle_gpu::{SharedStruct, wgpu};
 
 /// The upright sides: at the border, and round what has no heights.
 #[derive(Debug)]
@@ -29,16 +21,13 @@ impl Walls {
     /// Sides of a field down to `base`, m.
     pub(super) fn new(renderer: &Renderer, stage: &Stage, field: &HeightField, base: f64) -> Self {
         let gpu = renderer.gpu();
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4];
+        let layout = Vertex::layout();
+        let attributes = layout.vertex_attributes();
         let recipe = Recipe {
             label: "sides of the ground",
             module: &shaders::module(gpu, "walls", include_str!("walls.wgsl")),
             groups: &[renderer.view_layout()],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: size_of::<Vertex>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &attributes,
-            }],
+            buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
         let all = vertices(stage, field, base);

@@ -1,6 +1,8 @@
 //! From linear light to the bytes of a picture.
 
+use crate::buffer::uniform;
 use crate::pipeline::Recipe;
+use crate::shared::Tone as Settings;
 use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
 use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
@@ -69,14 +71,13 @@ impl Tone {
     }
 
     fn group(&self, gpu: &Gpu, target: &Target, pressed: bool, overlay: Option<&Image>) -> wgpu::BindGroup {
-        let settings = [target.samples, u32::from(pressed), u32::from(overlay.is_some()), 0];
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("tone"),
-            size: size_of_val(&settings) as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&settings));
+        let settings = Settings {
+            samples: target.samples,
+            pressed: u32::from(pressed),
+            overlay: u32::from(overlay.is_some()),
+            unused: 0,
+        };
+        let buffer = uniform(gpu, "tone", &settings);
         let nothing = Image { width: 1, height: 1, rgba: vec![0; 4] };
         let colour = target.colour.create_view(&wgpu::TextureViewDescriptor::default());
         let overlay = upload(gpu, overlay.unwrap_or(&nothing));

@@ -1,14 +1,6 @@
 // From linear light to the bytes of a picture: samples averaged, highlights pressed, the overlay laid over.
+#import declared
 #import press
-
-struct Tone {
-    // Samples each way in a pixel.
-    samples: u32,
-    // 0 for colours as they are.
-    pressed: u32,
-    overlay: u32,
-    unused: u32,
-}
 
 @group(0) @binding(0) var<uniform> tone: Tone;
 @group(0) @binding(1) var light: texture_2d<f32>;

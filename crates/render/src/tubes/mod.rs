@@ -3,20 +3,9 @@
 use crate::buffer::instances;
 use crate::colour::linear;
 use crate::pipeline::Recipe;
+use crate::shared::{DrawnTube, buffer_layout};
 use crate::{Drawable, Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
-
-/// A piece as the device has it.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-struct Instance {
-    /// One end, and the radius, in stage coordinates.
-    from: [f32; 4],
-    /// The other end, and the least radius in samples.
-    to: [f32; 4],
-    /// Linear colour, and 1 with shading.
-    colour: [f32; 4],
-}
+use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 
 /// How a line looks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,16 +40,13 @@ impl TubePainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
-        let attributes = wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4];
+        let layout = DrawnTube::layout();
+        let attributes = layout.vertex_attributes();
         let recipe = Recipe {
             label: "tubes",
             module: &shaders::module(gpu, "tubes", include_str!("tubes.wgsl")),
             groups: &[renderer.view_layout()],
-            buffers: &[wgpu::VertexBufferLayout {
-                array_stride: size_of::<Instance>() as u64,
-                step_mode: wgpu::VertexStepMode::Instance,
-                attributes: &attributes,
-            }],
+            buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         };
         Self { opaque: recipe.opaque(gpu), cast: recipe.cast(gpu, "throw_shadow") }
@@ -80,13 +66,13 @@ impl TubePainter {
             let [x, y, z] = stage.place(point).into();
             [x, y, z, last]
         };
-        let piece = |pair: &[[f64; 3]]| Instance {
-            from: end(pair[0], stage.length(style.radius)),
-            to: end(pair[1], style.least_radius),
+        let piece = |pair: &[[f64; 3]]| DrawnTube {
+            from_end: end(pair[0], stage.length(style.radius)),
+            to_end: end(pair[1], style.least_radius),
             colour,
         };
         let whole = |pair: &&[[f64; 3]]| pair.as_flattened().iter().all(|number| number.is_finite());
-        let pieces: Vec<Instance> =
+        let pieces: Vec<DrawnTube> =
             lines.into_iter().flat_map(|line| line.windows(2).filter(whole).map(piece).collect::<Vec<_>>()).collect();
         let cast = style.shaded.then(|| self.cast.clone());
         let buffer = instances(gpu, "tubes", &pieces);

@@ -15,12 +15,9 @@ struct Corner {
 const STRIP = array<u32, 14>(3u, 7u, 1u, 5u, 4u, 7u, 6u, 3u, 2u, 1u, 0u, 4u, 2u, 6u);
 
 @vertex
-fn vertex(
-    @builtin(vertex_index) index: u32,
-    @location(0) from_end: vec4f,
-    @location(1) to_end: vec4f,
-    @location(2) colour: vec4f,
-) -> Corner {
+fn vertex(@builtin(vertex_index) index: u32, tube: DrawnTube) -> Corner {
+    let from_end = tube.from_end;
+    let to_end = tube.to_end;
     let middle = 0.5 * (from_end.xyz + to_end.xyz);
     let radius = max(from_end.w, to_end.w * pixel_at(middle));
     let way = to_end.xyz - from_end.xyz;
@@ -32,7 +29,7 @@ fn vertex(
     let bits = STRIP[index];
     let corner = vec3f(vec3u(bits & 1u, (bits >> 1u) & 1u, (bits >> 2u) & 1u)) * 2.0 - 1.0;
     let place = middle + along * corner.x * (0.5 * long + radius) + radius * (right * corner.y + up * corner.z);
-    return Corner(view.clip_from_world * vec4f(place, 1.0), place, vec4f(from_end.xyz, radius), vec4f(to_end.xyz, colour.w), colour.rgb);
+    return Corner(view.clip_from_world * vec4f(place, 1.0), place, vec4f(from_end.xyz, radius), vec4f(to_end.xyz, tube.colour.w), tube.colour.rgb);
 }
 
 // Nearest crossing of a line, given from near the axis and across it, and a circle round it: offset and direction across,
@@ -76,11 +73,6 @@ fn hit(corner: Corner) -> vec3f {
         discard;
     }
     return corner.place + found * sight.direction;
-}
-
-struct Drawn {
-    @location(0) colour: vec4f,
-    @builtin(frag_depth) depth: f32,
 }
 
 @fragment

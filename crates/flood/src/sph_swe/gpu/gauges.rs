@@ -1,7 +1,7 @@
 //! Gauges that the device reads itself: rows that wait there until the host takes them, together with what it learns of the steps.
 
 use super::OnGpu;
-use super::shared::{Memory, OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
+use super::shared::{GAUGES, Memory, OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
 use super::tasks::{Shader, Tasks, task};
 use crate::sampling::Sample;
 use crate::sph_swe::measured::Reading;
@@ -17,8 +17,8 @@ pub(super) const SHADERS: [Shader; 3] = [
     ("sph_gauges", include_str!("../sph_gauges.wgsl")),
 ];
 
-/// The slot of each in the numbers of groups: see `sph_finish.wgsl`.
-const SLOTS: [u64; 3] = [5, 6, 7];
+/// The slot of each in the numbers of groups.
+const SLOTS: [u32; 3] = [GAUGES, GAUGES + 1, GAUGES + 2];
 
 /// How much each row tells of.
 #[derive(Debug, Clone, Copy)]

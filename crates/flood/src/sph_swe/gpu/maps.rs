@@ -1,7 +1,7 @@
 //! Maps that the device keeps: it looks at the water in each of their cells itself.
 
 use super::super::maps::{Maps, Record};
-use super::shared::MapCell;
+use super::shared::{MAPS, MapCell};
 use super::tasks::{Shader, task};
 use super::upload::Origin;
 use super::{MOST_CELLS, OnGpu};
@@ -11,9 +11,6 @@ use corpuscle_terrain::Terrain;
 
 /// Looks that the device can be told of at a time.
 pub(super) const MOST_LOOKS: usize = 64;
-
-/// The slot of cells of the maps: see `sph_finish.wgsl`.
-const CELLS: u64 = 8;
 
 pub(super) const SHADER: Shader = ("sph_maps", include_str!("../sph_maps.wgsl"));
 
@@ -35,7 +32,7 @@ impl GpuMaps {
 
     /// Has the device look, if it is time to.
     pub fn look(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
-        self.task.run_as_told(pass, groups, CELLS);
+        self.task.run_as_told(pass, groups, MAPS);
     }
 
     /// The cells as the device is to have them.

@@ -5,6 +5,16 @@ use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping};
 corpuscle_gpu::declare! {
     include [Stepping]
     constants {
+        /// Circumference of a circle over its width.
+        pub const PI: f32 = std::f32::consts::PI;
+        /// Normalisation of the cubic spline in two dimensions over h^2.
+        pub const SIGMA: f32 = corpuscle_sph::kernel::cubic_spline::SIGMA as f32;
+        /// Positions drawn for each particle that comes from a source.
+        pub const TRIES: u32 = super::super::inflow::TRIES as u32;
+        /// The first slot of [`Memory::groups`] for gauges: a thread for each particle and drop, a group for each row, a thread for each position and row.
+        pub const GAUGES: u32 = 5;
+        /// The slot for maps: a thread for each of their cells.
+        pub const MAPS: u32 = 8;
         /// Stands for no cell.
         pub const NONE: u32 = u32::MAX;
         /// Water leaves over the side.

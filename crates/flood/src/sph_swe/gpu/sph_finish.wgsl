@@ -7,12 +7,6 @@
 #import sph_rows
 #import over_group
 
-const FAR = 3.0e38;
-
-// The first slot for gauges, and that for maps.
-const GAUGES = 5u;
-const MAPS = 8u;
-
 alias Summand = Partial;
 
 fn both(a: Summand, b: Summand) -> Summand {
@@ -66,7 +60,7 @@ fn decide() {
     let counts = array(
         (status.particles + GROUP - 1u) / GROUP,
         (status.cells + GROUP - 1u) / GROUP,
-        (status.cells + 1023u) / 1024u,
+        (status.cells + SORT_BLOCK - 1u) / SORT_BLOCK,
         1u,
         select(0u, (parameters.in_air + GROUP - 1u) / GROUP, status.falling > 0u),
     );

@@ -5,8 +5,8 @@ use super::maps::GpuMaps;
 use super::shared::{Memory, Status};
 use super::upload::Setting;
 use corpuscle_gpu::{
-    COMPENSATED_SUMS, CellSort, DeclaredKernel, Gpu, OVER_GROUP, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS,
-    Task, sort_blocks, wgpu,
+    COMPENSATED_SUMS, CellSort, Gpu, Kernel, OVER_GROUP, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS, Task,
+    sort_blocks, wgpu,
 };
 
 /// Pieces that the shaders import.
@@ -46,7 +46,7 @@ const FINISH: Shader = ("sph_finish", include_str!("sph_finish.wgsl"));
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
 
 /// The slot of drops in the air.
-const IN_AIR: u64 = 4;
+const IN_AIR: u32 = 4;
 
 /// Everything on the device.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ pub(super) struct Tasks {
 
 /// A shader with what it works on.
 pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
-    DeclaredKernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
+    Kernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
 }
 
 impl Tasks {

@@ -37,7 +37,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     } else if along.x > 0.0 {
         discharge = -max(value_at(own.table, vec2f(along.y / along.x, 0.0)), 0.0);
     }
-    let level = select(-3.0e38, by_depth.y / max(by_depth.x, 1e-37), by_depth.x > 0.0);
+    let level = select(-FAR, by_depth.y / max(by_depth.x, 1e-37), by_depth.x > 0.0);
     let is_out = discharge < 0.0;
     var all = vec2f(0.0);
     for (var k = own.first + thread; k < own.end; k += GROUP) {

@@ -14,18 +14,21 @@ mod upload;
 
 pub(super) use model::OnGpu;
 pub(super) use shared::{
-    BesideCrest, Border, CULVERT, Crest, DISCHARGE, HOLD, InPatch, LEVEL, LINK, NONE, NORMAL, OPEN, OUTFLOW, PADDLE,
-    Part, RATING, SharedDischarge, Structure, WALL, WAVE, WEIR,
+    BesideCrest, Border, CONSTANT, CULVERT, Crest, DISCHARGE, GREEN_AMPT, HOLD, HORTON, InPatch, LEVEL, LINK, NONE,
+    NORMAL, OPEN, OUTFLOW, PADDLE, Part, RATING, SharedDischarge, Structure, WALL, WAVE, WEIR,
 };
 pub(super) use tables::Tables;
 
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
-    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, DeclaredKernel, Gpu, GpuError, Halt, OVER_GROUP, Pass,
-    ShaderLibrary, THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
+    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, Gpu, GpuError, Halt, Kernel, OVER_GROUP, Pass, ShaderLibrary,
+    THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
 };
 use seen::Seen;
-use shared::{Column, Memory, Push, Record, Status, Supply};
+use shared::{
+    BESIDE_CREST_SLOT, BORDER_SLOT, CELL_SLOT, CREST_SLOT, Column, DISCHARGE_SLOT, FACE_SLOT, Memory, Push, Record,
+    STRUCTURE_SLOT, Status, Supply,
+};
 use std::sync::OnceLock;
 use upload::Input;
 
@@ -90,22 +93,13 @@ const SHADERS: [(&str, &str, usize); 20] = [
 /// The kernel that finds the water of columns.
 const BEGIN: usize = 9;
 
-/// Slots of the numbers of groups that the passes run with.
-const CELLS: u64 = 0;
-const FACES: u64 = 1;
-const BORDERS: u64 = 2;
-const DISCHARGES: u64 = 3;
-const CRESTS: u64 = 4;
-const BESIDE_CRESTS: u64 = 5;
-const STRUCTURES: u64 = 6;
-
 /// The kernels with what they work on.
 type Tasks = [Task; SHADERS.len()];
 
 /// A flood on a GPU.
 pub(crate) struct GpuSolver {
     pub batches: Batches,
-    kernels: [DeclaredKernel<Memory>; SHADERS.len()],
+    kernels: [Kernel<Memory>; SHADERS.len()],
     memory: Memory,
     tasks: Tasks,
     cells: usize,
@@ -178,7 +172,7 @@ impl GpuSolver {
     pub fn new(gpu: Gpu, input: &Input<'_>) -> Result<Self, GpuError> {
         let kernels = SHADERS.map(|(name, text, version)| {
             let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
-            DeclaredKernel::new(&gpu, name, text, &library)
+            Kernel::new(&gpu, name, text, &library)
         });
         let (memory, status) = input.upload(&gpu)?;
         let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
@@ -324,34 +318,34 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
     finish.run(pass, 1);
     for _ in 0..count {
         if sides.shares_discharges {
-            share.run_as_told(pass, &memory.groups, DISCHARGES);
+            share.run_as_told(pass, &memory.groups, DISCHARGE_SLOT);
         }
         for (fluxes, update, push) in [(fluxes_first, first, push_first), (fluxes_second, second, push_second)] {
-            for (task, slot) in [(slopes, CELLS), (fluxes, FACES), (kept, CELLS)] {
+            for (task, slot) in [(slopes, CELL_SLOT), (fluxes, FACE_SLOT), (kept, CELL_SLOT)] {
                 task.run_as_told(pass, &memory.groups, slot);
             }
             if sides.has_obstacles {
-                push.run_as_told(pass, &memory.groups, BORDERS);
+                push.run_as_told(pass, &memory.groups, BORDER_SLOT);
             }
-            update.run_as_told(pass, &memory.groups, CELLS);
+            update.run_as_told(pass, &memory.groups, CELL_SLOT);
             if sides.has_heights {
-                shift.run_as_told(pass, &memory.groups, CELLS);
+                shift.run_as_told(pass, &memory.groups, CELL_SLOT);
             }
         }
         if sides.holds_levels {
-            follow.run_as_told(pass, &memory.groups, BORDERS);
+            follow.run_as_told(pass, &memory.groups, BORDER_SLOT);
         }
         if has_works {
-            look.run_as_told(pass, &memory.groups, CELLS);
+            look.run_as_told(pass, &memory.groups, CELL_SLOT);
         }
         if sides.has_crests {
-            crests.run_as_told(pass, &memory.groups, CRESTS);
-            overtop.run_as_told(pass, &memory.groups, BESIDE_CRESTS);
+            crests.run_as_told(pass, &memory.groups, CREST_SLOT);
+            overtop.run_as_told(pass, &memory.groups, BESIDE_CREST_SLOT);
         }
         if sides.structures > 0 {
-            structures.run_as_told(pass, &memory.groups, STRUCTURES);
+            structures.run_as_told(pass, &memory.groups, STRUCTURE_SLOT);
         }
-        end.run_as_told(pass, &memory.groups, CELLS);
+        end.run_as_told(pass, &memory.groups, CELL_SLOT);
         finish.run(pass, 1);
     }
 }

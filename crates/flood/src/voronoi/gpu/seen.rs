@@ -3,7 +3,7 @@
 use super::shared::{Memory, Place, Shown};
 use super::{GpuSolver, LIBRARY};
 use crate::voronoi::mesh::Mesh;
-use corpuscle_gpu::{DeclaredKernel, DeviceParticles, Gpu, GpuError, THREADS, Task, filled, submit, uniform};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Kernel, THREADS, Task, filled, submit, uniform};
 
 /// The water as it is seen, and what writes it.
 pub(super) struct Seen {
@@ -47,8 +47,8 @@ impl Seen {
 /// Name and text.
 pub(super) const SHADER: (&str, &str) = ("voronoi_seen", include_str!("voronoi_seen.wgsl"));
 
-fn kernel(gpu: &Gpu) -> DeclaredKernel<Memory> {
-    DeclaredKernel::new(gpu, SHADER.0, SHADER.1, LIBRARY)
+fn kernel(gpu: &Gpu) -> Kernel<Memory> {
+    Kernel::new(gpu, SHADER.0, SHADER.1, LIBRARY)
 }
 
 impl GpuSolver {

@@ -6,6 +6,20 @@ use corpuscle_gpu::{DeviceParticles, Stepping};
 corpuscle_gpu::declare! {
     include [Stepping]
     constants {
+        /// Slot of [`Memory::groups`] with a thread for each cell.
+        pub const CELL_SLOT: u32 = 0;
+        /// Slot with a thread for each face.
+        pub const FACE_SLOT: u32 = 1;
+        /// Slot with a thread for each border face.
+        pub const BORDER_SLOT: u32 = 2;
+        /// Slot with a group for each discharge that is shared out.
+        pub const DISCHARGE_SLOT: u32 = 3;
+        /// Slot with a thread for each crest.
+        pub const CREST_SLOT: u32 = 4;
+        /// Slot with a thread for each cell beside a crest.
+        pub const BESIDE_CREST_SLOT: u32 = 5;
+        /// Slot with one group for all structures.
+        pub const STRUCTURE_SLOT: u32 = 6;
         /// Stands for no cell, no face, no border.
         pub const NONE: u32 = u32::MAX;
         /// The border reflects.
@@ -42,6 +56,16 @@ corpuscle_gpu::declare! {
         pub const CHEZY: u32 = 1;
         /// Friction in proportion to the velocity.
         pub const LINEAR: u32 = 2;
+        /// Coefficient of an orifice: see `structures/hydraulics.rs`.
+        pub const ORIFICE: f32 = super::super::structures::hydraulics::ORIFICE as f32;
+        /// Depth over the height of a culvert from which on it is submerged.
+        pub const SUBMERGED: f32 = super::super::structures::hydraulics::SUBMERGED as f32;
+        /// A law of infiltration: at one rate.
+        pub const CONSTANT: f32 = 1.0;
+        /// Horton 1940.
+        pub const HORTON: f32 = 2.0;
+        /// Green & Ampt 1911.
+        pub const GREEN_AMPT: f32 = 3.0;
         /// Time step over the width of a cell and the speed of waves in it.
         pub const COURANT: f32 = super::super::solver::COURANT as f32;
         /// A neighbour whose bed stands above the level here counts in full from this part of the depth here on.

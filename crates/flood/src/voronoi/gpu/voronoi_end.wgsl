@@ -27,7 +27,7 @@ fn both(a: Found, b: Found) -> Found {
 // Takes a cell through the end of the step; what it finds.
 fn end_step(cell: u32) -> Found {
     var own = Found();
-    var before = 3.0e38;
+    var before = FAR;
     if !IS_LOOKED_AT {
         record(cell, water[cell]);
         before = stable_step(cell);
@@ -49,7 +49,7 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
 ) {
     var own = Found();
-    own.step = 3.0e38;
+    own.step = FAR;
     if id.x < parameters.cells {
         own = end_step(id.x);
     }

@@ -61,7 +61,7 @@ fn of_group(group: u32) -> Sums {
 // What a thread finds of all groups of cells, and the first of structures.
 fn collected(thread: u32) -> Sums {
     var own = Sums();
-    own.step = 3.0e38;
+    own.step = FAR;
     let all = groups_for(parameters.cells);
     if thread == 0u {
         let by_structures = passed[all];
@@ -131,13 +131,13 @@ fn main(@builtin(local_invocation_index) thread: u32) {
             status.halted = decide();
         }
         let goes_on = status.halted == GOING;
-        groups[0] = select(0u, groups_for(parameters.cells), goes_on);
-        groups[3] = select(0u, groups_for(parameters.faces), goes_on);
-        groups[6] = select(0u, groups_for(parameters.borders), goes_on);
-        groups[9] = select(0u, parameters.discharges, goes_on);
-        groups[12] = select(0u, groups_for(parameters.crests), goes_on);
-        groups[15] = select(0u, groups_for(parameters.beside_crests), goes_on);
-        groups[18] = select(0u, 1u, goes_on);
+        groups[3u * CELL_SLOT] = select(0u, groups_for(parameters.cells), goes_on);
+        groups[3u * FACE_SLOT] = select(0u, groups_for(parameters.faces), goes_on);
+        groups[3u * BORDER_SLOT] = select(0u, groups_for(parameters.borders), goes_on);
+        groups[3u * DISCHARGE_SLOT] = select(0u, parameters.discharges, goes_on);
+        groups[3u * CREST_SLOT] = select(0u, groups_for(parameters.crests), goes_on);
+        groups[3u * BESIDE_CREST_SLOT] = select(0u, groups_for(parameters.beside_crests), goes_on);
+        groups[3u * STRUCTURE_SLOT] = select(0u, 1u, goes_on);
         for (var table = 0u; table < parameters.tables && goes_on; table++) {
             look_up(table);
         }

@@ -16,7 +16,7 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    var own = 3.0e38;
+    var own = FAR;
     if id.x < parameters.cells {
         record(id.x, water[id.x]);
         own = stable_step(id.x);

@@ -4,7 +4,7 @@
 fn stable_step(cell: u32) -> f32 {
     let now = water[cell];
     if now.depth <= 0.0 {
-        return 3.0e38;
+        return FAR;
     }
     return ground[cell].width / (length(now.velocity) + sqrt(parameters.gravity * now.depth));
 }

@@ -36,12 +36,14 @@ impl Law {
     /// Kind and numbers, as `infiltration_laws.wgsl` takes them.
     #[cfg(feature = "gpu")]
     pub fn numbers(self) -> [f32; 4] {
-        let numbers = match self {
-            Self::Constant(rate) => [1.0, rate, 0.0, 0.0],
-            Self::Horton { first, last, decay } => [2.0, first, last, decay],
-            Self::GreenAmpt { conductivity, head } => [3.0, conductivity, head, 0.0],
+        use crate::voronoi::gpu::{CONSTANT, GREEN_AMPT, HORTON};
+        let (kind, numbers) = match self {
+            Self::Constant(rate) => (CONSTANT, [rate, 0.0, 0.0]),
+            Self::Horton { first, last, decay } => (HORTON, [first, last, decay]),
+            Self::GreenAmpt { conductivity, head } => (GREEN_AMPT, [conductivity, head, 0.0]),
         };
-        numbers.map(|number| number as f32)
+        let [a, b, c] = numbers.map(|number| number as f32);
+        [kind, a, b, c]
     }
 
     /// What soaks in within `step` s, m, where `soaked` m have before.

@@ -1,8 +1,5 @@
 // How much water soaks into the ground: the formulas of `infiltration.rs` without differences of large numbers. A law is its kind and its numbers.
-
-const CONSTANT = 1.0;
-const HORTON = 2.0;
-const GREEN_AMPT = 3.0;
+#import declared
 
 const ITERATIONS = 20u;
 

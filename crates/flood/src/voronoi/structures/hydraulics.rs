@@ -29,10 +29,10 @@ pub(crate) struct Culvert {
 }
 
 /// Coefficient of an orifice (Bodhaine 1968, the middle of his range for culverts).
-const ORIFICE: f64 = 0.6;
+pub(crate) const ORIFICE: f64 = 0.6;
 
 /// Depth over the height of the culvert from which its inlet is an orifice (Henderson 1966, section 7.6).
-const SUBMERGED: f64 = 1.2;
+pub(crate) const SUBMERGED: f64 = 1.2;
 
 impl Law {
     /// Discharge, m3/s, from the end where the water stands at `upper`, m, to where it stands at `lower` or is away; `ends` are

@@ -1,10 +1,8 @@
 // How much water goes through culverts and over weirs: see `hydraulics.rs`, which names the sources.
-
-const ORIFICE = 0.6;
-const SUBMERGED = 1.2;
+#import declared
 
 // Of a level where there is no water.
-const DRY = -3.0e38;
+const DRY = -FAR;
 
 fn over_weir(crest: f32, width: f32, coefficient: f32, upper: f32, lower: f32) -> f32 {
     let head = max(upper - crest, 0.0);

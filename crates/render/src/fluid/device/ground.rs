@@ -1,12 +1,10 @@
 //! The ground under the water, and the water's faces at its borders.
 
-use super::super::sides::Vertex;
+use super::shared::NO_HEIGHT;
+use crate::shared::Vertex;
 use crate::{HeightField, Stage};
 use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
 use glam::DVec2;
-
-/// Stands for no height in `water_device.wgsl`.
-const NO_HEIGHT: f32 = 1e30;
 
 /// The ground's nodes on the device.
 #[derive(Debug)]

@@ -1,10 +1,12 @@
 //! The kernels that make discs of water on the device.
 
-use corpuscle_gpu::{DEVICE_PARTICLES, Gpu, Kernel, ShaderLibrary};
+use super::shared::Memory;
+use corpuscle_gpu::{Gpu, Kernel, ShaderLibrary};
+
+type OfWater = Kernel<Memory>;
 
 /// Pieces that they import.
 const LIBRARY: ShaderLibrary<'_> = &[
-    DEVICE_PARTICLES,
     ("water_device", include_str!("water_device.wgsl")),
     ("water_borders", include_str!("water_borders.wgsl")),
     ("water_planes", include_str!("water_planes.wgsl")),
@@ -13,17 +15,17 @@ const LIBRARY: ShaderLibrary<'_> = &[
 /// One for each pass, in their order.
 #[derive(Debug)]
 pub(super) struct Kernels {
-    pub begin: Kernel,
-    pub count: Kernel,
-    pub columns: Kernel,
-    pub told: Kernel,
-    pub settle: Kernel,
-    pub settled: Kernel,
-    pub calm: Kernel,
-    pub discs: Kernel,
-    pub foam: Kernel,
-    pub levels: Kernel,
-    pub faces: Kernel,
+    pub begin: OfWater,
+    pub count: OfWater,
+    pub columns: OfWater,
+    pub told: OfWater,
+    pub settle: OfWater,
+    pub settled: OfWater,
+    pub calm: OfWater,
+    pub discs: OfWater,
+    pub foam: OfWater,
+    pub levels: OfWater,
+    pub faces: OfWater,
 }
 
 impl Kernels {
@@ -46,5 +48,28 @@ impl Kernels {
             levels: kernel!("water_levels"),
             faces: kernel!("water_faces"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle_gpu::{Buffers, check_layouts, check_shader};
+
+    #[test]
+    fn every_shader_is_valid_and_within_the_floor() {
+        check_layouts(&Memory::declaration()).unwrap();
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/fluid/device");
+        let mut count = 0;
+        for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            if path.extension().is_some_and(|extension| extension == "wgsl") && text.contains("@compute") {
+                let name = path.file_stem().unwrap().to_str().unwrap();
+                let (text, _) = Memory::declaration().complete(name, &text, LIBRARY).unwrap();
+                check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+                count += 1;
+            }
+        }
+        assert_eq!(count, 11);
     }
 }

@@ -16,6 +16,7 @@
 
 mod ground;
 mod kernels;
+mod shared;
 mod tasks;
 #[cfg(test)]
 mod twin;
@@ -27,16 +28,15 @@ use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, Stopwatch, THREADS, Taken
 use glam::{DVec2, DVec3};
 use ground::Ground;
 use kernels::Kernels;
+use shared::{DRAW, SPLATS, Settings};
 use tasks::{Tasks, entries};
 
 /// Cells a particle at most, where they are more than so many.
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 
-/// Where the draw is told, bytes from the start of the slots: see `water_begin.wgsl`.
-const DRAW: u64 = 72;
-/// The same of splats.
-const SPLATS: u64 = 88;
+/// Bytes of the numbers that tell the draw and splats.
+const BYTES: u32 = size_of::<u32>() as u32;
 
 /// Makes discs of the particles of shallow water on the device, and balls of those in the air. Remembers the foam on them from picture
 /// to picture.
@@ -47,7 +47,7 @@ pub struct DeviceWater {
     /// How many times higher than they are heights are drawn.
     raise: f64,
     ground: Ground,
-    /// `Water` of water_device.wgsl.
+    /// Numbers of the picture.
     settings: wgpu::Buffer,
     /// For the particles drawn last.
     drawn: Option<(DeviceParticles, Tasks)>,
@@ -55,26 +55,6 @@ pub struct DeviceWater {
     time: Option<f64>,
     /// Where kernels are timed.
     stopwatch: Option<Stopwatch>,
-}
-
-/// `Water` of water_device.wgsl.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Settings {
-    shift: [f32; 3],
-    raise: f32,
-    corner: [f32; 2],
-    per_cell: f32,
-    unit: f32,
-    ground_corner: [f32; 2],
-    ground_per_metre: [f32; 2],
-    ground_nodes: [u32; 2],
-    columns: u32,
-    rows: u32,
-    room: u32,
-    memory: u32,
-    left: f32,
-    unused: f32,
 }
 
 impl DeviceWater {
@@ -132,7 +112,8 @@ impl DeviceWater {
     /// The particles as they are drawn; nothing before the first update.
     pub(super) fn droplets(&self) -> Option<Batch> {
         let (_, tasks) = self.drawn.as_ref()?;
-        Some(Batch::Told { instances: tasks.instances.clone(), told: tasks.groups.clone(), at: DRAW, splats: SPLATS })
+        let shared::Memory { instances, groups, .. } = tasks.memory.clone();
+        Some(Batch::Told { instances, told: groups, at: (BYTES * DRAW).into(), splats: (BYTES * SPLATS).into() })
     }
 
     /// The faces of water at the borders, corner by corner, and how many corners; nothing before the first update.

@@ -1,20 +1,13 @@
 //! Memory for the particles of a model on the device, and the passes over them.
 
-use super::super::droplet::Instance;
 use super::ground::Ground;
 use super::kernels::Kernels;
-use corpuscle_gpu::{
-    CellSort, DeviceParticles, Gpu, GpuError, Kernel, Pass, SortSlots, Stopwatch, Task, storage, wgpu,
-};
+use super::shared::{BORDER_GROUP, Memory, ON_GROUND, SETTLING, Sizes};
+use crate::shared::{DrawnDroplet, SPLAT_COUNT};
+use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Pass, SortSlots, Stopwatch, Task, storage, wgpu};
 
-/// Slots of the numbers of groups: see `water_begin.wgsl`.
+/// Slots of the numbers of groups: see [`Memory::groups`].
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
-const ON_GROUND: u64 = 4;
-const SETTLING: u64 = 5;
-/// Threads in a group of those over the nodes of borders.
-const BORDER_THREADS: u32 = 64;
-/// Numbers in the slots, those of the draw and of splats after them included.
-const TOLD: usize = 26;
 
 /// Pairs of looks whether some water stands too steep, where some does. After a pair heights are where they were before.
 const SETTLINGS: usize = 6;
@@ -22,12 +15,9 @@ const SETTLINGS: usize = 6;
 /// For the particles of one model.
 #[derive(Debug)]
 pub(super) struct Tasks {
-    /// Particles as they are drawn.
-    pub instances: wgpu::Buffer,
-    /// Numbers of groups, and the draw.
-    pub groups: wgpu::Buffer,
+    pub memory: Memory,
     /// Foam by ids: what is read and what is written, in turn.
-    memory: [wgpu::Buffer; 2],
+    tables: [wgpu::Buffer; 2],
     sort: CellSort,
     begin: Task,
     count: Task,
@@ -40,7 +30,7 @@ pub(super) struct Tasks {
     foam: [Task; 2],
     levels: Task,
     faces: Task,
-    /// Which of the memories is read next.
+    /// Which of the tables is read next.
     turn: usize,
 }
 
@@ -50,7 +40,7 @@ pub(super) fn entries(room: usize) -> usize {
 }
 
 impl Tasks {
-    /// For particles in so many cells, over this ground, with the numbers of `water_device.wgsl`.
+    /// For particles in so many cells, over this ground, with the numbers of the picture.
     pub fn new(
         gpu: &Gpu,
         kernels: &Kernels,
@@ -60,40 +50,54 @@ impl Tasks {
         water: &wgpu::Buffer,
     ) -> Result<Self, GpuError> {
         let room = particles.room;
-        let Ground { heights, levels, faces, .. } = ground;
-        let seen = &particles.buffer;
-        let sizes = &storage::<u32>(gpu, "sizes of water", 4)?;
-        let groups = storage::<u32>(gpu, "groups of water", TOLD)?;
-        let keys = &storage::<u32>(gpu, "keys of water", room)?;
+        let sizes = storage::<Sizes>(gpu, "sizes of water", 1)?;
+        let keys = storage::<u32>(gpu, "keys of water", room)?;
+        let sort = CellSort::new(gpu, room, cells, &sizes, &keys)?;
         let columns = || storage::<[f32; 4]>(gpu, "columns of water", room);
-        let (sites, settled, motions, calm) = (&columns()?, &columns()?, &columns()?, &columns()?);
-        let matter = &storage::<[u32; 4]>(gpu, "matter of water", room)?;
-        let fresh = &storage::<f32>(gpu, "fresh foam", room)?;
-        let instances = storage::<Instance>(gpu, "droplets", room)?;
         let table = || storage::<f32>(gpu, "foam before", entries(room));
-        let memory = [table()?, table()?];
-        let sort = CellSort::new(gpu, room, cells, sizes, keys)?;
-        let start = &sort.start;
-        let foam =
-            |before, after| on(gpu, &kernels.foam, &[water, start, settled, matter, fresh, before, after, &instances]);
+        let tables = [table()?, table()?];
+        let memory = Memory {
+            water: water.clone(),
+            seen: particles.buffer.clone(),
+            sizes,
+            groups: storage::<u32>(gpu, "groups of water", SPLAT_COUNT as usize + 1)?,
+            counts: sort.counts.clone(),
+            places: sort.places.clone(),
+            keys,
+            start: sort.start.clone(),
+            order: sort.order.clone(),
+            heights: ground.heights.clone(),
+            sites: columns()?,
+            motions: columns()?,
+            settled: columns()?,
+            calmed: columns()?,
+            matter: storage::<[u32; 4]>(gpu, "matter of water", room)?,
+            foam: storage::<f32>(gpu, "fresh foam", room)?,
+            before: tables[0].clone(),
+            after: tables[1].clone(),
+            instances: storage::<DrawnDroplet>(gpu, "droplets", room)?,
+            levels: ground.levels.clone(),
+            vertices: ground.faces.clone(),
+        };
+        // What one pass leaves is what the next begins with.
+        let back = Memory { sites: memory.settled.clone(), settled: memory.sites.clone(), ..memory.clone() };
+        let calm = Memory { sites: memory.settled.clone(), motions: memory.calmed.clone(), ..memory.clone() };
+        let [before, after] = tables.clone();
+        let turned = Memory { before: after, after: before, ..calm.clone() };
         Ok(Self {
-            begin: on(gpu, &kernels.begin, &[water, seen, sizes, &groups]),
-            count: on(gpu, &kernels.count, &[water, seen, sizes, &sort.counts, &sort.places, keys]),
-            columns: on(gpu, &kernels.columns, &[water, seen, start, &sort.order, heights, sites, motions, matter]),
-            told: on(gpu, &kernels.told, &[water, start, &groups]),
-            settle: [
-                on(gpu, &kernels.settle, &[water, start, sites, motions, settled, sizes]),
-                on(gpu, &kernels.settle, &[water, start, settled, motions, sites, sizes]),
-            ],
-            settled: on(gpu, &kernels.settled, &[sizes, &groups]),
-            calm: on(gpu, &kernels.calm, &[water, start, sites, motions, settled, calm]),
-            discs: on(gpu, &kernels.discs, &[water, start, settled, calm, matter, &instances, fresh, sizes]),
-            levels: on(gpu, &kernels.levels, &[water, start, &instances, heights, sizes, levels]),
-            faces: on(gpu, &kernels.faces, &[water, heights, levels, faces]),
-            foam: [foam(&memory[0], &memory[1]), foam(&memory[1], &memory[0])],
-            instances,
-            groups,
+            begin: kernels.begin.on(gpu, &memory),
+            count: kernels.count.on(gpu, &memory),
+            columns: kernels.columns.on(gpu, &memory),
+            told: kernels.told.on(gpu, &memory),
+            settle: [&memory, &back].map(|memory| kernels.settle.on(gpu, memory)),
+            settled: kernels.settled.on(gpu, &memory),
+            calm: kernels.calm.on(gpu, &memory),
+            discs: kernels.discs.on(gpu, &calm),
+            levels: kernels.levels.on(gpu, &memory),
+            faces: kernels.faces.on(gpu, &memory),
+            foam: [&calm, &turned].map(|memory| kernels.foam.on(gpu, memory)),
             memory,
+            tables,
             sort,
             turn: 0,
         })
@@ -101,7 +105,7 @@ impl Tasks {
 
     /// Takes over the foam of others, with as much memory or less.
     pub fn remember(&self, gpu: &Gpu, before: &Self) {
-        let (from, to) = (&before.memory[before.turn], &self.memory[self.turn]);
+        let (from, to) = (&before.tables[before.turn], &self.tables[self.turn]);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("foam") });
         // One bit more of an id was no part of where its foam was before: it is in both halves.
         for part in 0..to.size() / from.size() {
@@ -113,9 +117,9 @@ impl Tasks {
     /// Makes the particles as they are drawn.
     pub fn run(&mut self, gpu: &Gpu, ground: &Ground, mut stopwatch: Option<&mut Stopwatch>) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("water") });
-        encoder.clear_buffer(&self.memory[1 - self.turn], 0, None);
+        encoder.clear_buffer(&self.tables[1 - self.turn], 0, None);
         let mut pass = Pass::begin(&mut encoder, stopwatch.as_deref_mut());
-        let groups = &self.groups;
+        let groups = &self.memory.groups;
         self.begin.run(&mut pass, 1);
         self.count.run_as_told(&mut pass, groups, SLOTS.particles);
         self.sort.sort(&mut pass, groups, SLOTS);
@@ -129,16 +133,11 @@ impl Tasks {
         self.discs.run_as_told(&mut pass, groups, SLOTS.particles);
         self.foam[self.turn].run_as_told(&mut pass, groups, ON_GROUND);
         for task in [&self.levels, &self.faces] {
-            task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_THREADS));
+            task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_GROUP));
         }
         drop(pass);
         stopwatch.iter().for_each(|stopwatch| stopwatch.end(&mut encoder));
         gpu.queue.submit([encoder.finish()]);
         self.turn = 1 - self.turn;
     }
-}
-
-fn on(gpu: &Gpu, kernel: &Kernel, buffers: &[&wgpu::Buffer]) -> Task {
-    let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
-    kernel.on(gpu, &resources)
 }

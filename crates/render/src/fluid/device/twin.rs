@@ -1,9 +1,10 @@
 //! The device's discs against the CPU's.
 
-use super::super::droplet::{Batch, Instance};
-use super::super::sides::{Vertex, faces};
+use super::super::droplet::Batch;
+use super::super::sides::faces;
 use super::super::{FluidPainter, FluidStyle, Water};
 use super::DeviceWater;
+use crate::shared::{DrawnDroplet, Vertex};
 use crate::{Camera, Drawable, HeightField, Light, Renderer, Stage, Target};
 use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, Image, read, require_gpu};
 use corpuscle_model::{Column, ParticleSet, Values};
@@ -78,29 +79,31 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
 }
 
 /// What is drawn, by ids.
-fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<Instance> {
+fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DrawnDroplet> {
     let Some(Batch::Told { instances, told, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
     let told: Vec<u32> = read(gpu, &told, at as usize / 4 + 4).unwrap();
     let [corners, count, ..] = told[at as usize / 4..] else { panic!("no draw is told") };
     assert_eq!(corners, 4);
-    let mut all: Vec<Instance> = read(gpu, &instances, count as usize).unwrap();
+    let mut all: Vec<DrawnDroplet> = read(gpu, &instances, count as usize).unwrap();
     all.sort_by(|a, b| a.matter[3].total_cmp(&b.matter[3]));
     all
 }
 
 /// What the CPU draws, by ids.
-fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) -> Vec<Instance> {
+fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) -> Vec<DrawnDroplet> {
     let mut droplets = water.droplets(time, set, |place| field.slope_at(place));
     droplets.sort_by_key(|droplet| droplet.id);
-    droplets.iter().filter_map(|droplet| droplet.instance(&stage())).collect()
+    droplets.iter().filter_map(|droplet| droplet.drawn(&stage())).collect()
 }
 
-fn compare(device: &[Instance], host: &[Instance]) {
+fn compare(device: &[DrawnDroplet], host: &[DrawnDroplet]) {
     assert_eq!(device.len(), host.len());
     let apart =
         |one: &[f32], other: &[f32]| one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
     for (one, other) in device.iter().zip(host) {
         assert!(apart(&one.place, &other.place) < NEAR, "{one:?} {other:?}");
+        assert!((one.radius - other.radius).abs() < NEAR, "{one:?} {other:?}");
+        assert!((one.flatness - other.flatness).abs() < LIKE, "{one:?} {other:?}");
         assert!(apart(&one.normal, &other.normal) < LIKE, "{one:?} {other:?}");
         assert!(apart(&one.matter[1..2], &other.matter[1..2]) < LIKE, "{one:?} {other:?}");
         assert!((one.matter[0] - other.matter[0]).abs() <= 1e-5 * other.matter[0], "{one:?} {other:?}");
@@ -141,7 +144,7 @@ fn the_water_at_the_borders_has_the_faces_that_the_cpu_finds() {
     // Ten of 130 lie in the corner without data.
     assert!(found.len() > 110 && wanted.len() == 6 * found.len(), "{} {}", found.len(), wanted.len());
     for (one, other) in found.concat().iter().zip(&wanted) {
-        assert_eq!(one.outwards, other.outwards);
+        assert_eq!(one.normal, other.normal);
         let apart = one.place.iter().zip(&other.place).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);
         assert!(apart < NEAR, "{one:?} {other:?}");
     }

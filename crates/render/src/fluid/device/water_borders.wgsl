@@ -4,12 +4,12 @@
 // What has moved to lie in the surface reaches farther from where it was by no more than this.
 const OVER_REACH = 1.1;
 
-fn border_nodes(water: Water) -> u32 {
+fn border_nodes(water: Settings) -> u32 {
     return 2u * (water.ground_nodes.x + water.ground_nodes.y);
 }
 
 // Column and row of a node, and whether it has none after it on its border.
-fn border_node(water: Water, number: u32) -> vec3u {
+fn border_node(water: Settings, number: u32) -> vec3u {
     let nodes = water.ground_nodes;
     let is_upright = number >= 2u * nodes.x;
     let count = select(nodes.x, nodes.y, is_upright);
@@ -20,6 +20,6 @@ fn border_node(water: Water, number: u32) -> vec3u {
 }
 
 // Where a node is, m.
-fn node_place(water: Water, node: vec2u) -> vec2f {
+fn node_place(water: Settings, node: vec2u) -> vec2f {
     return water.ground_corner + vec2f(node) / water.ground_per_metre;
 }

@@ -2,17 +2,6 @@
 // those on the ground, and what is no particle is left out.
 #import water_device
 
-@group(0) @binding(0) var<uniform> water: Water;
-@group(0) @binding(1) var<storage, read> seen: DeviceParticles;
-@group(0) @binding(2) var<storage, read> start: array<u32>;
-@group(0) @binding(3) var<storage, read> order: array<u32>;
-// Heights of the ground, m, row by row from the south-west; NO_HEIGHT where there is none.
-@group(0) @binding(4) var<storage, read> heights: array<f32>;
-@group(0) @binding(5) var<storage, read_write> sites: array<vec4f>;
-@group(0) @binding(6) var<storage, read_write> motions: array<vec4f>;
-// Volume, m3, id, and velocity as it was before the water was calmed, m/s: their bits.
-@group(0) @binding(7) var<storage, read_write> matter: array<vec4u>;
-
 // Slope of the quad round a place, level where it has no ground. Twin of `HeightField::slope_at`.
 fn ground_slope(place: vec2f) -> vec2f {
     let at = vec2u(max((place - water.ground_corner) * water.ground_per_metre, vec2f(0.0)));
@@ -28,7 +17,7 @@ fn ground_slope(place: vec2f) -> vec2f {
     return vec2f(east, up) * water.ground_per_metre;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= start[of_ground(water) + 1u] {

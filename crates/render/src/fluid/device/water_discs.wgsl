@@ -3,20 +3,6 @@
 #import water_planes
 #import water_borders
 
-@group(0) @binding(4) var<storage, read> matter: array<vec4u>;
-@group(0) @binding(5) var<storage, read_write> instances: array<Instance>;
-@group(0) @binding(6) var<storage, read_write> foam: array<f32>;
-// See `water_begin`.
-@group(0) @binding(7) var<storage, read_write> sizes: array<atomic<u32>>;
-
-const PI = 3.14159265;
-// Radius of the discs, in distances between particles, and their thickness over their width.
-const DISC = 1.4;
-const FLATNESS = 0.12;
-// See `water.rs`.
-const TRAPPED = vec2f(1.2, 5.0);
-const CLOSED = vec2f(1.6, 2.8);
-const ENERGY = vec2f(0.5, 6.0);
 // Foam on what is in the air.
 const SPRAY = 0.15;
 // Ids by which patterns of foam differ.
@@ -35,10 +21,10 @@ fn pattern(i: u32) -> f32 {
     return f32(matter[i].y % PATTERNS);
 }
 
-fn in_air(i: u32) -> Instance {
+fn in_air(i: u32) -> DrawnDroplet {
     let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
     let place = water.unit * sites[i].xyz;
-    return Instance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
+    return DrawnDroplet(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
 }
 
 // Whether a place is no farther than that from a border of the ground, m.
@@ -48,7 +34,7 @@ fn is_at_border(place: vec2f, reach: f32) -> bool {
     return min(min(low.x, low.y), min(high.x, high.y)) < OVER_REACH * reach;
 }
 
-fn disc(i: u32) -> Instance {
+fn disc(i: u32) -> DrawnDroplet {
     let own = sites[i];
     let fit = fit_at(i);
     var slope = vec2f(fit.east.x, fit.north.x);
@@ -57,7 +43,7 @@ fn disc(i: u32) -> Instance {
     let radius = DISC * own.w;
     let reach = REACH * own.w;
     if is_at_border(own.xy, reach) {
-        atomicMax(&sizes[3], bitcast<u32>(reach));
+        atomicMax(&sizes.farthest, bitcast<u32>(reach));
     }
     let middle = vec3f(own.xy, fit.here.x) - FLATNESS * radius * normal;
     // How fast the water of a disc runs together.
@@ -65,7 +51,7 @@ fn disc(i: u32) -> Instance {
     let velocity = bitcast<vec2f>(matter[i].zw);
     foam[i] = part(closing, TRAPPED) * part(0.5 * dot(velocity, velocity), ENERGY) * part(fit.weight, CLOSED);
     let depth = 4.0 * volume(i) / (PI * reach * reach);
-    return Instance(
+    return DrawnDroplet(
         water.unit * middle,
         water.unit * radius,
         normal,
@@ -74,7 +60,7 @@ fn disc(i: u32) -> Instance {
     );
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i < start[of_ground(water)] {

@@ -1,17 +1,6 @@
 // Upright faces between the nodes of borders, from the ground to the water's level: two triangles each. Twin of `WaterSides::face`.
 #import water_borders
 
-// `Vertex` of sides.rs.
-struct Vertex {
-    place: vec4f,
-    outwards: vec4f,
-}
-
-@group(0) @binding(0) var<uniform> water: Water;
-@group(0) @binding(1) var<storage, read> heights: array<f32>;
-@group(0) @binding(2) var<storage, read> levels: array<f32>;
-@group(0) @binding(3) var<storage, read_write> vertices: array<Vertex>;
-
 fn corner(node: vec2u, level: f32, is_low: bool) -> vec4f {
     let ground = min(water.unit * heights[node.y * water.ground_nodes.x + node.x], level);
     let place = water.unit * node_place(water, node);
@@ -26,7 +15,7 @@ fn outwards(number: u32) -> vec4f {
     return vec4f(select(-1.0, 1.0, number >= 2u * nodes.x + nodes.y), 0.0, 0.0, 0.0);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(BORDER_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let number = id.x;
     if number >= border_nodes(water) {

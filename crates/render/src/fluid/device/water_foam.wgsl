@@ -2,17 +2,6 @@
 // `Water::keep_foam` in `water.rs`.
 #import water_device
 
-@group(0) @binding(0) var<uniform> water: Water;
-@group(0) @binding(1) var<storage, read> start: array<u32>;
-@group(0) @binding(2) var<storage, read> sites: array<vec4f>;
-@group(0) @binding(3) var<storage, read> matter: array<vec4u>;
-@group(0) @binding(4) var<storage, read> foam: array<f32>;
-@group(0) @binding(5) var<storage, read> before: array<f32>;
-// Bits of what will be before: of numbers that are not negative, the greater has the greater bits. Where particles share a place in the
-// memory, the most foam stays, whichever comes first.
-@group(0) @binding(6) var<storage, read_write> after: array<atomic<u32>>;
-@group(0) @binding(7) var<storage, read_write> instances: array<Instance>;
-
 // Less foam is forgotten.
 const LEAST = 0.01;
 
@@ -36,7 +25,7 @@ fn foam_around(i: u32) -> f32 {
     return sum / weights;
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let i = id.x;
     if i >= start[of_ground(water)] {

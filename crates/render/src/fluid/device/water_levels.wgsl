@@ -1,24 +1,13 @@
 // The water's level at the nodes of the ground's borders. Twin of `levels` in `sides.rs`. Places and lengths here are those of the stage.
 #import water_borders
 
-@group(0) @binding(0) var<uniform> water: Water;
-@group(0) @binding(1) var<storage, read> start: array<u32>;
-@group(0) @binding(2) var<storage, read> instances: array<Instance>;
-@group(0) @binding(3) var<storage, read> heights: array<f32>;
-// See `water_begin`.
-@group(0) @binding(4) var<storage, read> sizes: array<u32>;
-@group(0) @binding(5) var<storage, read_write> levels: array<f32>;
-
-// How well particles must cover a node for water to be there.
-const COVERED = 0.3;
-
 // Height of the upper side of a disc this much beside its middle, as if it went on flat. Twin of `Droplet::level`.
-fn level_of(disc: Instance, away: vec2f) -> f32 {
+fn level_of(disc: DrawnDroplet, away: vec2f) -> f32 {
     let top = disc.flatness * disc.radius * disc.normal;
     return disc.place.z + top.z - dot(disc.normal.xy, away - top.xy) / max(disc.normal.z, 1e-3);
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(BORDER_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= border_nodes(water) {
         return;
@@ -26,7 +15,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let node = border_node(water, id.x).xy;
     let metres = node_place(water, node);
     let place = water.unit * metres;
-    let reach = OVER_REACH * bitcast<f32>(sizes[3]);
+    let reach = OVER_REACH * bitcast<f32>(atomicLoad(&sizes.farthest));
     let low = cell_at(water, metres - reach);
     let high = cell_at(water, metres + reach);
     var sum = 0.0;

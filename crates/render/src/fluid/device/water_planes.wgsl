@@ -1,14 +1,6 @@
 // Planes of least squares through the columns round one. Twin of `Planes` in `water.rs`.
 #import water_device
 
-@group(0) @binding(0) var<uniform> water: Water;
-@group(0) @binding(1) var<storage, read> start: array<u32>;
-@group(0) @binding(2) var<storage, read> sites: array<vec4f>;
-@group(0) @binding(3) var<storage, read> motions: array<vec4f>;
-
-// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
-const LEVEL = 0.02;
-
 // Height and velocity at a column, their slopes east and north, and the sum of the weights.
 struct Fit {
     here: vec3f,

@@ -1,0 +1,148 @@
+//! No constant and no structure that host and shaders share stands twice.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// A file, its crate, and what stands in it.
+struct Source {
+    file: String,
+    of: String,
+    text: String,
+}
+
+/// All files of a kind below the sources of all crates.
+fn sources(extension: &str) -> Vec<Source> {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = Vec::new();
+    for entry in fs::read_dir(crates).unwrap().map(|entry| entry.unwrap()) {
+        let of = entry.file_name().to_string_lossy().into_owned();
+        collect(&entry.path().join("src"), &of, extension, &mut found);
+    }
+    assert!(found.len() > 50, "{} files of kind {extension}", found.len());
+    found
+}
+
+fn collect(folder: &Path, of: &str, extension: &str, found: &mut Vec<Source>) {
+    for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
+        if path.is_dir() {
+            collect(&path, of, extension, found);
+        } else if path.extension().is_some_and(|own| own == extension) {
+            let text = fs::read_to_string(&path).unwrap();
+            found.push(Source { file: path.display().to_string(), of: of.into(), text });
+        }
+    }
+}
+
+/// Name and value of the constants of a text, Rust or WGSL, whose values are numbers: one to a line.
+fn constants(text: &str) -> Vec<(&str, Vec<f64>)> {
+    let constant = |line: &'_ str| -> Option<(usize, usize, Vec<f64>)> {
+        let start = line.find("const ")? + "const ".len();
+        let length = line[start..].find([':', ' ', '='])?;
+        let value = line[start..].split_once('=')?.1.trim().strip_suffix(';')?;
+        Some((start, length, numbers(value)?))
+    };
+    let lines = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+    lines
+        .filter_map(|line| constant(line).map(|(start, length, value)| (&line[start..start + length], value)))
+        .collect()
+}
+
+/// A number, or numbers between brackets; none where it is anything else.
+fn numbers(value: &str) -> Option<Vec<f64>> {
+    let inside =
+        value.trim_start_matches(|c: char| c.is_alphanumeric() && !value.starts_with(|c: char| c.is_ascii_digit()));
+    let inside = inside.trim_matches(['(', ')', '[', ']']);
+    let number = |text: &str| text.trim().replace('_', "").trim_end_matches(['u', 'f', 'i']).parse::<f64>().ok();
+    inside.split(',').map(number).collect()
+}
+
+/// Name and members of the structures of a WGSL text, without comments and spaces.
+fn structures(text: &str) -> Vec<(String, String)> {
+    let bare: String = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+    let mut found = Vec::new();
+    for part in bare.split("struct ").skip(1) {
+        if let Some((name, rest)) = part.split_once('{')
+            && let Some((members, _)) = rest.split_once('}')
+        {
+            found.push((name.trim().to_owned(), members.split_whitespace().collect()));
+        }
+    }
+    found
+}
+
+/// Constants that two shaders have with one name and value, or a shader and the Rust code of its crate.
+fn repeated_constants(shaders: &[Source], code: &[Source]) -> Vec<String> {
+    let mut repeated = Vec::new();
+    for (number, shader) in shaders.iter().enumerate() {
+        for (name, value) in constants(&shader.text) {
+            let of_crate = code.iter().filter(|source| source.of == shader.of);
+            let others = shaders[number + 1..].iter().chain(of_crate);
+            let same = others.filter(|other| constants(&other.text).contains(&(name, value.clone())));
+            repeated.extend(same.map(|other| format!("{name} = {value:?}: {} and {}", shader.file, other.file)));
+        }
+    }
+    repeated
+}
+
+/// Structures that two shaders have with the same members.
+fn repeated_structures(shaders: &[Source]) -> Vec<String> {
+    let mut first: BTreeMap<String, String> = BTreeMap::new();
+    let mut repeated = Vec::new();
+    for shader in shaders {
+        for (name, members) in structures(&shader.text) {
+            let here = format!("{name} in {}", shader.file);
+            if let Some(there) = first.get(&members) {
+                repeated.push(format!("{here} is {there}"));
+            }
+            first.insert(members, here);
+        }
+    }
+    repeated
+}
+
+#[test]
+fn no_constant_stands_twice() {
+    let repeated = repeated_constants(&sources("wgsl"), &sources("rs"));
+    assert!(repeated.is_empty(), "declare these once (`declare!`):\n{}", repeated.join("\n"));
+}
+
+#[test]
+fn no_structure_stands_twice() {
+    let repeated = repeated_structures(&sources("wgsl"));
+    assert!(repeated.is_empty(), "declare these once (`declare!`), or in a piece:\n{}", repeated.join("\n"));
+}
+
+/// Structures that the device sees come from declarations, which give the WGSL too.
+#[test]
+fn no_structure_is_laid_out_by_hand() {
+    let shaders = sources("wgsl");
+    let has_shaders = |source: &Source| shaders.iter().any(|shader| shader.of == source.of);
+    let is_by_hand = |source: &&Source| source.text.contains("repr(C)") && source.text.contains("Pod");
+    let code = sources("rs");
+    let by_hand = code.iter().filter(is_by_hand).filter(|source| has_shaders(source));
+    let by_hand: Vec<_> = by_hand.map(|source| &source.file).collect();
+    assert!(by_hand.len() == 1 && by_hand[0].ends_with("gpu/src/declare.rs"), "{by_hand:#?}");
+}
+
+/// Kernels of models, and of crates that only compute, get their bindings from declarations.
+#[test]
+fn no_kernel_writes_its_bindings() {
+    let draws = ["render", "app"];
+    let writes = |source: &&Source| source.text.contains("@binding") && !draws.contains(&source.of.as_str());
+    let found: Vec<_> = sources("wgsl").iter().filter(writes).map(|source| source.file.clone()).collect();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn what_stands_twice_is_found() {
+    let source = |file: &str, text: &str| Source { file: file.into(), of: "flood".into(), text: text.into() };
+    let shaders = [
+        source("a.wgsl", "const THIN = 1e-6;\nconst NAMES = 3u;\nstruct A {\n    // m\n    depth: f32,\n}\n"),
+        source("b.wgsl", "const THIN: f32 = 0.000001;\nstruct B { depth: f32, }\n"),
+    ];
+    let code = [source("c.rs", "pub(crate) const NAMES: usize = 3;\n/// const NAMES = 3;\nconst OTHER: f64 = 3.0;")];
+    let constants = repeated_constants(&shaders, &code);
+    assert!(constants.len() == 2 && constants[0].contains("THIN") && constants[1].contains("NAMES"), "{constants:?}");
+    assert_eq!(repeated_structures(&shaders), ["B in b.wgsl is A in a.wgsl"]);
+}
