@@ -247,7 +247,8 @@ impl Declaration {
     /// Whether some of it is atomic, which WGSL has only where shaders may write.
     fn has_atomics(&self, binding: &Binding) -> bool {
         let is_atomic = |wgsl: &str| wgsl.contains("atomic<");
-        let holds = |layout: &&Layout| binding.wgsl.contains(layout.name);
+        let names = |c: char| !c.is_alphanumeric() && c != '_';
+        let holds = |layout: &&Layout| binding.wgsl.split(names).any(|name| name == layout.name);
         let members = self.structs.iter().filter(holds).flat_map(|layout| &layout.members);
         is_atomic(&binding.wgsl) || members.map(|member| member.wgsl.as_str()).any(is_atomic)
     }

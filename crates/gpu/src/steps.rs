@@ -84,16 +84,9 @@ impl Batches {
         Self { gpu, label, size: 1, seconds: 0.0, stopwatch: None }
     }
 
-    /// Batches of the same model after its memory on the device was made anew: what was measured before goes on, where it is the same device.
-    pub fn after(mut self, before: Option<Self>) -> Self {
-        match before {
-            Some(before) if before.gpu.device == self.gpu.device => before,
-            Some(before) => {
-                self.seconds = before.seconds;
-                self
-            }
-            None => self,
-        }
+    /// Batches of the same model after its memory on the device was made anew: those before, with what they measured, where it is the same device.
+    pub fn after(self, before: Option<Self>) -> Self {
+        before.filter(|before| before.gpu.device == self.gpu.device).unwrap_or(self)
     }
 
     /// The device.

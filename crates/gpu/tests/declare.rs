@@ -1,8 +1,8 @@
 //! One declaration for host and shaders.
 
 use corpuscle_gpu::{
-    Buffers, Gpu, Kernel, Pass, check_layouts, check_layouts_in, check_shader, filled, read, require_gpu, storage,
-    uniform, wgpu,
+    Buffers, Gpu, Kernel, Layout, Pass, SharedStruct, check_layouts, check_layouts_in, check_shader, filled, read,
+    require_gpu, storage, uniform, wgpu,
 };
 
 corpuscle_gpu::declare! {
@@ -50,6 +50,65 @@ corpuscle_gpu::declare! {
         storage given: [Outer],
         /// Written.
         storage found: [f32],
+    }
+}
+
+mod included {
+    use corpuscle_gpu::AtomicU32;
+
+    corpuscle_gpu::declare! {
+        constants {
+        /// Seven.
+        pub const SEVEN: u32 = 7;
+        }
+        structs {
+        /// A corner.
+        pub struct Corner {
+            /// Where.
+            pub place: [f32; 3],
+            /// How large.
+            pub radius: f32,
+            /// Which.
+            pub number: u32,
+            /// Fills up.
+            pub unused: u32,
+            /// Fills up.
+            pub unused_more: [u32; 2],
+        }
+        }
+
+        /// For others.
+        pub piece Corners;
+    }
+
+    corpuscle_gpu::declare! {
+        include [Corners]
+        constants {}
+        structs {
+        /// Counts of the passes.
+        pub struct Counts {
+            /// A number that threads change.
+            pub changed: AtomicU32,
+            /// One that they do not.
+            pub all: u32,
+        }
+
+        /// Its name holds that of another.
+        pub struct MoreCounts {
+            /// A number.
+            pub count: u32,
+        }
+        }
+
+        /// What kernels work on.
+        pub buffers Memory {
+            /// Has atomics.
+            storage counts: Counts,
+            /// Has none.
+            storage more: [MoreCounts],
+            /// Of the piece.
+            storage corners: [Corner],
+        }
     }
 }
 
@@ -134,6 +193,36 @@ fn a_shader_gets_the_bindings_that_it_uses() {
     assert!(check_shader(&text.replace("@workgroup_size(1)", "@workgroup_size(512)")).is_err());
     let unknown = Memory::declaration().complete("test", &KERNEL.replace("found[0]", "lost[0]"), &[]).unwrap_err();
     assert!(unknown.to_string().contains("lost"), "{unknown}");
+}
+
+#[test]
+fn what_is_included_is_declared_and_atomics_are_never_read_only() {
+    let text = "#import declared
+@compute @workgroup_size(1)
+fn main() {
+    corners[0].number = SEVEN + counts.all + more[0].count;
+}
+";
+    let declaration = included::Memory::declaration();
+    check_layouts(&declaration).unwrap();
+    let (text, _) = declaration.complete("test", text, &[]).unwrap();
+    for line in ["var<storage, read_write> counts: Counts;", "var<storage, read> more: array<MoreCounts>;"] {
+        assert!(text.contains(line), "{text}");
+    }
+    check_shader(&text).unwrap();
+}
+
+#[test]
+fn a_vertex_buffer_is_laid_out_as_the_structure() {
+    let layout = included::Corner::layout();
+    assert!(layout.wgsl_of_vertex().contains("    @location(1) radius: f32,\n"), "{}", layout.wgsl_of_vertex());
+    let found: Vec<_> = layout.members[..3].iter().map(|member| (member.name, member.offset as u64)).collect();
+    assert_eq!(found, [("place", 0), ("radius", 12), ("number", 16)]);
+    let vertex = Layout { members: layout.members[..3].to_vec(), ..layout };
+    let attributes = vertex.vertex_attributes();
+    let told: Vec<_> = attributes.iter().map(|a| (a.format, a.offset, a.shader_location)).collect();
+    let formats = [wgpu::VertexFormat::Float32x3, wgpu::VertexFormat::Float32, wgpu::VertexFormat::Uint32];
+    assert_eq!(told, [(formats[0], 0, 0), (formats[1], 12, 1), (formats[2], 16, 2)]);
 }
 
 #[test]

@@ -50,9 +50,7 @@ fn constants(text: &str) -> Vec<(&str, Vec<f64>)> {
 
 /// A number, or numbers between brackets; none where it is anything else.
 fn numbers(value: &str) -> Option<Vec<f64>> {
-    let inside =
-        value.trim_start_matches(|c: char| c.is_alphanumeric() && !value.starts_with(|c: char| c.is_ascii_digit()));
-    let inside = inside.trim_matches(['(', ')', '[', ']']);
+    let inside = value.split_once(['(', '[']).map_or(value, |(_, inside)| inside.trim_end_matches([')', ']']));
     let number = |text: &str| text.trim().replace('_', "").trim_end_matches(['u', 'f', 'i']).parse::<f64>().ok();
     inside.split(',').map(number).collect()
 }
@@ -139,10 +137,14 @@ fn what_stands_twice_is_found() {
     let source = |file: &str, text: &str| Source { file: file.into(), of: "flood".into(), text: text.into() };
     let shaders = [
         source("a.wgsl", "const THIN = 1e-6;\nconst NAMES = 3u;\nstruct A {\n    // m\n    depth: f32,\n}\n"),
-        source("b.wgsl", "const THIN: f32 = 0.000001;\nstruct B { depth: f32, }\n"),
+        source("b.wgsl", "const THIN: f32 = 0.000001;\nconst PAIR = vec2f(1.5, 2.0);\nstruct B { depth: f32, }\n"),
     ];
-    let code = [source("c.rs", "pub(crate) const NAMES: usize = 3;\n/// const NAMES = 3;\nconst OTHER: f64 = 3.0;")];
+    let code = [source(
+        "c.rs",
+        "pub(crate) const NAMES: usize = 3;\n/// const NAMES = 3;\nconst OTHER: f64 = 3.0;\nconst PAIR: [f64; 2] = [1.5, 2.0];",
+    )];
     let constants = repeated_constants(&shaders, &code);
-    assert!(constants.len() == 2 && constants[0].contains("THIN") && constants[1].contains("NAMES"), "{constants:?}");
+    let found = ["THIN", "NAMES", "PAIR"].map(|name| constants.iter().filter(|line| line.starts_with(name)).count());
+    assert_eq!((found, constants.len()), ([1; 3], 3), "{constants:?}");
     assert_eq!(repeated_structures(&shaders), ["B in b.wgsl is A in a.wgsl"]);
 }

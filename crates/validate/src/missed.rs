@@ -11,6 +11,8 @@ const MISSED: &[(&str, &str, f64)] = &[
     ("flood/voronoi/thacker-radial", "order", 1.4),
     ("flood/voronoi/lake-blocks", "rms_speed_after_waves", 2e-3),
     ("flood/voronoi/lake-jacksboro", "rms_speed_after_waves_200m", 1.5e-3),
+    // 1.6e-14 at 200 m. What runs off a pool in a step is less than the last digit of the lake's cells: likely it is lost there.
+    ("flood/voronoi/lake-long", "water_relative_error_after_waves", 3e-13),
     ("flood/voronoi/sheets", "velocity_error_slope_30", 1.3e-2),
     ("flood/voronoi/energy", "highest_energy_of_sloshing", 4.5e-4),
     ("flood/voronoi/malpasset", "rms_change_of_highest_levels", 3.0),

@@ -39,8 +39,8 @@ corpuscle_gpu::declare! {
         pub const SETTLING: u32 = 5;
         /// The number of [`Memory::groups`] from which the draw is told: corners, particles, the firsts of both.
         pub const DRAW: u32 = 18;
-        /// The number from which splats are told: groups of threads, in three dimensions.
-        pub const SPLATS: u32 = 22;
+        /// The number from which splats are told: groups of threads, in three dimensions, before [`SPLAT_COUNT`](crate::shared::SPLAT_COUNT).
+        pub const SPLATS: u32 = crate::shared::SPLAT_COUNT - 3;
     }
     structs {
         /// Numbers of a picture.

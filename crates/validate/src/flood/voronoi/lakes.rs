@@ -97,8 +97,7 @@ fn after_many_steps(terrain: &Arc<Terrain>) -> Result<Vec<Row>, ModelError> {
         let water = flood.ledger().balances[0].relative_error().abs();
         Ok::<_, ModelError>((taken as f64, lake.settled(&flood, 0.0), water))
     };
-    // Each step rounds each volume to 1.1e-16 of it: 1.1e-11 if all of them erred one way.
-    let water_bound = rounding(1e-12, 1e-7);
+    let water_bound = rounding(1e-13, 1e-7);
     let row = |measure, value, unit, bound| Row::at_most(LONG.name, measure, value, unit, bound);
     let at_least = |measure, value| Row::at_least(LONG.name, measure, value, "", steps as f64);
     let (taken, settled, water) = after(Stir::Nothing)?;
