@@ -1,4 +1,5 @@
-// Compensated sums: pairs of a value and what it lacks, to be added; and counts of more than 32 bits. The importing declaration has `parameters.zero`, always 0.
+// Compensated sums, as pairs of a value and its error term, to be added; and counts of more than 32 bits. The importing declaration has `parameters.zero`: always 0, read at
+// run time so that the optimiser keeps the sums.
 #import declared
 
 // The number itself; the optimiser cannot tell, and so keeps (a + b) - a as it is.

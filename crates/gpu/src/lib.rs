@@ -31,7 +31,7 @@ pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
 pub use particles::{DeviceParticle, DeviceParticles};
 pub use pass::{Pass, Stopwatch, Taken, submit};
 pub use reflect::{check_layouts, check_layouts_in, check_shader};
-pub use shader::{COMPENSATED_SUMS, OVER_GROUP, SUMS_BEFORE, ShaderLibrary, join};
+pub use shader::{COMPENSATED_SUMS, GROUP_REDUCTION, SUMS_BEFORE, ShaderLibrary, join};
 pub use sort::{CellSort, SortSlots, sort_blocks};
 pub use steps::{
     ARRIVED, BATCH_START, BROKEN, Batches, GOING, Halt, MOST_STEPS, NEEDS_HOST, SORT_BLOCK, Stepping, from_halves,

@@ -16,8 +16,8 @@ pub const SUMS_BEFORE: (&str, &str) = ("sums_before", include_str!("sums_before.
 /// it has a buffer `parameters` with a member `zero`, which is always 0.
 pub const COMPENSATED_SUMS: (&str, &str) = ("compensated_sums", include_str!("compensated_sums.wgsl"));
 
-/// The piece `over_group`: what the threads of a group have, taken together.
-pub const OVER_GROUP: (&str, &str) = ("over_group", include_str!("over_group.wgsl"));
+/// The piece `group_reduction`: the values of the threads of a group combined into one.
+pub const GROUP_REDUCTION: (&str, &str) = ("group_reduction", include_str!("group_reduction.wgsl"));
 
 /// The text of a shader with everything it imports before it; `name` is for errors.
 ///

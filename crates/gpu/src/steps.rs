@@ -20,7 +20,7 @@ crate::declare! {
         pub const NEEDS_HOST: u32 = 3;
         /// Something is no number, or the step is too short to go on.
         pub const BROKEN: u32 = 4;
-        /// Larger than whatever is found: the least of nothing.
+        /// Larger than any value: where the search for a minimum starts.
         pub const FAR: f32 = 3.0e38;
         /// Cells of a search are taken to be this part thicker than they are: who lies on their border may be in either.
         pub const CELL_BORDER: f32 = 0.01;
@@ -115,49 +115,49 @@ impl Batches {
         u64::from(planned.min(self.size)).min(most) as u32
     }
 
-    /// Has the device do something that is no batch of steps.
+    /// Submits work that is no batch of steps.
     pub fn submit(&mut self, work: impl FnOnce(&mut Pass<'_>)) {
         submit(&self.gpu, self.label, self.stopwatch.as_mut(), work);
     }
 
-    /// Takes a batch of `count` steps or fewer: writes the status, has `work` run the passes, and has `read` bring back what they did.
+    /// Runs a batch of `count` steps or fewer: uploads the status, records the passes of `work`, and downloads by `read` what they did.
     ///
     /// # Errors
     /// Those of `read`, and [`GpuError::Lost`].
-    pub fn take<T>(
+    pub fn run<T>(
         &mut self,
         count: u32,
-        (status, told): (&wgpu::Buffer, &impl NoUninit),
+        (status, uploaded): (&wgpu::Buffer, &impl NoUninit),
         work: impl FnOnce(&mut Pass<'_>),
         read: impl FnOnce(&Gpu) -> Result<T, GpuError>,
     ) -> Result<T, GpuError> {
         let began = Instant::now();
-        self.gpu.queue.write_buffer(status, 0, bytemuck::bytes_of(told));
+        self.gpu.queue.write_buffer(status, 0, bytemuck::bytes_of(uploaded));
         self.submit(work);
         let done = read(&self.gpu)?;
         let took = began.elapsed().as_secs_f64();
         self.seconds += took;
-        self.fit(count, took);
+        self.adapt_size(count, took);
         self.stopwatch.iter_mut().try_for_each(|stopwatch| stopwatch.read(&self.gpu))?;
         Ok(done)
     }
 
     /// Finds the size of the next batch after one of `count` steps that took so long, s.
-    fn fit(&mut self, count: u32, took: f64) {
+    fn adapt_size(&mut self, count: u32, took: f64) {
         let next = if took < 0.5 * LONGEST { 2 * count.max(self.size / 2) } else { count / 2 };
         self.size = next.clamp(1, MOST_STEPS);
     }
 }
 
-/// A number in double precision as shaders keep it: a value in single precision, and what it lacks. To be added.
+/// A number in double precision as shaders keep it: a value in single precision and its error term, to be added.
 pub fn to_pair(number: f64) -> [f32; 2] {
     let value = number as f32;
     [value, (number - f64::from(value)) as f32]
 }
 
 /// The number that shaders keep as a pair: see [`to_pair`].
-pub fn from_pair([value, lacking]: [f32; 2]) -> f64 {
-    f64::from(value) + f64::from(lacking)
+pub fn from_pair([value, error]: [f32; 2]) -> f64 {
+    f64::from(value) + f64::from(error)
 }
 
 /// A count of which shaders keep the low and the high half.

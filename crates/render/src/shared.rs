@@ -69,7 +69,7 @@ corpuscle_gpu::declare! {
         }
 
         /// A ball, in stage coordinates.
-        pub(crate) struct DrawnBall {
+        pub(crate) struct BallInstance {
             /// Middle.
             pub(crate) x: f32,
             /// Middle.
@@ -83,7 +83,7 @@ corpuscle_gpu::declare! {
         }
 
         /// How balls look.
-        pub(crate) struct BallLook {
+        pub(crate) struct BallUniforms {
             /// The number of the first colour.
             pub(crate) low: f32,
             /// The number of the last colour.
@@ -95,7 +95,7 @@ corpuscle_gpu::declare! {
         }
 
         /// A drop as a cap on a surface, in stage coordinates.
-        pub(crate) struct DrawnCap {
+        pub(crate) struct CapInstance {
             /// Middle of the disc that it covers.
             pub(crate) place: [f32; 3],
             /// Radius of the disc.
@@ -111,7 +111,7 @@ corpuscle_gpu::declare! {
         }
 
         /// How drops look.
-        pub(crate) struct CapLook {
+        pub(crate) struct CapUniforms {
             /// How far they reach for each other.
             pub(crate) neck: f32,
             /// Drops of smaller radius are fog, samples.
@@ -131,7 +131,7 @@ corpuscle_gpu::declare! {
         }
 
         /// How a solid looks.
-        pub(crate) struct SolidLook {
+        pub(crate) struct SolidUniforms {
             /// Colour; of glass what is left of light straight through.
             pub(crate) colour: [f32; 4],
             /// Part of light that the coat mirrors, first.
@@ -139,7 +139,7 @@ corpuscle_gpu::declare! {
         }
 
         /// How a fluid looks.
-        pub(crate) struct FluidLook {
+        pub(crate) struct FluidUniforms {
             /// Part of light that is lost in a metre of water (1/m); density of foam that hides what is below.
             pub(crate) absorption: [f32; 4],
             /// Light that deep water gives back in full light; strength of the sun's highlight.
@@ -187,7 +187,7 @@ corpuscle_gpu::declare! {
         }
 
         /// A particle of a fluid as a ball, or flattened along a direction; in stage coordinates.
-        pub(crate) struct DrawnDroplet {
+        pub(crate) struct DropletInstance {
             /// Middle.
             pub(crate) place: [f32; 3],
             /// Radius across `normal`.
@@ -201,7 +201,7 @@ corpuscle_gpu::declare! {
         }
 
         /// A piece of a tube, in stage coordinates.
-        pub(crate) struct DrawnTube {
+        pub(crate) struct TubeInstance {
             /// One end, and the radius.
             pub(crate) from_end: [f32; 4],
             /// The other end, and the least radius, samples.

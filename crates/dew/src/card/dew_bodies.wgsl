@@ -2,12 +2,12 @@
 // group for each solid. The latter is the twin of `hold` in `dew.rs`.
 #import dew_card
 #import dew_rows
-#import over_group
+#import group_reduction
 
 // Heat through the surface, heat it was held against, water, how stiff.
-alias Summand = vec4f;
+alias Reduced = vec4f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return vec4f(a.xyz + b.xyz, max(a.w, b.w));
 }
 
@@ -25,10 +25,10 @@ fn hold(body: Body, thread: u32) {
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) thread: u32) {
     var own = vec4f(0.0);
     for (var i = bodies[group.x].first + thread; i < bodies[group.x].end; i += GROUP) {
-        own = both(own, vec4f(solids[i].flow, solids[i].held, solids[i].water, solids[i].stiff));
+        own = combine(own, vec4f(solids[i].flow, solids[i].held, solids[i].water, solids[i].stiff));
     }
     hold(bodies[group.x], thread);
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         bodies[group.x].flow = all.x;
         bodies[group.x].held = add(bodies[group.x].held, all.y);

@@ -78,7 +78,7 @@ fn is_set(flag: u32) -> bool {
 
 // Adds four numbers (Kahan 1965).
 fn add_four(sums: FourSums, values: vec4f) -> FourSums {
-    let more = values + sums.lacking;
+    let more = values + sums.errors;
     let sum = opaque_four(sums.values + more);
     return FourSums(sum, more - opaque_four(sum - sums.values));
 }

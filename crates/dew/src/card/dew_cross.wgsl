@@ -3,7 +3,7 @@
 #import dew_neighbours
 #import dew_columns
 #import dew_utility
-#import over_group
+#import group_reduction
 
 const NOWHERE = 6u;
 
@@ -16,9 +16,9 @@ struct Crossed {
 // By this thread's particle.
 var<private> crossed: Crossed;
 
-alias Summand = Crossed;
+alias Reduced = Crossed;
 
-fn both(a: Crossed, b: Crossed) -> Crossed {
+fn combine(a: Crossed, b: Crossed) -> Crossed {
     return Crossed(a.came + b.came, a.went + b.went);
 }
 
@@ -176,7 +176,7 @@ fn main(
         places[i] = vec2u(cell, atomicAdd(&counts[cell], 1u));
         keys[i] = particle.id;
     }
-    let all = over_group(thread, crossed);
+    let all = reduce_group(thread, crossed);
     if thread == 0u {
         partials[group.x].came = all.came;
         partials[group.x].went = all.went;

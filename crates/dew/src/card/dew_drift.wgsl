@@ -1,11 +1,11 @@
 // Half a kick with the old acceleration, then on by a whole step; and what the air before outlets does. Twin of `drift` in
 // `dew/motion.rs`, of `Room::keep` and `Room::wrap_along`, and of `before_outlet` in `faces/mod.rs`.
 #import dew_card
-#import over_group
+#import group_reduction
 
-alias Summand = BeforeOutlet;
+alias Reduced = BeforeOutlet;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return BeforeOutlet(a.near + b.near, 0.0, a.nearest + b.nearest, vec2f(0.0));
 }
 
@@ -81,7 +81,7 @@ fn main(
         if is_there {
             own = counted(particle, number);
         }
-        let all = over_group(thread, own);
+        let all = reduce_group(thread, own);
         if thread == 0u {
             before[group.x][number] = all;
         }

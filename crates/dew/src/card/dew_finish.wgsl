@@ -1,11 +1,11 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
 // `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
 #import dew_card
-#import over_group
+#import group_reduction
 
-alias Summand = Partial;
+alias Reduced = Partial;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return Partial(
         a.came + b.came,
         a.went + b.went,
@@ -100,10 +100,10 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var own = Partial(vec4f(0.0), vec4f(0.0), vec2f(0.0), 0.0, FAR, 0.0, 0.0, vec2f(0.0));
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += GROUP) {
-            own = both(own, partials[group]);
+            own = combine(own, partials[group]);
         }
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         if status.halted == GOING {
             book(all);

@@ -3,7 +3,7 @@
 #import dew_neighbours
 #import dew_humid
 #import dew_saturate
-#import over_group
+#import group_reduction
 
 // What neighbours do: by pressure and viscosity, m/s2; gradient of crowding, 1/m; K/s; 1/s; weights of the Laplacian, 1/m2.
 struct Rates {
@@ -226,9 +226,9 @@ fn kicked(particle: ptr<function, Particle>, own: Column, air: Rates) -> Kicked 
     return Kicked(diffused, fogged, longest_step(speed, acceleration, stiffest), speed);
 }
 
-alias Summand = Kicked;
+alias Reduced = Kicked;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return Kicked(a.diffused + b.diffused, a.fogged + b.fogged, min(a.longest, b.longest), max(a.fastest, b.fastest));
 }
 
@@ -250,7 +250,7 @@ fn main(
         part = kicked(&particle, own, rates);
         particles[i] = packed(particle);
     }
-    let all = over_group(thread, part);
+    let all = reduce_group(thread, part);
     if thread == 0u {
         partials[group.x].diffused = all.diffused;
         partials[group.x].fogged = all.fogged;

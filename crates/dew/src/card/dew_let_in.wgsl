@@ -1,11 +1,11 @@
 // What air beyond outlets is faster and denser by, and new layers of air before inlets; one group. Twin of `faces/inlet.rs`, and of
 // `before_outlet` and `update_outlet_pressure` in `faces/mod.rs`.
 #import dew_card
-#import over_group
+#import group_reduction
 
-alias Summand = BeforeOutlet;
+alias Reduced = BeforeOutlet;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return BeforeOutlet(a.near + b.near, 0.0, a.nearest + b.nearest, vec2f(0.0));
 }
 
@@ -16,7 +16,7 @@ fn mean_before(number: u32, count: u32, thread: u32) -> vec3f {
         own.near += before[group][number].near;
         own.nearest += before[group][number].nearest;
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     return vec3f(all.near.xy / max(all.near.z, 1.0), all.nearest.x / max(all.nearest.y, 1.0));
 }
 

@@ -1,10 +1,10 @@
 // What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures.rs`.
 #import dew_card
-#import over_group
+#import group_reduction
 
-alias Summand = Measured;
+alias Reduced = Measured;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return Measured(
         a.temperature + b.temperature,
         a.vapour + b.vapour,
@@ -30,9 +30,9 @@ fn main(
 ) {
     var own = Measured();
     for (var i = id.x; i < status.particles; i += GROUP * MEASURING_GROUPS) {
-        own = both(own, measure(unpacked(particles[i])));
+        own = combine(own, measure(unpacked(particles[i])));
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         measured[group.x] = all;
     }

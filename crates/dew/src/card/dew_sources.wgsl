@@ -2,7 +2,7 @@
 // `Conditions::flux` in `solids/sources/mod.rs`.
 #import dew_card
 #import dew_rows
-#import over_group
+#import group_reduction
 
 // Surroundings at a time; temperatures from the ambient air's, K.
 struct Conditions {
@@ -16,9 +16,9 @@ var<workgroup> power: f32;
 var<workgroup> outside: Conditions;
 var<workgroup> radiation: Conditions;
 
-alias Summand = vec3f;
+alias Reduced = vec3f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -88,7 +88,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
         surfaces[i].conductance += from_outside.y + radiated.y;
         own += all;
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         let supplied = parameters.time_factor * status.step * all;
         for (var kind = 0u; kind < 3u; kind++) {

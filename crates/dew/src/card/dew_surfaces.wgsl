@@ -31,7 +31,7 @@ fn from_air(site: Site, surface: Surface) -> vec4f {
             }
         }
     }
-    return sums.values + sums.lacking;
+    return sums.values + sums.errors;
 }
 
 @compute @workgroup_size(GROUP)

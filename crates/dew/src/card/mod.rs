@@ -281,7 +281,7 @@ impl Card {
             ..Status::zeroed()
         };
         let Self { tasks, batches, status, bodies, sources, .. } = self;
-        let (done, bodies, supplied) = batches.take(
+        let (done, bodies, supplied) = batches.run(
             count,
             (&tasks.memory.status, &*status),
             |pass| tasks.steps(pass, count),

@@ -2,7 +2,7 @@
 //!
 //! Single precision has some 7 digits. They are not to be spent on where the room is, nor on the 300 K and the part of vapour that all
 //! air has in common: positions are counted from the middle of the room, temperature and vapour from those of the ambient air. What grows by
-//! little in a step is kept as a pair of a value and what it lacks.
+//! little in a step is kept as a compensated sum, a value and its error term.
 
 use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping, from_pair, to_pair};
 
@@ -101,12 +101,12 @@ corpuscle_gpu::declare! {
         pub const MASS_RATIO: f32 = crate::humid_air::MASS_RATIO as f32;
     }
     structs {
-        /// Compensated sums of four numbers: values, and what they lack.
+        /// Compensated sums of four numbers (Kahan 1965): values and error terms, to be added.
         pub struct FourSums {
             /// The values.
             pub values: [f32; 4],
-            /// What is to be added to them.
-            pub lacking: [f32; 4],
+            /// Error terms.
+            pub errors: [f32; 4],
         }
 
         /// Air as it comes in by a face.
@@ -679,7 +679,7 @@ const _: () = assert!(size_of::<Particle>() == size_of::<Packed>(), "two forms o
 impl FourSums {
     /// The values of the sums.
     pub fn values(&self) -> [f64; 4] {
-        std::array::from_fn(|k| from_pair([self.values[k], self.lacking[k]]))
+        std::array::from_fn(|k| from_pair([self.values[k], self.errors[k]]))
     }
 }
 

@@ -7,7 +7,7 @@ use super::shared::{
 use super::solids::{CardSolids, filled};
 use super::sources::CardSources;
 use corpuscle_gpu::{
-    Buffers, COMPENSATED_SUMS, CellSort, Gpu, GpuError, Kernel, OVER_GROUP, Pass, SUMS_BEFORE, SortSlots, THREADS,
+    Buffers, COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS,
     Task, storage, uniform, wgpu,
 };
 
@@ -15,7 +15,7 @@ use corpuscle_gpu::{
 pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
-    OVER_GROUP,
+    GROUP_REDUCTION,
     ("dew_card", include_str!("dew_card.wgsl")),
     ("dew_columns", include_str!("dew_columns.wgsl")),
     ("dew_neighbours", include_str!("dew_neighbours.wgsl")),

@@ -1,7 +1,7 @@
 // The particles move, and those that came into obstacles are put back. Twin of `move_particles` and `keep_out` in `step.rs`.
 #import sph_common
 #import sph_outlines
-#import over_group
+#import group_reduction
 
 // Where a place is to an outline: the way to it from the nearest wall, that wall, and whether it is inside.
 struct Within {
@@ -67,9 +67,9 @@ fn kept_out(particle: ptr<function, Particle>) -> vec2f {
     return vec2f(0.0);
 }
 
-alias Summand = f32;
+alias Reduced = f32;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -88,7 +88,7 @@ fn main(
         }
         particles[id.x] = packed(particle);
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         partials[group.x].knocked = all;
     }

@@ -5,7 +5,7 @@
 #import sph_kernels
 #import sph_ground
 #import sph_friction
-#import over_group
+#import group_reduction
 
 struct Sums {
     slowed: f32,
@@ -15,9 +15,9 @@ struct Sums {
     high: vec2f,
 }
 
-alias Summand = Sums;
+alias Reduced = Sums;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return Sums(
         a.slowed + b.slowed,
         a.sum_of_h + b.sum_of_h,
@@ -118,7 +118,7 @@ fn main(
     if id.x < status.particles {
         own = pushed(id.x);
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         partials[group.x].slowed = all.slowed;
         partials[group.x].outer_force = all.outer_force;

@@ -1,6 +1,6 @@
 // What crosses the edges is put back or booked, and each particle counts itself in its cell. Twin of `lose` in `exchange.rs`.
 #import sph_common
-#import over_group
+#import group_reduction
 
 // Puts a coordinate that has left over a periodic side or a wall back: its new value, the sign of its velocity, and whether it has
 // left for good, over the low side (1) or the high one (2).
@@ -72,9 +72,9 @@ fn count(i: u32, particle: Particle) {
     keys[i] = particle.id;
 }
 
-alias Summand = vec4f;
+alias Reduced = vec4f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -92,7 +92,7 @@ fn main(
         particles[id.x] = packed(particle);
         count(id.x, particle);
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         partials[group.x].outflow = all.x;
         partials[group.x].inflow = all.y;

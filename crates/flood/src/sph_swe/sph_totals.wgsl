@@ -1,11 +1,11 @@
 // What a row of gauges tells of all the water and of obstacles: one group for each row. Twin of `SphSweFlood::reading`.
 #import compensated_sums
 #import sph_rows
-#import over_group
+#import group_reduction
 
-alias Summand = f32;
+alias Reduced = f32;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -37,7 +37,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     for (var k = thread; k < groups_of_water(status.particles); k += GROUP) {
         own += volumes[k];
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         tell_pair(row, status.inflow);
         tell_pair(row + 2u, status.outflow);

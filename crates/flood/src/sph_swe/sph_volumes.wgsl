@@ -1,10 +1,10 @@
 // Sums up the water for a row of gauges, group by group, m3. Twin of `SphSweFlood::stored`.
 #import sph_common
-#import over_group
+#import group_reduction
 
-alias Summand = f32;
+alias Reduced = f32;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -26,7 +26,7 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
     @builtin(workgroup_id) group: vec3u,
 ) {
-    let all = over_group(thread, own(id.x));
+    let all = reduce_group(thread, own(id.x));
     if thread == 0u {
         volumes[group.x] = all;
     }

@@ -1,9 +1,9 @@
 // Balls as the device has them (balls/mod.rs): group 1; and how they are lit.
 #import light
 
-@group(1) @binding(0) var<uniform> style: BallLook;
+@group(1) @binding(0) var<uniform> style: BallUniforms;
 @group(1) @binding(1) var colours: texture_2d<f32>;
-@group(1) @binding(2) var<storage, read> balls: array<DrawnBall>;
+@group(1) @binding(2) var<storage, read> balls: array<BallInstance>;
 
 struct Hit {
     place: vec3f,

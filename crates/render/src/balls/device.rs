@@ -1,7 +1,7 @@
 //! Balls of particles that lie on the device.
 
 use super::{BallPainter, BallStyle, Balls};
-use crate::shared::{Bound, DrawnBall};
+use crate::shared::{BallInstance, Bound};
 use crate::{RenderError, Stage};
 use corpuscle_gpu::{DeviceParticles, Gpu, Kernel, THREADS, storage, submit, uniform};
 use glam::DVec3;
@@ -61,7 +61,7 @@ corpuscle_gpu::declare! {
         /// The particles.
         storage particles: DeviceParticles,
         /// The balls.
-        storage balls: [DrawnBall],
+        storage balls: [BallInstance],
     }
 }
 
@@ -99,7 +99,7 @@ impl BallPainter {
         let memory = Memory {
             settings: uniform(gpu, "balls of the device", &settings),
             particles: particles.buffer.clone(),
-            balls: storage::<DrawnBall>(gpu, "balls of the device", particles.room)?,
+            balls: storage::<BallInstance>(gpu, "balls of the device", particles.room)?,
         };
         let task = self.maker.get_or_init(|| maker(gpu)).on(gpu, &memory);
         submit(gpu, "balls", None, |pass| task.run(pass, (particles.room as u32).div_ceil(THREADS)));

@@ -5,7 +5,7 @@ mod seen;
 
 use crate::buffer::{storage, uniform};
 use crate::pipeline::Recipe;
-use crate::shared::{BallLook, DrawnBall};
+use crate::shared::{BallInstance, BallUniforms};
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, Kernel, wgpu};
 pub use device::{BallsOfDevice, ValueOfDevice};
@@ -112,11 +112,11 @@ impl BallPainter {
     ) -> Balls {
         let instance = |(place, radius, value): ([f64; 3], f64, f64)| {
             let [x, y, z] = stage.place(place).into();
-            DrawnBall { x, y, z, radius: stage.length(radius), value: value as f32 }
+            BallInstance { x, y, z, radius: stage.length(radius), value: value as f32 }
         };
-        let drawn = |ball: &DrawnBall| [ball.x, ball.y, ball.z, ball.radius].iter().all(|number| number.is_finite());
-        let all: Vec<DrawnBall> = balls.into_iter().map(instance).filter(drawn).collect();
-        let part = |part: &[DrawnBall]| (storage(gpu, "balls", part), part.len() as u32);
+        let drawn = |ball: &BallInstance| [ball.x, ball.y, ball.z, ball.radius].iter().all(|number| number.is_finite());
+        let all: Vec<BallInstance> = balls.into_iter().map(instance).filter(drawn).collect();
+        let part = |part: &[BallInstance]| (storage(gpu, "balls", part), part.len() as u32);
         let parts: Vec<_> = all.chunks(MOST).map(part).collect();
         self.balls_in(gpu, style, parts.iter().map(|(buffer, count)| (buffer, *count)))
     }
@@ -129,7 +129,7 @@ impl BallPainter {
         parts: impl IntoIterator<Item = (&'a wgpu::Buffer, u32)>,
     ) -> Balls {
         let ColourTable { low, high, .. } = style.colours;
-        let look = BallLook { low, high, gloss: style.gloss, least: style.least_radius };
+        let look = BallUniforms { low, high, gloss: style.gloss, least: style.least_radius };
         let settings = uniform(gpu, "balls", &look);
         let colours = style.colours.upload(gpu);
         let part = |(buffer, count): (&wgpu::Buffer, u32)| {

@@ -1,21 +1,21 @@
 // Drops as the device has them (caps/mod.rs). Group 1.
 #import view
 
-@group(1) @binding(0) var<storage, read> caps: array<DrawnCap>;
+@group(1) @binding(0) var<storage, read> caps: array<CapInstance>;
 @group(1) @binding(1) var<storage, read> neighbours: array<u32>;
-@group(1) @binding(2) var<uniform> settings: CapLook;
+@group(1) @binding(2) var<uniform> settings: CapUniforms;
 
 // Radius of the sphere from those of the disc and the cap's height.
-fn sphere_radius(cap: DrawnCap) -> f32 {
+fn sphere_radius(cap: CapInstance) -> f32 {
     return (cap.radius * cap.radius + cap.height * cap.height) / (2.0 * cap.height);
 }
 
-fn sphere_centre(cap: DrawnCap) -> vec3f {
+fn sphere_centre(cap: CapInstance) -> vec3f {
     return cap.place + (cap.height - sphere_radius(cap)) * cap.out;
 }
 
 // True for drops too small to be seen one by one.
-fn is_fine(cap: DrawnCap) -> bool {
+fn is_fine(cap: CapInstance) -> bool {
     return cap.radius < settings.finest * pixel_at(cap.place);
 }
 

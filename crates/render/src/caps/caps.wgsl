@@ -29,7 +29,7 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) number: u3
 
 // Distance from the joint surface of a cap and its neighbours, and its slope: spheres joined by the logarithm of the sum of
 // exponentials, which does not depend on their order (Quilez, "Smooth minimum", 2013).
-fn from_drops(cap: DrawnCap, place: vec3f) -> vec4f {
+fn from_drops(cap: CapInstance, place: vec3f) -> vec4f {
     let own = place - sphere_centre(cap);
     let own_distance = length(own) - sphere_radius(cap);
     var sum = 1.0;
@@ -46,7 +46,7 @@ fn from_drops(cap: DrawnCap, place: vec3f) -> vec4f {
 }
 
 // Where the line of sight comes into reach of a cap's sphere, and where it goes out; out before in where it misses.
-fn reach_of(cap: DrawnCap, sight: Ray) -> vec2f {
+fn reach_of(cap: CapInstance, sight: Ray) -> vec2f {
     let from_centre = sight.origin - sphere_centre(cap);
     let along = dot(from_centre, sight.direction);
     let aside = from_centre - along * sight.direction;
@@ -85,7 +85,7 @@ fn fragment(corner: Corner) -> Drawn {
 }
 
 // Light from a place on a drop.
-fn water(cap: DrawnCap, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
+fn water(cap: CapInstance, place: vec3f, normal: vec3f, direction: vec3f) -> vec3f {
     // A drop is a lens: what is near behind it is seen smaller, and the room upside down.
     let bent = refract(direction, normal, 1.0 / 1.33) - direction;
     let clip = view.clip_from_world * vec4f(place + bent * max(6.0 * cap.radius, 0.02), 1.0);

@@ -5,7 +5,7 @@ mod neighbours;
 
 use crate::buffer::{UNIFORM, storage, uniform};
 use crate::pipeline::Recipe;
-use crate::shared::{CapLook, DrawnCap};
+use crate::shared::{CapInstance, CapUniforms};
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
 use corpuscle_gpu::{Gpu, wgpu};
@@ -73,18 +73,18 @@ impl CapPainter {
 
     /// Drops; those without height are left out.
     pub fn caps(&self, gpu: &Gpu, stage: &Stage, caps: impl IntoIterator<Item = Cap>) -> Caps {
-        let drawn = |cap: Cap| DrawnCap {
+        let drawn = |cap: Cap| CapInstance {
             place: stage.place(cap.position).into(),
             radius: stage.length(cap.radius),
             out: cap.normal.map(|part| part as f32),
             height: stage.length(cap.height),
-            ..DrawnCap::default()
+            ..CapInstance::default()
         };
-        let is_finite = |cap: &DrawnCap| {
-            let DrawnCap { place, radius, out, height, .. } = cap;
+        let is_finite = |cap: &CapInstance| {
+            let CapInstance { place, radius, out, height, .. } = cap;
             place.iter().chain(out).chain([radius, height]).all(|number| number.is_finite()) && *height > 0.0
         };
-        let mut all: Vec<DrawnCap> = caps.into_iter().map(drawn).filter(is_finite).collect();
+        let mut all: Vec<CapInstance> = caps.into_iter().map(drawn).filter(is_finite).collect();
         let neck = NECK * all.iter().map(|cap| cap.radius).sum::<f32>() / all.len().max(1) as f32;
         let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.place), cap.radius)).collect();
         let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
@@ -92,7 +92,7 @@ impl CapPainter {
         let buffers = [
             storage(gpu, "caps", &all),
             storage(gpu, "caps' neighbours", &list),
-            uniform(gpu, "caps", &CapLook { neck: neck.max(1e-9), finest: FINEST, ..CapLook::default() }),
+            uniform(gpu, "caps", &CapUniforms { neck: neck.max(1e-9), finest: FINEST, ..CapUniforms::default() }),
         ];
         let entries: Vec<_> = (0..)
             .zip(&buffers)

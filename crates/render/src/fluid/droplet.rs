@@ -2,7 +2,7 @@
 
 use crate::Stage;
 use crate::buffer::{filled, storage};
-use crate::shared::{DrawnDroplet, SPLAT_COUNT, SPLAT_GROUP};
+use crate::shared::{DropletInstance, SPLAT_COUNT, SPLAT_GROUP};
 use corpuscle_gpu::{Gpu, wgpu};
 use glam::{DVec2, DVec3};
 
@@ -42,10 +42,10 @@ impl Droplet {
     }
 
     /// As the device has it; none where a number is not finite.
-    pub(super) fn drawn(&self, stage: &Stage) -> Option<DrawnDroplet> {
+    pub(super) fn drawn(&self, stage: &Stage) -> Option<DropletInstance> {
         // Poly6 in the plane is 4 / (pi h^2) in its middle (Mueller, Charypar and Gross 2003).
         let depth = 4.0 * self.volume / (std::f64::consts::PI * self.reach * self.reach);
-        let drawn = DrawnDroplet {
+        let drawn = DropletInstance {
             place: stage.place(self.place).into(),
             radius: stage.length(self.radius),
             normal: DVec3::from(self.normal).normalize_or(DVec3::Z).as_vec3().into(),
@@ -72,7 +72,7 @@ const COUNT: usize = SPLAT_COUNT as usize;
 
 impl Batch {
     /// These.
-    pub fn counted(gpu: &Gpu, all: &[DrawnDroplet]) -> Self {
+    pub fn counted(gpu: &Gpu, all: &[DropletInstance]) -> Self {
         let count = all.len() as u32;
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
         let instances = filled(gpu, "droplets", bytemuck::cast_slice(all), usage);

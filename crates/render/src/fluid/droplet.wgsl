@@ -24,7 +24,7 @@ struct Quad {
 }
 
 // The quad round a particle of this radius.
-fn quad_round(droplet: DrawnDroplet, radius: f32, flatness: f32) -> Quad {
+fn quad_round(droplet: DropletInstance, radius: f32, flatness: f32) -> Quad {
     // No smaller than a pixel, or it would fall between them.
     let least = 0.75 * pixel_at(droplet.place);
     let wide = max(radius, least);
@@ -49,7 +49,7 @@ fn quad_round(droplet: DrawnDroplet, radius: f32, flatness: f32) -> Quad {
 }
 
 // A place on the quad, `offset` from its middle.
-fn sprite_at(droplet: DrawnDroplet, quad: Quad, offset: vec3f) -> Sprite {
+fn sprite_at(droplet: DropletInstance, quad: Quad, offset: vec3f) -> Sprite {
     var out: Sprite;
     out.clip = view.clip_from_world * vec4f(quad.middle + offset, 1.0);
     out.offset = offset;

@@ -3,7 +3,7 @@
 #import fluid
 
 // The quad on which a particle's surface is seen.
-fn surface_quad(droplet: DrawnDroplet) -> Quad {
+fn surface_quad(droplet: DropletInstance) -> Quad {
     return quad_round(droplet, droplet.radius, droplet.flatness);
 }
 

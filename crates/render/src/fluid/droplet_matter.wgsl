@@ -8,7 +8,7 @@ const LEAST_COSINE: f32 = 0.08;
 const FLECKS: i32 = 5;
 
 // The quad on which a particle's water is spread.
-fn matter_quad(droplet: DrawnDroplet) -> Quad {
+fn matter_quad(droplet: DropletInstance) -> Quad {
     if droplet.matter.x > 0.0 {
         return quad_round(droplet, droplet.matter.z, 0.0);
     }

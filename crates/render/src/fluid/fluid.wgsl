@@ -1,7 +1,7 @@
 // What the passes over pixels know of the fluid (settings.rs).
 #import view
 
-@group(1) @binding(0) var<uniform> fluid: FluidLook;
+@group(1) @binding(0) var<uniform> fluid: FluidUniforms;
 
 // Height of a pixel at a distance.
 fn pixel_size(distance: f32) -> f32 {

@@ -7,7 +7,7 @@ struct Nearest {
 }
 
 @vertex
-fn vertex(droplet: DrawnDroplet, @builtin(vertex_index) index: u32) -> Sprite {
+fn vertex(droplet: DropletInstance, @builtin(vertex_index) index: u32) -> Sprite {
     let quad = surface_quad(droplet);
     return sprite_at(droplet, quad, corner_of(quad, index));
 }

@@ -2,7 +2,7 @@
 #import droplet_matter
 
 @vertex
-fn vertex(droplet: DrawnDroplet, @builtin(vertex_index) index: u32) -> Sprite {
+fn vertex(droplet: DropletInstance, @builtin(vertex_index) index: u32) -> Sprite {
     let quad = matter_quad(droplet);
     return sprite_at(droplet, quad, corner_of(quad, index));
 }

@@ -4,7 +4,7 @@ use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOL
 use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
 use super::{Fluid, FluidStyle};
 use crate::pipeline::Recipe;
-use crate::shared::{DrawnDroplet, buffer_layout};
+use crate::shared::{DropletInstance, buffer_layout};
 use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use wgpu::ShaderStages;
@@ -120,7 +120,7 @@ impl Filter {
 
 /// The pipelines that draw particles: nearest depth, and thickness.
 fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
-    let layout = DrawnDroplet::layout();
+    let layout = DropletInstance::layout();
     let attributes = layout.vertex_attributes();
     let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
     let groups = [view, settings];

@@ -2,7 +2,7 @@
 #import droplet_depth
 #import splat
 
-@group(1) @binding(1) var<storage, read> droplets: array<DrawnDroplet>;
+@group(1) @binding(1) var<storage, read> droplets: array<DropletInstance>;
 // How many there are, at SPLAT_COUNT.
 @group(1) @binding(2) var<storage, read> told: array<u32>;
 // The bits of the distance at each pixel, the other way round, so that the nearest is the greatest and 0 is nothing: positive numbers
@@ -13,7 +13,7 @@
 var<workgroup> large: array<u32, SPLAT_GROUP>;
 var<workgroup> larges: atomic<u32>;
 
-fn splat(droplet: DrawnDroplet, quad: Quad, pixel: vec2i, size: vec2f) {
+fn splat(droplet: DropletInstance, quad: Quad, pixel: vec2i, size: vec2f) {
     let at = meeting(quad, pixel, size);
     if !at.met {
         return;

@@ -5,7 +5,7 @@
 #import splat
 #import splat_sums
 
-@group(1) @binding(1) var<storage, read> droplets: array<DrawnDroplet>;
+@group(1) @binding(1) var<storage, read> droplets: array<DropletInstance>;
 // How many there are, at SPLAT_COUNT.
 @group(1) @binding(2) var<storage, read> told: array<u32>;
 // Four sums a pixel, and which of them are beyond what they hold.
@@ -15,7 +15,7 @@
 var<workgroup> large: array<u32, SPLAT_GROUP>;
 var<workgroup> larges: atomic<u32>;
 
-fn splat(droplet: DrawnDroplet, quad: Quad, pixel: vec2i, size: vec2f) {
+fn splat(droplet: DropletInstance, quad: Quad, pixel: vec2i, size: vec2f) {
     let at = meeting(quad, pixel, size);
     if !at.met {
         return;

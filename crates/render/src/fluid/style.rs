@@ -1,7 +1,7 @@
 //! How a fluid looks.
 
 use crate::Stage;
-use crate::shared::FluidLook;
+use crate::shared::FluidUniforms;
 
 /// How the nearest surface of the particles is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -69,7 +69,7 @@ impl FluidStyle {
     }
 
     /// The same as shaders have it.
-    pub(super) fn look(&self, stage: &Stage) -> FluidLook {
+    pub(super) fn look(&self, stage: &Stage) -> FluidUniforms {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));
@@ -77,7 +77,7 @@ impl FluidStyle {
             Some(corners) => corners.map(|[x, y]| stage.place([x, y, 0.0]).truncate().to_array()),
             None => [[f32::MIN; 2], [f32::MAX; 2]],
         };
-        FluidLook {
+        FluidUniforms {
             absorption: [red, green, blue, self.foam],
             colour: [own_red, own_green, own_blue, self.highlight],
             smoothing: [width, range, rounding, self.most_pixels as f32],

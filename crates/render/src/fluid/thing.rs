@@ -4,7 +4,7 @@ use super::droplet::Batch;
 use super::layers::{Layers, Splats};
 use super::{DeviceWater, Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::buffer::uniform;
-use crate::shared::{Direction, DrawnDroplet};
+use crate::shared::{Direction, DropletInstance};
 use crate::{Drawable, RenderError, Stage, Through};
 use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
 use std::time::{Duration, Instant};
@@ -53,7 +53,7 @@ impl Fluid {
 
     /// Takes these particles instead of those before. What has no finite place is left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
-        let all: Vec<DrawnDroplet> = droplets.into_iter().filter_map(|droplet| droplet.drawn(&self.stage)).collect();
+        let all: Vec<DropletInstance> = droplets.into_iter().filter_map(|droplet| droplet.drawn(&self.stage)).collect();
         self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
     }
 

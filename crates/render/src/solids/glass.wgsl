@@ -2,7 +2,7 @@
 #import light
 #import surface
 
-@group(1) @binding(0) var<uniform> style: SolidLook;
+@group(1) @binding(0) var<uniform> style: SolidUniforms;
 @group(2) @binding(0) var behind: texture_2d<f32>;
 @group(2) @binding(1) var behind_sampler: sampler;
 

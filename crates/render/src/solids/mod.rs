@@ -5,7 +5,7 @@ mod mesh;
 use crate::buffer::{UNIFORM, instances, uniform};
 use crate::colour::linear;
 use crate::pipeline::Recipe;
-use crate::shared::{SolidLook, Vertex, buffer_layout};
+use crate::shared::{SolidUniforms, Vertex, buffer_layout};
 use crate::{Drawable, Renderer, Stage, Through, shaders, standing};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use corpuscle_model::SolidShape;
@@ -106,7 +106,7 @@ impl Solid {
             SolidStyle::Glass(colour) => (colour, 1.0, true),
         };
         let [r, g, b] = linear(colour);
-        let settings = uniform(gpu, "solid", &SolidLook { colour: [r, g, b, 1.0], gloss: [gloss, 0.0, 0.0, 0.0] });
+        let settings = uniform(gpu, "solid", &SolidUniforms { colour: [r, g, b, 1.0], gloss: [gloss, 0.0, 0.0, 0.0] });
         let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("solid"),
             layout: &layout,

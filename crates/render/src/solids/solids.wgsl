@@ -2,7 +2,7 @@
 #import light
 #import surface
 
-@group(1) @binding(0) var<uniform> style: SolidLook;
+@group(1) @binding(0) var<uniform> style: SolidUniforms;
 
 @fragment
 fn fragment(corner: Corner) -> @location(0) vec4f {

@@ -3,7 +3,7 @@
 use crate::buffer::instances;
 use crate::colour::linear;
 use crate::pipeline::Recipe;
-use crate::shared::{DrawnTube, buffer_layout};
+use crate::shared::{TubeInstance, buffer_layout};
 use crate::{Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 
@@ -40,7 +40,7 @@ impl TubePainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
-        let layout = DrawnTube::layout();
+        let layout = TubeInstance::layout();
         let attributes = layout.vertex_attributes();
         let recipe = Recipe {
             label: "tubes",
@@ -66,13 +66,13 @@ impl TubePainter {
             let [x, y, z] = stage.place(point).into();
             [x, y, z, last]
         };
-        let piece = |pair: &[[f64; 3]]| DrawnTube {
+        let piece = |pair: &[[f64; 3]]| TubeInstance {
             from_end: end(pair[0], stage.length(style.radius)),
             to_end: end(pair[1], style.least_radius),
             colour,
         };
         let whole = |pair: &&[[f64; 3]]| pair.as_flattened().iter().all(|number| number.is_finite());
-        let pieces: Vec<DrawnTube> =
+        let pieces: Vec<TubeInstance> =
             lines.into_iter().flat_map(|line| line.windows(2).filter(whole).map(piece).collect::<Vec<_>>()).collect();
         let cast = style.shaded.then(|| self.cast.clone());
         let buffer = instances(gpu, "tubes", &pieces);

@@ -15,7 +15,7 @@ struct Corner {
 const STRIP = array<u32, 14>(3u, 7u, 1u, 5u, 4u, 7u, 6u, 3u, 2u, 1u, 0u, 4u, 2u, 6u);
 
 @vertex
-fn vertex(@builtin(vertex_index) index: u32, tube: DrawnTube) -> Corner {
+fn vertex(@builtin(vertex_index) index: u32, tube: TubeInstance) -> Corner {
     let from_end = tube.from_end;
     let to_end = tube.to_end;
     let middle = 0.5 * (from_end.xyz + to_end.xyz);

@@ -56,7 +56,7 @@ impl OnGpu {
         self.tell_due(due);
         self.tell_looks(looks, looked);
         let tasks = &self.tasks;
-        let (status, words) = self.batches.take(
+        let (status, words) = self.batches.run(
             count,
             (&tasks.memory.status, &self.status),
             |pass| tasks.steps(pass, count),

@@ -5,11 +5,11 @@
 // at the maps, a thread for each of their cells.
 #import sph_common
 #import sph_rows
-#import over_group
+#import group_reduction
 
-alias Summand = Partial;
+alias Reduced = Partial;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return Partial(
         a.outflow + b.outflow,
         a.inflow + b.inflow,
@@ -118,12 +118,12 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     var own = Partial(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2f(0.0), vec2f(FAR), vec2f(-FAR), 0.0, 0.0);
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += GROUP) {
-            own = both(own, partials[group]);
+            own = combine(own, partials[group]);
             // Births may call for more groups than there were in the drift.
             partials[group].knocked = 0.0;
         }
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         order_groups(MAPS, 0u, 1u);
         if status.halted == GOING {

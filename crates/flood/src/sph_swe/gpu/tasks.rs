@@ -5,15 +5,15 @@ use super::maps::GpuMaps;
 use super::shared::{Memory, Status};
 use super::upload::Setting;
 use corpuscle_gpu::{
-    COMPENSATED_SUMS, CellSort, Gpu, Kernel, OVER_GROUP, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS, Task,
-    sort_blocks, wgpu,
+    COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS,
+    Task, sort_blocks, wgpu,
 };
 
 /// Pieces that the shaders import.
 const LIBRARY: ShaderLibrary<'_> = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
-    OVER_GROUP,
+    GROUP_REDUCTION,
     ("sph_common", include_str!("sph_common.wgsl")),
     ("sph_ground", include_str!("sph_ground.wgsl")),
     ("sph_friction", include_str!("sph_friction.wgsl")),

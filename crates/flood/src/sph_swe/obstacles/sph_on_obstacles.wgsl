@@ -1,11 +1,11 @@
 // Sums the force on each obstacle, one group of threads for each, and over time. Twin of `push_obstacles` in `step.rs`.
 #import compensated_sums
 #import sph_neighbours
-#import over_group
+#import group_reduction
 
-alias Summand = vec2f;
+alias Reduced = vec2f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -24,7 +24,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
             }
         }
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u && status.halted == GOING {
         obstacles[number].impulse_east = add(obstacles[number].impulse_east, status.step * all.x);
         obstacles[number].impulse_north = add(obstacles[number].impulse_north, status.step * all.y);

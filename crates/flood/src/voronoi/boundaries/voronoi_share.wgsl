@@ -1,11 +1,11 @@
 // Shares discharges out over border faces by conveyance: see `share` in `boundaries/open.rs`. A group does one.
 #import declared
 #import voronoi_storage
-#import over_group
+#import group_reduction
 
-alias Summand = vec2f;
+alias Reduced = vec2f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
@@ -29,8 +29,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
             by_depth += part.length * depth * vec2f(1.0, level);
         }
     }
-    along = over_group(thread, along);
-    by_depth = over_group(thread, by_depth);
+    along = reduce_group(thread, along);
+    by_depth = reduce_group(thread, by_depth);
     var discharge = 0.0;
     if own.is_rating == 0u {
         discharge = in_step(own.table, MEAN);
@@ -43,7 +43,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     for (var k = own.first + thread; k < own.end; k += GROUP) {
         all.x += parts[k].length * conveyance(parts[k], level, is_out);
     }
-    all = over_group(thread, all);
+    all = reduce_group(thread, all);
     for (var k = own.first + thread; k < own.end; k += GROUP) {
         var part = parts[k].when_dry;
         if all.x > 0.0 {

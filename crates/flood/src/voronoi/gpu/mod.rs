@@ -21,7 +21,7 @@ pub(super) use tables::Tables;
 
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
-    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, Gpu, GpuError, Halt, Kernel, OVER_GROUP, Pass, ShaderLibrary,
+    BATCH_START, Batches, Buffers, COMPENSATED_SUMS, GROUP_REDUCTION, Gpu, GpuError, Halt, Kernel, Pass, ShaderLibrary,
     THREADS, Task, from_halves, from_pair, read, read_together, to_pair, wgpu,
 };
 use seen::Seen;
@@ -34,7 +34,7 @@ use upload::Input;
 
 const LIBRARY: ShaderLibrary<'_> = &[
     COMPENSATED_SUMS,
-    OVER_GROUP,
+    GROUP_REDUCTION,
     ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../rain/infiltration_laws.wgsl")),
@@ -220,7 +220,7 @@ impl GpuSolver {
         let count = self.batches.steps(left, f64::from(self.status.step), most);
         self.status = Status { halted: BATCH_START, steps: 0, at_rim: 0, until: to_pair(until), ..self.status };
         let Self { tasks, memory, sides, batches, status, .. } = self;
-        *status = batches.take(
+        *status = batches.run(
             count,
             (&memory.status, &*status),
             |pass| steps((tasks, *sides), memory, pass, count),

@@ -6,11 +6,11 @@
 #import voronoi_record
 #import voronoi_stable
 #import exchange
-#import over_group
+#import group_reduction
 
-alias Summand = Found;
+alias Reduced = Found;
 
-fn both(a: Found, b: Found) -> Found {
+fn combine(a: Found, b: Found) -> Found {
     return Found(
         add_pair(a.rained, b.rained),
         add_pair(a.infiltrated, b.infiltrated),
@@ -53,7 +53,7 @@ fn main(
     if id.x < parameters.cells {
         own = end_step(id.x);
     }
-    var all = over_group(thread, own);
+    var all = reduce_group(thread, own);
     if thread == 0u {
         if IS_LOOKED_AT {
             all.step = min(all.step, found[group.x].step);

@@ -2,7 +2,7 @@
 #import declared
 #import compensated_sums
 #import voronoi_tables
-#import over_group
+#import group_reduction
 
 // What happened in a step: see `Passed` and `Found`. Energy is what left and what came in, of both.
 struct Sums {
@@ -18,9 +18,9 @@ struct Sums {
     is_broken: u32,
 }
 
-alias Summand = Sums;
+alias Reduced = Sums;
 
-fn both(a: Sums, b: Sums) -> Sums {
+fn combine(a: Sums, b: Sums) -> Sums {
     return Sums(
         add_pair(a.outflow, b.outflow),
         add_pair(a.inflow, b.inflow),
@@ -71,7 +71,7 @@ fn collected(thread: u32) -> Sums {
         own.momentum = by_structures.momentum;
     }
     for (var group = thread; group < all; group += GROUP) {
-        own = both(own, of_group(group));
+        own = combine(own, of_group(group));
     }
     return own;
 }
@@ -122,7 +122,7 @@ fn look_up(table: u32) {
 @compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let was = status.halted;
-    let all = over_group(thread, collected(thread));
+    let all = reduce_group(thread, collected(thread));
     if thread == 0u {
         if was == GOING {
             book(all);

@@ -2,11 +2,11 @@
 #import declared
 #import voronoi_record
 #import voronoi_stable
-#import over_group
+#import group_reduction
 
-alias Summand = f32;
+alias Reduced = f32;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return min(a, b);
 }
 
@@ -21,7 +21,7 @@ fn main(
         record(id.x, water[id.x]);
         own = stable_step(id.x);
     }
-    let step = over_group(thread, own);
+    let step = reduce_group(thread, own);
     if thread == 0u {
         found[group.x].step = step;
     }

@@ -5,9 +5,9 @@
 #import compensated_sums
 #import voronoi_friction
 #import voronoi_water
-#import over_group
+#import group_reduction
 
-alias Summand = Passed;
+alias Reduced = Passed;
 
 // What faces brought a cell in a step: volume, momentum that volume carries, momentum of thrusts, and what passed borders.
 struct Gathered {
@@ -107,7 +107,7 @@ fn go_on(cell: u32) -> Passed {
     return Passed(all.outflow, all.inflow, all.energy, gained.x + gained.y, select(1u, 0u, is_sound));
 }
 
-fn both(a: Passed, b: Passed) -> Passed {
+fn combine(a: Passed, b: Passed) -> Passed {
     return Passed(
         add_pair(a.outflow, b.outflow),
         add_pair(a.inflow, b.inflow),
@@ -127,10 +127,10 @@ fn main(
     if id.x < parameters.cells {
         own = go_on(id.x);
     }
-    let all = over_group(thread, own);
+    let all = reduce_group(thread, own);
     if thread == 0u {
         if IS_SECOND {
-            passed[group.x] = both(all, passed[group.x]);
+            passed[group.x] = combine(all, passed[group.x]);
         } else {
             passed[group.x] = all;
         }

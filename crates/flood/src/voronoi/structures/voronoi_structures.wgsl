@@ -4,12 +4,12 @@
 #import voronoi_tables
 #import voronoi_change
 #import hydraulics
-#import over_group
+#import group_reduction
 
 // Changes: volume as a compensated sum, energy and momentum over density.
-alias Summand = vec4f;
+alias Reduced = vec4f;
 
-fn both(a: Summand, b: Summand) -> Summand {
+fn combine(a: Reduced, b: Reduced) -> Reduced {
     return vec4f(add_pair(a.xy, b.xy), a.zw + b.zw);
 }
 
@@ -40,7 +40,7 @@ fn level_of(thread: u32, own: Structure, end: u32) -> f32 {
             sums += vec4f(0.0, 0.0, place.area, place.area * (place.above + depth + water[place.cell].shift));
         }
     }
-    sums = over_group(thread, sums);
+    sums = reduce_group(thread, sums);
     return select(DRY, sums.w / sums.z, sums.z > 0.0);
 }
 
@@ -50,7 +50,7 @@ fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
         held.z += columns[in_patches[k].cell].volume.x;
     }
-    held = over_group(thread, held);
+    held = reduce_group(thread, held);
     var change = vec4f(0.0);
     if held.z > 0.0 && wanted > 0.0 {
         let share = min(wanted / held.z, 1.0);
@@ -58,10 +58,10 @@ fn take(thread: u32, own: Structure, end: u32, wanted: f32) -> vec4f {
             let column = columns[in_patches[k].cell];
             // All of it to the last bit, or a part.
             let volume = select(vec2f(opaque(share * column.volume.x), 0.0), column.volume, share == 1.0);
-            change = both(change, apply(in_patches[k], -volume, -share * column.momentum));
+            change = combine(change, apply(in_patches[k], -volume, -share * column.momentum));
         }
     }
-    return over_group(thread, change);
+    return reduce_group(thread, change);
 }
 
 // Raises the surface evenly by a volume at rest; the first cell gets what rounding leaves.
@@ -70,15 +70,15 @@ fn give(thread: u32, own: Structure, end: u32, volume: vec2f) -> vec4f {
     for (var k = own.firsts[end] + thread; k < own.ends[end]; k += GROUP) {
         let place = in_patches[k];
         let part = opaque(volume.x * (place.area / own.areas[end]));
-        change = both(change, apply(place, vec2f(part, 0.0), vec2f(0.0)));
+        change = combine(change, apply(place, vec2f(part, 0.0), vec2f(0.0)));
     }
-    var all = over_group(thread, change);
+    var all = reduce_group(thread, change);
     var rest = vec4f(0.0);
     if thread == 0u && own.firsts[end] < own.ends[end] {
         let left = tidy(add_pair(volume, -all.xy));
         rest = apply(in_patches[own.firsts[end]], left, vec2f(0.0));
     }
-    return both(all, over_group(thread, rest));
+    return combine(all, reduce_group(thread, rest));
 }
 
 // Brings each cell to a level; what is added has the velocity of the water there.
@@ -89,9 +89,9 @@ fn hold(thread: u32, own: Structure) -> vec4f {
         let place = in_patches[k];
         let wanted = place.area * depth_below(place.cell, level - place.above);
         let volume = tidy(add_pair(vec2f(wanted, 0.0), -columns[place.cell].volume));
-        change = both(change, apply(place, volume, volume.x * water[place.cell].velocity));
+        change = combine(change, apply(place, volume, volume.x * water[place.cell].velocity));
     }
-    return over_group(thread, change);
+    return reduce_group(thread, change);
 }
 
 fn culvert_of(word: u32) -> Culvert {
@@ -137,7 +137,7 @@ fn lead(thread: u32, number: u32, own: Structure) -> vec4f {
     if thread == 0u {
         structure_discharges[number] = select(given.x, -given.x, wanted < 0.0) / status.step;
     }
-    return vec4f(both(taken, given).xyz, taken.w);
+    return vec4f(combine(taken, given).xyz, taken.w);
 }
 
 fn let_out(thread: u32, number: u32, own: Structure) -> vec4f {

@@ -1,7 +1,7 @@
 //! What the host and the kernels that make water on the device share: one declaration, from which the WGSL comes too.
 
 use super::super::{sides, water};
-use crate::shared::{Bound, DrawnDroplet, Vertex, Vertices};
+use crate::shared::{Bound, DropletInstance, Vertex, Vertices};
 use corpuscle_gpu::{AtomicU32, DeviceParticles, THREADS};
 
 corpuscle_gpu::declare! {
@@ -129,7 +129,7 @@ corpuscle_gpu::declare! {
         /// most foam stays, whichever comes first.
         storage after: [AtomicU32],
         /// The particles as they are drawn.
-        storage instances: [DrawnDroplet],
+        storage instances: [DropletInstance],
         /// The water's level at the nodes of the borders, stage units.
         storage levels: [f32],
         /// The faces there, corner by corner.

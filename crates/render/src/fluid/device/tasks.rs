@@ -3,7 +3,7 @@
 use super::ground::Ground;
 use super::kernels::Kernels;
 use super::shared::{BORDER_GROUP, Memory, ON_GROUND, SETTLING, Sizes};
-use crate::shared::{DrawnDroplet, SPLAT_COUNT};
+use crate::shared::{DropletInstance, SPLAT_COUNT};
 use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Pass, SortSlots, Stopwatch, Task, storage, wgpu};
 
 /// Slots of the numbers of groups: see [`Memory::groups`].
@@ -75,7 +75,7 @@ impl Tasks {
             foam: storage::<f32>(gpu, "fresh foam", room)?,
             before: tables[0].clone(),
             after: tables[1].clone(),
-            instances: storage::<DrawnDroplet>(gpu, "droplets", room)?,
+            instances: storage::<DropletInstance>(gpu, "droplets", room)?,
             levels: ground.levels.clone(),
             vertices: ground.faces.clone(),
         };

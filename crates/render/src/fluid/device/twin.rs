@@ -4,7 +4,7 @@ use super::super::droplet::Batch;
 use super::super::sides::faces;
 use super::super::{FluidPainter, FluidStyle, Water};
 use super::DeviceWater;
-use crate::shared::{DrawnDroplet, Vertex};
+use crate::shared::{DropletInstance, Vertex};
 use crate::{Camera, Drawable, HeightField, Light, Renderer, Stage, Target};
 use corpuscle_gpu::{DeviceParticle, DeviceParticles, Gpu, Image, read, require_gpu};
 use corpuscle_model::{Column, ParticleSet, Values};
@@ -79,24 +79,24 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
 }
 
 /// What is drawn, by ids.
-fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DrawnDroplet> {
+fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DropletInstance> {
     let Some(Batch::Told { instances, told, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
     let told: Vec<u32> = read(gpu, &told, at as usize / 4 + 4).unwrap();
     let [corners, count, ..] = told[at as usize / 4..] else { panic!("no draw is told") };
     assert_eq!(corners, 4);
-    let mut all: Vec<DrawnDroplet> = read(gpu, &instances, count as usize).unwrap();
+    let mut all: Vec<DropletInstance> = read(gpu, &instances, count as usize).unwrap();
     all.sort_by(|a, b| a.matter[3].total_cmp(&b.matter[3]));
     all
 }
 
 /// What the CPU draws, by ids.
-fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) -> Vec<DrawnDroplet> {
+fn by_cpu(water: &mut Water, time: f64, set: &ParticleSet, field: &HeightField) -> Vec<DropletInstance> {
     let mut droplets = water.droplets(time, set, |place| field.slope_at(place));
     droplets.sort_by_key(|droplet| droplet.id);
     droplets.iter().filter_map(|droplet| droplet.drawn(&stage())).collect()
 }
 
-fn compare(device: &[DrawnDroplet], host: &[DrawnDroplet]) {
+fn compare(device: &[DropletInstance], host: &[DropletInstance]) {
     assert_eq!(device.len(), host.len());
     let apart =
         |one: &[f32], other: &[f32]| one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f32::max);

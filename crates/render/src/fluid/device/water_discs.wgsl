@@ -21,10 +21,10 @@ fn pattern(i: u32) -> f32 {
     return f32(matter[i].y % PATTERNS);
 }
 
-fn in_air(i: u32) -> DrawnDroplet {
+fn in_air(i: u32) -> DropletInstance {
     let radius = water.unit * pow(0.75 * volume(i) / PI, 1.0 / 3.0);
     let place = water.unit * sites[i].xyz;
-    return DrawnDroplet(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
+    return DropletInstance(place, radius, vec3f(0.0, 0.0, 1.0), 1.0, vec4f(0.0, SPRAY, radius, pattern(i)));
 }
 
 // Whether a place is no farther than that from a border of the ground, m.
@@ -34,7 +34,7 @@ fn is_at_border(place: vec2f, reach: f32) -> bool {
     return min(min(low.x, low.y), min(high.x, high.y)) < OVER_REACH * reach;
 }
 
-fn disc(i: u32) -> DrawnDroplet {
+fn disc(i: u32) -> DropletInstance {
     let own = sites[i];
     let fit = fit_at(i);
     var slope = vec2f(fit.east.x, fit.north.x);
@@ -51,7 +51,7 @@ fn disc(i: u32) -> DrawnDroplet {
     let velocity = bitcast<vec2f>(matter[i].zw);
     foam[i] = part(closing, TRAPPED) * part(0.5 * dot(velocity, velocity), ENERGY) * part(fit.weight, CLOSED);
     let depth = 4.0 * volume(i) / (PI * reach * reach);
-    return DrawnDroplet(
+    return DropletInstance(
         water.unit * middle,
         water.unit * radius,
         normal,

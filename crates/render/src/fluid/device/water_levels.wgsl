@@ -2,7 +2,7 @@
 #import water_borders
 
 // Height of the upper side of a disc this much beside its middle, as if it went on flat. Twin of `Droplet::level`.
-fn level_of(disc: DrawnDroplet, away: vec2f) -> f32 {
+fn level_of(disc: DropletInstance, away: vec2f) -> f32 {
     let top = disc.flatness * disc.radius * disc.normal;
     return disc.place.z + top.z - dot(disc.normal.xy, away - top.xy) / max(disc.normal.z, 1e-3);
 }
