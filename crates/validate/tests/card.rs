@@ -106,8 +106,10 @@ fn compare(gpu: Gpu, cases: &[(&str, f64)]) {
     let mut apart = Vec::new();
     for (name, share) in cases {
         let start = Instant::now();
-        let both = [rows(name, &host), rows(name, &card)];
-        eprintln!("{name}: {:.1} s", start.elapsed().as_secs_f64());
+        let on_cpu = rows(name, &host);
+        let between = Instant::now();
+        let both = [on_cpu, rows(name, &card)];
+        eprintln!("{name}: {:.1} s on the CPU, {:.1} s on the GPU", (between - start).as_secs_f64(), between.elapsed().as_secs_f64());
         assert!(!both[0].is_empty() && both[0].len() == both[1].len(), "{both:?}");
         let [host, card] = both;
         let pairs = host.into_iter().zip(card);

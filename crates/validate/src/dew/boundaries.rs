@@ -19,7 +19,7 @@ pub(super) const BOUNDARIES: Case = Case {
             for no treatment at all as control; what ghosts cost over density correction. The air is humid and the solids are \
             cold: water condenses on them and nowhere inside.",
     slow: true,
-    reduced: 6.0,
+    reduced: 10.0,
     run: boundaries,
 };
 

@@ -1,6 +1,7 @@
 //! A thin wet plate in a stream of dry air.
 
 use super::{advance, card, ledger_rounding, ready, rows};
+use crate::device::reduction;
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
@@ -15,7 +16,7 @@ pub(super) const PLATE: Case = Case {
             the laminar boundary layer (Blasius 1908; Pohlhausen 1921: Sh_x = 0.282 Re_x^(1/2) at Sc 0.628), at three spacings and two speeds. Water and \
             energy balance.",
     slow: true,
-    reduced: 1.0,
+    reduced: 4.0,
     run: plate,
 };
 
@@ -134,9 +135,9 @@ fn water(dew: &Dew, [from, to]: [f64; 2]) -> f64 {
 fn sherwood(speed: f64, spacing: f64, seed: u64) -> Result<[f64; 3], ModelError> {
     let mut dew = ready(set_up(speed, spacing, seed)?)?;
     let crossing = (BEFORE + LENGTH) / speed;
-    advance(&mut dew, STEADY * crossing)?;
+    advance(&mut dew, STEADY / reduction() * crossing)?;
     let (before, from) = (MEASURED.map(|part| water(&dew, part)), dew.stepped_until());
-    advance(&mut dew, UNTIL * crossing)?;
+    advance(&mut dew, UNTIL / reduction() * crossing)?;
     let time = dew.stepped_until() - from;
     let [far, near] = [0, 1].map(|k| (before[k] - water(&dew, MEASURED[k])) / time / exact(speed, MEASURED[k]));
     let errors = dew.ledger().balances.into_iter().map(|balance| balance.relative_error().abs());

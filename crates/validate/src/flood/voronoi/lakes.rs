@@ -75,7 +75,7 @@ fn jacksboro(options: &Options) -> Vec<Row> {
 const STEP_AT_800M: f64 = 8.0;
 
 /// Steps of the long run, and of it at its reduced size.
-const STEPS: [u64; 2] = [100_000, 2_000];
+const STEPS: [u64; 2] = [100_000, 1_000];
 
 fn long(options: &Options) -> Vec<Row> {
     let Some(data) = &options.data else { return vec![Row::without_data(LONG.name, options)] };
