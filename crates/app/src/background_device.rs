@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[cfg(target_os = "linux")]
 const LESS_URGENT: i32 = 10;
 
-/// The device of pictures that take long: a card draws them between two pictures of the window; software that stands in for one has a
+/// The device of pictures that take long: a GPU draws them between two pictures of the window; software that stands in for one has a
 /// single queue, in which the window would wait for them, so that there is a second device then. It is opened when it is first needed.
 #[derive(Clone)]
 pub struct BackgroundDevice {
@@ -26,7 +26,7 @@ impl BackgroundDevice {
     /// # Errors
     /// Those of [`Gpu::open`].
     pub fn gpu(&self) -> Result<Gpu, GpuError> {
-        if self.window.kind == GpuKind::Card {
+        if self.window.kind == GpuKind::Hardware {
             return Ok(self.window.clone());
         }
         let mut second = self.second.lock().unwrap_or_else(PoisonError::into_inner);

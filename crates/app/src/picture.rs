@@ -26,7 +26,7 @@ const STILL: Duration = Duration::from_millis(350);
 /// How much work pictures are, as the user wants it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Quality {
-    /// All there is on a graphics card and of what stands still; what moves simply where there is no card.
+    /// All there is on a GPU and of what stands still; what moves simply where there is no GPU.
     #[default]
     Auto,
     /// Always simple.
@@ -192,11 +192,13 @@ impl Picture {
 
     /// The look, and samples each way in a pixel.
     fn work(&self, still: bool) -> (Look, u32) {
-        let card = self.screen.gpu.kind == GpuKind::Card;
+        let is_hardware = self.screen.gpu.kind == GpuKind::Hardware;
         match self.quality {
-            Quality::Simple => (Look::Simple, if card || still { 2 } else { 1 }),
-            Quality::Full => (Look::Full, if card || still { 2 } else { 1 }),
-            Quality::Auto => (if card || still { Look::Full } else { Look::Simple }, if card || still { 2 } else { 1 }),
+            Quality::Simple => (Look::Simple, if is_hardware || still { 2 } else { 1 }),
+            Quality::Full => (Look::Full, if is_hardware || still { 2 } else { 1 }),
+            Quality::Auto => {
+                (if is_hardware || still { Look::Full } else { Look::Simple }, if is_hardware || still { 2 } else { 1 })
+            }
         }
     }
 

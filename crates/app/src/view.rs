@@ -69,7 +69,7 @@ fn reason(error: &eframe::Error) -> String {
     }
 }
 
-/// Lets the system's allocator keep what is freed. Software in place of a card takes some megabytes for every picture and frees them;
+/// Lets the system's allocator keep what is freed. Software in place of a GPU takes some megabytes for every picture and frees them;
 /// given back to the system and taken again, they cost it a page fault for each 4 kB, 2 ms a picture. glibc keeps twice as much as the
 /// largest piece that was ever freed, up to 32 MiB; other allocators are not changed by this.
 fn keep_memory() {
@@ -100,7 +100,7 @@ struct App {
 }
 
 impl eframe::App for App {
-    /// The colour of panels, so that these need not be filled: software in place of a card fills slowly.
+    /// The colour of panels, so that these need not be filled: software in place of a GPU fills slowly.
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }

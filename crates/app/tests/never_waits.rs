@@ -1,4 +1,4 @@
-//! Without a graphics card the window goes on while pictures are drawn that take long.
+//! Without a GPU the window goes on while pictures are drawn that take long.
 
 // Another test uses the rest of it.
 #[allow(dead_code)]
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 const SOON: Duration = Duration::from_secs(90);
 
-/// The valley in a window that stands at its start; none where a card draws, which is quick.
+/// The valley in a window that stands at its start; none where a GPU draws, which is quick.
 fn valley(test: &str) -> Option<Stage> {
     let mut stage = stage(test)?;
-    if stage.screen.gpu.kind == GpuKind::Card {
+    if stage.screen.gpu.kind == GpuKind::Hardware {
         return None;
     }
     stage.window_mut().wait_at_start();

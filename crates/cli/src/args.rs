@@ -245,7 +245,7 @@ pub struct ViewOptions {
     /// Change a value of the scene, as in `--set flood.scheme=sph-swe`; rows of lists are counted from 0
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, requires = "what")]
     pub set: Vec<(String, String)>,
-    /// Where to compute: `auto` takes the graphics card that draws, if it is one and the scene is large enough
+    /// Where to compute: `auto` takes the GPU that draws the window, where there is one and the scene is large enough
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,
     /// Play for so many seconds, tell how many pictures there were in a second, and close
@@ -354,10 +354,10 @@ pub struct BenchOptions {
     /// Less time for each: a quick look, with more scatter
     #[arg(long)]
     pub quick: bool,
-    /// Time each pass of a step on the graphics card too
+    /// Time each pass of a step on the GPU too
     #[arg(long)]
     pub passes: bool,
-    /// Floods on the graphics card: pictures a second as well, 1920 x 1080, one a step
+    /// Floods on the GPU: pictures a second as well, 1920 x 1080, one a step
     #[arg(long)]
     pub draw: bool,
     /// Draw the water by compute shaders, not raster units, with --draw

@@ -19,8 +19,8 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
             eprintln!("{} left out: it computes on the CPU only", bench.name);
             continue;
         }
-        if with.gpu.is_none() && bench.needs_card {
-            eprintln!("{} left out: it is for a graphics card", bench.name);
+        if with.gpu.is_none() && bench.needs_gpu {
+            eprintln!("{} left out: it is for a GPU", bench.name);
             continue;
         }
         let drawn = match &with.gpu {

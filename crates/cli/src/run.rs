@@ -71,7 +71,7 @@ fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Record
     let (mut simulation, recorder) = Recorder::resume(folder)?;
     match backend {
         // Lest a run change hands, and its last digits, because it was interrupted.
-        Backend::Auto => eprintln!("going on on the CPU; `--backend gpu` goes on on a graphics card"),
+        Backend::Auto => eprintln!("going on on the CPU; `--backend gpu` goes on on a GPU"),
         _ => compute_on(backend, &mut simulation)?,
     }
     Ok((simulation, recorder))
@@ -83,7 +83,7 @@ fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpu
         Backend::Auto => {
             let Choice { is_gpu, why } = simulation.use_best();
             let reason = if why.is_empty() { String::new() } else { format!(": {why}") };
-            eprintln!("computing on the {}{reason}", if is_gpu { "graphics card" } else { "CPU" });
+            eprintln!("computing on the {}{reason}", if is_gpu { "GPU" } else { "CPU" });
             Ok(())
         }
         Backend::Cpu => Ok(()),
@@ -155,8 +155,6 @@ fn tell(summary: &Summary, folder: &Path, has_frames: bool) {
     eprintln!("results in {folder}");
     if has_frames {
         // Whether a device is there is found out when it is needed: `render` says what to install.
-        eprintln!(
-            "pictures with `corpuscle render {folder}`, on any graphics card or software Vulkan (mesa-vulkan-drivers)"
-        );
+        eprintln!("pictures with `corpuscle render {folder}`, on any GPU or software Vulkan (mesa-vulkan-drivers)");
     }
 }

@@ -65,7 +65,7 @@ struct Done {
 }
 
 /// Runs cases beside each other and takes what they gave in their order: most are so small that two of them on a thread each are done sooner than
-/// one after the other on both. A card takes one after the other.
+/// one after the other on both. A GPU takes one after the other.
 fn each(
     cases: &[&Case],
     with: &Options,

@@ -1,4 +1,4 @@
-//! Runs on the graphics card.
+//! Runs on the GPU.
 
 mod tool;
 
@@ -10,8 +10,8 @@ fn has_device(test: &str) -> bool {
 }
 
 #[test]
-fn a_flood_runs_on_the_card() {
-    if !has_device("a run on the card") {
+fn a_flood_runs_on_the_gpu() {
+    if !has_device("a run on the GPU") {
         return;
     }
     let place = Place::new();
@@ -21,11 +21,11 @@ fn a_flood_runs_on_the_card() {
         let scheme_set = format!("flood.scheme={scheme}");
         let common = ["run", "lake.toml", "--set", &scheme_set, "--set", set, "--json"];
         let run = |rest: &[&str]| place.run(&[&common[..], rest].concat()).expect_status(0).json();
-        let on_card = run(&["--backend", "gpu", "-o", &format!("card-{scheme}")]);
-        let on_processor = run(&["-o", &format!("processor-{scheme}")]);
-        assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
-        assert_eq!((&on_card["particles"], &on_card["steps"]), (&on_processor["particles"], &on_processor["steps"]));
-        let error = on_card["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
+        let on_gpu = run(&["--backend", "gpu", "-o", &format!("gpu-{scheme}")]);
+        let on_cpu = run(&["-o", &format!("cpu-{scheme}")]);
+        assert_eq!((&on_gpu["backend"], &on_gpu["status"]), (&"gpu".into(), &"done".into()));
+        assert_eq!((&on_gpu["particles"], &on_gpu["steps"]), (&on_cpu["particles"], &on_cpu["steps"]));
+        let error = on_gpu["ledger"]["water_m3"]["relative_error"].as_f64().unwrap();
         assert!(error.abs() < 1e-6, "{error}");
     }
 }
@@ -35,32 +35,32 @@ fn the_gpu_refuses_what_it_does_not_compute_and_says_what_to_do() {
     let place = Place::new();
     place.write("lake.toml", LAKE);
     let local = ["--set", "flood.time_steps=local"];
-    let refused = place.run(&[&["run", "lake.toml", "--backend", "gpu", "-o", "card"][..], &local].concat());
+    let refused = place.run(&[&["run", "lake.toml", "--backend", "gpu", "-o", "GPU"][..], &local].concat());
     let refused = refused.expect_status(2);
     for words in ["local time steps run on the CPU only", "flood.time_steps"] {
         assert!(refused.stderr.contains(words), "{}", refused.stderr);
     }
-    assert!(!place.path("card").exists());
+    assert!(!place.path("GPU").exists());
 }
 
 #[test]
-fn dew_runs_on_the_card() {
-    if !has_device("dew on the card") {
+fn dew_runs_on_the_gpu() {
+    if !has_device("dew on the GPU") {
         return;
     }
     let place = Place::new();
-    let on_card = place
-        .run(&["run", "dew/pane", "--until", "0.06", "--backend", "gpu", "-o", "card", "--json"])
+    let on_gpu = place
+        .run(&["run", "dew/pane", "--until", "0.06", "--backend", "gpu", "-o", "GPU", "--json"])
         .expect_status(0)
         .json();
-    assert_eq!((&on_card["backend"], &on_card["status"]), (&"gpu".into(), &"done".into()));
+    assert_eq!((&on_gpu["backend"], &on_gpu["status"]), (&"gpu".into(), &"done".into()));
     for quantity in ["water_kg", "energy_J"] {
-        let error = on_card["ledger"][quantity]["relative_error"].as_f64().unwrap();
+        let error = on_gpu["ledger"][quantity]["relative_error"].as_f64().unwrap();
         assert!(error.abs() < 1e-6, "{quantity}: {error}");
     }
 }
 
-/// Where it computes is said, and why; software in place of a card, as where this is tested, is not chosen.
+/// Where it computes is said, and why; software in place of a GPU, as where this is tested, is not chosen.
 #[test]
 fn a_backend_is_chosen_and_said() {
     let place = Place::new();
@@ -76,8 +76,8 @@ fn a_backend_is_chosen_and_said() {
     let sph_swe = ["--set", "flood.scheme=sph-swe", "--set", "flood.spacing_depth_m=10"];
     let many = place.run(&[&many[..], &sph_swe].concat()).expect_status(0);
     let why = match corpuscle::gpu::Gpu::open().map(|gpu| gpu.kind) {
-        Ok(corpuscle::gpu::GpuKind::Card) => "computing on the graphics card",
-        // Where there is no card, none is spoken of.
+        Ok(corpuscle::gpu::GpuKind::Hardware) => "computing on the GPU",
+        // Where there is no GPU, none is spoken of.
         _ => "computing on the CPU\n",
     };
     assert!(many.stderr.contains(why), "{why}: {}", many.stderr);

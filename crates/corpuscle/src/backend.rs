@@ -4,28 +4,28 @@ use crate::Simulation;
 use corpuscle_gpu::{Gpu, GpuError, GpuKind};
 use corpuscle_scene::Scheme;
 
-/// Fewer particles than this, with those that come, are no work for a card. A step is some twenty kernels, one after
+/// Fewer particles than this, with those that come, are no work for a GPU. A step is some twenty kernels, one after
 /// another, of five to ten microseconds each however few particles there are: 0.2 ms at most. In that time one core
-/// takes 200 to 300 steps of a particle (1.3 million a second, see the guide's benchmarks), 16 cores some 4000. A card
+/// takes 200 to 300 steps of a particle (1.3 million a second, see the guide's benchmarks), 16 cores some 4000. A GPU
 /// has not been measured yet.
-pub const FEWEST_ON_CARD: usize = 10_000;
+pub const FEWEST_ON_GPU: usize = 10_000;
 
-/// Why floods of scheme voronoi stay on the CPU where nobody says otherwise.
-const VORONOI: &str = "scheme voronoi has not been measured on a GPU yet: ask for one with `--backend gpu`";
+/// Why floods of scheme voronoi stay on the CPU where nobody says otherwise: their speed on a GPU has not been measured yet.
+const VORONOI: &str = "scheme voronoi runs on the CPU unless `--backend gpu` is given";
 
 /// Where steps are taken, and why there.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Choice {
-    /// On the graphics card; else on the processor.
+    /// On the GPU; else on the CPU.
     pub is_gpu: bool,
-    /// Why, in words; empty where there is no card to choose.
+    /// Why, in words; empty where there is no GPU to choose.
     pub why: String,
 }
 
 impl Simulation {
-    /// Lets a graphics card take the steps where there is one, it can compute this scene, and the scene is or becomes
-    /// large enough for it, by an estimate of the water that comes; the processor elsewhere. Software in place of a
-    /// card is slower than the processor's own program, and never chosen.
+    /// Lets a GPU take the steps where there is one, it can compute this scene, and the scene is or becomes
+    /// large enough for it, by an estimate of the water that comes; the CPU elsewhere. Software in place of a
+    /// GPU is slower than the CPU's own program, and never chosen.
     pub fn use_best(&mut self) -> Choice {
         self.use_best_of(Gpu::open)
     }
@@ -36,14 +36,14 @@ impl Simulation {
     }
 
     fn use_best_of(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Choice {
-        match self.try_card(open) {
+        match self.try_gpu(open) {
             Ok(name) => Choice { is_gpu: true, why: format!("{name}, {}", self.particles_in_words()) },
             Err(why) => Choice { is_gpu: false, why },
         }
     }
 
-    /// The name of the card that takes the steps now, or why none does.
-    fn try_card(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Result<String, String> {
+    /// The name of the GPU that takes the steps now, or why none does.
+    fn try_gpu(&mut self, open: impl FnOnce() -> Result<Gpu, GpuError>) -> Result<String, String> {
         if let Some(cpu_only) = self.model().cpu_only() {
             return Err(cpu_only.what.into());
         }
@@ -51,7 +51,7 @@ impl Simulation {
             return Err(VORONOI.into());
         }
         let particles = self.model().particles() as f64 + self.particles_to_come();
-        if particles < FEWEST_ON_CARD as f64 {
+        if particles < FEWEST_ON_GPU as f64 {
             return Err(format!("the scene is small: {}", self.particles_in_words()));
         }
         let gpu = match open() {
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_card_takes_a_large_flood_and_software_in_its_place_does_not() {
+    fn a_gpu_takes_a_large_flood_and_software_in_its_place_does_not() {
         let Some(gpu) = require_gpu("the choice of a backend") else { return };
         let with_kind = |kind| {
             let mut gpu = gpu.clone();
@@ -95,16 +95,16 @@ mod tests {
         };
         let mut flood = open("flood/dam-break", ["1", "10"]);
         let count = flood.model().particles();
-        assert!(count >= FEWEST_ON_CARD, "{count} particles");
+        assert!(count >= FEWEST_ON_GPU, "{count} particles");
         let choice = flood.use_best_of(|| Ok(with_kind(GpuKind::Software)));
         assert!(!choice.is_gpu && choice.why.is_empty(), "{choice:?}");
         assert_eq!(flood.model().backend(), "cpu");
         let choice = flood.use_best_of(|| Err(GpuError::NoDevice));
         assert!(!choice.is_gpu && choice.why.is_empty(), "{choice:?}");
-        let refused = || GpuError::Refused { name: "a card".into(), reason: "busy".into() };
+        let refused = || GpuError::Refused { name: "a GPU".into(), reason: "busy".into() };
         let choice = flood.use_best_of(|| Err(refused()));
         assert!(!choice.is_gpu && choice.why.contains("busy"), "{choice:?}");
-        let choice = flood.use_best_of(|| Ok(with_kind(GpuKind::Card)));
+        let choice = flood.use_best_of(|| Ok(with_kind(GpuKind::Hardware)));
         assert!(
             choice.is_gpu && choice.why.contains(&gpu.name) && choice.why.contains(&count.to_string()),
             "{choice:?}"
@@ -113,31 +113,31 @@ mod tests {
     }
 
     #[test]
-    fn the_processor_takes_what_a_card_does_not_compute() {
+    fn the_cpu_takes_what_a_gpu_does_not_compute() {
         let Some(gpu) = require_gpu("the choice of a backend") else { return };
-        let mut card = gpu;
-        card.kind = GpuKind::Card;
+        let mut hardware = gpu;
+        hardware.kind = GpuKind::Hardware;
         let rate = [("flood.sph_swe.smoothing".to_owned(), "rate".to_owned())];
         let scene = Scene::parse(builtin("flood/rough-terrain").unwrap().text, "rough", &rate).unwrap();
         let mut flood = Simulation::open(scene, Path::new("")).unwrap();
-        let choice = flood.use_best_of(|| Ok(card));
+        let choice = flood.use_best_of(|| Ok(hardware));
         assert!(!choice.is_gpu && choice.why.contains("smoothing = \"rate\""), "{choice:?}");
         assert_eq!(flood.model().backend(), "cpu");
     }
 
     #[test]
-    fn small_floods_those_by_voronoi_and_gases_do_not_ask_for_a_card() {
+    fn small_floods_those_by_voronoi_and_gases_do_not_ask_for_a_gpu() {
         let gas = Scene::parse(builtin("gas/maxwell").unwrap().text, "gas/maxwell", &[]).unwrap();
         let gas = Simulation::open(gas, Path::new("")).unwrap();
         let voronoi = Scene::parse(builtin("flood/dam-break").unwrap().text, "flood/dam-break", &[]).unwrap();
         let voronoi = Simulation::open(voronoi, Path::new("")).unwrap();
-        assert!(voronoi.model().particles() >= FEWEST_ON_CARD);
+        assert!(voronoi.model().particles() >= FEWEST_ON_GPU);
         let small = open("flood/dam-break", ["2", "10"]);
         for (mut simulation, word) in [(small, "is small"), (gas, "the gas model"), (voronoi, "scheme voronoi")] {
-            let choice = simulation.use_best_of(|| panic!("a card is asked for"));
+            let choice = simulation.use_best_of(|| panic!("a GPU is asked for"));
             assert!(!choice.is_gpu && choice.why.contains(word), "{choice:?}");
             assert_eq!(simulation.model().backend(), "cpu");
-            assert!(!choice.why.contains("card"), "{choice:?}");
+            assert!(!choice.why.contains("GPU"), "{choice:?}");
         }
     }
 
@@ -146,7 +146,7 @@ mod tests {
     fn water_that_is_to_come_counts() {
         let mut valley = open("flood/valley", ["4", "1.5"]);
         let to_come = valley.particles_to_come();
-        assert!(valley.model().particles() == 0 && to_come > FEWEST_ON_CARD as f64, "{to_come}");
+        assert!(valley.model().particles() == 0 && to_come > FEWEST_ON_GPU as f64, "{to_come}");
         let mut is_asked = false;
         let choice = valley.use_best_of(|| {
             is_asked = true;

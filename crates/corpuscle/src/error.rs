@@ -24,7 +24,7 @@ pub enum Error {
     /// The run's folder.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// The graphics card that was to compute.
+    /// The GPU that was to compute.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
     Gpu(#[from] corpuscle_gpu::GpuError),

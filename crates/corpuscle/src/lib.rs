@@ -47,7 +47,7 @@ pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 
 #[cfg(feature = "gpu")]
-pub use backend::{Choice, FEWEST_ON_CARD};
+pub use backend::{Choice, FEWEST_ON_GPU};
 pub use by_hand::ByHand;
 pub use error::Error;
 #[cfg(feature = "film")]

@@ -37,10 +37,10 @@ impl Simulation {
         Self::open_with(scene, folder, corpuscle_flood::open_to_restore)
     }
 
-    /// Lets the graphics card take the steps from here on, in single precision.
+    /// Lets the GPU take the steps from here on, in single precision.
     ///
     /// # Errors
-    /// Where there is no card, or it cannot compute this scene: nothing has changed then.
+    /// Where there is no GPU, or it cannot compute this scene: nothing has changed then.
     #[cfg(feature = "gpu")]
     pub fn use_gpu(&mut self) -> Result<(), Error> {
         if self.model().cpu_only().is_some() {
@@ -49,7 +49,7 @@ impl Simulation {
         self.use_this_gpu(corpuscle_gpu::Gpu::open()?)
     }
 
-    /// [`Simulation::use_gpu`] with a card that is open.
+    /// [`Simulation::use_gpu`] with a GPU that is open.
     ///
     /// # Errors
     /// As [`Simulation::use_gpu`].

@@ -1,4 +1,4 @@
-//! Built-in floods and dew on the graphics card do what they do on the processor: particle by particle after one step and after ten,
+//! Built-in floods and dew on the GPU do what they do on the CPU: particle by particle after one step and after ten,
 //! gauges, ledger and maps after hundred.
 #![cfg(feature = "gpu")]
 
@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 const FLOODS: [(&str, f64, f64); 3] =
     [("flood/cuboid", 1.7, 1e-3), ("flood/cylinder", 1.7, 1e-3), ("flood/rough-terrain", 2.0, 1e-2)];
 
-/// Scenes, the time from which they are compared, and a distance of particles, m, at which software in place of a card does hundred steps in seconds.
+/// Scenes, the time from which they are compared, and a distance of particles, m, at which software in place of a GPU does hundred steps in seconds.
 const DEW: [(&str, f64, &str); 5] = [
     ("dew/pane", 0.15, "0.003"),
     ("dew/lens", 0.1, "0.003"),
@@ -50,7 +50,7 @@ fn open_as_changed(name: &str, overrides: &[(String, String)]) -> Simulation {
     Simulation::open(scene, Path::new("")).unwrap()
 }
 
-/// A built-in scene computed on the processor and on the card, both from the same state on.
+/// A built-in scene computed on the CPU and on the GPU, both from the same state on.
 fn both_from(name: &str, time: f64, overrides: &[(&str, &str)]) -> [Simulation; 2] {
     both_of(|| open(name, overrides), time)
 }
@@ -81,21 +81,22 @@ fn step(both: &mut [Simulation; 2], steps: u64) {
         let next = model.time() + time_step(model);
         model.advance_to(next, &stop).unwrap();
     }
-    // The card has the time in single precision.
+    // The GPU has the time in single precision.
     let time = both[0].model().time() + 0.5 * time_step(both[0].model());
     both.iter_mut().for_each(|simulation| simulation.model_mut().advance_to(time, &stop).unwrap());
     // How long a step may be depends on the fastest particle of all, which rounding changes.
-    let [host, card] = both.each_ref().map(|simulation| simulation.model().steps());
-    assert!(host.abs_diff(card) <= steps / 50, "{host} and {card} steps");
+    let [host, device] = both.each_ref().map(|simulation| simulation.model().steps());
+    assert!(host.abs_diff(device) <= steps / 50, "{host} and {device} steps");
 }
 
 /// How far particles are apart in each of the numbers that are told of them: all but two in a thousand, and the farthest. They have the same identities.
 fn apart<const COUNT: usize>(mut both: [Vec<(u64, [f64; COUNT])>; 2]) -> [[f64; 2]; COUNT] {
     both.iter_mut().for_each(|particles| particles.sort_unstable_by_key(|(id, _)| *id));
-    let [host, card] = &both;
-    assert!(host.len() == card.len() && host.iter().zip(card).all(|((id, _), (same, _))| id == same));
+    let [host, device] = &both;
+    assert!(host.len() == device.len() && host.iter().zip(device).all(|((id, _), (same, _))| id == same));
     std::array::from_fn(|k| {
-        let mut off: Vec<f64> = host.iter().zip(card).map(|((_, host), (_, card))| (host[k] - card[k]).abs()).collect();
+        let mut off: Vec<f64> =
+            host.iter().zip(device).map(|((_, host), (_, device))| (host[k] - device[k]).abs()).collect();
         off.sort_unstable_by(f64::total_cmp);
         [off[off.len() * 998 / 1000], off[off.len() - 1]]
     })
@@ -120,12 +121,12 @@ fn air(model: &dyn Model) -> Vec<(u64, [f64; 9])> {
 }
 
 /// Gauges, and what the ledgers balance to.
-fn assert_totals(name: &str, [host, card]: [&dyn Model; 2], bound: impl Fn(&GaugeColumn, f64) -> f64) {
-    for ((column, host), card) in host.gauge_columns().iter().zip(host.gauge_row()).zip(card.gauge_row()) {
-        let is_near = (host - card).abs() <= bound(column, host.abs()) || host.is_nan() && card.is_nan();
-        assert!(is_near, "{name}, {}.{}: {host} and {card}", column.gauge, column.quantity);
+fn assert_totals(name: &str, [host, device]: [&dyn Model; 2], bound: impl Fn(&GaugeColumn, f64) -> f64) {
+    for ((column, host), device) in host.gauge_columns().iter().zip(host.gauge_row()).zip(device.gauge_row()) {
+        let is_near = (host - device).abs() <= bound(column, host.abs()) || host.is_nan() && device.is_nan();
+        assert!(is_near, "{name}, {}.{}: {host} and {device}", column.gauge, column.quantity);
     }
-    for balance in card.ledger().balances {
+    for balance in device.ledger().balances {
         // In water at rest so little momentum is exchanged that its sum is rounding.
         let bound = if balance.quantity == "momentum" { 1e-5 } else { 1e-6 };
         let is_at_rest = balance.quantity == "momentum" && name == "flood/lake-at-rest";
@@ -135,11 +136,11 @@ fn assert_totals(name: &str, [host, card]: [&dyn Model; 2], bound: impl Fn(&Gaug
 }
 
 /// Root mean square over the cells, over the largest, and few cells that are wet in one of them only.
-fn assert_map(name: &str, [host, card]: [&Map; 2], bound: f64) {
-    let pairs = || host.values.iter().zip(&card.values);
-    let flipped = pairs().filter(|(host, card)| host.is_nan() != card.is_nan()).count();
-    let wet: Vec<_> = pairs().filter(|(host, card)| !host.is_nan() && !card.is_nan()).collect();
-    let squares = wet.iter().map(|(host, card)| f64::from(*host - *card).powi(2)).sum::<f64>();
+fn assert_map(name: &str, [host, device]: [&Map; 2], bound: f64) {
+    let pairs = || host.values.iter().zip(&device.values);
+    let flipped = pairs().filter(|(host, device)| host.is_nan() != device.is_nan()).count();
+    let wet: Vec<_> = pairs().filter(|(host, device)| !host.is_nan() && !device.is_nan()).collect();
+    let squares = wet.iter().map(|(host, device)| f64::from(*host - *device).powi(2)).sum::<f64>();
     let largest = wet.iter().map(|(host, _)| f64::from(**host)).fold(1.0, f64::max);
     let off = (squares / wet.len() as f64).sqrt() / largest;
     assert!(wet.len() > 100 && off < 5.0 * bound, "{name}, {}: {off} of {largest}", host.name);
@@ -174,9 +175,9 @@ fn built_in_floods_of_scheme_sph_swe_go_as_on_the_cpu() {
         step(&mut both, 90);
         let both = both.each_ref().map(Simulation::model);
         assert_totals(name, both, |_, value| bound * value.max(1.0));
-        let [host, card] = both.map(Model::maps);
-        assert!(host.len() >= 6 && host.len() == card.len());
-        host.iter().zip(&card).for_each(|(host, card)| assert_map(name, [host, card], bound));
+        let [host, device] = both.map(Model::maps);
+        assert!(host.len() >= 6 && host.len() == device.len());
+        host.iter().zip(&device).for_each(|(host, device)| assert_map(name, [host, device], bound));
     }
 }
 
@@ -231,10 +232,10 @@ fn built_in_floods_of_scheme_voronoi_go_as_on_the_cpu() {
 /// Places, m; velocities, m/s; temperature, K; vapour and fog, parts of the mass: after one step and after ten.
 const AIR: [(u64, [f64; 4]); 2] = [(1, [3e-8, 3e-6, 1e-5, 1e-8]), (9, [1e-7, 2e-5, 1e-4, 1e-7])];
 
-/// Drops on the processor beside air on the card are the same drops; of hundreds one may have merged and the other not.
+/// Drops on the CPU beside air on the GPU are the same drops; of hundreds one may have merged and the other not.
 #[test]
-fn built_in_dew_goes_as_on_the_processor() {
-    if require_gpu("built-in dew on the card").is_none() {
+fn built_in_dew_goes_as_on_the_cpu() {
+    if require_gpu("built-in dew on the GPU").is_none() {
         return;
     }
     // Those of drops and pairs, which are few, and fog that is only just there.
@@ -261,7 +262,7 @@ fn built_in_dew_goes_as_on_the_processor() {
 /// What the GPU cannot compute says so by name; what it can is in the lists above.
 #[test]
 fn the_other_built_in_scenes_are_refused() {
-    if require_gpu("refusals by the card").is_none() {
+    if require_gpu("refusals by the GPU").is_none() {
         return;
     }
     let floods = FLOODS.iter().map(|flood| flood.0).chain(VORONOI.iter().map(|flood| flood.0));

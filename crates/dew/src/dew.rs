@@ -4,7 +4,7 @@ mod accelerated;
 mod by_hand;
 mod motion;
 #[cfg(feature = "gpu")]
-mod on_card;
+mod on_gpu;
 mod scatter;
 mod settle;
 mod sources_by_hand;
@@ -86,9 +86,9 @@ pub struct Dew {
     pub(crate) buoyant: bool,
     /// What a hand can change, as it was set up, once one has changed it.
     as_set_up: Option<Hand>,
-    /// The graphics card, where it takes the steps.
+    /// The GPU, where it takes the steps.
     #[cfg(feature = "gpu")]
-    pub(crate) card: Option<crate::card::Card>,
+    pub(crate) gpu_solver: Option<crate::gpu::GpuSolver>,
 }
 
 /// Everything that changes.
@@ -231,7 +231,7 @@ impl Dew {
             buoyant: true,
             as_set_up: None,
             #[cfg(feature = "gpu")]
-            card: None,
+            gpu_solver: None,
         };
         dew.fill(bodies, start);
         dew.settle();

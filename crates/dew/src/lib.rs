@@ -9,8 +9,6 @@
 
 pub mod air;
 pub mod bodies;
-#[cfg(feature = "gpu")]
-mod card;
 mod contact;
 mod dew;
 pub mod drops;
@@ -18,6 +16,8 @@ mod exchange;
 mod faces;
 mod fan;
 mod fogging;
+#[cfg(feature = "gpu")]
+mod gpu;
 pub mod humid_air;
 mod layer;
 mod measures;

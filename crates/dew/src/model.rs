@@ -81,7 +81,7 @@ impl Model for Dew {
 
     #[cfg(feature = "gpu")]
     fn backend(&self) -> &'static str {
-        if self.card.is_some() { "gpu" } else { "cpu" }
+        if self.gpu_solver.is_some() { "gpu" } else { "cpu" }
     }
 
     #[cfg(feature = "gpu")]
@@ -117,8 +117,8 @@ impl Model for Dew {
 
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
-        if self.card.is_some() {
-            return self.advance_on_card(time, stop);
+        if self.gpu_solver.is_some() {
+            return self.advance_on_gpu(time, stop);
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -133,7 +133,7 @@ impl Model for Dew {
 
     #[cfg(feature = "gpu")]
     fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
-        if self.card.is_some() {
+        if self.gpu_solver.is_some() {
             self.advance_measured(time, stop, companion, None)
         } else {
             advance_with(self, time, stop, companion)
@@ -212,6 +212,6 @@ impl Model for Dew {
         (self.shown, self.state) = (shown, state);
         self.tell_evaporation();
         self.take_hand();
-        self.renew_card(self.has_been_touched())
+        self.renew_gpu(self.has_been_touched())
     }
 }

@@ -51,7 +51,7 @@ impl ByHand {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where it is none, has nothing of the kind, or the number is out of range: nothing has changed then.
-    /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
+    /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
     pub fn change(self, model: &mut dyn Any) -> Result<(), ModelError> {
         match as_flood_mut(model) {
             Some(flood) => flood.change(self),

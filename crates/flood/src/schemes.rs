@@ -31,7 +31,7 @@ pub trait FloodModel: Model {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
-    /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
+    /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
     fn change(&mut self, change: ByHand) -> Result<(), ModelError>;
 }
 

@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GpuKind {
-    /// A graphics card.
-    Card,
+    /// A GPU.
+    Hardware,
     /// A program in its place, such as Mesa's lavapipe.
     Software,
 }
@@ -21,7 +21,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name, as the driver gives it.
     pub name: String,
-    /// A card, or a program in its place.
+    /// A GPU, or a program in its place.
     pub kind: GpuKind,
     faults: Faults,
 }
@@ -51,7 +51,7 @@ impl Gpu {
     pub(crate) const TIMING: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
 
-    /// Opens the best device: a card of its own, then one built in, then software. The first that keeps to the portable floor
+    /// Opens the best device: a GPU of its own, then one built in, then software. The first that keeps to the portable floor
     /// is taken.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Gpu {
     pub fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = adapter.get_info();
         let software = info.device_type == wgpu::DeviceType::Cpu;
-        let kind = if software { GpuKind::Software } else { GpuKind::Card };
+        let kind = if software { GpuKind::Software } else { GpuKind::Hardware };
         let faults = Faults::of(&device);
         Self { device, queue, name: info.name, kind, faults }
     }

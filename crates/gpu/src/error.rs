@@ -1,12 +1,12 @@
-//! What can go wrong with a graphics card.
+//! What can go wrong with a GPU.
 
-/// Why there is no card to draw with, or what it cannot do. The text says what to do.
+/// Why there is no GPU to draw with, or what it cannot do. The text says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No card and no software in its place.
+    /// No GPU and no software in its place.
     #[error(
-        "there is no graphics card, nor software in its place: no Vulkan, Metal or Direct3D 12 device was found. \
-         Everything but the 3D pictures and `--backend gpu` works without. For those install the driver of the card, or Mesa's software Vulkan: \
+        "there is no GPU, nor software in its place: no Vulkan, Metal or Direct3D 12 device was found. \
+         Everything but the 3D pictures and `--backend gpu` works without. For those install the driver of the GPU, or Mesa's software Vulkan: \
          `apt-get install mesa-vulkan-drivers` on Debian and Ubuntu, `dnf install mesa-vulkan-drivers` on Fedora"
     )]
     NoDevice,

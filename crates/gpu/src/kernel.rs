@@ -64,7 +64,7 @@ impl<B: Buffers> Kernel<B> {
     }
 }
 
-/// The shader as a device runs it. On a card loops go without the count by which wgpu ends one that never would: it takes a tenth of the
+/// The shader as a device runs it. On a GPU loops go without the count by which wgpu ends one that never would: it takes a tenth of the
 /// time of a step of 60,000 particles, and a thirtieth of one of a million (see the guide's benchmarks).
 #[allow(unsafe_code, reason = "wgpu drops the bound on loops only by an unsafe call; a measured gain")]
 fn module(gpu: &Gpu, description: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
@@ -72,7 +72,7 @@ fn module(gpu: &Gpu, description: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
         GpuKind::Software => gpu.device.create_shader_module(description),
         // SAFETY: what is read and written out of bounds is checked as ever. Only loops are trusted to end, and those of our shaders do: they
         // count up or down to a number that does not grow, or leave after a bounded number of turns.
-        GpuKind::Card => unsafe {
+        GpuKind::Hardware => unsafe {
             let checks =
                 wgpu::ShaderRuntimeChecks { force_loop_bounding: false, ..wgpu::ShaderRuntimeChecks::checked() };
             gpu.device.create_shader_module_trusted(description, checks)
@@ -86,7 +86,7 @@ fn module(gpu: &Gpu, description: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::Sha
 fn for_device(gpu: &Gpu, text: String) -> String {
     match gpu.kind {
         GpuKind::Software => text.replace("var<uniform>", "var<storage, read>"),
-        GpuKind::Card => text,
+        GpuKind::Hardware => text,
     }
 }
 

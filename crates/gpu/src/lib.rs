@@ -1,4 +1,4 @@
-//! The graphics card: which one, within which limits, memory and programs on it, sorting into cells, pictures off screen and back,
+//! The GPU: which one, within which limits, memory and programs on it, sorting into cells, pictures off screen and back,
 //! shaders joined from pieces.
 //!
 //! Everything here keeps to the portable floor, so that the same shaders run in a browser: WebGPU's default limits (8 storage

@@ -15,7 +15,7 @@ pub struct Passed {
 }
 
 /// Goes along while a model advances: takes the rows of gauges that fall due on the way, is told how far the model has come, and may call it
-/// back. A model that computes elsewhere (on a graphics card) need not bring its whole state back for that.
+/// back. A model that computes elsewhere (on a GPU) need not bring its whole state back for that.
 pub trait Companion {
     /// The first time after `time`, s, at which the gauges are to be read; none where there is none. It is asked for times to come as well, before
     /// the rows until then are taken.

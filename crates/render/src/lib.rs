@@ -1,4 +1,4 @@
-//! Pictures of a model's frames on the graphics card, off screen or on.
+//! Pictures of a model's frames on the GPU, off screen or on.
 //!
 //! A [`Renderer`] draws [`Drawable`] things, seen by a [`Camera`] under a [`Light`], into a [`Target`], from which a picture is
 //! read back. It knows no physics and no files.

@@ -170,7 +170,7 @@ impl Terrain {
         found
     }
 
-    /// The smooth surface as numbers for a graphics card, its heights above `level`, m. Ground from a formula is met at nodes four times
+    /// The smooth surface as numbers for a GPU, its heights above `level`, m. Ground from a formula is met at nodes four times
     /// as close as the cells of its maps, with its own slopes, and to fourth order between them.
     pub fn patches_above(&self, level: f64) -> GroundPatches {
         match &self.ground {

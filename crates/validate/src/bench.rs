@@ -21,9 +21,9 @@ pub struct Rate {
     /// Part of space that particles fill (gas).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<f64>,
-    /// Threads used; 0 on a graphics card.
+    /// Threads used; 0 on a GPU.
     pub threads: usize,
-    /// The graphics card, where it computes.
+    /// The GPU, where it computes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
     /// The rate, all threads together.
@@ -32,19 +32,19 @@ pub struct Rate {
     pub rate_unit: String,
     /// Memory of the model over its particles.
     pub bytes_per_particle: f64,
-    /// What each pass of a step takes on the card, where that was asked for.
+    /// What each pass of a step takes on the GPU, where that was asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub passes: Vec<PassTime>,
 }
 
-/// What a pass takes on a graphics card.
+/// What a pass takes on a GPU.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PassTime {
     /// The name of its kernel.
     pub name: &'static str,
     /// How often it is done in a step.
     pub times_a_step: f64,
-    /// Time in a step by the card's own clock, s.
+    /// Time in a step by the GPU's own clock, s.
     pub seconds_a_step: f64,
 }
 
@@ -55,8 +55,8 @@ pub struct Bench {
     pub name: &'static str,
     /// What it measures, in a sentence.
     pub about: &'static str,
-    /// Whether it is for a graphics card only.
-    pub needs_card: bool,
+    /// Whether it is for a GPU only.
+    pub needs_gpu: bool,
     /// Runs it.
     pub run: fn(&BenchOptions) -> Vec<Rate>,
 }
@@ -66,17 +66,17 @@ pub struct Bench {
 pub struct BenchOptions {
     /// Less time for each, for a quick look: the figures scatter more.
     pub quick: bool,
-    /// The graphics card to compute on; else the CPU.
+    /// The GPU to compute on; else the CPU.
     pub gpu: Option<Gpu>,
-    /// Whether each pass of a step is timed on the card.
+    /// Whether each pass of a step is timed on the GPU.
     pub passes: bool,
 }
 
 /// All benches.
 pub fn benches() -> &'static [Bench] {
     static ALL: LazyLock<Vec<Bench>> = LazyLock::new(|| {
-        use crate::{card_copy, dew, flood, gas};
-        [flood::bench::BENCHES, gas::bench::BENCHES, dew::bench::BENCHES, card_copy::BENCHES].concat()
+        use crate::{dew, flood, gas, gpu_copy};
+        [flood::bench::BENCHES, gas::bench::BENCHES, dew::bench::BENCHES, gpu_copy::BENCHES].concat()
     });
     &ALL
 }
@@ -116,14 +116,14 @@ pub(crate) struct Measuring {
     pub dimensions: usize,
     /// Steps before the clock is started.
     pub settling: u64,
-    /// Steps between two looks at the clock: here, and on a card, where each look brings the state back.
+    /// Steps between two looks at the clock: here, and on a GPU, where each look brings the state back.
     pub steps: [f64; 2],
     /// Wall-clock time, s.
     pub seconds: f64,
 }
 
 impl Measuring {
-    /// The rate of a model, or none with a line that says so where the card cannot compute it.
+    /// The rate of a model, or none with a line that says so where the GPU cannot compute it.
     pub fn rate<M: Stepped>(&self, mut model: M, options: &BenchOptions) -> Result<Option<Rate>, ModelError> {
         if let Some(Err(error)) = options.gpu.clone().map(|gpu| use_gpu(&mut model, gpu)) {
             eprintln!("left out: {error}");

@@ -45,10 +45,10 @@ pub struct Case {
 }
 
 impl Case {
-    /// Runs it, its floods and its dew on the card where `options` names one.
+    /// Runs it, its floods and its dew on the GPU where `options` names one.
     pub fn rows(&self, options: &Options) -> Vec<Row> {
         let factor = if options.reduced { self.reduced } else { 1.0 };
-        let run = || crate::device::on_card(options.gpu.clone(), || (self.run)(options));
+        let run = || crate::device::on_gpu(options.gpu.clone(), || (self.run)(options));
         crate::missed::mark(crate::device::coarser(factor, run))
     }
 }
@@ -60,7 +60,7 @@ pub struct Options {
     pub data: Option<PathBuf>,
     /// Missing data is a failure instead.
     pub require_data: bool,
-    /// The card that takes the steps of floods and of dew, where one does.
+    /// The GPU that takes the steps of floods and of dew, where one does.
     pub gpu: Option<corpuscle_gpu::Gpu>,
     /// Whether floods and dew have their reduced size, at which measures are those of two programs to be compared: bounds are meant for the full size,
     /// and so are the distances in the names of measures.

@@ -9,15 +9,15 @@ thread_local! {
     /// By how much the case that this thread runs is smaller than at full size: its particles are farther apart, or less time goes by.
     static COARSER: Cell<f64> = const { Cell::new(1.0) };
 
-    /// The card that takes the steps of the case that this thread runs, if one does.
-    static CARD: RefCell<Option<Gpu>> = const { RefCell::new(None) };
+    /// The GPU that takes the steps of the case that this thread runs, if one does.
+    static GPU: RefCell<Option<Gpu>> = const { RefCell::new(None) };
 }
 
-/// Lets a card take the steps of all models that `case` sets up.
-pub(crate) fn on_card<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
-    let before = CARD.replace(gpu);
+/// Lets a GPU take the steps of all models that `case` sets up.
+pub(crate) fn on_gpu<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
+    let before = GPU.replace(gpu);
     let result = case();
-    CARD.replace(before);
+    GPU.replace(before);
     result
 }
 
@@ -49,31 +49,31 @@ pub(crate) fn sized(spacing: f64) -> f64 {
     COARSER.get() * spacing
 }
 
-/// The card that takes the steps, if one does.
-pub(crate) fn card() -> Option<Gpu> {
-    CARD.with_borrow(Clone::clone)
+/// The GPU that takes the steps, if one does.
+pub(crate) fn gpu() -> Option<Gpu> {
+    GPU.with_borrow(Clone::clone)
 }
 
-/// Whether a card takes the steps.
-pub(crate) fn is_card() -> bool {
-    CARD.with_borrow(Option::is_some)
+/// Whether a GPU takes the steps.
+pub(crate) fn is_gpu() -> bool {
+    GPU.with_borrow(Option::is_some)
 }
 
-/// The bound of a measure that is exact but for rounding: of double precision on the CPU, or of single precision on the card.
+/// The bound of a measure that is exact but for rounding: of double precision on the CPU, or of single precision on the GPU.
 pub(crate) fn rounding(double: f64, single: f64) -> f64 {
-    if is_card() { single } else { double }
+    if is_gpu() { single } else { double }
 }
 
-/// Refuses what the card's program has not.
-pub(crate) fn refuse_on_card(what: &str) -> Result<(), ModelError> {
-    if is_card() { Err(ModelError::Setup(format!("the graphics card cannot yet compute {what}"))) } else { Ok(()) }
+/// Refuses what the GPU's program has not.
+pub(crate) fn refuse_on_gpu(what: &str) -> Result<(), ModelError> {
+    if is_gpu() { Err(ModelError::Setup(format!("the GPU cannot yet compute {what}"))) } else { Ok(()) }
 }
 
-/// Rows of a case, or the row of its failure; a case that a card cannot compute is skipped.
+/// Rows of a case, or the row of its failure; a case that a GPU cannot compute is skipped.
 pub(crate) fn rows(case: &'static str, result: Result<Vec<Row>, ModelError>) -> Vec<Row> {
     result.unwrap_or_else(|error| {
         vec![match &error {
-            ModelError::Setup(why) if is_card() => Row::skipped(case, why),
+            ModelError::Setup(why) if is_gpu() => Row::skipped(case, why),
             _ => Row::broken(case, &error.to_string()),
         }]
     })

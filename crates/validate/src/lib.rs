@@ -4,12 +4,12 @@
 //! A [`Bench`] runs a scene whose cost matters and gives [`Rate`]s.
 
 mod bench;
-mod card_copy;
 mod case;
 mod device;
 mod dew;
 mod flood;
 mod gas;
+mod gpu_copy;
 mod missed;
 
 pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};

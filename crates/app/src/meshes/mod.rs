@@ -1,8 +1,8 @@
-//! Draws what the toolkit draws, where software stands in for a graphics card.
+//! Draws what the toolkit draws, where software stands in for a GPU.
 //!
 //! The toolkit's own shader filters images in two ways and takes one; software computes both, one of them with whole-number division,
 //! and half of the time of a picture went there (`docs/src/benchmarks.md`, "The window"). Here the same triangles go through a
-//! shader that does what is wanted alone. On a card nothing of this is used.
+//! shader that does what is wanted alone. On a GPU nothing of this is used.
 
 mod pipelines;
 
@@ -63,7 +63,7 @@ struct Gathered {
 }
 
 impl Meshes {
-    /// For a window that is drawn in a format of sRGB bytes; none where the window takes linear light, or a card draws it.
+    /// For a window that is drawn in a format of sRGB bytes; none where the window takes linear light, or a GPU draws it.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Option<Self> {
         let software = gpu.kind == GpuKind::Software;
         (software && !format.is_srgb()).then(|| Self {

@@ -39,12 +39,12 @@ pub(crate) fn round(value: f64) -> f64 {
 /// Where steps are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
-    /// On the graphics card that draws the window, where it is one and the scene is work for it.
+    /// On the GPU that draws the window, where it is one and the scene is work for it.
     #[default]
     Auto,
-    /// On the processor.
+    /// On the CPU.
     Cpu,
-    /// On the device that draws the window, whatever it is; a gas on the processor all the same.
+    /// On the device that draws the window, whatever it is; a gas on the CPU all the same.
     Gpu,
 }
 

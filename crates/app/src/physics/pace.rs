@@ -135,7 +135,7 @@ mod tests {
         // A million particles: steps of 1.2 ms, pictures of 22 ms.
         let (time, slice) = beside_pictures(10.0, 0.005, 0.0012, 0.022);
         assert!(time > 10.0 && slice < 0.045, "{time} {slice}");
-        // Software in place of a card: a step at least every few pictures.
+        // Software in place of a GPU: a step at least every few pictures.
         let (time, _) = beside_pictures(1.0, 0.05, 0.02, 0.5);
         assert!(time > 0.4, "{time}");
     }

@@ -47,10 +47,12 @@ impl Subject {
         Ok(Self::Live(Box::new(simulation), choice))
     }
 
-    /// What is computed where it is drawn, by a card; elsewhere particles come to the host for every picture.
+    /// What is computed where it is drawn, by a GPU; elsewhere particles come to the host for every picture.
     pub fn gliding(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
         match self {
-            Self::Live(simulation, _) if gpu.kind == GpuKind::Card && simulation.is_seen_on(gpu) => Some(simulation),
+            Self::Live(simulation, _) if gpu.kind == GpuKind::Hardware && simulation.is_seen_on(gpu) => {
+                Some(simulation)
+            }
             Self::Live(..) | Self::Recorded(_) => None,
         }
     }
@@ -58,7 +60,7 @@ impl Subject {
     /// The particles where they are drawn, as they stand.
     pub fn on_device(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
         match self {
-            Self::Live(simulation, _) if gpu.kind == GpuKind::Card => simulation.seen_on(gpu),
+            Self::Live(simulation, _) if gpu.kind == GpuKind::Hardware => simulation.seen_on(gpu),
             Self::Live(..) | Self::Recorded(_) => Ok(None),
         }
     }
@@ -89,7 +91,7 @@ impl Subject {
     pub fn computed_on(&self) -> Option<String> {
         match self {
             Self::Live(_, Choice { is_gpu, why }) => {
-                Some(format!("Computed on the {}: {why}", if *is_gpu { "graphics card" } else { "CPU" }))
+                Some(format!("Computed on the {}: {why}", if *is_gpu { "GPU" } else { "CPU" }))
             }
             Self::Recorded(_) => None,
         }

@@ -101,7 +101,7 @@ impl Rate {
     pub fn note(&mut self, work: u64) {
         let (before, when) = self.told;
         let since = when.elapsed().as_secs_f64();
-        // While particles come back from a card no work is done.
+        // While particles come back from a GPU no work is done.
         if since > 0.5 && work > before || since > 2.0 {
             self.now = work.saturating_sub(before) as f64 / since;
             self.told = (work, Instant::now());

@@ -166,7 +166,7 @@ impl Window {
         snapshot.measures.gauges.get(at).copied()
     }
 
-    /// True where the picture has all there is to its look: without a graphics card what moves is drawn simply.
+    /// True where the picture has all there is to its look: without a GPU what moves is drawn simply.
     pub fn is_complete(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.picture.is_complete())
     }

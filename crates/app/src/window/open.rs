@@ -49,13 +49,9 @@ pub(super) struct Open {
 
 /// Looks: how they are called, and what they mean.
 pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
-    (
-        Quality::Auto,
-        "By itself",
-        "Full on a graphics card; without one full where it stands still, simple where it moves",
-    ),
+    (Quality::Auto, "By itself", "Full on a GPU; without one full where it stands still, simple where it moves"),
     (Quality::Simple, "Simple", "Without shadows, water as its particles: quick"),
-    (Quality::Full, "Full", "Shadows, and water that looks like water: slow without a graphics card"),
+    (Quality::Full, "Full", "Shadows, and water that looks like water: slow without a GPU"),
 ];
 
 /// The parameters of a scene as it is written.

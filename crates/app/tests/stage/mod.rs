@@ -59,12 +59,12 @@ pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
     stage_by(test, theme, start, false)
 }
 
-/// A window whose device is taken for a graphics card, which computes too.
+/// A window whose device is taken for a GPU, which computes too.
 #[allow(dead_code)]
-pub fn stage_of_card(test: &str) -> Option<Stage> {
-    let mut card = require_gpu(test)?;
-    card.kind = GpuKind::Card;
-    Some(stage_on(card, egui::Theme::Light, Start::Welcome, false, Backend::Gpu))
+pub fn stage_of_gpu(test: &str) -> Option<Stage> {
+    let mut device = require_gpu(test)?;
+    device.kind = GpuKind::Hardware;
+    Some(stage_on(device, egui::Theme::Light, Start::Welcome, false, Backend::Gpu))
 }
 
 fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Option<Stage> {

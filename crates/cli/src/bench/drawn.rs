@@ -1,4 +1,4 @@
-//! Pictures a second of a flood that is stepped and drawn on one card: a picture a step, and nothing comes back in between but a few numbers.
+//! Pictures a second of a flood that is stepped and drawn on one GPU: a picture a step, and nothing comes back in between but a few numbers.
 
 use crate::args::BenchOptions;
 use corpuscle::gpu::{Gpu, Taken, wgpu};

@@ -8,8 +8,8 @@ use corpuscle_model::{Companion, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
 
 impl Simulation {
-    /// The graphics card that takes the steps, where one does.
-    pub(super) fn card(&self) -> Option<Gpu> {
+    /// The GPU that takes the steps, where one does.
+    pub(super) fn stepping_gpu(&self) -> Option<Gpu> {
         gpu_of(self.model())
     }
 
@@ -23,7 +23,7 @@ impl Simulation {
 
     /// Whether the model steps on a device and can be drawn there without its particles coming back.
     pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
-        self.card().is_some_and(|card| card.is_same(gpu))
+        self.stepping_gpu().is_some_and(|device| device.is_same(gpu))
     }
 
     /// Whether pictures show the particles that lie on the GPU: of dew they show the air only where the scene says so.
@@ -85,7 +85,7 @@ impl Pictures {
 
     /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
     fn on_device(&self, model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
-        let is_here = gpu_of(model).is_some_and(|card| card.is_same(self.gpu()));
+        let is_here = gpu_of(model).is_some_and(|device| device.is_same(self.gpu()));
         match &self.subject {
             Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model),
             Subject::Dew(dew) if is_here && dew.shows_air() => particles_of(model),
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
+    fn a_flood_on_the_gpu_is_drawn_from_there_and_looks_as_its_frame_does() {
         let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
         let coarse = [("flood.spacing_m", "2")];
         let coarse = coarse.map(|(path, value)| (path.to_owned(), value.to_owned()));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn air_on_the_card_is_drawn_from_there_and_looks_as_its_frame_does() {
+    fn air_on_the_gpu_is_drawn_from_there_and_looks_as_its_frame_does() {
         let Some(gpu) = require_gpu("air drawn where it lies") else { return };
         let coarse = [("dew.spacing_m".to_owned(), "0.002".to_owned())];
         let scene = Scene::parse(builtin("dew/three-boundaries").unwrap().text, "three", &coarse).unwrap();
@@ -185,7 +185,7 @@ mod tests {
         let by_frame = by_frame(&mut pictures, simulation.model());
         let apart = difference(&from_device, &by_frame);
         assert!(pictures.on_device(simulation.model()).unwrap().is_some() && apart < SAME, "{apart}");
-        // A card that is not the one that draws has its frame drawn.
+        // A GPU that is not the one that draws has its frame drawn.
         assert!(!simulation.is_seen_on(&Gpu::open().unwrap()));
     }
 }

@@ -100,12 +100,12 @@ enum Subject {
 }
 
 impl Pictures {
-    /// Makes ready to draw a scene: on the card that takes the steps, else on the best device.
+    /// Makes ready to draw a scene: on the GPU that takes the steps, else on the best device.
     ///
     /// # Errors
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
     pub fn open(simulation: &Simulation, settings: PictureSettings) -> Result<Self, Error> {
-        let gpu = simulation.card().map_or_else(Gpu::open, Ok).map_err(RenderError::from)?;
+        let gpu = simulation.stepping_gpu().map_or_else(Gpu::open, Ok).map_err(RenderError::from)?;
         Self::open_on(&gpu, simulation, settings)
     }
 

@@ -11,7 +11,7 @@ pub enum Look {
     /// All there is: shadows, water that looks like water.
     #[default]
     Full,
-    /// What can be drawn quickly without a graphics card: no shadows, water as its particles, coloured by depth.
+    /// What can be drawn quickly without a GPU: no shadows, water as its particles, coloured by depth.
     Simple,
 }
 

@@ -101,7 +101,7 @@ impl ByHand {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where it is none, has nothing of the kind, or the number is out of range: nothing has changed then;
-    /// [`ModelError::Device`] where a graphics card takes the steps and cannot go on with the change.
+    /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
     pub fn change(self, model: &mut dyn Any) -> Result<(), ModelError> {
         match model.downcast_mut::<Dew>() {
             Some(dew) => dew.change_by_hand(self),
@@ -172,7 +172,7 @@ impl Dew {
         self.as_set_up.get_or_insert(before);
         self.keep_sound_faster();
         self.state.hand = Some(self.as_it_is());
-        self.renew_card(true)
+        self.renew_gpu(true)
     }
 
     /// True where a hand has changed something, in this state or in one before.
@@ -180,11 +180,11 @@ impl Dew {
         self.as_set_up.is_some()
     }
 
-    /// A card that takes the steps gets to know the state; and what a hand has changed, if anything, for which it is set up anew.
-    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no card"))]
-    pub(crate) fn renew_card(&mut self, anew: bool) -> Result<(), ModelError> {
+    /// A GPU that takes the steps gets to know the state; and what a hand has changed, if anything, for which it is set up anew.
+    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, clippy::unnecessary_wraps, reason = "there is no GPU"))]
+    pub(crate) fn renew_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
-        self.tell_card(anew)?;
+        self.tell_gpu(anew)?;
         Ok(())
     }
 

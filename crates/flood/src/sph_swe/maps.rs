@@ -46,7 +46,7 @@ impl Maps {
         self.columns == other.columns && self.cells.len() == other.cells.len()
     }
 
-    /// What goes on the card and comes back from there.
+    /// What goes on the GPU and comes back from there.
     #[cfg(feature = "gpu")]
     pub fn record(&self, cell: usize) -> &Record {
         &self.cells[cell]

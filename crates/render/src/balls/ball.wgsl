@@ -31,7 +31,7 @@ fn colour_of(number: u32) -> vec3f {
 
 // Corners of the triangle with sides of the same length round a circle of radius 1. A ball is one triangle rather than the two of a
 // square: it covers a third more, and costs half as much to set up, which is what many small balls cost. All are drawn in one go, for
-// software in place of a card is slow at instances of few corners: a ball's number is that of its corner, over 3.
+// software in place of a GPU is slow at instances of few corners: a ball's number is that of its corner, over 3.
 fn corner_of(vertex: u32) -> vec2f {
     let side = f32(vertex % 3u) - 1.0;
     return vec2f(sqrt(3.0) * side, select(-1.0, 2.0, side == 0.0));

@@ -10,7 +10,7 @@
 //! composing  into the picture, where it is not hidden                   fluid_compose.wgsl
 //! ```
 //!
-//! Whatever does arithmetic pixel by pixel is a compute shader: fragment shaders only draw sprites and copy. On cards, which have few
+//! Whatever does arithmetic pixel by pixel is a compute shader: fragment shaders only draw sprites and copy. On GPUs, which have few
 //! raster units for small sprites, compute shaders draw the particles as well, as splats: splat_depth.wgsl and splat_nearest.wgsl,
 //! splat_thickness.wgsl and splat_added.wgsl.
 

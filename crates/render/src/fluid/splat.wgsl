@@ -1,4 +1,4 @@
-// Particles drawn by compute shaders, for cards whose few raster units small sprites keep waiting: which pixels a quad covers.
+// Particles drawn by compute shaders, for GPUs whose few raster units small sprites keep waiting: which pixels a quad covers.
 #import droplet
 
 // A quad of more pixels is drawn by all threads of a group.

@@ -62,7 +62,7 @@ impl Fluid {
         self.droplets = water.droplets().into_iter().collect();
     }
 
-    /// Has compute shaders draw the particles, or raster units, which do without this: no card has been measured with the former.
+    /// Has compute shaders draw the particles, or raster units, which do without this: no GPU has been measured with the former.
     pub fn splat(&mut self, splats: bool) {
         self.splats = splats;
     }

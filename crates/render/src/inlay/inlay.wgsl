@@ -1,5 +1,5 @@
 // Lays a picture into its place in a window, pixel by pixel. What is the same for a whole pass is said when the pipeline is made:
-// software in place of a card would compute both sides of a choice.
+// software in place of a GPU would compute both sides of a choice.
 #import press
 
 // Highlights are pressed; the window takes linear light.

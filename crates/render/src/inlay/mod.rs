@@ -1,6 +1,6 @@
 //! Pictures laid into a pass of others, such as that of a window.
 //!
-//! A toolkit's own shader for images filters in two ways and takes one; software in place of a graphics card computes both, and took ten
+//! A toolkit's own shader for images filters in two ways and takes one; software in place of a GPU computes both, and took ten
 //! times as long. A picture that was drawn quickly comes from its linear light without a finished picture in between.
 
 use crate::{Target, shaders};

@@ -13,19 +13,19 @@ pub(crate) const BENCHES: &[Bench] = &[
     Bench {
         name: "dew/plate-100k",
         about: "100,000 particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| rate("dew/plate-100k", 46, options),
     },
     Bench {
         name: "dew/plate-1m",
         about: "A million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| rate("dew/plate-1m", 100, options),
     },
     Bench {
         name: "dew/plate-5m",
         about: "Five million particles of stirred humid air over a cold glass plate: motion, heat, vapour and condensation.",
-        needs_card: true,
+        needs_gpu: true,
         run: |options| rate("dew/plate-5m", 171, options),
     },
 ];
@@ -35,7 +35,7 @@ const SPACING: f64 = 2e-3;
 
 const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
 
-/// After so many steps the lattice has gone. A step at a time; on a card more, as each look brings the air back.
+/// After so many steps the lattice has gone. A step at a time; on a GPU more, as each look brings the air back.
 const MEASURING: Measuring = Measuring { name: "", dimensions: 3, settling: 40, steps: [1.001, 20.0], seconds: 8.0 };
 
 fn rate(name: &'static str, side: usize, options: &BenchOptions) -> Vec<Rate> {
@@ -79,7 +79,7 @@ mod tests {
     use corpuscle_gpu::require_gpu;
 
     #[test]
-    fn a_bench_of_dew_runs_on_the_card() {
+    fn a_bench_of_dew_runs_on_the_gpu() {
         let Some(gpu) = require_gpu("a bench of dew") else { return };
         let name = Some(gpu.name.clone());
         let options = BenchOptions { quick: true, gpu: Some(gpu), passes: true };

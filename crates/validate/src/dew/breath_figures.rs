@@ -2,7 +2,7 @@
 
 use super::rows;
 use super::slide::{fitted_slope, laws, on_patches};
-use crate::device::refuse_on_card;
+use crate::device::refuse_on_gpu;
 use crate::{Case, Options, Row};
 use corpuscle_dew::drops::{DropLaws, Drops, WATER_DENSITY};
 use corpuscle_model::ModelError;
@@ -39,7 +39,7 @@ fn breath_figures(_: &Options) -> Vec<Row> {
 
 fn measure() -> Result<Vec<Row>, ModelError> {
     let name = BREATH_FIGURES.name;
-    refuse_on_card("drops, which stay with the CPU")?;
+    refuse_on_gpu("drops, which stay with the CPU")?;
     let mut rows = Vec::new();
     for (seed, patches) in [(1, 20), (2, 20), (3, 50)] {
         let Grown { apart, merging, covered } = grow(seed, patches);

@@ -1,6 +1,6 @@
 //! Natural convection in a heated square cavity.
 
-use super::{advance, card, ledger_rounding, ready, rows};
+use super::{advance, gpu, ledger_rounding, ready, rows};
 use crate::device::reduction;
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
@@ -148,7 +148,7 @@ fn measure(options: &Options) -> Result<Vec<Row>, ModelError> {
     let runs: Vec<Run> = known.iter().flat_map(|(rayleigh, ..)| of_one(*rayleigh)).collect();
     let run = |(rayleigh, count, factor): &Run| nusselt(*rayleigh, *count, *factor, 1);
     // So few particles give no work to several threads; several cavities do.
-    let found: Vec<[f64; 2]> = if card().is_some() {
+    let found: Vec<[f64; 2]> = if gpu().is_some() {
         runs.iter().map(run).collect::<Result<_, _>>()?
     } else {
         runs.par_iter().map(run).collect::<Result<_, _>>()?

@@ -1,7 +1,7 @@
 //! The dew point against its formula worked out by hand and against tables.
 
 use super::rows;
-use crate::device::refuse_on_card;
+use crate::device::refuse_on_gpu;
 use crate::{Case, Options, Row};
 use corpuscle_dew::humid_air::{ZERO_CELSIUS, dew_point_of};
 use corpuscle_model::ModelError;
@@ -32,7 +32,7 @@ fn dew_point(_: &Options) -> Vec<Row> {
 }
 
 fn measure() -> Result<Vec<Row>, ModelError> {
-    refuse_on_card("the CPU's own formula of the dew point")?;
+    refuse_on_gpu("the CPU's own formula of the dew point")?;
     let worst = |column: usize| {
         let miss = |row: &[f64; 4]| (dew_point_of(row[0] + ZERO_CELSIUS, row[1]) - ZERO_CELSIUS - row[column]).abs();
         VALUES.iter().map(miss).fold(0.0, f64::max)

@@ -21,7 +21,7 @@ mod two_slabs;
 mod walls;
 
 use crate::Case;
-use crate::device::{card, rounding, rows};
+use crate::device::{gpu, rounding, rows};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{Dew, Face, Room};
 use corpuscle_model::{GpuModel, Model, ModelError};
@@ -53,15 +53,15 @@ fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
     dew.advance_to(time, &AtomicBool::new(false))
 }
 
-/// Air that is set up, on the card where one takes the steps.
+/// Air that is set up, on the GPU where one takes the steps.
 fn ready(mut dew: Dew) -> Result<Dew, ModelError> {
-    if let Some(gpu) = card() {
+    if let Some(gpu) = gpu() {
         dew.use_gpu(gpu)?;
     }
     Ok(dew)
 }
 
-/// The bound of relative errors in the ledger. The card books in single precision what it keeps as two numbers, the sum and what rounding
+/// The bound of relative errors in the ledger. The GPU books in single precision what it keeps as two numbers, the sum and what rounding
 /// added to it: each amount is rounded to 6e-8 of itself.
 fn ledger_rounding() -> f64 {
     rounding(1e-10, 1e-6)

@@ -1,6 +1,6 @@
 //! A thin wet plate in a stream of dry air.
 
-use super::{advance, card, ledger_rounding, ready, rows};
+use super::{advance, gpu, ledger_rounding, ready, rows};
 use crate::device::reduction;
 use crate::{Case, Options, Row};
 use corpuscle_dew::air::Properties;
@@ -154,7 +154,7 @@ fn measure(options: &Options) -> Result<Vec<Row>, ModelError> {
     let faster = (!options.reduced).then_some([FASTER, middle]);
     let runs: Vec<[f64; 2]> = spacings.iter().map(|&spacing| [SPEED, spacing]).chain(faster).collect();
     let run = |&[speed, spacing]: &[f64; 2]| sherwood(speed, spacing, 1);
-    let found: Vec<[f64; 3]> = if card().is_some() {
+    let found: Vec<[f64; 3]> = if gpu().is_some() {
         runs.iter().map(run).collect::<Result<_, _>>()?
     } else {
         runs.par_iter().map(run).collect::<Result<_, _>>()?

@@ -1,7 +1,7 @@
 //! Drops on an upright pane: when they slide, what merging keeps, and how sizes are spread.
 
 use super::rows;
-use crate::device::refuse_on_card;
+use crate::device::refuse_on_gpu;
 use crate::{Case, Options, Row};
 use corpuscle_dew::drops::{Cap, Drop, DropLaws, Drops, Patch, Retention, Surfaces, WATER_DENSITY};
 use corpuscle_model::{ExactSum, ModelError};
@@ -28,7 +28,7 @@ fn slide(_: &Options) -> Vec<Row> {
 
 fn measure() -> Result<Vec<Row>, ModelError> {
     let name = SLIDE.name;
-    refuse_on_card("drops, which stay with the CPU")?;
+    refuse_on_gpu("drops, which stay with the CPU")?;
     let [left, mass, momentum] = merging_errors();
     let exponent = size_exponent();
     Ok(vec![

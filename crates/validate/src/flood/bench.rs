@@ -14,61 +14,61 @@ pub(crate) const BENCHES: &[Bench] = &[
     Bench {
         name: "flood/voronoi-60k",
         about: "Scheme voronoi, everything on, 60,000 particles in waves over rough ground.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| voronoi_rate("flood/voronoi-60k", 60_000, true, options),
     },
     Bench {
         name: "flood/voronoi-1m",
         about: "Scheme voronoi, everything on, a million particles in waves over rough ground.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| voronoi_rate("flood/voronoi-1m", 1_000_000, true, options),
     },
     Bench {
         name: "flood/voronoi-still-60k",
         about: "Scheme voronoi, everything on, 60,000 particles in still water over rough ground.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| voronoi_rate("flood/voronoi-still-60k", 60_000, false, options),
     },
     Bench {
         name: "flood/voronoi-still-1m",
         about: "Scheme voronoi, everything on, a million particles in still water over rough ground.",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| voronoi_rate("flood/voronoi-still-1m", 1_000_000, false, options),
     },
     Bench {
         name: "flood/voronoi-10m",
         about: "Scheme voronoi, everything on, ten million particles in waves over rough ground.",
-        needs_card: true,
+        needs_gpu: true,
         run: |options| voronoi_rate("flood/voronoi-10m", 10_000_000, true, options),
     },
     Bench {
         name: "flood/voronoi-still-10m",
         about: "Scheme voronoi, everything on, ten million particles in still water over rough ground.",
-        needs_card: true,
+        needs_gpu: true,
         run: |options| voronoi_rate("flood/voronoi-still-10m", 10_000_000, false, options),
     },
     Bench {
         name: "flood/sph-swe-60k",
         about: "Scheme sph-swe, 60,000 particles in waves over rough ground (the paper: 75 steps a second on a GTX 1060).",
-        needs_card: false,
+        needs_gpu: false,
         run: |options| sph_swe_rate("flood/sph-swe-60k", 60_000, options),
     },
     Bench {
         name: "flood/error-cost",
         about: "Error and cost of the dam breaks of Stoker (wet) and Ritter (dry) by scheme voronoi at 4, 2 and 1 m; use --threads 1.",
-        needs_card: false,
+        needs_gpu: false,
         run: |_| error_cost::measured(),
     },
     Bench {
         name: "flood/voronoi-vortex",
         about: "Error and cost of a vortex that a current carries through a periodic box three times, by scheme voronoi at 2, 1 and 0.5 m; use --threads 1.",
-        needs_card: false,
+        needs_gpu: false,
         run: |_| error_cost::of_vortex(),
     },
     Bench {
         name: "flood/voronoi-time-steps",
         about: "Scheme voronoi with finer cells over a part (a quarter as wide over 8 m, an eighth over 4 m), with one time step for all and with local time steps, in turn; use --threads 1.",
-        needs_card: false,
+        needs_gpu: false,
         run: |_| time_steps::measured(),
     },
 ];
@@ -90,7 +90,7 @@ pub fn bench_water(name: &str) -> Result<Option<BenchWater>, ModelError> {
     })
 }
 
-/// Two steps at a time; 64 on a card, as each look brings the water back.
+/// Two steps at a time; 64 on a GPU, as each look brings the water back.
 const MEASURING: Measuring = Measuring { name: "", dimensions: 2, settling: 1, steps: [2.0, 64.0], seconds: 10.0 };
 
 fn sph_swe_rate(name: &'static str, particles: usize, options: &BenchOptions) -> Vec<Rate> {

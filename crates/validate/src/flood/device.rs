@@ -3,9 +3,9 @@
 pub(super) use crate::device::rounding;
 use corpuscle_model::{GpuModel, ModelError};
 
-/// A flood that is set up, on the card where one takes the steps.
+/// A flood that is set up, on the GPU where one takes the steps.
 pub(super) fn ready<F: GpuModel>(mut flood: F) -> Result<F, ModelError> {
-    if let Some(gpu) = crate::device::card() {
+    if let Some(gpu) = crate::device::gpu() {
         flood.use_gpu(gpu)?;
     }
     Ok(flood)

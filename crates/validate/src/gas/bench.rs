@@ -13,7 +13,7 @@ macro_rules! fluid {
             name: concat!("gas/", $dimensions, "d-", $packing, "-", $words),
             about: "Equal balls in a periodic box, event-driven, after five collisions of each; dimensions, packing and \
                     number by name.",
-            needs_card: false,
+            needs_gpu: false,
             run: |options| {
                 let name = concat!("gas/", $dimensions, "d-", $packing, "-", $words);
                 rate::<$dimensions>(name, $count, $packing, options)

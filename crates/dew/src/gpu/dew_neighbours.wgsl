@@ -1,0 +1,109 @@
+// Who is near: cells to look through, images beyond faces, and kernels.
+//
+// Images are not stored as the CPU's are: who stands near a face looks once more from where it would stand in the mirror, and turns
+// what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are. Twin of `Room::images`.
+#import dew_particles
+
+struct Mirror {
+    // The image of a place p stands at sign * p + shift.
+    sign: vec3f,
+    shift: vec3f,
+}
+
+// Whether there are images beyond the low and the high side of an axis that may be within reach of a place.
+fn shown_beyond(axis: u32, at: f32) -> vec2<bool> {
+    let is_near = vec2f(at - parameters.low[axis], parameters.high[axis] - at) < vec2f(parameters.h);
+    let rules = vec2u(face(2u * axis), face(2u * axis + 1u));
+    return is_near & (rules <= vec2u(PERIODIC));
+}
+
+fn ways_along(axis: u32, at: f32) -> u32 {
+    let beyond = shown_beyond(axis, at);
+    return 1u + u32(beyond.x) + u32(beyond.y);
+}
+
+// How many mirrors there are to look into from a place, the plain view among them: amid the room that alone.
+fn mirrors_round(place: vec3f) -> u32 {
+    let is_amid = all(place - parameters.h > parameters.low) && all(place + parameters.h < parameters.high);
+    if is_amid {
+        return 1u;
+    }
+    return ways_along(0u, place.x) * ways_along(1u, place.y) * ways_along(2u, place.z);
+}
+
+// Sign and shift of a way along an axis: 0 is plain, then come the low side and the high one where they show anything.
+fn along(axis: u32, way: u32, at: f32) -> vec2f {
+    if way == 0u {
+        return vec2f(1.0, 0.0);
+    }
+    let low = parameters.low[axis];
+    let high = parameters.high[axis];
+    let is_low = way == 1u && shown_beyond(axis, at).x;
+    if face(2u * axis + select(1u, 0u, is_low)) == PERIODIC {
+        return vec2f(1.0, select(high - low, low - high, is_low));
+    }
+    return vec2f(-1.0, 2.0 * select(high, low, is_low));
+}
+
+// The mirror of a number below `mirrors_round`, 0 being the plain view, as seen from a place.
+fn mirror(number: u32, place: vec3f) -> Mirror {
+    if number == 0u {
+        return Mirror(vec3f(1.0), vec3f(0.0));
+    }
+    let ways_x = ways_along(0u, place.x);
+    let ways_y = ways_along(1u, place.y);
+    let x = along(0u, number % ways_x, place.x);
+    let y = along(1u, (number / ways_x) % ways_y, place.y);
+    let z = along(2u, number / (ways_x * ways_y), place.z);
+    return Mirror(vec3f(x.x, y.x, z.x), vec3f(x.y, y.y, z.y));
+}
+
+// Where what the mirror shows at `place` stands in truth.
+fn behind(mirror: Mirror, place: vec3f) -> vec3f {
+    return mirror.sign * (place - mirror.shift);
+}
+
+// Where the mirror shows what stands at `place`.
+fn shown(mirror: Mirror, place: vec3f) -> vec3f {
+    return mirror.sign * place + mirror.shift;
+}
+
+fn cell_index(place: vec3f) -> vec3u {
+    return min(vec3u(max((place - parameters.corner) * parameters.per_cell, vec3f(0.0))), parameters.cells - 1u);
+}
+
+// The number of a row of cells along x.
+fn row_of(y: u32, z: u32) -> u32 {
+    return (z * parameters.cells.y + y) * parameters.cells.x;
+}
+
+// First and last column of those cells of a row in which there may be something within reach of a place. None: the first comes after
+// the last.
+fn columns_round(place: vec3f, y: u32, z: u32) -> vec2u {
+    let size = 1.0 / parameters.per_cell;
+    let border = CELL_BORDER * size;
+    let row = vec2u(y, z);
+    let low = parameters.corner.yz + size * vec2f(row);
+    // What is beyond the first and the last row stands in these.
+    let below = select(low - place.yz, vec2f(0.0), row == vec2u(0u));
+    let above = select(place.yz - low - size, vec2f(0.0), row + 1u == parameters.cells.yz);
+    let apart = max(max(below, above) - border, vec2f(0.0));
+    let left = parameters.h * parameters.h - dot(apart, apart);
+    if left < 0.0 {
+        return vec2u(1u, 0u);
+    }
+    let half = sqrt(left) + border;
+    let ends = max((place.x + vec2f(-half, half) - parameters.corner.x) * parameters.per_cell, vec2f(0.0));
+    return min(vec2u(ends), vec2u(parameters.cells.x - 1u));
+}
+
+fn cell_at(place: vec3f) -> u32 {
+    let cell = cell_index(place);
+    return row_of(cell.y, cell.z) + cell.x;
+}
+
+// Kernels of Mueller, Charypar & Gross 2003 without their factors, of q = r/h: poly6 by the square of q.
+fn poly6(q_squared: f32) -> f32 {
+    let inside = max(1.0 - q_squared, 0.0);
+    return inside * inside * inside;
+}

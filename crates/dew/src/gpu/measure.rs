@@ -1,0 +1,30 @@
+//! What gauges tell, without the air coming back.
+
+use super::shared::{self, MEASURING_GROUPS};
+use super::{GpuSolver, Origin};
+use crate::dew::State;
+use crate::measures::Totals;
+use corpuscle_gpu::{GpuError, read, submit};
+
+impl GpuSolver {
+    /// What gauges tell of the air as a whole. What they tell of solids comes into `state`.
+    pub fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
+        submit(self.batches.gpu(), "gauges", None, |pass| self.tasks.measure.run(pass, MEASURING_GROUPS));
+        let groups: Vec<shared::Measured> =
+            read(self.batches.gpu(), &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
+        self.fetch_solids(state)?;
+        Ok(totals(&groups, self.origin))
+    }
+}
+
+fn totals(groups: &[shared::Measured], ambient: Origin) -> Totals {
+    let count = groups.iter().map(|group| f64::from(group.count)).sum();
+    let sum = |of: fn(&shared::Measured) -> f32| groups.iter().map(|group| f64::from(of(group))).sum::<f64>();
+    Totals {
+        count,
+        temperature: count * ambient.temperature + sum(|group| group.temperature),
+        vapour: count * ambient.vapour + sum(|group| group.vapour),
+        fog: sum(|group| group.fog),
+        fastest: f64::from(groups.iter().map(|group| group.fastest).fold(0.0, f32::max)).sqrt(),
+    }
+}
