@@ -17,7 +17,7 @@ pub fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
 /// Writes a text; gives the file.
 pub fn text(folder: &Path, name: &str, ending: &str, text: &str) -> io::Result<PathBuf> {
     let path = free(folder, name, ending);
-    corpuscle_whole::write_whole(&path, |file| io::Write::write_all(file, text.as_bytes()))?;
+    corpuscle_atomic_file::write_whole(&path, |file| io::Write::write_all(file, text.as_bytes()))?;
     Ok(path)
 }
 

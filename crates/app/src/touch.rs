@@ -2,7 +2,7 @@
 
 use crate::physics::Change;
 use crate::snapshot::Snapshot;
-use corpuscle::GasByHand as ByHand;
+use corpuscle::GasLiveChange as LiveChange;
 use corpuscle::scene::{Axis, Gas, Wall};
 use corpuscle_drawing::text::short_number;
 use egui::{Button, RichText, Slider, Ui, WidgetInfo};
@@ -57,7 +57,7 @@ pub fn ui(ui: &mut Ui, gas: &Gas, hands: &mut Hands, snapshot: Option<&Snapshot>
             let name = if hands.lifted { "The partition is lifted" } else { "Lift the partition" };
             if wide(ui, name, "") {
                 hands.lifted = true;
-                touched = Some(Touched::Lifted(by_hand(ByHand::LiftPartition)));
+                touched = Some(Touched::Lifted(live(LiveChange::LiftPartition)));
             }
         });
     }
@@ -65,7 +65,7 @@ pub fn ui(ui: &mut Ui, gas: &Gas, hands: &mut Hands, snapshot: Option<&Snapshot>
 }
 
 fn heat(ui: &mut Ui) -> Option<Touched> {
-    let heat = |factor: f64| Touched::Heated(by_hand(ByHand::Heat(factor)));
+    let heat = |factor: f64| Touched::Heated(live(LiveChange::Heat(factor)));
     let hint = "All velocities shrink: 13 % less energy. What is taken away is booked as outflow of energy.";
     let cooler = ("Cool", hint);
     let hint = "All velocities grow: 15 % more energy. What is given is booked as inflow of energy.";
@@ -88,7 +88,7 @@ fn hold(ui: &mut Ui, hands: &mut Hands, snapshot: &Snapshot) -> Option<Touched> 
         return None;
     }
     hands.temperature = if hands.temperature.is_some() { None } else { Some(now).filter(|now| *now > 0.0) };
-    Some(Touched::Heated(by_hand(ByHand::HoldTemperature(hands.temperature))))
+    Some(Touched::Heated(live(LiveChange::HoldTemperature(hands.temperature))))
 }
 
 /// Takes balls out of a set, or puts some in.
@@ -104,12 +104,12 @@ fn balls(ui: &mut Ui, snapshot: &Snapshot) -> Option<Touched> {
             "Balls come at free places, as warm as the gas. Number and energy are booked.",
         );
         match pair(ui, (&out.0, out.1), (&come.0, come.1)) {
-            [true, _] => touched = Some(ByHand::RemoveBalls { set: number, count }),
-            [_, true] => touched = Some(ByHand::AddBalls { set: number, count }),
+            [true, _] => touched = Some(LiveChange::RemoveBalls { set: number, count }),
+            [_, true] => touched = Some(LiveChange::AddBalls { set: number, count }),
             _ => {}
         }
     }
-    touched.map(|change| Touched::Heated(by_hand(change)))
+    touched.map(|change| Touched::Heated(live(change)))
 }
 
 /// Drags a piston, and lets it go.
@@ -137,11 +137,11 @@ fn piston(ui: &mut Ui, wall: [usize; 2], gas: &Gas, hands: &mut Hands, snapshot:
         if response.changed() && to != before {
             hands.pistons.retain(|(held, _)| *held != wall);
             hands.pistons.push((wall, to));
-            touched = Some(Touched::Changed(by_hand(ByHand::DragPiston { wall, to })));
+            touched = Some(Touched::Changed(live(LiveChange::DragPiston { wall, to })));
         }
         if held.is_some() && ui.button("Let go").clicked() {
             hands.pistons.retain(|(held, _)| *held != wall);
-            touched = Some(Touched::Changed(by_hand(ByHand::LetPistonGo { wall })));
+            touched = Some(Touched::Changed(live(LiveChange::LetPistonGo { wall })));
         }
     });
     touched
@@ -174,6 +174,6 @@ fn pair(ui: &mut Ui, left: (&str, &str), right: (&str, &str)) -> [bool; 2] {
     .inner
 }
 
-fn by_hand(change: ByHand) -> Change {
-    Box::new(move |simulation| simulation.change_by_hand(change))
+fn live(change: LiveChange) -> Change {
+    Box::new(move |simulation| simulation.change_live(change))
 }

@@ -5,7 +5,7 @@ use crate::output::{number, print, print_json};
 use crate::select::select;
 use corpuscle::gpu::Gpu;
 use corpuscle::model::Chart;
-use corpuscle_record::{ValidatedCase, ValidatedMeasure, ValidationReport};
+use corpuscle_output::{ValidatedCase, ValidatedMeasure, ValidationReport};
 use corpuscle_validate::{Case, Options, Row, cases};
 use std::collections::BTreeMap;
 use std::process::ExitCode;

@@ -1,6 +1,6 @@
 //! Films as a user of the binary meets them.
 
-#[path = "../../film/tests/film/ffprobe.rs"]
+#[path = "../../video/tests/film/ffprobe.rs"]
 mod ffprobe;
 mod tool;
 

@@ -1,7 +1,7 @@
 //! What can go wrong between a scene and the end of its run.
 
 use corpuscle_model::ModelError;
-use corpuscle_record::RecordError;
+use corpuscle_output::RecordError;
 use corpuscle_scene::SceneError;
 use corpuscle_terrain::TerrainError;
 
@@ -44,7 +44,7 @@ pub enum Error {
     /// The film.
     #[cfg(feature = "film")]
     #[error(transparent)]
-    Film(#[from] corpuscle_film::FilmError),
+    Film(#[from] corpuscle_video::FilmError),
 }
 
 impl Error {
@@ -62,7 +62,7 @@ impl Error {
             Self::GroundPicture { .. } => true,
             #[cfg(feature = "film")]
             Self::Film(error) => {
-                !matches!(error, corpuscle_film::FilmError::Write { .. } | corpuscle_film::FilmError::Encoder { .. })
+                !matches!(error, corpuscle_video::FilmError::Write { .. } | corpuscle_video::FilmError::Encoder { .. })
             }
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. } | ModelError::Device(_)),
             #[cfg(feature = "gpu")]

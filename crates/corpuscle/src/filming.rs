@@ -2,10 +2,10 @@
 
 use crate::pictures::{Glance, PictureSettings, Pictures};
 use crate::{Error, Simulation, Sink};
-use corpuscle_film::{Film, Format};
 use corpuscle_gpu::{Gpu, Image};
 use corpuscle_model::Model;
-use corpuscle_record::Summary;
+use corpuscle_output::Summary;
+use corpuscle_video::{Film, Format};
 use std::path::Path;
 
 /// Pictures a second.

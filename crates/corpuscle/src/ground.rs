@@ -9,7 +9,7 @@ use std::path::Path;
 pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain, Error> {
     #[cfg(feature = "fetch")]
     if let Scene::Fetch(scene) = scene {
-        let fetched = fetched(scene, &corpuscle_fetch::Watch::none())?;
+        let fetched = fetched(scene, &corpuscle_fetch::FetchObserver::none())?;
         return Ok(Terrain::from_raster(fetched.raster, Path::new("Copernicus GLO-30"), scene.no_data)?);
     }
     Ok(Terrain::open(scene, seed, folder)?)
@@ -21,7 +21,7 @@ pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain,
 /// # Errors
 /// [`Error::Fetch`], for which see there.
 #[cfg(feature = "fetch")]
-pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::Watch) -> Result<u64, Error> {
+pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::FetchObserver) -> Result<u64, Error> {
     match scene.flood().map(|scene| &scene.terrain) {
         Some(Scene::Fetch(scene)) => Ok(fetched(scene, watch)?.bytes),
         _ => Ok(0),
@@ -31,7 +31,7 @@ pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::Wa
 #[cfg(feature = "fetch")]
 fn fetched(
     scene: &corpuscle_scene::TerrainFetch,
-    watch: &corpuscle_fetch::Watch,
+    watch: &corpuscle_fetch::FetchObserver,
 ) -> Result<corpuscle_fetch::Fetched, Error> {
     let part = corpuscle_terrain::MapBox::new(scene.bbox).map_err(corpuscle_fetch::FetchError::Box)?;
     Ok(corpuscle_fetch::fetch(&corpuscle_fetch::Source::from_environment()?, &part, watch)?)

@@ -15,45 +15,45 @@
 //! # }
 //! ```
 
-mod along;
 #[cfg(feature = "gpu")]
 mod backend;
-mod by_hand;
 mod error;
 #[cfg(feature = "film")]
 mod filming;
 mod ground;
+mod live_change;
 mod open;
 #[cfg(feature = "pictures")]
 pub mod pictures;
 mod progress;
 mod recorder;
+mod run_observer;
 mod schedule;
 mod simulation;
 mod sink;
 
-pub use corpuscle_dew::{ByHand as DewByHand, SourceByHand as DewSourceByHand};
+pub use corpuscle_dew::{LiveChange as DewLiveChange, SourceChange as DewSourceChange};
 #[cfg(feature = "fetch")]
 pub use corpuscle_fetch as fetch;
-#[cfg(feature = "film")]
-pub use corpuscle_film as film;
-pub use corpuscle_flood::{ByHand as FloodByHand, Sample};
-pub use corpuscle_gas::ByHand as GasByHand;
+pub use corpuscle_flood::{LiveChange as FloodLiveChange, Sample};
+pub use corpuscle_gas::LiveChange as GasLiveChange;
 #[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
-pub use corpuscle_record as record;
+pub use corpuscle_output as record;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
+#[cfg(feature = "film")]
+pub use corpuscle_video as film;
 
 #[cfg(feature = "gpu")]
 pub use backend::{Choice, FEWEST_ON_GPU};
-pub use by_hand::ByHand;
 pub use error::Error;
 #[cfg(feature = "film")]
 pub use filming::Filming;
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
+pub use live_change::LiveChange;
 pub use progress::Progress;
 pub use recorder::Recorder;
 pub use simulation::Simulation;

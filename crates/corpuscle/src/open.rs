@@ -6,7 +6,7 @@ use corpuscle_flood::{FloodModel, default_spacing};
 use corpuscle_model::ModelError;
 #[cfg(feature = "gpu")]
 use corpuscle_model::{CpuOnly, Model};
-use corpuscle_record::compare_extent;
+use corpuscle_output::compare_extent;
 use corpuscle_scene::{Flood as FloodSettings, ModelScene, Scene, Scheme};
 use corpuscle_terrain::Terrain;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_record::{Clock, DewReport, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
+use corpuscle_output::{Clock, DewReport, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -19,7 +19,7 @@ impl Recorder {
     /// Starts the folder of a run.
     ///
     /// # Errors
-    /// [`corpuscle_record::RecordError`] where the folder holds anything or cannot be written.
+    /// [`corpuscle_output::RecordError`] where the folder holds anything or cannot be written.
     pub fn create(path: &Path, simulation: &Simulation, frames: FrameFormat) -> Result<Self, Error> {
         let scene_text = simulation.scene().to_toml()?;
         let folder = RunFolder::create(path, &scene_text, &simulation.model().gauge_columns(), frames)?;

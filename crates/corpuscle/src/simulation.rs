@@ -1,11 +1,11 @@
 //! A scene made ready, and its run.
 
-use crate::along::{Along, Glances, Going, Keeping, Meter};
+use crate::run_observer::{CheckpointTimer, Glances, Meter, RunObserver, SharedRunObserver};
 use crate::schedule::Schedule;
-use crate::{ByHand, Error, Progress, Sink};
+use crate::{Error, LiveChange, Progress, Sink};
 use corpuscle_flood::{Sample, as_flood, as_flood_mut};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_record::{Clock, Status, Summary, ledger_entries};
+use corpuscle_output::{Clock, Status, Summary, ledger_entries};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::any::Any;
@@ -68,7 +68,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`corpuscle_model::ModelError::Setup`] where the scene is of another model, or cannot be changed so: nothing has changed then.
-    pub fn change_by_hand(&mut self, change: impl Into<ByHand>) -> Result<(), Error> {
+    pub fn change_live(&mut self, change: impl Into<LiveChange>) -> Result<(), Error> {
         Ok(change.into().change(self.model_mut())?)
     }
 
@@ -184,10 +184,19 @@ impl Simulation {
             let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
-            let keeping = Keeping { kept, every: keep_every };
+            let keeping = CheckpointTimer { kept, every: keep_every };
             let glances = Glances { due: &glances, seen };
-            let along =
-                Along { sinks, gauges, pauses, until, meter: &meter, on_progress, keeping, glances, failed: None };
+            let along = RunObserver {
+                sinks,
+                gauges,
+                pauses,
+                until,
+                meter: &meter,
+                on_progress,
+                keeping,
+                glances,
+                failed: None,
+            };
             seen = self.advance(next, stop, along)?.max(self.model.time());
             let has_arrived = self.model.time() >= next;
             for (sink, picture) in sinks.iter_mut().zip(picture) {
@@ -222,21 +231,21 @@ impl Simulation {
 
     /// Goes on to a time, s; gives up to when glances were given.
     #[cfg(feature = "pictures")]
-    fn advance(&mut self, time: f64, stop: &AtomicBool, along: Along<'_, '_>) -> Result<f64, Error> {
+    fn advance(&mut self, time: f64, stop: &AtomicBool, along: RunObserver<'_, '_>) -> Result<f64, Error> {
         let first = along.glances.next();
         let along = RefCell::new(along);
         let mut show = |glance| along.borrow_mut().show(&glance);
-        self.advance_shown(time, stop, &mut Going(&along), first, &mut show)?;
-        let Along { glances, failed, .. } = along.into_inner();
+        self.advance_shown(time, stop, &mut SharedRunObserver(&along), first, &mut show)?;
+        let RunObserver { glances, failed, .. } = along.into_inner();
         // A model that was called back may stand a little before what it has shown.
         failed.map_or(Ok(glances.seen), Err)
     }
 
     #[cfg(not(feature = "pictures"))]
-    fn advance(&mut self, time: f64, stop: &AtomicBool, along: Along<'_, '_>) -> Result<f64, Error> {
+    fn advance(&mut self, time: f64, stop: &AtomicBool, along: RunObserver<'_, '_>) -> Result<f64, Error> {
         let along = RefCell::new(along);
-        self.model.advance_with(time, stop, &mut Going(&along))?;
-        let Along { glances, failed, .. } = along.into_inner();
+        self.model.advance_with(time, stop, &mut SharedRunObserver(&along))?;
+        let RunObserver { glances, failed, .. } = along.into_inner();
         failed.map_or(Ok(glances.seen), Err)
     }
 

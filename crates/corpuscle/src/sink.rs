@@ -6,7 +6,7 @@ use crate::pictures::Glance;
 #[cfg(feature = "pictures")]
 use corpuscle_gpu::Gpu;
 use corpuscle_model::Model;
-use corpuscle_record::{Clock, Summary};
+use corpuscle_output::{Clock, Summary};
 
 /// Takes what a run shows: a folder, a window, a test. Each call but that for gauges looks at the model at the time it shows now and takes
 /// from it what it needs; an error ends the run.

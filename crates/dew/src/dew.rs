@@ -1,20 +1,20 @@
 //! The model: air that moves, carries heat and vapour, and leaves water on solids.
 
 mod accelerated;
-mod by_hand;
+mod live_change;
 mod motion;
 #[cfg(feature = "gpu")]
 mod on_gpu;
 mod scatter;
 mod settle;
-mod sources_by_hand;
+mod source_change;
 mod transfer;
 
-pub use by_hand::ByHand;
+pub use live_change::LiveChange;
 #[cfg(feature = "gpu")]
 pub(crate) use motion::{ACCELERATION_LIMIT, DIFFUSION_LIMIT, FARTHEST_SPREAD};
 pub use scatter::Scatter;
-pub use sources_by_hand::SourceByHand;
+pub use source_change::SourceChange;
 
 use crate::air::{Arrangement, Column, Particle, Properties, Rates, Role, Scale, Sums};
 use crate::contact::Contact;
@@ -30,10 +30,10 @@ use crate::solids::sources::HeatSources;
 use crate::solids::{Body, Conduction, Solids, Surface};
 use crate::walls;
 use crate::wetting::Wetting;
-use by_hand::Hand;
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::Table;
 use corpuscle_scene::dew::Output;
+use live_change::Overrides;
 use serde::{Deserialize, Serialize};
 
 /// Humid air round cold solids.
@@ -84,8 +84,8 @@ pub struct Dew {
     pub(crate) evaporation: Vec<f64>,
     /// Whether air rises and sinks by its warmth and vapour.
     pub(crate) buoyant: bool,
-    /// What a hand can change, as it was set up, once one has changed it.
-    as_set_up: Option<Hand>,
+    /// What live changes can change, as it was set up, once one has.
+    as_set_up: Option<Overrides>,
     /// The GPU, where it takes the steps.
     #[cfg(feature = "gpu")]
     pub(crate) gpu_solver: Option<crate::gpu::GpuSolver>,
@@ -119,8 +119,8 @@ pub(crate) struct State {
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
     pub energy: Account,
-    /// What a hand can change, once one has changed it.
-    pub hand: Option<Hand>,
+    /// What live changes can change, once one has.
+    pub overrides: Option<Overrides>,
     /// What all air of a closed room is still to gain for accelerated time: temperature, K, and vapour, part of the mass.
     #[serde(default)]
     pub drift: [f64; 2],
@@ -191,7 +191,7 @@ impl Dew {
             inlet_phase: [[0.0; 2]; 3],
             water: Account::default(),
             energy: Account::default(),
-            hand: None,
+            overrides: None,
             drift: [0.0; 2],
             density_excess_beyond: [[0.0; 2]; 3],
             running_mean_before: [[0.0; 2]; 3],

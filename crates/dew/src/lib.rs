@@ -33,7 +33,7 @@ mod utility;
 mod walls;
 mod wetting;
 
-pub use dew::{ByHand, Dew, Scatter, Setup, SourceByHand};
+pub use dew::{Dew, LiveChange, Scatter, Setup, SourceChange};
 pub use fan::Fan;
 pub use open::open;
 pub use room::{Face, Image, Inflow, Room};

@@ -4,11 +4,11 @@ use crate::dew::{Dew, State};
 use crate::humid_air::HumidAir;
 use crate::measures::drop_sizes;
 use crate::wetting::{Wetting, WettingState};
+#[cfg(feature = "gpu")]
+use corpuscle_model::{AdvanceObserver, CpuOnly, GpuModel, advance_with};
 use corpuscle_model::{
     Chart, Column, Container, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Surface, Values,
 };
-#[cfg(feature = "gpu")]
-use corpuscle_model::{Companion, CpuOnly, GpuModel, advance_with};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Dew {
@@ -132,11 +132,16 @@ impl Model for Dew {
     }
 
     #[cfg(feature = "gpu")]
-    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+    fn advance_with(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        observer: &mut dyn AdvanceObserver,
+    ) -> Result<(), ModelError> {
         if self.gpu_solver.is_some() {
-            self.advance_measured(time, stop, companion, None)
+            self.advance_measured(time, stop, observer, None)
         } else {
-            advance_with(self, time, stop, companion)
+            advance_with(self, time, stop, observer)
         }
     }
 
@@ -210,7 +215,7 @@ impl Model for Dew {
             return Err(refused("it belongs to another scene".into()));
         }
         (self.shown, self.state) = (shown, state);
-        self.tell_evaporation();
+        self.set_evaporation();
         self.take_hand();
         self.renew_gpu(self.has_been_touched())
     }

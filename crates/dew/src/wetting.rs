@@ -158,7 +158,7 @@ impl Wetting {
     }
 
     /// Tells each boundary particle's part of the evaporation of a wet surface: the drops' resistance is in a row with that of air half a `spacing` thick, m.
-    fn tell_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
+    fn set_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
         let of_air = 2.0 / spacing;
         for (patch, (&particle, share)) in self.particles.iter().zip(&self.shares).enumerate() {
             let of_drops = self.drops.evaporation_on(patch, share);
@@ -276,7 +276,7 @@ impl Dew {
         }
         let surfaces = Surfaces { solids, sites_per_area, patches, room: [self.room.low, self.room.high] };
         self.wetting = Some(Wetting::new(Drops::new(laws, surfaces, seed), particles));
-        self.tell_evaporation();
+        self.set_evaporation();
     }
 
     /// The surface at a boundary particle with an outward normal.
@@ -298,7 +298,7 @@ impl Dew {
         let Some(wetting) = self.wetting.as_mut() else { return };
         let left = wetting.take_over(&mut self.state.water_on, self.state.time);
         self.state.water.book(-left);
-        self.tell_evaporation();
+        self.set_evaporation();
     }
 
     /// Drops take over what condensed, where it is their turn; there are so many particles of air.
@@ -310,9 +310,9 @@ impl Dew {
     }
 
     /// What the drops let evaporate, told to the solids' particles.
-    pub(crate) fn tell_evaporation(&mut self) {
+    pub(crate) fn set_evaporation(&mut self) {
         if let Some(wetting) = &self.wetting {
-            wetting.tell_evaporation(self.scale.spacing, &mut self.evaporation);
+            wetting.set_evaporation(self.scale.spacing, &mut self.evaporation);
         }
     }
 }

@@ -4,7 +4,7 @@ use corpuscle_dew::air::{Particle, Properties, Role, TemperatureCoefficients};
 use corpuscle_dew::humid_air::{HumidAir, ZERO_CELSIUS};
 use corpuscle_dew::solids::{Body, Material};
 use corpuscle_dew::{
-    ByHand, Condensation, Dew, Face, Fan, Humidity, Inflow, LowUtility, Mean, Room, Settings, Setup, SourceByHand,
+    Condensation, Dew, Face, Fan, Humidity, Inflow, LiveChange, LowUtility, Mean, Room, Settings, Setup, SourceChange,
     WallTreatment,
 };
 use corpuscle_gpu::{Gpu, require_gpu};
@@ -360,11 +360,11 @@ fn solids_are_heated_and_cooled_as_on_the_cpu() {
                 go(dew, time);
                 if time == 0.1 {
                     for change in [
-                        SourceByHand::HeaterTimes { solid: 0, times: 3.0 },
-                        SourceByHand::OutsideTemperature { solid: 0, celsius: -20.0 },
-                        SourceByHand::Surroundings { solid: 2, celsius: 200.0 },
+                        SourceChange::HeaterTimes { solid: 0, times: 3.0 },
+                        SourceChange::OutsideTemperature { solid: 0, celsius: -20.0 },
+                        SourceChange::Surroundings { solid: 2, celsius: 200.0 },
                     ] {
-                        ByHand::Source(change).change(dew).unwrap();
+                        LiveChange::Source(change).change(dew).unwrap();
                     }
                 }
             }
@@ -478,14 +478,14 @@ fn air_of_low_utility_is_found_round_a_ball_and_taken_out() {
 
 #[test]
 fn what_a_hand_changes_changes_on_the_gpu() {
-    let Some(gpu) = require_gpu("changes by hand on the GPU") else { return };
+    let Some(gpu) = require_gpu("live changes on the GPU") else { return };
     let setup = ball(through_flow(), true);
     let changed = |mut dew: Dew| {
         step(&mut dew, 3);
         for change in [
-            ByHand::SolidTemperature { solid: 0, celsius: 1.0 },
-            ByHand::Wind { face: [0, 0], axis: 0, velocity: 0.2 },
-            ByHand::InletTemperature { face: [0, 0], celsius: 30.0 },
+            LiveChange::SolidTemperature { solid: 0, celsius: 1.0 },
+            LiveChange::Wind { face: [0, 0], axis: 0, velocity: 0.2 },
+            LiveChange::InletTemperature { face: [0, 0], celsius: 30.0 },
         ] {
             change.change(&mut dew).unwrap();
         }

@@ -2,7 +2,7 @@
 
 use corpuscle_dew::Dew;
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Companion, GpuModel, Model, Passed};
+use corpuscle_model::{AdvanceObserver, GpuModel, Model, ModelProgress};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -22,7 +22,7 @@ struct Notes {
     rows: Vec<(f64, Vec<f64>)>,
 }
 
-impl Companion for Notes {
+impl AdvanceObserver for Notes {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         let next = (time / self.period + 1e-9).floor() + 1.0;
         Some(next * self.period)
@@ -32,7 +32,7 @@ impl Companion for Notes {
         self.rows.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: Passed) -> bool {
+    fn passed(&mut self, passed: ModelProgress) -> bool {
         assert!(passed.particles > 0 && passed.time > 0.0);
         self.rows.len() != self.call_back_at
     }

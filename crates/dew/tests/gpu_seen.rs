@@ -2,7 +2,7 @@
 
 use corpuscle_dew::Dew;
 use corpuscle_gpu::{DeviceParticles, Gpu, require_gpu};
-use corpuscle_model::{Companion, Frame, Glance, GpuModel, Model, ParticleSet, Passed, Values};
+use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model, ModelProgress, ParticleSet, Values};
 use corpuscle_scene::{Scene, builtin};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -60,7 +60,7 @@ struct Told {
     passed: usize,
 }
 
-impl Companion for Told {
+impl AdvanceObserver for Told {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         Some(((time / 0.005 + 1e-9).floor() + 1.0) * 0.005)
     }
@@ -69,7 +69,7 @@ impl Companion for Told {
         self.rows += 1;
     }
 
-    fn passed(&mut self, _passed: Passed) -> bool {
+    fn passed(&mut self, _passed: ModelProgress) -> bool {
         self.passed += 1;
         true
     }

@@ -1,7 +1,7 @@
 //! What has come over the network, kept in files with checksums.
 
 use crate::FetchError;
-use crate::seal::{self, Sealed};
+use crate::checksum::{self, Sealed};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ pub(crate) struct Cache {
 impl Cache {
     /// The cache of the file `tile` below a base address.
     pub fn of(cache: &Path, base: &str, tile: &str) -> Self {
-        Self { folder: cache.join("glo-30").join(seal::short_name(base)).join(tile), broken: AtomicUsize::new(0) }
+        Self { folder: cache.join("glo-30").join(checksum::short_name(base)).join(tile), broken: AtomicUsize::new(0) }
     }
 
     pub fn about(&self) -> Option<About> {
@@ -43,7 +43,7 @@ impl Cache {
     pub fn set_about(&self, about: &About) -> Result<(), FetchError> {
         let path = self.folder.join("about");
         let text = serde_json::to_vec(about).map_err(|error| FetchError::cache(&path, error))?;
-        seal::write(&path, &text)
+        checksum::write(&path, &text)
     }
 
     /// A piece, if it is there as it was written and has the length that it must have.
@@ -52,7 +52,7 @@ impl Cache {
     }
 
     pub fn set_piece(&self, number: u64, bytes: &[u8]) -> Result<(), FetchError> {
-        seal::write(&self.folder.join(piece_name(number)), bytes)
+        checksum::write(&self.folder.join(piece_name(number)), bytes)
     }
 
     /// Forgets everything.
@@ -69,7 +69,7 @@ impl Cache {
     }
 
     fn read(&self, name: &str) -> Option<Vec<u8>> {
-        match seal::read(&self.folder.join(name)) {
+        match checksum::read(&self.folder.join(name)) {
             Sealed::Whole(content) => Some(content),
             Sealed::Broken => {
                 self.broken.fetch_add(1, Ordering::Relaxed);

@@ -1,6 +1,6 @@
 //! Requests over HTTP, repeated where that may help.
 
-use crate::watch::Watch;
+use crate::observer::FetchObserver;
 use crate::{FetchError, Source};
 use std::io::Read;
 use std::ops::Range;
@@ -41,11 +41,11 @@ pub(crate) struct Client {
     agent: Agent,
     attempts: u32,
     pause: Duration,
-    watch: Watch,
+    observer: FetchObserver,
 }
 
 impl Client {
-    pub fn new(source: &Source, watch: &Watch) -> Self {
+    pub fn new(source: &Source, observer: &FetchObserver) -> Self {
         let timeout = Some(source.timeout);
         let config = Agent::config_builder()
             .http_status_as_error(false)
@@ -56,7 +56,7 @@ impl Client {
             .timeout_per_read(timeout)
             .timeout_per_call(Some(LONGEST * source.timeout))
             .build();
-        Self { agent: config.into(), attempts: source.attempts, pause: source.pause, watch: watch.clone() }
+        Self { agent: config.into(), attempts: source.attempts, pause: source.pause, observer: observer.clone() }
     }
 
     /// Some bytes of a file, those beyond its end left out; all of it without a range.
@@ -80,7 +80,7 @@ impl Client {
     fn sleep(&self, pause: Duration) -> Result<(), FetchError> {
         let start = Instant::now();
         while start.elapsed() < pause {
-            if self.watch.is_stopped() {
+            if self.observer.is_stopped() {
                 return Err(FetchError::Stopped);
             }
             std::thread::sleep(LOOK.min(pause));
@@ -127,7 +127,7 @@ impl Client {
         let mut bytes = Vec::new();
         let mut buffer = [0; 16 * 1024];
         loop {
-            if self.watch.is_stopped() {
+            if self.observer.is_stopped() {
                 return Err(Fault::Final(FetchError::Stopped));
             }
             match reader.read(&mut buffer) {

@@ -3,8 +3,8 @@
 use crate::cache::{About, Cache};
 use crate::client::{Answer, Client};
 use crate::glo30::TileName;
+use crate::observer::{FetchObserver, Progress};
 use crate::remote::RemoteFile;
-use crate::watch::{Progress, Watch};
 use crate::{ATTRIBUTION, FetchError, Source, tile};
 use corpuscle_terrain::{MapBox, Raster, merge};
 use std::path::PathBuf;
@@ -34,14 +34,14 @@ pub struct Fetched {
 ///
 /// # Errors
 /// A text that says what was not to be had and what to do. What has come until then stays in the cache.
-pub fn fetch(source: &Source, part: &MapBox, watch: &Watch) -> Result<Fetched, FetchError> {
+pub fn fetch(source: &Source, part: &MapBox, observer: &FetchObserver) -> Result<Fetched, FetchError> {
     let names = TileName::within(part).map_err(FetchError::Box)?;
-    let mut fetching = Fetching::new(source, watch, names.len());
+    let mut fetching = Fetching::new(source, observer, names.len());
     let mut rasters = Vec::new();
     for name in names {
         rasters.extend(fetching.tile(name, part)?.map(|raster| (PathBuf::from(name.to_string()), raster)));
         fetching.done += 1;
-        (fetching.watch.show)(fetching.progress());
+        (fetching.observer.show)(fetching.progress());
     }
     fetching.joined(rasters, part)
 }
@@ -49,7 +49,7 @@ pub fn fetch(source: &Source, part: &MapBox, watch: &Watch) -> Result<Fetched, F
 /// What is going on.
 struct Fetching<'a> {
     source: &'a Source,
-    watch: &'a Watch,
+    observer: &'a FetchObserver,
     of_tiles: usize,
     done: usize,
     bytes: Arc<AtomicU64>,
@@ -61,10 +61,10 @@ struct Fetching<'a> {
 }
 
 impl<'a> Fetching<'a> {
-    fn new(source: &'a Source, watch: &'a Watch, of_tiles: usize) -> Self {
+    fn new(source: &'a Source, observer: &'a FetchObserver, of_tiles: usize) -> Self {
         Self {
             source,
-            watch,
+            observer,
             of_tiles,
             done: 0,
             bytes: Arc::default(),
@@ -91,16 +91,16 @@ impl<'a> Fetching<'a> {
     }
 
     fn try_tile(&mut self, name: TileName, part: &MapBox) -> Result<Option<Raster>, FetchError> {
-        if self.watch.is_stopped() {
+        if self.observer.is_stopped() {
             return Err(FetchError::Stopped);
         }
         let url = format!("{}/{name}/{name}.tif", self.source.base);
-        let (watch, bytes, progress) = (self.watch.clone(), self.bytes.clone(), self.progress());
+        let (observer, bytes, progress) = (self.observer.clone(), self.bytes.clone(), self.progress());
         let came = move |count| {
             let bytes = bytes.fetch_add(count, Ordering::Relaxed) + count;
-            (watch.show)(Progress { bytes, ..progress });
+            (observer.show)(Progress { bytes, ..progress });
         };
-        let client = Client::new(self.source, self.watch);
+        let client = Client::new(self.source, self.observer);
         let Some(file) = RemoteFile::open(&url, client, self.cache(name), came)? else { return self.sea(name, part) };
         let file = Arc::new(file);
         let raster = tile::read(name, &url, &file, part);
@@ -133,7 +133,7 @@ impl<'a> Fetching<'a> {
     fn check_missing(&mut self, name: TileName) -> Result<(), FetchError> {
         let (base, tile) = (self.source.base.clone(), name.to_string());
         if self.list.is_none() {
-            let client = Client::new(self.source, self.watch);
+            let client = Client::new(self.source, self.observer);
             let list = match client.get(&format!("{base}/{LIST}"), None)? {
                 Answer::Whole { bytes, .. } => String::from_utf8_lossy(&bytes).into_owned(),
                 _ => String::new(),

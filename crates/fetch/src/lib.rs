@@ -5,19 +5,19 @@
 
 mod attribution;
 mod cache;
+mod checksum;
 mod client;
 mod error;
 mod fetch;
 mod glo30;
+mod observer;
 mod piece;
 mod remote;
-mod seal;
 mod source;
 mod tile;
-mod watch;
 
 pub use attribution::ATTRIBUTION;
 pub use error::FetchError;
 pub use fetch::{Fetched, fetch};
+pub use observer::{FetchObserver, Progress};
 pub use source::{BASE, BASE_VARIABLE, CACHE_VARIABLE, Source};
-pub use watch::{Progress, Watch};

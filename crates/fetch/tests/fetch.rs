@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Bucket, COLUMNS, Fault, ROWS, ground, name, tile_of};
-use corpuscle_fetch::{ATTRIBUTION, FetchError, Fetched, Progress, Source, Watch, fetch};
+use corpuscle_fetch::{ATTRIBUTION, FetchError, FetchObserver, Fetched, Progress, Source, fetch};
 use corpuscle_terrain::MapBox;
 use proptest::prelude::*;
 use std::fs;
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 const SMALL: [f64; 4] = [6.40, 85.500, 6.42, 85.510];
 
 fn get(source: &Source, sides: [f64; 4]) -> Result<Fetched, FetchError> {
-    fetch(source, &MapBox::new(sides).unwrap(), &Watch::none())
+    fetch(source, &MapBox::new(sides).unwrap(), &FetchObserver::none())
 }
 
 /// Every cell has the height of the ground at its centre, and the box is covered.
@@ -95,9 +95,10 @@ fn progress_is_shown() {
     let bucket = Bucket::with(&[[85, 6], [86, 6]]);
     let shown: Arc<Mutex<Vec<Progress>>> = Arc::default();
     let seen = shown.clone();
-    let watch = Watch { show: Arc::new(move |progress| seen.lock().unwrap().push(progress)), ..Watch::none() };
+    let observer =
+        FetchObserver { show: Arc::new(move |progress| seen.lock().unwrap().push(progress)), ..FetchObserver::none() };
     let part = MapBox::new([6.4, 85.99, 6.42, 86.01]).unwrap();
-    let fetched = fetch(&bucket.source(), &part, &watch).unwrap();
+    let fetched = fetch(&bucket.source(), &part, &observer).unwrap();
     let shown = shown.lock().unwrap();
     assert!(shown.len() >= 4 && shown.windows(2).all(|two| two[0].bytes <= two[1].bytes), "{shown:?}");
     assert_eq!(*shown.last().unwrap(), Progress { tiles: 2, of_tiles: 2, bytes: fetched.bytes });
@@ -281,14 +282,14 @@ fn what_was_stopped_goes_on_from_the_cache() {
         bytes.store(progress.bytes, Ordering::Relaxed);
         flag.store(true, Ordering::Relaxed);
     };
-    let error = fetch(&bucket.source(), &part, &Watch { stop, show: Arc::new(show) }).unwrap_err();
+    let error = fetch(&bucket.source(), &part, &FetchObserver { stop, show: Arc::new(show) }).unwrap_err();
     assert!(error == FetchError::Stopped && !error.is_refusal(), "{error}");
     assert!(
         cached(bucket.cache.path()).iter().all(|path| !path.file_name().unwrap().to_string_lossy().contains("tmp"))
     );
-    let rest = fetch(&bucket.source(), &part, &Watch::none()).unwrap();
+    let rest = fetch(&bucket.source(), &part, &FetchObserver::none()).unwrap();
     let all = Bucket::with(&[[85, 6], [86, 6]]);
-    let at_once = fetch(&all.source(), &part, &Watch::none()).unwrap();
+    let at_once = fetch(&all.source(), &part, &FetchObserver::none()).unwrap();
     assert_eq!(rest.bytes + came.load(Ordering::Relaxed), at_once.bytes);
 }
 

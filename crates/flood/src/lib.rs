@@ -5,11 +5,11 @@
 
 #![warn(missing_docs)]
 
-mod by_hand;
 mod fields;
 mod friction;
 mod gauges;
 mod limits;
+mod live_change;
 mod obstacles;
 mod sampling;
 mod schemes;
@@ -19,7 +19,7 @@ mod sph_swe;
 mod voronoi;
 mod zone;
 
-pub use by_hand::ByHand;
+pub use live_change::LiveChange;
 pub use obstacles::{LineWall, line_walls, obstacle_shapes};
 pub use sampling::Sample;
 pub use schemes::{FloodModel, as_flood, as_flood_mut, open, open_to_restore};

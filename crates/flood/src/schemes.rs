@@ -1,7 +1,7 @@
 //! Floods of both schemes.
 
 use crate::sampling::Sample;
-use crate::{ByHand, SphSweFlood, VoronoiFlood, limits};
+use crate::{LiveChange, SphSweFlood, VoronoiFlood, limits};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{Flood as Settings, Scheme};
 use corpuscle_terrain::Terrain;
@@ -32,7 +32,7 @@ pub trait FloodModel: Model {
     /// # Errors
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
     /// [`ModelError::Device`] where a GPU takes the steps and cannot go on with the change.
-    fn change(&mut self, change: ByHand) -> Result<(), ModelError>;
+    fn change(&mut self, change: LiveChange) -> Result<(), ModelError>;
 }
 
 /// Sets a flood up as the `[flood]` of a scene says, its defaults resolved, with the scene's seed. `folder` is what relative paths refer to.
@@ -105,8 +105,8 @@ impl FloodModel for SphSweFlood {
         Self::place_gauge(self, name, at)
     }
 
-    fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
-        self.change_by_hand(change)
+    fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
+        self.change_live(change)
     }
 }
 
@@ -127,7 +127,7 @@ impl FloodModel for VoronoiFlood {
         Self::place_gauge(self, name, at)
     }
 
-    fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
+    fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
         Self::change(self, change)
     }
 }

@@ -2,7 +2,7 @@
 
 use corpuscle_flood::SphSweFlood;
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{Companion, GpuModel, Model, Passed};
+use corpuscle_model::{AdvanceObserver, GpuModel, Model, ModelProgress};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -115,7 +115,7 @@ impl Notes {
     }
 }
 
-impl Companion for Notes {
+impl AdvanceObserver for Notes {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         let mut count = (time / self.period).floor();
         while count * self.period <= time {
@@ -128,7 +128,7 @@ impl Companion for Notes {
         self.rows.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: Passed) -> bool {
+    fn passed(&mut self, passed: ModelProgress) -> bool {
         assert!(passed.particles > 0 && passed.particle_steps > 0 && passed.time > 0.0);
         let before = self.passed.last().map_or(0, |rows| rows / self.call_back_after);
         self.passed.push(self.rows.len());

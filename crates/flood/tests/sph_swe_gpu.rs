@@ -1,6 +1,6 @@
 //! Scheme sph-swe on a GPU does what it does on the CPU.
 
-use corpuscle_flood::{ByHand, Particle, SphSweFlood};
+use corpuscle_flood::{LiveChange, Particle, SphSweFlood};
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Balance, GpuModel, Model, ModelError};
 use corpuscle_scene::{FloodScene, Scene, builtin};
@@ -382,12 +382,12 @@ fn a_lost_gpu_ends_with_an_error_and_the_state_of_before() {
 
 #[test]
 fn what_a_hand_changes_is_changed_on_the_gpu() {
-    let Some(gpu) = require_gpu("a hand's changes on the GPU") else { return };
+    let Some(gpu) = require_gpu("live changes on the GPU") else { return };
     let (mut host, mut device) = (open(RIVER), on_gpu(RIVER, &gpu));
     for flood in [&mut host, &mut device] {
         go(flood, 0.99);
-        ByHand::Discharge { inflow: 0, discharge: 300.0 }.change(flood).unwrap();
-        ByHand::Manning(0.1).change(flood).unwrap();
+        LiveChange::Discharge { inflow: 0, discharge: 300.0 }.change(flood).unwrap();
+        LiveChange::Manning(0.1).change(flood).unwrap();
         go(flood, 6.99);
     }
     let [host, gpu] = [&host, &device].map(|flood| flood.ledger().balances[0].inflow);

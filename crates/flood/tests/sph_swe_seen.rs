@@ -2,7 +2,7 @@
 
 use corpuscle_flood::SphSweFlood;
 use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
-use corpuscle_model::{Companion, Glance, GpuModel, Model, Passed, Values};
+use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelProgress, Values};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -157,7 +157,7 @@ fn who_asks_for_times_sees_the_water_of_these_times() {
 /// Takes gauges every tenth of a second, and is told how far it is.
 struct Rows(Vec<(f64, Vec<f64>)>);
 
-impl Companion for Rows {
+impl AdvanceObserver for Rows {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         Some(((time / 0.1 + 1e-9).floor() + 1.0) * 0.1)
     }
@@ -166,7 +166,7 @@ impl Companion for Rows {
         self.0.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, _passed: Passed) -> bool {
+    fn passed(&mut self, _passed: ModelProgress) -> bool {
         true
     }
 }

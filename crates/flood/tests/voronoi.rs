@@ -1,6 +1,6 @@
 //! What scheme voronoi promises to whoever runs it.
 
-use corpuscle_flood::{ByHand, VoronoiFlood};
+use corpuscle_flood::{LiveChange, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene::{FloodScene, Scene};
 use corpuscle_terrain::{Bounds, Terrain};
@@ -328,13 +328,14 @@ fn parts_of_a_side_have_rules_of_their_own() {
 fn changes_while_it_runs_hold_and_are_restored() {
     let mut flood = river();
     go(&mut flood, 5.0);
-    flood.change(ByHand::Discharge { inflow: 0, discharge: 0.0 }).unwrap();
-    flood.change(ByHand::RainTimes(2.0)).unwrap();
-    flood.change(ByHand::EdgeLevel { side: 3, level: 7.5 }).unwrap();
-    flood.change(ByHand::Manning(0.08)).unwrap();
+    flood.change(LiveChange::Discharge { inflow: 0, discharge: 0.0 }).unwrap();
+    flood.change(LiveChange::RainTimes(2.0)).unwrap();
+    flood.change(LiveChange::EdgeLevel { side: 3, level: 7.5 }).unwrap();
+    flood.change(LiveChange::Manning(0.08)).unwrap();
     flood.place_gauge("here", [100.0, 100.0]).unwrap();
     assert!(
-        flood.change(ByHand::Manning(-1.0)).is_err() && flood.change(ByHand::Level { stage: 9, level: 1.0 }).is_err()
+        flood.change(LiveChange::Manning(-1.0)).is_err()
+            && flood.change(LiveChange::Level { stage: 9, level: 1.0 }).is_err()
     );
     let before = flood.ledger().balances[0].inflow;
     go(&mut flood, 8.0);

@@ -2,7 +2,7 @@
 
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
-use corpuscle_model::{Companion, Glance, GpuModel, Model, Passed, Values};
+use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelProgress, Values};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -159,7 +159,7 @@ fn who_asks_for_times_sees_the_water_of_these_times() {
 /// Takes gauges every tenth of a second, and calls the flood back at a time.
 struct Rows(Vec<(f64, Vec<f64>)>, f64);
 
-impl Companion for Rows {
+impl AdvanceObserver for Rows {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         Some(((time / 0.1 + 1e-9).floor() + 1.0) * 0.1)
     }
@@ -168,7 +168,7 @@ impl Companion for Rows {
         self.0.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: Passed) -> bool {
+    fn passed(&mut self, passed: ModelProgress) -> bool {
         assert!(passed.particles > 400 && passed.particle_steps > 0);
         passed.time < self.1
     }

@@ -2,17 +2,17 @@
 
 mod advance;
 mod build;
-mod by_hand;
+mod live_change;
 mod model;
 mod observe;
 mod state;
 
-pub use by_hand::ByHand;
+pub use live_change::LiveChange;
 
 use crate::measure::Measures;
 use crate::method::Mover;
 use crate::setup::{Schedule, Setup};
-use by_hand::HandTally;
+use live_change::LiveTally;
 
 /// Hard balls in a box, from collision to collision.
 ///
@@ -38,8 +38,8 @@ pub struct Gas<const D: usize> {
     /// Path and number of its ends at the last check of the balls' room.
     checked: (f64, u64),
     si: bool,
-    /// What a hand gave and took.
-    hand: HandTally,
+    /// What live changes added and removed.
+    hand: LiveTally,
 }
 
 /// Balls of one name.
@@ -65,9 +65,9 @@ enum Due {
     Knot(usize),
     Lift,
     Reverse,
-    /// A piston that a hand drags is where it is to be.
+    /// A piston that is dragged is where it is to be.
     Arrive(usize),
-    /// A temperature that a hand holds.
+    /// A temperature that is held live.
     Regulate,
     Look,
 }

@@ -21,7 +21,7 @@ pub mod theory;
 mod world;
 
 pub use error::SetupError;
-pub use gas::{ByHand, Gas};
+pub use gas::{Gas, LiveChange};
 pub use measure::Estimate;
 pub use method::{Nearest, With};
 pub use scene::open;

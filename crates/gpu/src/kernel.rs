@@ -99,7 +99,7 @@ impl Task {
     }
 
     /// Does it with as many groups as the three numbers at `slot` of `groups` say, each slot being 12 bytes: the device itself decides.
-    pub fn run_as_told(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slot: u32) {
+    pub fn dispatch_indirect(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slot: u32) {
         self.set(pass);
         pass.pass.dispatch_workgroups_indirect(groups, 12 * u64::from(slot));
         pass.mark(self.name);

@@ -46,7 +46,7 @@ pub fn submit(gpu: &Gpu, label: &str, mut stopwatch: Option<&mut Stopwatch>, wor
 
 /// What a kernel has taken on the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Taken {
+pub struct PassTiming {
     /// How often it was timed.
     pub times: u32,
     /// All of them together.
@@ -60,7 +60,7 @@ pub struct Stopwatch {
     resolved: wgpu::Buffer,
     /// The names of the tasks that ended, in the order of their times.
     marks: Vec<&'static str>,
-    taken: BTreeMap<&'static str, Taken>,
+    taken: BTreeMap<&'static str, PassTiming>,
 }
 
 impl Stopwatch {
@@ -104,7 +104,7 @@ impl Stopwatch {
     }
 
     /// What each kernel has taken so far, by name.
-    pub fn taken(&self) -> impl Iterator<Item = (&'static str, Taken)> {
+    pub fn taken(&self) -> impl Iterator<Item = (&'static str, PassTiming)> {
         self.taken.iter().map(|(&name, &taken)| (name, taken))
     }
 }

@@ -4,7 +4,7 @@
 //! A batch begins with the host writing the status with [`BATCH_START`]. Each pass runs with as many groups of threads as the device has noted; where the batch ends early
 //! it notes none, so the passes of the steps that are left do nothing.
 
-use crate::{Gpu, GpuError, Pass, Stopwatch, Taken, submit, wgpu};
+use crate::{Gpu, GpuError, Pass, PassTiming, Stopwatch, submit, wgpu};
 use bytemuck::NoUninit;
 use std::time::Instant;
 
@@ -105,7 +105,7 @@ impl Batches {
     }
 
     /// What each pass has taken since, by its name; nothing where passes are not timed.
-    pub fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    pub fn pass_times(&self) -> Vec<(&'static str, PassTiming)> {
         self.stopwatch.iter().flat_map(Stopwatch::taken).collect()
     }
 

@@ -113,14 +113,14 @@ fn no_structure_stands_twice() {
 
 /// Structures that the device sees come from declarations, which give the WGSL too.
 #[test]
-fn no_structure_is_laid_out_by_hand() {
+fn no_structure_is_laid_out_live() {
     let shaders = sources("wgsl");
     let has_shaders = |source: &Source| shaders.iter().any(|shader| shader.of == source.of);
     let is_by_hand = |source: &&Source| source.text.contains("repr(C)") && source.text.contains("Pod");
     let code = sources("rs");
-    let by_hand = code.iter().filter(is_by_hand).filter(|source| has_shaders(source));
-    let by_hand: Vec<_> = by_hand.map(|source| &source.file).collect();
-    assert!(by_hand.len() == 1 && by_hand[0].ends_with("gpu/src/declare.rs"), "{by_hand:#?}");
+    let live_change = code.iter().filter(is_by_hand).filter(|source| has_shaders(source));
+    let live_change: Vec<_> = live_change.map(|source| &source.file).collect();
+    assert!(live_change.len() == 1 && live_change[0].ends_with("gpu/src/declare.rs"), "{live_change:#?}");
 }
 
 /// Kernels of models, and of crates that only compute, get their bindings from declarations.

@@ -1,7 +1,7 @@
 //! Models that take their steps on a GPU.
 
-use crate::{Companion, Frame, ModelError};
-use corpuscle_gpu::{DeviceParticles, Gpu, Taken};
+use crate::{AdvanceObserver, Frame, ModelError};
+use corpuscle_gpu::{DeviceParticles, Gpu, PassTiming};
 use std::sync::atomic::AtomicBool;
 
 /// What is shown of a model that steps on the device that draws, while it advances.
@@ -42,7 +42,7 @@ pub trait GpuModel {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        observer: &mut dyn AdvanceObserver,
         shown: (f64, bool),
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError>;
@@ -57,5 +57,5 @@ pub trait GpuModel {
     fn time_passes(&mut self);
 
     /// What each pass has taken since [`GpuModel::time_passes`].
-    fn pass_times(&self) -> Vec<(&'static str, Taken)>;
+    fn pass_times(&self) -> Vec<(&'static str, PassTiming)>;
 }

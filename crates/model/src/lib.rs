@@ -3,7 +3,6 @@
 //! A model knows no screen, file or window. Whoever runs it asks for a time and reads what it shows.
 
 mod chart;
-mod companion;
 mod container;
 mod frame;
 mod gauge;
@@ -11,11 +10,11 @@ mod gauge;
 mod gpu_model;
 mod ledger;
 mod map;
+mod observer;
 mod path;
 mod surface;
 
 pub use chart::{Chart, ChartAxis, ChartSeries, ChartStyle};
-pub use companion::{Companion, Passed, advance_with};
 pub use container::Container;
 pub use frame::{Column, Frame, ParticleSet, Values};
 pub use gauge::GaugeColumn;
@@ -23,6 +22,7 @@ pub use gauge::GaugeColumn;
 pub use gpu_model::{Glance, GpuModel};
 pub use ledger::{Account, Balance, ExactSum, Ledger};
 pub use map::Map;
+pub use observer::{AdvanceObserver, ModelProgress, advance_with};
 pub use path::Path;
 pub use surface::{Distance, SolidShape, Surface};
 
@@ -112,13 +112,18 @@ pub trait Model: Any + Send {
     /// [`ModelError::Breakdown`] where the computation cannot go on; the state before it stays readable.
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError>;
 
-    /// Advances as [`Model::advance_to`] does, and has `companion` take the rows of gauges that fall due on the way, the one at `time` among
-    /// them. Returns early too when the companion calls the model back.
+    /// Advances as [`Model::advance_to`] does, and has `observer` take the rows of gauges that fall due on the way, the one at `time` among
+    /// them. Returns early too when the observer calls the model back.
     ///
     /// # Errors
     /// Those of [`Model::advance_to`].
-    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
-        advance_with(self, time, stop, companion)
+    fn advance_with(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        observer: &mut dyn AdvanceObserver,
+    ) -> Result<(), ModelError> {
+        advance_with(self, time, stop, observer)
     }
 
     /// The particles at the time shown.

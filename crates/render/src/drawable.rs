@@ -36,7 +36,7 @@ pub trait Drawable {
     /// For what stands still, a number that no other thing has, and that is another one when the thing is drawn otherwise although
     /// camera, light and size are the same. Its picture is kept while these rest, in light that throws shadows only where nothing
     /// moves that throws one. None for what moves.
-    fn standing(&self) -> Option<u64> {
+    fn static_state(&self) -> Option<u64> {
         None
     }
 

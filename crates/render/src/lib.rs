@@ -25,7 +25,7 @@ mod shaders;
 mod shared;
 mod solids;
 mod stage;
-mod standing;
+mod static_layer;
 mod target;
 mod terrain;
 mod tone;

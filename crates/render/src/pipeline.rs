@@ -4,7 +4,7 @@ use crate::{COLOUR_FORMAT, DEPTH_FORMAT};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// What a pipeline is made of. Its shader has entry points `vertex` and, unless another is named, `fragment`.
-pub(crate) struct Recipe<'a> {
+pub(crate) struct PipelineDescriptor<'a> {
     /// For messages.
     pub label: &'a str,
     /// The shader.
@@ -17,7 +17,7 @@ pub(crate) struct Recipe<'a> {
     pub topology: wgpu::PrimitiveTopology,
 }
 
-impl Recipe<'_> {
+impl PipelineDescriptor<'_> {
     /// A pipeline that draws into colour and depth; nearer hides farther.
     pub(crate) fn opaque(&self, gpu: &Gpu) -> wgpu::RenderPipeline {
         self.build(gpu, "fragment", Some(COLOUR_FORMAT.into()), Some(wgpu::CompareFunction::GreaterEqual))

@@ -1,7 +1,7 @@
 //! Draws pictures, pass by pass.
 
-use crate::pipeline::Recipe;
-use crate::standing::{Standing, Stood};
+use crate::pipeline::PipelineDescriptor;
+use crate::static_layer::{StaticLayer, StaticUse};
 use crate::tone::Tone;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
@@ -20,7 +20,7 @@ impl Renderer {
     /// A renderer on a device.
     pub fn new(gpu: &Gpu) -> Self {
         let view_layout = View::layout(gpu);
-        let backdrop = Recipe {
+        let backdrop = PipelineDescriptor {
             label: "backdrop",
             module: &shaders::module(gpu, "backdrop", include_str!("sky/backdrop.wgsl")),
             groups: &[&view_layout],
@@ -88,12 +88,12 @@ impl Renderer {
         things: &mut [&mut dyn Drawable],
     ) {
         let gpu = &self.gpu;
-        let mut standing = target.standing.lock().unwrap_or_else(PoisonError::into_inner);
-        let shadows = standing.shadows(gpu, light);
+        let mut static_layer = target.static_layer.lock().unwrap_or_else(PoisonError::into_inner);
+        let shadows = static_layer.shadows(gpu, light);
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size(), shadows);
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
-        let stood = standing.look(view.bytes(), light, things);
-        if light.throws_shadows() && stood != Stood::Kept {
+        let static_use = static_layer.look(view.bytes(), light, things);
+        if light.throws_shadows() && static_use != StaticUse::Kept {
             draw_shadows(encoder, &view, things);
         }
         if light.is_lit() {
@@ -102,7 +102,7 @@ impl Renderer {
                 thing.draw_before(&mut Before { gpu, encoder, view, size });
             }
         }
-        self.draw_opaque(encoder, target, &view, light, things, (&mut standing, stood));
+        self.draw_opaque(encoder, target, &view, light, things, (&mut static_layer, static_use));
         for thing in things.iter_mut().filter(|thing| thing.lets_light_through()) {
             draw_through(gpu, encoder, target, &view, *thing);
         }
@@ -123,15 +123,15 @@ impl Renderer {
         view: &View,
         light: &Light,
         things: &[&mut dyn Drawable],
-        (standing, stood): (&mut Standing, Stood),
+        (static_layer, static_use): (&mut StaticLayer, StaticUse),
     ) {
-        match stood {
-            Stood::Changed => return self.draw_some(encoder, target, view, light, things, Which::All),
-            Stood::Rests => {
-                self.draw_some(encoder, target, view, light, things, Which::Standing);
-                standing.keep(&self.gpu, encoder, target);
+        match static_use {
+            StaticUse::Changed => return self.draw_some(encoder, target, view, light, things, Which::All),
+            StaticUse::Rests => {
+                self.draw_some(encoder, target, view, light, things, Which::Static);
+                static_layer.keep(&self.gpu, encoder, target);
             }
-            Stood::Kept => standing.lay(encoder, target),
+            StaticUse::Kept => static_layer.lay(encoder, target),
         }
         self.draw_some(encoder, target, view, light, things, Which::Moving);
     }
@@ -174,7 +174,7 @@ impl Renderer {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Which {
     All,
-    Standing,
+    Static,
     Moving,
 }
 
@@ -182,8 +182,8 @@ impl Which {
     fn has(self, thing: &dyn Drawable) -> bool {
         match self {
             Self::All => true,
-            Self::Standing => thing.standing().is_some(),
-            Self::Moving => thing.standing().is_none(),
+            Self::Static => thing.static_state().is_some(),
+            Self::Moving => thing.static_state().is_none(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a picture is drawn into.
 
 use crate::RenderError;
-use crate::standing::Standing;
+use crate::static_layer::StaticLayer;
 use corpuscle_gpu::{Gpu, texture_2d, wgpu};
 use std::sync::Mutex;
 
@@ -25,7 +25,7 @@ pub struct Target {
     pub(crate) behind_colour: wgpu::Texture,
     pub(crate) behind_depth: wgpu::Texture,
     pub(crate) picture: wgpu::Texture,
-    pub(crate) standing: Mutex<Standing>,
+    pub(crate) static_layer: Mutex<StaticLayer>,
 }
 
 impl Target {
@@ -50,7 +50,7 @@ impl Target {
             behind_colour: texture("colour behind", COLOUR_FORMAT, behind)?,
             behind_depth: texture("depth behind", DEPTH_FORMAT, behind)?,
             picture: texture_2d(gpu, "picture", size, PICTURE_FORMAT, into)?,
-            standing: Mutex::default(),
+            static_layer: Mutex::default(),
         })
     }
 

@@ -1,11 +1,11 @@
 //! Solids bounded by triangles.
 
+mod catch_panic;
 mod check;
 mod crossing;
 mod gltf;
 mod obj;
 mod ply;
-mod quiet;
 mod read;
 mod stl;
 

@@ -10,7 +10,7 @@ mod neighbours;
 pub mod space;
 
 pub use cells::{Cells, FEWEST};
-pub use corpuscle_lanes::{
+pub use corpuscle_simd::{
     LANES, Lanes, LanesExt, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, gather,
 };
 pub use neighbours::{BLOCK, FAR_AWAY, Near, NeighbourLists, Neighbours, PairSum};

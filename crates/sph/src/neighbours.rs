@@ -1,7 +1,7 @@
 //! Lists of neighbours: pairs of particles of which one reaches the other.
 
 use crate::Cells;
-use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
+use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
 use fearless_simd::{mask32x8, u32x8};
 use rayon::prelude::*;
 

@@ -10,7 +10,7 @@ mod mean;
 
 use crate::Bounds;
 use bytemuck::{Pod, Zeroable};
-use corpuscle_lanes::{LANES, Lanes, Simd, SimdBase, transposed};
+use corpuscle_simd::{LANES, Lanes, Simd, SimdBase, transposed};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 

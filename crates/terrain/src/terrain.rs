@@ -3,8 +3,8 @@
 use crate::frame::Frame;
 use crate::surface::{GroundPatches, Surface};
 use crate::{Bounds, MapGrid, Raster, TerrainError, generated, ground, read_rasters};
-use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
 use corpuscle_scene::{NoData, Terrain as Scene};
+use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, dispatch};
 use rayon::prelude::*;
 use std::fmt;
 use std::path::Path;
@@ -151,7 +151,7 @@ impl Terrain {
     }
 
     /// [`Self::height_and_slope`] at many places at once, to the same bits and far quicker: heights, m, dz/dx and dz/dy.
-    /// `N` is a multiple of [`corpuscle_lanes::LANES`].
+    /// `N` is a multiple of [`corpuscle_simd::LANES`].
     pub fn heights_and_slopes<const N: usize>(&self, x: &[f64; N], y: &[f64; N]) -> [[f64; N]; 3] {
         const { assert!(N.is_multiple_of(LANES)) };
         let mut found = [[0.0; N]; 3];

@@ -2,7 +2,7 @@
 
 use corpuscle_dew::Dew;
 use corpuscle_flood::{SphSweFlood, VoronoiFlood};
-use corpuscle_gpu::{Gpu, Taken};
+use corpuscle_gpu::{Gpu, PassTiming};
 use corpuscle_model::{GpuModel, Model, ModelError};
 use serde::Serialize;
 use std::sync::LazyLock;
@@ -165,7 +165,7 @@ impl Measuring {
             }
             ahead(&mut model)?;
             let steps = (model.steps() - steps) as f64;
-            let a_step = |(name, taken): (&'static str, Taken)| PassTime {
+            let a_step = |(name, taken): (&'static str, PassTiming)| PassTime {
                 name,
                 times_a_step: f64::from(taken.times) / steps,
                 seconds_a_step: taken.total.as_secs_f64() / steps,

@@ -6,7 +6,7 @@ use super::{live, number_in};
 use crate::physics::Change;
 use corpuscle::scene::dew::{self, AirInflow};
 use corpuscle::scene::{Axis, Dew};
-use corpuscle::{DewByHand as ByHand, DewSourceByHand as Source};
+use corpuscle::{DewLiveChange as LiveChange, DewSourceChange as Source};
 
 const SCHEMES: &[(&str, &str)] = &[("physical", "\"physical\""), ("paper (as patented)", "\"paper\"")];
 const TREATMENTS: &[(&str, &str)] = &[
@@ -188,7 +188,7 @@ fn axis_in(path: &str) -> Option<usize> {
 }
 
 fn warm(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::SolidTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
+    live(LiveChange::SolidTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
 fn heat(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
@@ -200,7 +200,7 @@ fn heat_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     Some(Box::new(move |simulation| {
         let now = simulation.scene().dew().and_then(|dew| dew.solid.get(solid)?.heater.as_ref());
         let power = now.and_then(|heater| heater.power_w.as_ref().or(heater.power_w_per_m2.as_ref()));
-        simulation.change_by_hand(Source::HeaterTimes { solid, times: wanted / power.map_or(1.0, size) })
+        simulation.change_live(Source::HeaterTimes { solid, times: wanted / power.map_or(1.0, size) })
     }))
 }
 
@@ -224,30 +224,30 @@ fn warm_inlet(path: &str, value: &str, numbers: Numbers<'_>) -> Option<Change> {
     let (face, celsius) = (face_in(path)?, value.parse().ok()?);
     let relative = numbers(&path.replace("temperature_c", "relative_humidity"));
     Some(Box::new(move |simulation| {
-        simulation.change_by_hand(ByHand::InletTemperature { face, celsius })?;
+        simulation.change_live(LiveChange::InletTemperature { face, celsius })?;
         match relative {
-            Some(relative) => simulation.change_by_hand(ByHand::InletHumidity { face, relative }),
+            Some(relative) => simulation.change_live(LiveChange::InletHumidity { face, relative }),
             None => Ok(()),
         }
     }))
 }
 
 fn moisten_inlet(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::InletHumidity { face: face_in(path)?, relative: value.parse().ok()? })
+    live(LiveChange::InletHumidity { face: face_in(path)?, relative: value.parse().ok()? })
 }
 
 fn blow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Wind { face: face_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
+    live(LiveChange::Wind { face: face_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
 }
 
 fn drive(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::FanVelocity { fan: number_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
+    live(LiveChange::FanVelocity { fan: number_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
 }
 
 fn tilt(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Gravity { axis: axis_in(path)?, acceleration: value.parse().ok()? })
+    live(LiveChange::Gravity { axis: axis_in(path)?, acceleration: value.parse().ok()? })
 }
 
 fn go_faster(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::TimeFactor(value.parse().ok()?))
+    live(LiveChange::TimeFactor(value.parse().ok()?))
 }

@@ -5,7 +5,7 @@ use super::builder::{Builder, Control, Numbers};
 use super::values::{size, size_as_written};
 use super::{live, number_in};
 use crate::physics::Change;
-use corpuscle::FloodByHand as ByHand;
+use corpuscle::FloodLiveChange as LiveChange;
 use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
 
 const SCHEMES: &[(&str, &str)] = &[("voronoi", "\"voronoi\""), ("sph-swe (published)", "\"sph-swe\"")];
@@ -115,7 +115,7 @@ fn rain(builder: &mut Builder, rain: Option<&Rain>) {
 }
 
 fn flow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Discharge { inflow: number_in(path)?, discharge: value.parse().ok()? })
+    live(LiveChange::Discharge { inflow: number_in(path)?, discharge: value.parse().ok()? })
 }
 
 fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
@@ -123,7 +123,7 @@ fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     Some(Box::new(move |simulation| {
         let now = simulation.scene().flood().and_then(|scene| scene.flood.inflow.get(inflow));
         let times = wanted / now.map_or(1.0, |inflow| size(&inflow.discharge_m3_per_s));
-        simulation.change_by_hand(ByHand::DischargeTimes { inflow, times })
+        simulation.change_live(LiveChange::DischargeTimes { inflow, times })
     }))
 }
 
@@ -132,27 +132,27 @@ fn rain_times(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     Some(Box::new(move |simulation| {
         let now = simulation.scene().flood().and_then(|scene| scene.flood.rain.as_ref());
         let times = wanted / now.map_or(1.0, |rain| size(&rain.intensity_mm_per_h));
-        simulation.change_by_hand(ByHand::RainTimes(times))
+        simulation.change_live(LiveChange::RainTimes(times))
     }))
 }
 
 fn let_rain(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Rain(value.parse().ok()?))
+    live(LiveChange::Rain(value.parse().ok()?))
 }
 
 fn hold_stage(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Level { stage: number_in(path)?, level: value.parse().ok()? })
+    live(LiveChange::Level { stage: number_in(path)?, level: value.parse().ok()? })
 }
 
 fn hold_edge(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
     let side = SIDES.iter().position(|side| path.split('.').any(|word| word == *side))?;
-    live(ByHand::EdgeLevel { side, level: value.parse().ok()? })
+    live(LiveChange::EdgeLevel { side, level: value.parse().ok()? })
 }
 
 fn roughen(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::Manning(value.parse().ok()?))
+    live(LiveChange::Manning(value.parse().ok()?))
 }
 
 fn control(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::ControlForce(value.parse().ok()?))
+    live(LiveChange::ControlForce(value.parse().ok()?))
 }

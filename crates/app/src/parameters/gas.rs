@@ -3,7 +3,7 @@
 use super::builder::{Builder, Control, Numbers};
 use super::live;
 use crate::physics::Change;
-use corpuscle::GasByHand as ByHand;
+use corpuscle::GasLiveChange as LiveChange;
 use corpuscle::scene::{Axis, Gas, Species, Wall};
 use std::f64::consts::PI;
 
@@ -120,11 +120,11 @@ fn wall_of(path: &str) -> [usize; 2] {
 }
 
 fn warm_wall(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::WallTemperature { wall: wall_of(path), temperature: value.parse().ok()? })
+    live(LiveChange::WallTemperature { wall: wall_of(path), temperature: value.parse().ok()? })
 }
 
 fn press_piston(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    live(ByHand::PistonPressure { wall: wall_of(path), pressure: value.parse().ok()? })
+    live(LiveChange::PistonPressure { wall: wall_of(path), pressure: value.parse().ok()? })
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ mod values;
 use crate::icons::{self, Icon};
 use crate::physics::Change;
 use builder::{Builder, Control, Group, Parameter, groups};
-use corpuscle::ByHand;
+use corpuscle::LiveChange;
 use corpuscle::scene::Scene;
 use egui::{Align, ComboBox, Layout, RichText, Ui, WidgetInfo};
 use slider::{is_long, slider, written};
@@ -18,8 +18,8 @@ use toml::{Table, Value};
 use values::{as_number, largest, multiplied, set, value_at};
 
 /// A change while the scene goes on.
-fn live(change: impl Into<ByHand> + Send + 'static) -> Option<Change> {
-    Some(Box::new(move |simulation| simulation.change_by_hand(change)))
+fn live(change: impl Into<LiveChange> + Send + 'static) -> Option<Change> {
+    Some(Box::new(move |simulation| simulation.change_live(change)))
 }
 
 /// Names of the gauges that changes of a scene add.

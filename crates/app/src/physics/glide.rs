@@ -6,7 +6,7 @@ use super::pace::Pace;
 use super::thread::{MEASURE, PICTURES, Rate, Running};
 use crate::snapshot::{Measures, Snapshot};
 use corpuscle::gpu::Gpu;
-use corpuscle::model::{Companion, Container, Frame, Passed};
+use corpuscle::model::{AdvanceObserver, Container, Frame, ModelProgress};
 use corpuscle::pictures::{Glance, Moment};
 use corpuscle::{Error, Sample};
 use std::cell::RefCell;
@@ -44,7 +44,7 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         recalled: None,
     });
     let mut show = |glance| glide.borrow_mut().show(glance);
-    let gone = simulation.advance_shown(*until, &shared.stop, &mut Along(&glide), from, &mut show);
+    let gone = simulation.advance_shown(*until, &shared.stop, &mut GlideObserver(&glide), from, &mut show);
     let Glide { film_fault, recalled, .. } = glide.into_inner();
     gone.map_err(Fault::OfModel)?;
     film_fault.map_or(Ok(recalled), |error| Err(Fault::OfFilm(error)))
@@ -135,9 +135,9 @@ impl Glide<'_> {
 }
 
 /// Goes along with the model.
-struct Along<'a, 'b>(&'a RefCell<Glide<'b>>);
+struct GlideObserver<'a, 'b>(&'a RefCell<Glide<'b>>);
 
-impl Companion for Along<'_, '_> {
+impl AdvanceObserver for GlideObserver<'_, '_> {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         let every = self.0.borrow().every();
         (every > 0.0).then(|| ((time / every).floor() + 1.0) * every).filter(|next| *next > time)
@@ -149,7 +149,7 @@ impl Companion for Along<'_, '_> {
         *glide.measured = Arc::new(measured);
     }
 
-    fn passed(&mut self, passed: Passed) -> bool {
+    fn passed(&mut self, passed: ModelProgress) -> bool {
         let mut glide = self.0.borrow_mut();
         glide.particles = passed.particles;
         glide.slice.has_stepped |= passed.particle_steps > glide.work;

@@ -1,7 +1,7 @@
 //! Pictures a second of a flood that is stepped and drawn on one GPU: a picture a step, and nothing comes back in between but a few numbers.
 
 use crate::args::BenchOptions;
-use corpuscle::gpu::{Gpu, Taken, wgpu};
+use corpuscle::gpu::{Gpu, PassTiming, wgpu};
 use corpuscle::model::{Glance, GpuModel};
 use corpuscle::pictures::{Hand, Look, Moment, PictureSettings, Pictures};
 use corpuscle_validate::{FloodModel, PassTime, Rate, bench_water};
@@ -103,7 +103,7 @@ impl Drawn {
             left -= 1;
             Ok(left == 0)
         })?;
-        let a_picture = |(name, taken): (&'static str, Taken)| PassTime {
+        let a_picture = |(name, taken): (&'static str, PassTiming)| PassTime {
             name,
             times_a_step: f64::from(taken.times) / f64::from(pictures),
             seconds_a_step: taken.total.as_secs_f64() / f64::from(pictures),

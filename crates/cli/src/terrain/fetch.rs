@@ -4,7 +4,7 @@ use super::{check_is_new, write};
 use crate::args::FetchOptions;
 use crate::interrupt::stop_on_interrupt;
 use crate::output::{number, print_json};
-use corpuscle::fetch::{self, ATTRIBUTION, Progress, Source, Watch};
+use corpuscle::fetch::{self, ATTRIBUTION, FetchObserver, Progress, Source};
 use corpuscle::scene::{Scene, Terrain};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -52,7 +52,7 @@ pub fn fetch_for(scene: &Scene, stop: &Arc<AtomicBool>) -> anyhow::Result<()> {
 }
 
 /// A bar on standard error that shows how far fetching has come; hidden where that is not a terminal.
-fn shown(stop: &Arc<AtomicBool>) -> anyhow::Result<(ProgressBar, Watch)> {
+fn shown(stop: &Arc<AtomicBool>) -> anyhow::Result<(ProgressBar, FetchObserver)> {
     let bar = ProgressBar::new(1);
     bar.set_style(ProgressStyle::with_template("fetching terrain {bar:30} tile {pos} of {len}, {msg}")?);
     let shown = bar.clone();
@@ -61,7 +61,7 @@ fn shown(stop: &Arc<AtomicBool>) -> anyhow::Result<(ProgressBar, Watch)> {
         shown.set_position(progress.tiles as u64);
         shown.set_message(format!("{} MB", megabytes(progress.bytes)));
     };
-    Ok((bar, Watch { stop: stop.clone(), show: Arc::new(show) }))
+    Ok((bar, FetchObserver { stop: stop.clone(), show: Arc::new(show) }))
 }
 
 fn megabytes(bytes: u64) -> String {

@@ -4,7 +4,7 @@ use super::dew::shows_air;
 use super::{Moment, Pictures, Subject};
 use crate::{Error, Simulation};
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
-use corpuscle_model::{Companion, Frame, Glance, GpuModel, Model};
+use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
 
 impl Simulation {
@@ -41,16 +41,16 @@ impl Simulation {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        observer: &mut dyn AdvanceObserver,
         first: f64,
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), Error> {
         let with_particles = self.shows_particles();
         let model = self.model_mut();
         if let Some(model) = model.on_gpu_mut() {
-            return Ok(model.advance_shown(time, stop, companion, (first, with_particles), show)?);
+            return Ok(model.advance_shown(time, stop, observer, (first, with_particles), show)?);
         }
-        Ok(model.advance_with(time, stop, companion)?)
+        Ok(model.advance_with(time, stop, observer)?)
     }
 }
 

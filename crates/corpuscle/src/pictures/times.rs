@@ -2,12 +2,12 @@
 
 use super::flood::FloodPicture;
 use super::{Pictures, Subject};
-use corpuscle_gpu::{Gpu, Taken};
+use corpuscle_gpu::{Gpu, PassTiming};
 use corpuscle_render::FluidPass;
 use std::collections::BTreeMap;
 
 /// What the passes that draw water have taken.
-pub(super) type Times = BTreeMap<&'static str, Taken>;
+pub(super) type Times = BTreeMap<&'static str, PassTiming>;
 
 impl Pictures {
     /// Times the passes that draw the water of a flood, from the next picture on: each of them then waits for the one before it.
@@ -27,7 +27,7 @@ impl Pictures {
 
     /// What they have taken since, by name: kernels that make discs by the device's own clock, where it has one; passes over pixels from
     /// the start of their encoding to their end on the device.
-    pub fn taken(&self) -> Vec<(&'static str, Taken)> {
+    pub fn taken(&self) -> Vec<(&'static str, PassTiming)> {
         match &self.subject {
             Subject::Flood(flood) => flood.taken(),
             _ => Vec::new(),
@@ -52,7 +52,7 @@ impl FloodPicture {
         }
     }
 
-    fn taken(&self) -> Vec<(&'static str, Taken)> {
+    fn taken(&self) -> Vec<(&'static str, PassTiming)> {
         let discs = self.device_water.iter().flat_map(corpuscle_render::DeviceWater::taken);
         let pixels = self.times.iter().flatten().map(|(name, taken)| (*name, *taken));
         discs.chain(pixels).collect()

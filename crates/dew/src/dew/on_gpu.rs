@@ -5,12 +5,12 @@ mod on_device;
 
 use super::{Dew, State};
 use crate::faces::deepest_outside;
-use crate::gpu::{Crossed, GpuSolver, MOST_FANS, Progress};
+use crate::gpu::{BatchResult, Crossed, GpuSolver, MOST_FANS};
 use crate::room::Face;
 use crate::wetting::WettingState;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Taken};
-use corpuscle_model::{Companion, Glance, GpuModel, Model, ModelError};
-use on_device::Watch;
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming};
+use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelError};
+use on_device::FrameRequest;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Room for particles that come beside those that there are.
@@ -42,7 +42,7 @@ impl GpuModel for Dew {
         }
     }
 
-    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, PassTiming)> {
         self.gpu_solver.iter().flat_map(|solver| solver.batches.pass_times()).collect()
     }
 
@@ -63,14 +63,14 @@ impl GpuModel for Dew {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        observer: &mut dyn AdvanceObserver,
         (first, sees_air): (f64, bool),
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError> {
         if self.gpu_solver.is_none() {
-            return self.advance_with(time, stop, companion);
+            return self.advance_with(time, stop, observer);
         }
-        self.advance_measured(time, stop, companion, Some(Watch { wanted: first, sees_air, show }))
+        self.advance_measured(time, stop, observer, Some(FrameRequest { wanted: first, sees_air, show }))
     }
 }
 
@@ -89,7 +89,7 @@ impl Dew {
 
     fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let mut solver = GpuSolver::new(gpu, room, self)?;
-        solver.send(&self.state, &self.evaporation);
+        solver.upload(&self.state, &self.evaporation);
         solver.batches = solver.batches.after(self.gpu_solver.take().map(|before| before.batches));
         self.gpu_solver = Some(solver);
         Ok(())
@@ -97,12 +97,12 @@ impl Dew {
 
     /// Hands the state to the GPU, where there is one. It is set up anew, its shaders compiled again, where settings have changed or there is
     /// too little room.
-    pub(crate) fn tell_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
+    pub(crate) fn upload_to_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
         let needed = self.state.air.len() + self.most_in_a_step();
         match &mut self.gpu_solver {
             None => Ok(()),
             Some(solver) if !anew && solver.filling()[1] >= needed => {
-                solver.send(&self.state, &self.evaporation);
+                solver.upload(&self.state, &self.evaporation);
                 Ok(())
             }
             Some(solver) => {
@@ -142,7 +142,7 @@ impl Dew {
         advance: impl FnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
     ) -> Result<(), ModelError> {
         let before = (self.shown, self.state.clone(), self.wetting.as_ref().map(|wetting| wetting.state()));
-        let broken = advance(self).and_then(|broken| self.fetch_from_gpu().map(|()| broken));
+        let broken = advance(self).and_then(|broken| self.download_from_gpu().map(|()| broken));
         match broken {
             Ok(None) => Ok(()),
             Ok(Some(broken)) => Err(broken),
@@ -199,7 +199,7 @@ impl Dew {
 
     /// Takes more room on the GPU where the air that is to come might not find any.
     fn make_room(&mut self) -> Result<(), GpuError> {
-        self.fetch_from_gpu()?;
+        self.download_from_gpu()?;
         match self.gpu_solver.as_ref().map(|solver| solver.batches.gpu().clone()) {
             Some(gpu) => self.open_gpu(gpu),
             None => Ok(()),
@@ -217,18 +217,18 @@ impl Dew {
         if !self.wetting.as_ref().is_some_and(is_due) {
             return Ok(());
         }
-        solver.fetch_water(&mut self.state.water_on)?;
+        solver.download_water(&mut self.state.water_on)?;
         self.tend_drops(air);
         if let Some(solver) = &mut self.gpu_solver {
-            solver.tell_water(&self.state.water_on, &self.evaporation);
+            solver.upload_water(&self.state.water_on, &self.evaporation);
         }
         Ok(())
     }
 
     /// Brings the state back.
-    fn fetch_from_gpu(&mut self) -> Result<(), GpuError> {
+    fn download_from_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
-        solver.fetch(&mut self.state)?;
+        solver.download(&mut self.state)?;
         if self.layers.iter().any(Option::is_some) {
             // Gauges of layers tell pairs of air and wall.
             self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());
@@ -238,7 +238,7 @@ impl Dew {
         Ok(())
     }
 
-    fn book_progress(&mut self, progress: &Progress) {
+    fn book_progress(&mut self, progress: &BatchResult) {
         let mass = self.particle_mass();
         let (heat_capacity, latent_heat) = (self.air.heat_capacity, self.latent_heat);
         let State { water, energy, held_heat, supplied, .. } = &mut self.state;

@@ -12,7 +12,7 @@ impl GpuSolver {
         submit(self.batches.gpu(), "gauges", None, |pass| self.tasks.measure.run(pass, MEASURING_GROUPS));
         let groups: Vec<shared::Measured> =
             read(self.batches.gpu(), &self.tasks.memory.measured, MEASURING_GROUPS as usize)?;
-        self.fetch_solids(state)?;
+        self.download_solids(state)?;
         Ok(totals(&groups, self.origin))
     }
 }

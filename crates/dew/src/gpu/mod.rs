@@ -6,14 +6,11 @@
 //!
 //! What single precision is spent on: see `shared.rs`.
 
-mod field;
 mod measure;
 mod numbers;
-mod origin;
+pub(crate) mod origin;
 mod seen;
-mod shared;
-mod solids;
-mod sources;
+pub(crate) mod shared;
 mod tasks;
 
 #[cfg(test)]
@@ -22,13 +19,14 @@ pub(crate) use shared::MOST_FANS;
 
 use crate::dew::{Dew, State};
 use crate::faces::OpenSide;
+use crate::solids::sources::upload::GpuSources;
+use crate::solids::upload::GpuSolids;
+use crate::utility::upload::distance_field;
 use bytemuck::Zeroable;
 use corpuscle_gpu::{BATCH_START, Batches, Gpu, GpuError, Halt, from_halves, from_pair, read, to_pair, wgpu};
 use origin::Origin;
 use seen::Seen;
 use shared::{OutsideColumn, Parameters, Status, TURN};
-use solids::GpuSolids;
-use sources::GpuSources;
 use std::sync::OnceLock;
 use tasks::Tasks;
 
@@ -49,7 +47,7 @@ pub(crate) struct GpuSolver {
     /// Particles that there is room for.
     room: usize,
     /// Water on the particles of the solids when it was last told, kg.
-    water_told: Vec<f64>,
+    water_uploaded: Vec<f64>,
     /// Heat that came from each solid until the last batch, J.
     held_before: Vec<f64>,
     /// Whether the host has not the air that is here.
@@ -71,7 +69,7 @@ pub(crate) struct Crossed {
 
 /// What a batch of steps did.
 #[derive(Debug, Clone)]
-pub(crate) struct Progress {
+pub(crate) struct BatchResult {
     pub steps: u64,
     /// Time at the end of the last step, s.
     pub time: f64,
@@ -121,7 +119,7 @@ impl GpuSolver {
             vapour: dew.settings.ambient_vapour,
         };
         let mut parameters = Parameters::of(dew, origin, room);
-        let field = field::tell_field(&mut parameters, dew, origin);
+        let field = distance_field(&mut parameters, dew, origin);
         let mut rows = Vec::new();
         let solids = GpuSolids::new(&gpu, dew, origin, &parameters, &mut rows)?;
         let outside: Vec<OutsideColumn> = dew.open_sides.iter().flat_map(OpenSide::free).map(outside_column).collect();
@@ -142,7 +140,7 @@ impl GpuSolver {
             status: Status { cells, ..Status::zeroed() },
             sent_at: 0.0,
             room,
-            water_told: vec![0.0; of_solids],
+            water_uploaded: vec![0.0; of_solids],
             held_before,
             ahead: false,
             seen: OnceLock::new(),
@@ -168,7 +166,7 @@ impl GpuSolver {
     }
 
     /// Hands the state over, with what part of the evaporation of a wet surface the water on each particle of the solids lets go.
-    pub fn send(&mut self, state: &State, evaporation: &[f64]) {
+    pub fn upload(&mut self, state: &State, evaporation: &[f64]) {
         let air: Vec<shared::Particle> = state.air.iter().map(|particle| self.origin.to_gpu(particle)).collect();
         let temperature = |temperature: &f64| shared::Solid {
             temperature: to_pair(temperature - self.origin.temperature),
@@ -185,7 +183,7 @@ impl GpuSolver {
         if let Some(sources) = &mut self.sources {
             sources.reset(self.batches.gpu(), &self.tasks.memory);
         }
-        self.tell_water(&state.water_on, evaporation);
+        self.upload_water(&state.water_on, evaporation);
         self.held_before.fill(0.0);
         let phases = state.inlet_phase.as_flattened();
         let narrow = |by_face: [[f64; 2]; 3]| std::array::from_fn(|number| by_face.as_flattened()[number] as f32);
@@ -209,7 +207,7 @@ impl GpuSolver {
     }
 
     /// Tells the water on the particles of the solids, kg, where drops have moved, and what part of the evaporation of a wet surface it lets go.
-    pub fn tell_water(&mut self, water: &[f64], evaporation: &[f64]) {
+    pub fn upload_water(&mut self, water: &[f64], evaporation: &[f64]) {
         let tell = |(&water, &evaporation): (&f64, &f64)| shared::Water {
             told: water as f32,
             evaporation: evaporation as f32,
@@ -217,28 +215,29 @@ impl GpuSolver {
         };
         let told: Vec<shared::Water> = water.iter().zip(evaporation).map(tell).collect();
         self.batches.gpu().queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&told));
-        self.water_told.clear();
-        self.water_told.extend_from_slice(water);
+        self.water_uploaded.clear();
+        self.water_uploaded.extend_from_slice(water);
     }
 
     /// Brings the water on the particles of the solids, kg.
-    pub fn fetch_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
-        let waters: Vec<shared::Water> = read(self.batches.gpu(), &self.tasks.memory.waters, self.water_told.len())?;
+    pub fn download_water(&self, water: &mut Vec<f64>) -> Result<(), GpuError> {
+        let waters: Vec<shared::Water> =
+            read(self.batches.gpu(), &self.tasks.memory.waters, self.water_uploaded.len())?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
         let now = |(told, water): (&f64, &shared::Water)| (told + from_pair(water.gained)).max(0.0);
-        water.extend(self.water_told.iter().zip(&waters).map(now));
+        water.extend(self.water_uploaded.iter().zip(&waters).map(now));
         Ok(())
     }
 
     /// Brings the air and the solids back, where there is any news of them.
-    pub fn fetch(&mut self, state: &mut State) -> Result<(), GpuError> {
+    pub fn download(&mut self, state: &mut State) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
         let air: Vec<shared::Particle> =
             read(self.batches.gpu(), &self.tasks.memory.particles, self.status.particles as usize)?;
-        self.fetch_solids(state)?;
+        self.download_solids(state)?;
         state.air.clear();
         state.air.extend(air.iter().map(|particle| self.origin.to_host(particle)));
         self.ahead = false;
@@ -246,10 +245,10 @@ impl GpuSolver {
     }
 
     /// Brings back what changes of the solids.
-    fn fetch_solids(&self, state: &mut State) -> Result<(), GpuError> {
+    fn download_solids(&self, state: &mut State) -> Result<(), GpuError> {
         let solids: Vec<shared::Solid> = read(self.batches.gpu(), &self.tasks.memory.solids, state.temperatures.len())?;
         let bodies: Vec<shared::Body> = read(self.batches.gpu(), &self.tasks.memory.bodies, self.bodies.len())?;
-        self.fetch_water(&mut state.water_on)?;
+        self.download_water(&mut state.water_on)?;
         let temperature = |solid: &shared::Solid| from_pair(solid.temperature) + self.origin.temperature;
         state.temperatures.clear();
         state.temperatures.extend(solids.iter().map(temperature));
@@ -259,7 +258,7 @@ impl GpuSolver {
     }
 
     /// Takes steps up to a time, s, or as many as a batch has, `most` at most.
-    pub fn advance(&mut self, until: f64, most: u64) -> Result<Progress, GpuError> {
+    pub fn advance(&mut self, until: f64, most: u64) -> Result<BatchResult, GpuError> {
         #[cfg(test)]
         self.lose();
         let left = until - self.time();
@@ -312,14 +311,14 @@ impl GpuSolver {
         }
     }
 
-    fn progress(&mut self, bodies: &[shared::Body], supplied: Vec<[f64; 3]>) -> Progress {
+    fn progress(&mut self, bodies: &[shared::Body], supplied: Vec<[f64; 3]>) -> BatchResult {
         let Status { steps, particle_steps, step, last_step, halted, fastest, .. } = self.status;
         let held: Vec<f64> = bodies.iter().map(|body| from_pair(body.held)).collect();
         let held_heat = held.iter().zip(&self.held_before).map(|(now, before)| now - before).collect();
         self.held_before = held;
         let phase = |axis: usize, side: usize| from_pair(self.status.phase[2 * axis + side]);
         let wide = |by_face: [f32; 6]| [0, 1, 2].map(|axis| [0, 1].map(|side| f64::from(by_face[2 * axis + side])));
-        Progress {
+        BatchResult {
             steps: u64::from(steps),
             time: self.time(),
             last_step: f64::from(last_step),

@@ -45,15 +45,15 @@ impl Parameters {
     pub fn of(dew: &Dew, origin: Origin, room: usize) -> Self {
         let full = room.saturating_sub(dew.most_in_a_step()) as u32;
         let mut new = Self { flags: flags(dew), full, ..Self::default() };
-        new.tell_room(dew, origin, room >= MANY);
-        new.tell_air(dew);
-        new.tell_kernels(dew);
-        new.tell_inlets(dew);
+        new.set_room(dew, origin, room >= MANY);
+        new.set_air(dew);
+        new.set_kernels(dew);
+        new.set_inlets(dew);
         new.fans = dew.fans.len().min(MOST_FANS as usize) as u32;
         new
     }
 
-    fn tell_room(&mut self, dew: &Dew, origin: Origin, are_many: bool) {
+    fn set_room(&mut self, dew: &Dew, origin: Origin, are_many: bool) {
         let (room, h) = (&dew.room, dew.scale.h());
         let beyond = |axis: usize, side: usize| h * if room.faces[axis][side].is_passed() { CELLS_BEYOND } else { 1.0 };
         let corner = [0, 1, 2].map(|axis| room.low[axis] - beyond(axis, 0));
@@ -74,7 +74,7 @@ impl Parameters {
         self.counts = room.counts(dew.scale.spacing).map(|count| count as u32);
     }
 
-    fn tell_air(&mut self, dew: &Dew) {
+    fn set_air(&mut self, dew: &Dew) {
         let (air, settings) = (&dew.air, &dew.settings);
         let diffusivities = [air.heat_diffusivity(), air.vapour_diffusivity];
         let ambient = HumidAir::with_mass_fraction(settings.ambient_temperature, air.pressure, settings.ambient_vapour);
@@ -115,7 +115,7 @@ impl Parameters {
     }
 
     /// The shaders' kernels are of distances over h and without their factors.
-    fn tell_kernels(&mut self, dew: &Dew) {
+    fn set_kernels(&mut self, dew: &Dew) {
         let crate::air::Scale { volume, kernels, to_density, to_gradient, moment, .. } = dew.scale;
         let (h, spiky) = (dew.scale.h(), kernels.spiky_factor());
         let spread = 2.0 * volume * to_gradient * spiky * h.powi(2);
@@ -130,7 +130,7 @@ impl Parameters {
         };
     }
 
-    fn tell_inlets(&mut self, dew: &Dew) {
+    fn set_inlets(&mut self, dew: &Dew) {
         let apart = dew.room.apart(dew.scale.spacing);
         for (number, face) in dew.room.faces.as_flattened().iter().enumerate() {
             if let Face::Inlet(inflow) = face {

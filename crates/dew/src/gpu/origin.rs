@@ -7,7 +7,7 @@ use corpuscle_gpu::{from_pair, to_pair};
 
 /// Where the shaders count from.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Origin {
+pub(crate) struct Origin {
     pub room: Room,
     /// Temperature, K, and part of the mass that is vapour.
     pub temperature: f64,

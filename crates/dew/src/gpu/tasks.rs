@@ -4,8 +4,8 @@ use super::shared::{
     BeforeColumn, BeforeOutlet, Body, Fan, IS_PASSED, MEASURING_GROUPS, MOST_FANS, Measured, Memory, OutsideColumn,
     Packed, PackedColumn, Parameters, Partial, Row, Shown, Solid, Status, Surface, Water,
 };
-use super::solids::{GpuSolids, filled};
-use super::sources::GpuSources;
+use crate::solids::sources::upload::GpuSources;
+use crate::solids::upload::{GpuSolids, filled};
 use corpuscle_gpu::{
     Buffers, COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS,
     Task, storage, uniform, wgpu,
@@ -16,14 +16,14 @@ pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
     GROUP_REDUCTION,
-    ("dew_particles", include_str!("dew_particles.wgsl")),
-    ("dew_columns", include_str!("dew_columns.wgsl")),
-    ("dew_neighbours", include_str!("dew_neighbours.wgsl")),
-    ("dew_humid", include_str!("dew_humid.wgsl")),
-    ("dew_normalisation", include_str!("dew_normalisation.wgsl")),
-    ("dew_rows", include_str!("dew_rows.wgsl")),
-    ("dew_saturate", include_str!("dew_saturate.wgsl")),
-    ("dew_utility", include_str!("dew_utility.wgsl")),
+    ("dew_particles", include_str!("../air/dew_particles.wgsl")),
+    ("dew_columns", include_str!("../faces/dew_columns.wgsl")),
+    ("dew_neighbours", include_str!("../air/dew_neighbours.wgsl")),
+    ("dew_humid", include_str!("../humid_air/dew_humid.wgsl")),
+    ("dew_normalisation", include_str!("../normalisation/dew_normalisation.wgsl")),
+    ("dew_rows", include_str!("../solids/sources/dew_rows.wgsl")),
+    ("dew_saturate", include_str!("../exchange/dew_saturate.wgsl")),
+    ("dew_utility", include_str!("../utility/dew_utility.wgsl")),
 ];
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
@@ -110,24 +110,24 @@ impl Tasks {
         };
         let task = |name, text| Kernel::<Memory>::new(gpu, name, text, PIECES).on(gpu, &memory);
         macro_rules! shader {
-            ($name:literal) => {
-                task($name, include_str!(concat!($name, ".wgsl")))
+            ($folder:literal, $name:literal) => {
+                task($name, include_str!(concat!("../", $folder, "/", $name, ".wgsl")))
             };
         }
         let has_solids = of_solids > 0;
         Ok(Self {
-            drift: shader!("dew_drift"),
-            let_in: (parameters.flags & IS_PASSED != 0).then(|| shader!("dew_let_in")),
-            cross: shader!("dew_cross"),
-            outside: (!outside.is_empty()).then(|| shader!("dew_outside")),
-            reorder: shader!("dew_reorder"),
-            density: shader!("dew_density"),
-            surfaces: has_solids.then(|| shader!("dew_surfaces")),
-            sources: sources.map(|_| shader!("dew_sources")),
-            forces: shader!("dew_forces"),
-            take_up: has_solids.then(|| [shader!("dew_take_up"), shader!("dew_bodies")]),
-            finish: shader!("dew_finish"),
-            measure: shader!("dew_measure"),
+            drift: shader!("dew", "dew_drift"),
+            let_in: (parameters.flags & IS_PASSED != 0).then(|| shader!("faces", "dew_let_in")),
+            cross: shader!("faces", "dew_cross"),
+            outside: (!outside.is_empty()).then(|| shader!("faces", "dew_outside")),
+            reorder: shader!("gpu", "dew_reorder"),
+            density: shader!("air", "dew_density"),
+            surfaces: has_solids.then(|| shader!("exchange", "dew_surfaces")),
+            sources: sources.map(|_| shader!("solids/sources", "dew_sources")),
+            forces: shader!("dew", "dew_forces"),
+            take_up: has_solids.then(|| [shader!("exchange", "dew_take_up"), shader!("solids", "dew_bodies")]),
+            finish: shader!("gpu", "dew_finish"),
+            measure: shader!("measures", "dew_measure"),
             memory,
             sort,
         })
@@ -148,27 +148,27 @@ impl Tasks {
 
     fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.memory.groups;
-        self.drift.run_as_told(pass, groups, SLOTS.particles);
+        self.drift.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some(let_in) = &self.let_in {
             let_in.run(pass, 1);
         }
-        self.cross.run_as_told(pass, groups, SLOTS.particles);
+        self.cross.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some(outside) = &self.outside {
             outside.run(pass, 1);
         }
         self.sort.sort(pass, groups, SLOTS);
-        self.reorder.run_as_told(pass, groups, SLOTS.particles);
-        self.density.run_as_told(pass, groups, SLOTS.particles);
+        self.reorder.dispatch_indirect(pass, groups, SLOTS.particles);
+        self.density.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some(surfaces) = &self.surfaces {
-            surfaces.run_as_told(pass, groups, SOLIDS);
+            surfaces.dispatch_indirect(pass, groups, SOLIDS);
         }
         if let Some(sources) = &self.sources {
-            sources.run_as_told(pass, groups, BODIES);
+            sources.dispatch_indirect(pass, groups, BODIES);
         }
-        self.forces.run_as_told(pass, groups, SLOTS.particles);
+        self.forces.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some([take_up, bodies]) = &self.take_up {
-            take_up.run_as_told(pass, groups, SOLIDS);
-            bodies.run_as_told(pass, groups, BODIES);
+            take_up.dispatch_indirect(pass, groups, SOLIDS);
+            bodies.dispatch_indirect(pass, groups, BODIES);
         }
         self.finish.run(pass, 1);
     }

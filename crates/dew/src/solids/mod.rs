@@ -4,6 +4,8 @@ mod boundary;
 mod conduction;
 mod ghosts;
 pub(crate) mod sources;
+#[cfg(feature = "gpu")]
+pub(crate) mod upload;
 pub(crate) mod wall;
 
 pub use boundary::THRESHOLD;

@@ -1,18 +1,18 @@
-//! What a hand changes of a flood of scheme sph-swe while it runs.
+//! Live changes of a flood of scheme sph-swe: what is changed while it runs.
 //!
 //! A change holds from the end of the last step on, at most one step before the time shown. What comes by it is booked as all other water is.
 
 use super::SphSweFlood;
-use crate::ByHand;
+use crate::LiveChange;
 use crate::setup::{load, setup};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Manning, Series, SphSwe, Table};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What a hand has changed so far.
+/// What was changed live so far.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Hand {
+pub(super) struct Overrides {
     /// Discharges of inflows as they are now: the inflow, and rows of time, s, and m3/s.
     discharges: Vec<(usize, Vec<[f64; 2]>)>,
     manning: Option<f64>,
@@ -22,27 +22,30 @@ pub(super) struct Hand {
 }
 
 impl SphSweFlood {
-    pub(crate) fn change_by_hand(&mut self, change: ByHand) -> Result<(), ModelError> {
+    pub(crate) fn change_live(&mut self, change: LiveChange) -> Result<(), ModelError> {
         change.check()?;
         match change {
-            ByHand::Discharge { inflow, discharge } => self.put(inflow, |now, _| vec![[now, discharge]])?,
-            ByHand::DischargeTimes { inflow, times } => self.put(inflow, |now, written| {
+            LiveChange::Discharge { inflow, discharge } => self.put(inflow, |now, _| vec![[now, discharge]])?,
+            LiveChange::DischargeTimes { inflow, times } => self.put(inflow, |now, written| {
                 let later = written.rows().iter().filter(|[time, _]| *time > now);
                 let rows = std::iter::once([now, written.at(now)]).chain(later.copied());
                 rows.map(|[time, value]| [time, times * value]).collect()
             })?,
-            ByHand::Manning(n) => {
+            LiveChange::Manning(n) => {
                 let rest = self.roughness.rest().ok_or_else(|| {
                     setup("the roughness comes from a raster, or friction from another law than Manning's: it changes on restart")
                 })?;
                 *rest = n;
-                self.state.hand.manning = Some(n);
+                self.state.overrides.manning = Some(n);
             }
-            ByHand::ControlForce(on) => {
+            LiveChange::ControlForce(on) => {
                 self.solver.control(on);
-                self.state.hand.control = Some(on);
+                self.state.overrides.control = Some(on);
             }
-            ByHand::Rain(_) | ByHand::RainTimes(_) | ByHand::Level { .. } | ByHand::EdgeLevel { .. } => {
+            LiveChange::Rain(_)
+            | LiveChange::RainTimes(_)
+            | LiveChange::Level { .. }
+            | LiveChange::EdgeLevel { .. } => {
                 return Err(setup("rain and held levels are for scheme voronoi"));
             }
         }
@@ -58,8 +61,8 @@ impl SphSweFlood {
         whole.extend(rows(now, written));
         let changed = load(&Series::Table(whole.clone()), Path::new(""))?;
         self.replace(inflow, changed);
-        self.state.hand.discharges.retain(|(of, _)| *of != inflow);
-        self.state.hand.discharges.push((inflow, whole));
+        self.state.overrides.discharges.retain(|(of, _)| *of != inflow);
+        self.state.overrides.discharges.push((inflow, whole));
         Ok(())
     }
 
@@ -73,7 +76,7 @@ impl SphSweFlood {
     }
 
     /// All is as the scene says again.
-    pub(super) fn take_back_hand(&mut self) {
+    pub(super) fn clear_overrides(&mut self) {
         for (inflow, written) in std::mem::take(&mut self.written) {
             self.sources[inflow].discharge = written;
         }
@@ -81,20 +84,20 @@ impl SphSweFlood {
             *rest = *n;
         }
         self.solver.control(self.settings.sph_swe.control_force);
-        self.state.hand = Hand::default();
+        self.state.overrides = Overrides::default();
     }
 
-    /// All is as the state's hand changed it.
+    /// All is as the state's overrides say.
     pub(super) fn take_hand(&mut self) -> Result<(), ModelError> {
-        let hand = self.state.hand.clone();
-        for (inflow, rows) in hand.discharges {
+        let overrides = self.state.overrides.clone();
+        for (inflow, rows) in overrides.discharges {
             let table = load(&Series::Table(rows), Path::new(""))?;
             self.replace(inflow, table);
         }
-        if let (Some(n), Some(rest)) = (hand.manning, self.roughness.rest()) {
+        if let (Some(n), Some(rest)) = (overrides.manning, self.roughness.rest()) {
             *rest = n;
         }
-        if let Some(on) = hand.control {
+        if let Some(on) = overrides.control {
             self.solver.control(on);
         }
         Ok(())
@@ -104,7 +107,7 @@ impl SphSweFlood {
     #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the GPU asks for them"))]
     pub(super) fn parameters(&self) -> SphSwe {
         let written = &self.settings.sph_swe;
-        SphSwe { control_force: self.state.hand.control.unwrap_or(written.control_force), ..written.clone() }
+        SphSwe { control_force: self.state.overrides.control.unwrap_or(written.control_force), ..written.clone() }
     }
 
     /// A GPU that takes the steps gets to know what has changed.

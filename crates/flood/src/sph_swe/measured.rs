@@ -41,7 +41,7 @@ impl SphSweFlood {
         points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(placed).collect()
     }
 
-    /// The places that gauges look at: points, those along lines, and points that a hand has placed.
+    /// The places that gauges look at: points, those along lines, and points that were placed live.
     pub(super) fn gauge_places(&self) -> Vec<[f64; 2]> {
         let points = self.points.iter().map(|point| point.at);
         let along_lines = self.lines.iter().flat_map(LineGauge::places);

@@ -37,7 +37,7 @@ use crate::friction::Roughness;
 use crate::gauges::{LineGauge, PointGauge};
 use crate::sampling::Sample;
 use crate::zone::Source;
-use change::Hand;
+use change::Overrides;
 use corpuscle_model::{Account, ExactSum};
 use corpuscle_scene::{Flood as Settings, Table};
 use falling::Falling;
@@ -68,7 +68,7 @@ pub struct SphSweFlood {
     h: f64,
     map_period: f64,
     state: State,
-    /// What the scene says of the discharges that a hand has changed, by inflow.
+    /// What the scene says of the discharges that were changed live, by inflow.
     written: Vec<(usize, Table)>,
     /// Working memory.
     of_blocks: Vec<f64>,
@@ -111,8 +111,8 @@ struct State {
     overtopped: Vec<Option<f64>>,
     /// What a user should know of the water at the start.
     warnings: Vec<String>,
-    /// What a hand has changed.
-    hand: Hand,
+    /// What was changed live.
+    overrides: Overrides,
 }
 
 impl SphSweFlood {

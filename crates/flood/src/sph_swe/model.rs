@@ -1,13 +1,13 @@
 //! What a flood shows of itself.
 
-use super::change::Hand;
+use super::change::Overrides;
 #[cfg(feature = "gpu")]
-use super::gpu::Onlookers;
+use super::gpu::Observers;
 use super::particle::Particle;
 use super::{DENSITY, SphSweFlood, State};
-use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 #[cfg(feature = "gpu")]
-use corpuscle_model::{Companion, CpuOnly, GpuModel, advance_with};
+use corpuscle_model::{AdvanceObserver, CpuOnly, GpuModel, advance_with};
+use corpuscle_model::{Column, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Values};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 impl Model for SphSweFlood {
@@ -54,7 +54,7 @@ impl Model for SphSweFlood {
     fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if self.on_gpu.is_some() {
-            return self.advance_on_gpu(time, stop, &mut Onlookers::default());
+            return self.advance_on_gpu(time, stop, &mut Observers::default());
         }
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) {
@@ -68,11 +68,16 @@ impl Model for SphSweFlood {
     }
 
     #[cfg(feature = "gpu")]
-    fn advance_with(&mut self, time: f64, stop: &AtomicBool, companion: &mut dyn Companion) -> Result<(), ModelError> {
+    fn advance_with(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        observer: &mut dyn AdvanceObserver,
+    ) -> Result<(), ModelError> {
         if self.on_gpu.is_some() {
-            self.advance_measured(time, stop, Onlookers::of(companion))
+            self.advance_measured(time, stop, Observers::of(observer))
         } else {
-            advance_with(self, time, stop, companion)
+            advance_with(self, time, stop, observer)
         }
     }
 
@@ -161,12 +166,12 @@ impl Model for SphSweFlood {
         {
             return Err(refused("it belongs to another scene".into()));
         }
-        let by_hand = self.state.hand != Hand::default() || state.hand != Hand::default();
-        self.take_back_hand();
+        let is_changed = self.state.overrides != Overrides::default() || state.overrides != Overrides::default();
+        self.clear_overrides();
         (self.shown, self.state) = (shown, state);
         self.take_hand()?;
         self.arrange();
-        if by_hand {
+        if is_changed {
             return self.renew_gpu();
         }
         #[cfg(feature = "gpu")]

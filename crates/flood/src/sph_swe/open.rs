@@ -1,6 +1,6 @@
 //! How a flood is set up.
 
-use super::change::Hand;
+use super::change::Overrides;
 use super::edges::{EdgeRule, EdgeRules};
 use super::falling::Falling;
 use super::maps::Maps;
@@ -120,7 +120,7 @@ impl SphSweFlood {
             put_back: 0,
             overtopped: vec![None; obstacles.names.len()],
             warnings: Vec::new(),
-            hand: Hand::default(),
+            overrides: Overrides::default(),
         };
         let model = Self {
             roughness: Roughness::open(flood, &terrain, folder)?,

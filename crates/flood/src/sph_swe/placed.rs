@@ -1,4 +1,4 @@
-//! Gauges that a hand places while a flood runs.
+//! Gauges that are placed while a flood runs.
 
 use super::SphSweFlood;
 use crate::gauges::PointGauge;
@@ -19,16 +19,16 @@ impl SphSweFlood {
             return Err(setup(format!("the gauge '{name}' lies outside the terrain, which spans {spans}")));
         }
         let known =
-            self.points.iter().map(|point| &point.name).chain(self.state.hand.gauges.iter().map(|(name, _)| name));
+            self.points.iter().map(|point| &point.name).chain(self.state.overrides.gauges.iter().map(|(name, _)| name));
         if known.into_iter().any(|known| known == name) {
             return Err(setup(format!("there is a gauge '{name}' already: give the new one another name")));
         }
-        self.state.hand.gauges.push((name.into(), at));
+        self.state.overrides.gauges.push((name.into(), at));
         Ok(())
     }
 
     /// The gauges that were placed.
     pub(super) fn placed(&self) -> impl Iterator<Item = PointGauge> {
-        self.state.hand.gauges.iter().map(|(name, at)| PointGauge { name: name.clone(), at: *at })
+        self.state.overrides.gauges.iter().map(|(name, at)| PointGauge { name: name.clone(), at: *at })
     }
 }

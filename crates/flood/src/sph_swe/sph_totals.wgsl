@@ -13,15 +13,15 @@ fn tell(at: u32, number: f32) {
     rows[at] = bitcast<u32>(number);
 }
 
-fn tell_pair(at: u32, pair: vec2f) {
+fn set_pair(at: u32, pair: vec2f) {
     tell(at, pair.x);
     tell(at + 1u, pair.y);
 }
 
-fn tell_obstacle(at: u32, number: u32) {
-    tell_pair(at, obstacles[number].force);
-    tell_pair(at + 2u, obstacles[number].impulse_east);
-    tell_pair(at + 4u, obstacles[number].impulse_north);
+fn set_obstacle(at: u32, number: u32) {
+    set_pair(at, obstacles[number].force);
+    set_pair(at + 2u, obstacles[number].impulse_east);
+    set_pair(at + 4u, obstacles[number].impulse_north);
     rows[at + 6u] = bitcast<u32>(atomicLoad(&knocks[2u * number]));
     rows[at + 7u] = bitcast<u32>(atomicLoad(&knocks[2u * number + 1u]));
 }
@@ -31,7 +31,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     let number = status.rows_taken + group.y;
     let row = rows[ROWS] + number * rows[STRIDE];
     for (var k = thread; k < rows[OBSTACLE_COUNT]; k += GROUP) {
-        tell_obstacle(row + TOTALS + OF_OBSTACLE * k, k);
+        set_obstacle(row + TOTALS + OF_OBSTACLE * k, k);
     }
     var own = 0.0;
     for (var k = thread; k < groups_of_water(status.particles); k += GROUP) {
@@ -39,8 +39,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     }
     let all = reduce_group(thread, own);
     if thread == 0u {
-        tell_pair(row, status.inflow);
-        tell_pair(row + 2u, status.outflow);
+        set_pair(row, status.inflow);
+        set_pair(row + 2u, status.outflow);
         tell(row + STORED, all);
         tell(row + SINCE, difference(due[number], status.clock));
     }

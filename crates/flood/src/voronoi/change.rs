@@ -6,7 +6,7 @@ use super::VoronoiFlood;
 use super::boundaries::Boundary;
 use super::friction::Slowing;
 use super::rain::Weather;
-use crate::ByHand;
+use crate::LiveChange;
 use crate::limits::span;
 use crate::setup::{load, setup};
 use corpuscle_model::ModelError;
@@ -40,30 +40,30 @@ impl VoronoiFlood {
     ///
     /// # Errors
     /// [`ModelError::Setup`] where it has nothing of the kind, or the number is out of range: nothing has changed then.
-    pub fn change(&mut self, change: ByHand) -> Result<(), ModelError> {
+    pub fn change(&mut self, change: LiveChange) -> Result<(), ModelError> {
         change.check()?;
         let done = self.apply(change);
         #[cfg(feature = "gpu")]
-        self.tell_gpu();
+        self.mark_stale_on_gpu();
         done
     }
 
-    fn apply(&mut self, change: ByHand) -> Result<(), ModelError> {
+    fn apply(&mut self, change: LiveChange) -> Result<(), ModelError> {
         match change {
-            ByHand::Discharge { inflow, discharge } => self.set(Over::Discharge(inflow), discharge),
-            ByHand::DischargeTimes { inflow, times } => self.multiply(Over::Discharge(inflow), times),
-            ByHand::Level { stage, level } => self.set(Over::Level(stage), level),
-            ByHand::EdgeLevel { side, level } => self.set(Over::Edge(side), level),
-            ByHand::Rain(rain) => {
+            LiveChange::Discharge { inflow, discharge } => self.set(Over::Discharge(inflow), discharge),
+            LiveChange::DischargeTimes { inflow, times } => self.multiply(Over::Discharge(inflow), times),
+            LiveChange::Level { stage, level } => self.set(Over::Level(stage), level),
+            LiveChange::EdgeLevel { side, level } => self.set(Over::Edge(side), level),
+            LiveChange::Rain(rain) => {
                 self.let_it_rain()?;
                 self.set(Over::Rain, rain)
             }
-            ByHand::RainTimes(times) => {
+            LiveChange::RainTimes(times) => {
                 self.let_it_rain()?;
                 self.multiply(Over::Rain, times)
             }
-            ByHand::Manning(n) => self.set_manning(n),
-            ByHand::ControlForce(_) => Err(setup("only scheme sph-swe has a control force")),
+            LiveChange::Manning(n) => self.set_manning(n),
+            LiveChange::ControlForce(_) => Err(setup("only scheme sph-swe has a control force")),
         }
     }
 

@@ -203,7 +203,7 @@ impl Model for VoronoiFlood {
             self.solver.plan();
         }
         #[cfg(feature = "gpu")]
-        self.tell_gpu();
+        self.mark_stale_on_gpu();
         Ok(())
     }
 }

@@ -12,8 +12,8 @@ use super::mesh::{Mesh, NONE};
 use super::reconstruction::slopes;
 use super::walls::OverCrest;
 use super::water::{Column, Slopes, Water};
-use corpuscle_lanes::{Level, Simd, dispatch};
 use corpuscle_model::ExactSum;
+use corpuscle_simd::{Level, Simd, dispatch};
 use rayon::prelude::*;
 
 /// Cells and faces in a chunk.

@@ -1,7 +1,7 @@
 //! Keeping the whole state, to the bit, and taking it back.
 
 use super::Gas;
-use super::by_hand::HandTally;
+use super::live_change::LiveTally;
 use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
@@ -25,7 +25,7 @@ struct State {
     initial: [f64; 2],
     shown: f64,
     checked: (f64, u64),
-    hand: HandTally,
+    hand: LiveTally,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -89,8 +89,8 @@ impl<const D: usize> Gas<D> {
         if state.dimensions != D || state.knots.len() != self.plans.len() {
             return Err(other());
         }
-        // A hand may have put balls in and taken some out since the start.
-        let at_the_start = |balls: usize, hand: &HandTally| (balls as u64 + hand.removed).checked_sub(hand.added);
+        // Balls may have been put in and taken out live since the start.
+        let at_the_start = |balls: usize, hand: &LiveTally| (balls as u64 + hand.removed).checked_sub(hand.added);
         if at_the_start(self.len(), &self.hand) != at_the_start(state.world.time.len(), &state.hand) {
             return Err(other());
         }

@@ -4,9 +4,9 @@
 #![allow(clippy::needless_range_loop)]
 
 mod agreement;
-mod by_hand;
 mod common;
 mod exactness;
+mod live_change;
 mod measured;
 mod refused;
 mod sides;

@@ -68,7 +68,7 @@ struct Tasks {
     tidy: Task,
 }
 
-/// Where the numbers of groups stand in the buffer that tells them: see [`Task::run_as_told`].
+/// Where the numbers of groups stand in the buffer that tells them: see [`Task::dispatch_indirect`].
 #[derive(Debug, Clone, Copy)]
 pub struct SortSlots {
     /// One thread a particle.
@@ -130,11 +130,11 @@ impl CellSort {
 
     /// Sorts what was counted.
     pub fn sort(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer, slots: SortSlots) {
-        self.tasks.blocks.run_as_told(pass, groups, slots.blocks);
-        self.tasks.totals.run_as_told(pass, groups, slots.once);
-        self.tasks.starts.run_as_told(pass, groups, slots.cells);
-        self.tasks.scatter.run_as_told(pass, groups, slots.particles);
-        self.tasks.tidy.run_as_told(pass, groups, slots.cells);
+        self.tasks.blocks.dispatch_indirect(pass, groups, slots.blocks);
+        self.tasks.totals.dispatch_indirect(pass, groups, slots.once);
+        self.tasks.starts.dispatch_indirect(pass, groups, slots.cells);
+        self.tasks.scatter.dispatch_indirect(pass, groups, slots.particles);
+        self.tasks.tidy.dispatch_indirect(pass, groups, slots.cells);
     }
 }
 

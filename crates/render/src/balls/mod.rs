@@ -4,7 +4,7 @@ mod device;
 mod seen;
 
 use crate::buffer::{storage, uniform};
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{BallInstance, BallUniforms};
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, Kernel, wgpu};
@@ -83,7 +83,7 @@ impl BallPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let layout = layout(gpu);
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "balls",
             module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -94,8 +94,10 @@ impl BallPainter {
         Self {
             opaque: recipe.opaque(gpu),
             cast: recipe.cast(gpu, "throw_shadow"),
-            matt: Recipe { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..recipe }.opaque(gpu),
-            discs: Recipe { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }.opaque(gpu),
+            matt: PipelineDescriptor { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..recipe }
+                .opaque(gpu),
+            discs: PipelineDescriptor { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }
+                .opaque(gpu),
             layout,
             seen,
             maker: OnceLock::new(),

@@ -1,6 +1,6 @@
 //! Many balls: first the number of the nearest ball is drawn for each sample, then what is seen is shaded, once.
 
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::{Before, DEPTH_FORMAT, Renderer, shaders};
 use corpuscle_gpu::{texture_2d, wgpu};
 
@@ -37,7 +37,7 @@ impl SeenPainter {
                 count: None,
             }],
         });
-        let find = Recipe {
+        let find = PipelineDescriptor {
             label: "balls numbered",
             module: &shaders::module(gpu, "balls_numbered", include_str!("balls_numbered.wgsl")),
             groups: &[renderer.view_layout(), balls],
@@ -45,7 +45,7 @@ impl SeenPainter {
             topology: wgpu::PrimitiveTopology::TriangleList,
         }
         .nearest(gpu, NUMBERS);
-        let shade = Recipe {
+        let shade = PipelineDescriptor {
             label: "balls seen",
             module: &shaders::module(gpu, "balls_seen", include_str!("balls_seen.wgsl")),
             groups: &[renderer.view_layout(), balls, &layout],

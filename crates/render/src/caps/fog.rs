@@ -1,7 +1,7 @@
 //! Drops too small to be seen one by one: fog on a surface.
 
 use crate::buffer::TEXTURE;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::{COLOUR_FORMAT, Renderer, Through, shaders};
 use corpuscle_gpu::{Gpu, texture_2d, wgpu};
 
@@ -42,7 +42,7 @@ impl Fog {
         let sampler_type = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let compose_layout = layout("fog", &[TEXTURE, filtered, sampler_type]);
         let module = shaders::module(gpu, "fog", include_str!("fog.wgsl"));
-        let cover = Recipe {
+        let cover = PipelineDescriptor {
             label: "fog",
             module: &module,
             groups: &[renderer.view_layout(), caps_layout, &depth_layout],
@@ -51,7 +51,7 @@ impl Fog {
         }
         .added(gpu, COVERED);
         let module = shaders::module(gpu, "fog_compose", include_str!("fog_compose.wgsl"));
-        let compose = Recipe {
+        let compose = PipelineDescriptor {
             label: "fog compose",
             module: &module,
             groups: &[renderer.view_layout(), &compose_layout],

@@ -4,7 +4,7 @@ mod fog;
 mod neighbours;
 
 use crate::buffer::{UNIFORM, storage, uniform};
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{CapInstance, CapUniforms};
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
@@ -59,7 +59,7 @@ impl CapPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let (behind, layout) = (Behind::new(gpu), layout(gpu));
-        let pipeline = Recipe {
+        let pipeline = PipelineDescriptor {
             label: "caps",
             module: &shaders::module(gpu, "caps", include_str!("caps.wgsl")),
             groups: &[renderer.view_layout(), &layout, &behind.layout],

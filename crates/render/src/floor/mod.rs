@@ -1,8 +1,8 @@
 //! A floor that only its shadows show.
 
 use crate::buffer::{UNIFORM, uniform};
-use crate::pipeline::Recipe;
-use crate::{Camera, Drawable, Renderer, Stage, shaders, shared, standing};
+use crate::pipeline::PipelineDescriptor;
+use crate::{Camera, Drawable, Renderer, Stage, shaders, shared, static_layer};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// Part of the light that the darkest shadow takes.
@@ -32,7 +32,7 @@ impl Floor {
                 count: None,
             }],
         });
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "floor",
             module: &shaders::module(gpu, "floor", include_str!("floor.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -45,13 +45,13 @@ impl Floor {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: place.as_entire_binding() }],
         });
-        Self { pipeline: recipe.opaque(gpu), group, place, height, state: standing::state() }
+        Self { pipeline: recipe.opaque(gpu), group, place, height, state: static_layer::new_state() }
     }
 
     /// Moves it to another height, m.
     pub fn lay_at(&mut self, height: f64) {
         if height != self.height {
-            (self.height, self.state) = (height, standing::state());
+            (self.height, self.state) = (height, static_layer::new_state());
         }
     }
 }
@@ -63,7 +63,7 @@ impl Drawable for Floor {
         gpu.queue.write_buffer(&self.place, 0, &height.to_le_bytes());
     }
 
-    fn standing(&self) -> Option<u64> {
+    fn static_state(&self) -> Option<u64> {
         Some(self.state)
     }
 

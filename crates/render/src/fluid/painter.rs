@@ -3,7 +3,7 @@
 use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOLE, layout, written};
 use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
 use super::{Fluid, FluidStyle};
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{DropletInstance, buffer_layout};
 use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
@@ -67,7 +67,7 @@ impl FluidPainter {
             square: Filter::new(gpu, view, &narrow, "square", &smoothing),
             normals: Filter::new(gpu, view, &normals, "main", &[UNIFORM, PLAIN, written(NORMAL)]),
             shading: Filter::new(gpu, view, &shading, "main", &shaded),
-            composing: Recipe {
+            composing: PipelineDescriptor {
                 label: "composing",
                 module: &shaders::module(gpu, "fluid_compose", include_str!("fluid_compose.wgsl")),
                 groups: &[view, &composed],
@@ -124,7 +124,7 @@ fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLa
     let attributes = layout.vertex_attributes();
     let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
     let groups = [view, settings];
-    let recipe = |label, module| Recipe {
+    let recipe = |label, module| PipelineDescriptor {
         label,
         module,
         groups: &groups,

@@ -2,7 +2,7 @@
 
 use super::{DeviceWater, Droplet};
 use crate::buffer::instances;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{Vertex, buffer_layout};
 use crate::{Drawable, HeightField, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
@@ -35,7 +35,7 @@ impl WaterSides {
         let gpu = renderer.gpu();
         let layout = Vertex::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "sides of water",
             module: &shaders::module(gpu, "sides", include_str!("sides.wgsl")),
             groups: &[renderer.view_layout()],

@@ -4,9 +4,9 @@ mod mesh;
 
 use crate::buffer::{UNIFORM, instances, uniform};
 use crate::colour::linear;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{SolidUniforms, Vertex, buffer_layout};
-use crate::{Drawable, Renderer, Stage, Through, shaders, standing};
+use crate::{Drawable, Renderer, Stage, Through, shaders, static_layer};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use corpuscle_model::SolidShape;
 
@@ -121,7 +121,7 @@ impl Solid {
             false => ("solids", include_str!("solids.wgsl")),
         };
         let (opaque, glass) = ([renderer.view_layout(), &layout], [renderer.view_layout(), &layout, &behind.layout]);
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: name,
             module: &shaders::module(gpu, name, text),
             groups: if is_glass { &glass } else { &opaque },
@@ -135,7 +135,7 @@ impl Solid {
             buffer: instances(gpu, "solid", &vertices),
             count: vertices.len() as u32,
             behind,
-            state: standing::state(),
+            state: static_layer::new_state(),
         }
     }
 
@@ -148,7 +148,7 @@ impl Solid {
 }
 
 impl Drawable for Solid {
-    fn standing(&self) -> Option<u64> {
+    fn static_state(&self) -> Option<u64> {
         self.cast.is_some().then_some(self.state)
     }
 

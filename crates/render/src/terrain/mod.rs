@@ -10,9 +10,9 @@ pub use natural::natural_colours;
 pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
 use crate::buffer::{TEXTURE, UNIFORM, indices, instances, uniform};
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::Ground;
-use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, standing};
+use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
 use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
 use half::f16;
 use walls::Walls;
@@ -58,7 +58,7 @@ impl Terrain {
         let gpu = renderer.gpu();
         let layout = layout(gpu);
         let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "terrain",
             module: &shaders::module(gpu, "terrain", include_str!("terrain.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -82,7 +82,7 @@ impl Terrain {
             opaque: recipe.opaque(gpu),
             plain: recipe.opaque_by(gpu, "fragment_plain"),
             quick: false,
-            state: standing::state(),
+            state: static_layer::new_state(),
             cast: recipe.cast(gpu, "throw_shadow"),
             group: group(gpu, &layout, &settings, &shape, &colours),
             layout,
@@ -101,7 +101,7 @@ impl Terrain {
     /// [`RenderError::Gpu`] for more pixels a side than a texture has.
     pub fn drape(&mut self, gpu: &Gpu, colours: &Image) -> Result<(), RenderError> {
         self.settings.cell[3] = 0.0;
-        self.state = standing::state();
+        self.state = static_layer::new_state();
         let colours = upload_colours(gpu, colours)?;
         self.group = group(gpu, &self.layout, &self.settings, &self.shape, &colours);
         Ok(())
@@ -110,7 +110,7 @@ impl Terrain {
     /// Whether it is drawn without shadows and grain from now on: much less work.
     pub fn draw_quickly(&mut self, quick: bool) {
         if quick != self.quick {
-            self.state = standing::state();
+            self.state = static_layer::new_state();
         }
         self.quick = quick;
     }
@@ -131,7 +131,7 @@ impl Drawable for Terrain {
         self.tiles = Some((instances(gpu, "tiles", &chosen), chosen.len() as u32));
     }
 
-    fn standing(&self) -> Option<u64> {
+    fn static_state(&self) -> Option<u64> {
         Some(self.state)
     }
 

@@ -3,7 +3,7 @@
 use super::HeightField;
 use super::field::Edge;
 use crate::buffer::instances;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{Vertex, buffer_layout};
 use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{SharedStruct, wgpu};
@@ -23,7 +23,7 @@ impl Walls {
         let gpu = renderer.gpu();
         let layout = Vertex::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "sides of the ground",
             module: &shaders::module(gpu, "walls", include_str!("walls.wgsl")),
             groups: &[renderer.view_layout()],

@@ -1,7 +1,7 @@
 //! From linear light to the bytes of a picture.
 
 use crate::buffer::uniform;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::Tone as Settings;
 use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
@@ -32,7 +32,7 @@ impl Tone {
             label: Some("tone"),
             entries: &[entry(0, uniform), entry(1, texture), entry(2, texture)],
         });
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "tone",
             module: &shaders::module(gpu, "tone", include_str!("tone.wgsl")),
             groups: &[&layout],

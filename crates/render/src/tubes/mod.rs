@@ -2,7 +2,7 @@
 
 use crate::buffer::instances;
 use crate::colour::linear;
-use crate::pipeline::Recipe;
+use crate::pipeline::PipelineDescriptor;
 use crate::shared::{TubeInstance, buffer_layout};
 use crate::{Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
@@ -42,7 +42,7 @@ impl TubePainter {
         let gpu = renderer.gpu();
         let layout = TubeInstance::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = Recipe {
+        let recipe = PipelineDescriptor {
             label: "tubes",
             module: &shaders::module(gpu, "tubes", include_str!("tubes.wgsl")),
             groups: &[renderer.view_layout()],

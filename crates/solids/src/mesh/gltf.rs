@@ -1,7 +1,7 @@
 //! glTF and GLB.
 
 use super::Triangles;
-use super::quiet::caught;
+use super::catch_panic::caught;
 use super::read::refuse_too_many;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

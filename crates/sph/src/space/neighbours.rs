@@ -2,7 +2,7 @@
 
 use super::Cells;
 use crate::{BLOCK, FAR_AWAY};
-use corpuscle_lanes::{LANES, Lanes, Level, Simd, SimdBase, SimdMask, dispatch};
+use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, SimdMask, dispatch};
 use fearless_simd::{mask32x8, mask64x8, u32x8};
 use rayon::prelude::*;
 use std::ops::Range;

@@ -2,7 +2,7 @@
 
 use super::Raster;
 use crate::{Georeference, MapGrid, TerrainError};
-use corpuscle_whole::WholeFile;
+use corpuscle_atomic_file::WholeFile;
 use geotiff_reader::transform::GeoTransform;
 use geotiff_writer::{Compression, GeoTiffBuilder, Predictor, RasterType};
 use ndarray::ArrayView2;

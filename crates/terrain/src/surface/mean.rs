@@ -13,7 +13,7 @@
 use super::{Surface, along_lanes, hermite, hermite_lanes, patch, weighted};
 use crate::Bounds;
 use crate::mean::Outline;
-use corpuscle_lanes::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch, transposed};
+use corpuscle_simd::{LANES, Lanes, LanesExt, Level, Simd, SimdBase, dispatch, transposed};
 use std::ops::Range;
 
 /// Places, as shares of the length, and weights of the four-point Gauss-Legendre rule (Abramowitz and Stegun, Handbook

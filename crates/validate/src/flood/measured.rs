@@ -1,6 +1,6 @@
 //! Reading what was measured, and watching gauges to compare with it.
 
-use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, Companion, Model, ModelError, Passed};
+use corpuscle_model::{AdvanceObserver, Chart, ChartAxis, ChartSeries, ChartStyle, Model, ModelError, ModelProgress};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
@@ -11,7 +11,7 @@ pub(super) struct Watched {
     rows: Vec<Vec<f64>>,
 }
 
-impl Companion for Watched {
+impl AdvanceObserver for Watched {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         // The nearest multiple may be the time itself.
         let nearest = (time / self.look).round();
@@ -23,7 +23,7 @@ impl Companion for Watched {
         self.rows.push(row.to_vec());
     }
 
-    fn passed(&mut self, _: Passed) -> bool {
+    fn passed(&mut self, _: ModelProgress) -> bool {
         true
     }
 }

@@ -7,7 +7,7 @@ use super::{Look, Moment, OwnView, Shown, Studio};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_model::{Container, Frame, ParticleSet};
-use corpuscle_record::{GasKey, gas_key};
+use corpuscle_output::{GasKey, gas_key};
 use corpuscle_render::{
     BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Shading, Stage, TubeStyle, Tubes,
 };

@@ -3,7 +3,7 @@
 use super::{GasPicture, View, sides, speeds};
 use crate::pictures::{Moment, Studio};
 use corpuscle_drawing::text;
-use corpuscle_record::GasKey;
+use corpuscle_output::GasKey;
 use corpuscle_render::{Axes, Key, LineLook, Mark, Overlay};
 use corpuscle_scene::{Axis, Units, Wall};
 

@@ -1,46 +1,46 @@
 //! Gauges of humid air whose steps the GPU takes: the air stays there, and only what they tell comes back.
 
-use super::{Dew, GpuError, Watch};
-use corpuscle_model::{Companion, Model, ModelError, Passed};
+use super::{Dew, FrameRequest, GpuError};
+use corpuscle_model::{AdvanceObserver, Model, ModelError, ModelProgress};
 use std::sync::atomic::AtomicBool;
 
 impl Dew {
-    /// [`Model::advance_with`] on the GPU, which is shown to a watch. Where gauges tell how near the air comes to walls, all of it comes back for them.
+    /// [`Model::advance_with`] on the GPU, which is shown where frames are wanted. Where gauges tell how near the air comes to walls, all of it comes back for them.
     pub(crate) fn advance_measured(
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
-        mut watch: Option<Watch<'_>>,
+        observer: &mut dyn AdvanceObserver,
+        mut frame_request: Option<FrameRequest<'_>>,
     ) -> Result<(), ModelError> {
         self.advance_and_fetch(|dew| {
             while dew.shown < time {
-                dew.show_to(&mut watch)?;
+                dew.show_to(&mut frame_request)?;
                 let now = dew.shown;
-                let gauges = companion.gauges_after(now);
-                let wanted = watch.as_ref().map(|watch| watch.wanted);
-                let next = [gauges, companion.pause_after(now), wanted].into_iter().flatten().fold(time, f64::min);
+                let gauges = observer.gauges_after(now);
+                let wanted = frame_request.as_ref().map(|frame_request| frame_request.wanted);
+                let next = [gauges, observer.pause_after(now), wanted].into_iter().flatten().fold(time, f64::min);
                 let broken = dew.go_on_gpu(next, stop)?;
                 if broken.is_some() || dew.shown < next {
                     return Ok(broken);
                 }
                 if gauges == Some(next) {
-                    companion.gauges(next, &dew.row_of_gpu()?);
+                    observer.gauges(next, &dew.row_of_gpu()?);
                 }
                 let particles =
                     dew.gpu_solver.as_ref().map_or(0, |solver| solver.filling()[0]) + dew.solids().particles.len();
-                if !companion.passed(Passed { time: next, particles, particle_steps: dew.state.particle_steps }) {
+                if !observer.passed(ModelProgress { time: next, particles, particle_steps: dew.state.particle_steps }) {
                     break;
                 }
             }
-            dew.show_to(&mut watch)?;
+            dew.show_to(&mut frame_request)?;
             Ok(None)
         })
     }
 
     fn row_of_gpu(&mut self) -> Result<Vec<f64>, GpuError> {
         if self.layers.iter().any(Option::is_some) {
-            self.fetch_from_gpu()?;
+            self.download_from_gpu()?;
             return Ok(self.gauge_row());
         }
         let Some(solver) = &self.gpu_solver else { return Ok(self.gauge_row()) };

@@ -1,6 +1,8 @@
 //! Heat that solids get from elsewhere than the air in the box and other solids: heaters, air outside the box, radiation.
 
 mod areas;
+#[cfg(feature = "gpu")]
+pub(crate) mod upload;
 
 use super::Solids;
 use super::wall::{self, WallLayer};

@@ -1,8 +1,8 @@
 //! Batches of steps, and what they did.
 
 use super::OnGpu;
+use super::batch::{BatchRequest, BatchResult};
 use super::shared::{Birth, Grid, Status};
-use super::span::{Progress, Span};
 use crate::sph_swe::measured::Reading;
 use crate::sph_swe::step::CELL_OVER_H;
 use corpuscle_gpu::{BATCH_START, GpuError, Halt, MOST_STEPS, from_halves, from_pair, read, to_pair};
@@ -19,8 +19,8 @@ impl OnGpu {
 
     /// Takes some steps, through all of a span at most. Nothing comes back between two steps. Gives what was done, and of the rows of gauges that are due those
     /// that were passed.
-    pub fn advance(&mut self, span: Span<'_>) -> Result<(Progress, Vec<Reading>), GpuError> {
-        let Span { until, most, look, looks, looked, births, due } = span;
+    pub fn advance(&mut self, span: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
+        let BatchRequest { until, most, look, looks, looked, births, due } = span;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             self.clock_began = self.time();
@@ -53,8 +53,8 @@ impl OnGpu {
             clock_began: self.clock_began as f32,
             ..self.status
         };
-        self.tell_due(due);
-        self.tell_looks(looks, looked);
+        self.upload_gauge_times(due);
+        self.upload_map_times(looks, looked);
         let tasks = &self.tasks;
         let (status, words) = self.batches.run(
             count,
@@ -79,9 +79,9 @@ impl OnGpu {
         LAID_OUT as f64 * f64::from(self.parameters.time_step)
     }
 
-    fn progress(&self) -> Progress {
+    fn progress(&self) -> BatchResult {
         let Status { steps, particle_steps, step, halted, mean_h, .. } = self.status;
-        Progress {
+        BatchResult {
             steps: u64::from(steps),
             particle_steps: from_halves(particle_steps),
             time: self.time(),

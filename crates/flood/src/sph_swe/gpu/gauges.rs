@@ -56,7 +56,7 @@ pub(super) struct Gauges {
 impl Gauges {
     /// Has what is due taken, if anything is.
     pub fn take(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
-        self.tasks.iter().zip(SLOTS).for_each(|(task, slot)| task.run_as_told(pass, groups, slot));
+        self.tasks.iter().zip(SLOTS).for_each(|(task, slot)| task.dispatch_indirect(pass, groups, slot));
     }
 }
 
@@ -92,7 +92,7 @@ impl OnGpu {
     }
 
     /// Says when rows are due, s.
-    pub(super) fn tell_due(&mut self, due: &[f64]) {
+    pub(super) fn upload_gauge_times(&mut self, due: &[f64]) {
         let due: Vec<[f32; 2]> = due.iter().map(|&time| to_pair(time - self.clock_began)).collect();
         self.gpu().queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
         self.status.rows_told = due.len() as u32;

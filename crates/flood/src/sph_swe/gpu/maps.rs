@@ -32,7 +32,7 @@ impl GpuMaps {
 
     /// Has the device look, if it is time to.
     pub fn look(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
-        self.task.run_as_told(pass, groups, MAPS);
+        self.task.dispatch_indirect(pass, groups, MAPS);
     }
 
     /// The cells as the device is to have them.
@@ -53,7 +53,7 @@ impl GpuMaps {
         self.numbers.iter().zip(&self.places).map(cell).collect()
     }
 
-    fn fetch(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
+    fn download(&self, gpu: &Gpu, cells: &wgpu::Buffer, maps: &mut Maps) -> Result<(), GpuError> {
         let cells: Vec<MapCell> = read(gpu, cells, self.numbers.len())?;
         for (number, cell) in self.numbers.iter().zip(cells) {
             let MapCell { max_depth, max_speed, hazard, arrival, duration, .. } = cell;
@@ -112,11 +112,11 @@ impl OnGpu {
     /// Brings that back.
     pub fn maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
         let cells = &self.tasks.memory.map_cells;
-        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.fetch(self.gpu(), cells, maps))
+        self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.download(self.gpu(), cells, maps))
     }
 
     /// Says when to look, s, and when it was last done.
-    pub(super) fn tell_looks(&mut self, looks: &[f64], looked: f64) {
+    pub(super) fn upload_map_times(&mut self, looks: &[f64], looked: f64) {
         let times: Vec<[f32; 2]> = looks.iter().map(|&time| to_pair(time - self.clock_began)).collect();
         self.gpu().queue.write_buffer(&self.tasks.memory.looks, 0, bytemuck::cast_slice(&times));
         let maps = self.tasks.maps.as_ref();

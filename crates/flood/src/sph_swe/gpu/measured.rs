@@ -1,36 +1,36 @@
 //! Gauges of a flood whose steps a GPU takes: it reads them itself, and goes on.
 
+use super::batch::BatchResult;
+use super::frame_request::FrameRequest;
 use super::gauges::MOST_ROWS;
 use super::model::failed;
-use super::span::Progress;
-use super::watch::Watch;
 use crate::sampling::Sample;
 use crate::sph_swe::SphSweFlood;
 use crate::sph_swe::measured::Reading;
-use corpuscle_model::{Companion, ModelError, Passed};
+use corpuscle_model::{AdvanceObserver, ModelError, ModelProgress};
 use std::sync::atomic::AtomicBool;
 
-/// Who goes along while the GPU takes steps.
+/// The observers of steps on the GPU.
 #[derive(Default)]
-pub(in crate::sph_swe) struct Onlookers<'a> {
-    pub watch: Option<Watch<'a>>,
-    pub companion: Option<&'a mut dyn Companion>,
+pub(in crate::sph_swe) struct Observers<'a> {
+    pub frame_request: Option<FrameRequest<'a>>,
+    pub observer: Option<&'a mut dyn AdvanceObserver>,
     /// The time of the last row of gauges that was taken, or from which they are to be, s.
     pub told: f64,
-    /// Whether the companion wants the water back.
+    /// Whether the observer has the model return.
     pub call_back: bool,
 }
 
-impl<'a> Onlookers<'a> {
-    /// A companion alone.
-    pub fn of(companion: &'a mut dyn Companion) -> Self {
-        Self { companion: Some(companion), ..Self::default() }
+impl<'a> Observers<'a> {
+    /// With an observer alone.
+    pub fn of(observer: &'a mut dyn AdvanceObserver) -> Self {
+        Self { observer: Some(observer), ..Self::default() }
     }
 
-    /// From `now` until when to go on, s, and how many steps at most, before somebody looks at the particles, or `until`.
+    /// From `now` until when to go on, s, and how many steps at most, before particles are to be shown, or `until`.
     pub fn steps_to_look(&self, now: f64, until: f64) -> (f64, u64) {
-        match &self.watch {
-            Some(watch) if watch.wanted > now => (until.min(watch.wanted), u64::MAX),
+        match &self.frame_request {
+            Some(frame_request) if frame_request.wanted > now => (until.min(frame_request.wanted), u64::MAX),
             Some(_) => (until, 1),
             None => (until, u64::MAX),
         }
@@ -38,25 +38,25 @@ impl<'a> Onlookers<'a> {
 
     /// Whether rows of gauges are to be taken.
     pub fn measure(&self) -> bool {
-        self.companion.as_ref().is_some_and(|companion| companion.gauges_after(self.told).is_some())
+        self.observer.as_ref().is_some_and(|observer| observer.gauges_after(self.told).is_some())
     }
 
     /// The next rows of gauges up to a time, s.
     pub fn due(&self, until: f64) -> Vec<f64> {
-        let Some(companion) = &self.companion else { return Vec::new() };
-        let times = std::iter::successors(companion.gauges_after(self.told), |time| companion.gauges_after(*time));
+        let Some(observer) = &self.observer else { return Vec::new() };
+        let times = std::iter::successors(observer.gauges_after(self.told), |time| observer.gauges_after(*time));
         times.take_while(|time| *time <= until).take(MOST_ROWS).collect()
     }
 
     pub fn tell(&mut self, time: f64, row: &[f64]) {
         self.told = time;
-        if let Some(companion) = &mut self.companion {
-            companion.gauges(time, row);
+        if let Some(observer) = &mut self.observer {
+            observer.gauges(time, row);
         }
     }
 
-    pub fn pass(&mut self, passed: Passed) {
-        self.call_back = self.companion.as_mut().is_some_and(|companion| !companion.passed(passed));
+    pub fn pass(&mut self, passed: ModelProgress) {
+        self.call_back = self.observer.as_mut().is_some_and(|observer| !observer.passed(passed));
     }
 }
 
@@ -66,19 +66,19 @@ impl SphSweFlood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        mut onlookers: Onlookers<'_>,
+        mut observers: Observers<'_>,
     ) -> Result<(), ModelError> {
-        self.advance_on_gpu(time, stop, &mut onlookers)?;
+        self.advance_on_gpu(time, stop, &mut observers)?;
         if self.shown < time {
             return Ok(());
         }
         // The next step ends later: these show the water as it stands here.
-        while let Some(&due) = onlookers.due(time).first() {
+        while let Some(&due) = observers.due(time).first() {
             self.shown = due;
-            onlookers.tell(due, &self.row(&self.reading()));
+            observers.tell(due, &self.row(&self.reading()));
         }
         self.shown = time;
-        onlookers.pass(Passed {
+        observers.pass(ModelProgress {
             time,
             particles: self.state.particles.len(),
             particle_steps: self.state.particle_steps,
@@ -93,7 +93,7 @@ impl SphSweFlood {
     }
 
     /// What goes in the columns of what the GPU has read, after `done` since the state that is here.
-    pub(super) fn row_of_gpu(&self, read: &Reading, done: &Progress) -> Vec<f64> {
+    pub(super) fn row_of_gpu(&self, read: &Reading, done: &BatchResult) -> Vec<f64> {
         let held = |[x, y]: [f64; 2]| self.surroundings.obstacles.hold([x, y]);
         let samples = self.gauge_places().into_iter().zip(&read.samples);
         let water = &self.state.water;

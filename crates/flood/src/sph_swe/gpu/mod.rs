@@ -4,6 +4,8 @@
 //! CPU code.
 
 mod advance;
+mod batch;
+mod frame_request;
 mod gauges;
 mod ground;
 mod maps;
@@ -12,16 +14,14 @@ mod model;
 mod obstacles;
 mod seen;
 mod shared;
-mod span;
 mod state;
 mod tasks;
 #[cfg(test)]
 mod tests;
 mod upload;
-mod watch;
 mod zones;
 
-pub(super) use measured::Onlookers;
+pub(super) use measured::Observers;
 pub(super) use model::failed;
 
 use corpuscle_gpu::{Batches, Buffers, Gpu, GpuError, MOST_GROUPS, THREADS, wgpu};
@@ -29,10 +29,10 @@ use corpuscle_terrain::Bounds;
 use obstacles::GpuObstacles;
 use seen::Seen;
 use shared::{Parameters, Status};
-use state::DoneToObstacles;
+use state::ObstacleForces;
 use std::sync::OnceLock;
 use tasks::Tasks;
-use upload::{Origin, Setting};
+use upload::{GpuInputs, Origin};
 
 /// Cells a particle, and at least: what the sort goes through beside the particles.
 const CELLS_A_PARTICLE: usize = 4;
@@ -69,7 +69,7 @@ pub(super) struct OnGpu {
     /// Whether the host has not the state that is here.
     ahead: bool,
     /// As it was when the water was handed over.
-    done_before: DoneToObstacles,
+    done_before: ObstacleForces,
 }
 
 impl OnGpu {
@@ -77,7 +77,7 @@ impl OnGpu {
     ///
     /// # Errors
     /// [`GpuError::Memory`], [`GpuError::TooMany`].
-    pub fn new(gpu: Gpu, count: usize, setting: &Setting<'_>) -> Result<Self, GpuError> {
+    pub fn new(gpu: Gpu, count: usize, setting: &GpuInputs<'_>) -> Result<Self, GpuError> {
         let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
         let uploaded = setting.upload(&gpu, count, most_cells)?;
         let (tasks, parameters) = (Tasks::new(&gpu, uploaded.memory, uploaded.sort, setting), uploaded.parameters);
@@ -97,7 +97,7 @@ impl OnGpu {
             steps: 0,
             clock_began: 0.0,
             ahead: false,
-            done_before: DoneToObstacles::default(),
+            done_before: ObstacleForces::default(),
         })
     }
 

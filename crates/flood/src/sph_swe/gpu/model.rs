@@ -1,20 +1,20 @@
 //! A flood whose steps a GPU takes.
 
+use super::batch::{BatchRequest, BatchResult, Birth};
+use super::frame_request::FrameRequest;
 use super::gauges::MOST_ROWS;
 use super::maps::MOST_LOOKS;
-use super::measured::Onlookers;
-use super::span::{Birth, Progress, Span};
+use super::measured::Observers;
 use super::state::Water;
-use super::upload::Setting;
-use super::watch::Watch;
+use super::upload::GpuInputs;
 use super::{MOST_BIRTHS, OnGpu};
 use crate::sph_swe::measured::Reading;
 use crate::sph_swe::particle::Particle;
 use crate::sph_swe::step::CELL_OVER_H;
 use crate::sph_swe::{DENSITY, SphSweFlood, State};
 use crate::zone::Source;
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Taken};
-use corpuscle_model::{Companion, ExactSum, Glance, GpuModel, Model, ModelError, Passed};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, PassTiming};
+use corpuscle_model::{AdvanceObserver, ExactSum, Glance, GpuModel, Model, ModelError, ModelProgress};
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -44,7 +44,7 @@ impl GpuModel for SphSweFlood {
         }
     }
 
-    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, PassTiming)> {
         self.on_gpu.iter().flat_map(|on_gpu| on_gpu.batches.pass_times()).collect()
     }
 
@@ -66,15 +66,15 @@ impl GpuModel for SphSweFlood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        observer: &mut dyn AdvanceObserver,
         (first, _): (f64, bool),
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError> {
         if self.on_gpu.is_none() {
-            return self.advance_with(time, stop, companion);
+            return self.advance_with(time, stop, observer);
         }
-        let watch = Some(Watch { wanted: first, show });
-        self.advance_measured(time, stop, Onlookers { watch, ..Onlookers::of(companion) })
+        let frame_request = Some(FrameRequest { wanted: first, show });
+        self.advance_measured(time, stop, Observers { frame_request, ..Observers::of(observer) })
     }
 }
 
@@ -89,7 +89,7 @@ impl SphSweFlood {
     /// The same with room for so many particles.
     pub(super) fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let scheme = self.parameters();
-        let setting = Setting {
+        let setting = GpuInputs {
             surroundings: &self.surroundings,
             scheme: &scheme,
             falling: self.state.falling.len(),
@@ -132,7 +132,7 @@ impl SphSweFlood {
                 self.open_gpu(gpu)
             }
             Some(on_gpu) => {
-                on_gpu.send(&water);
+                on_gpu.upload(&water);
                 Ok(())
             }
             None => Ok(()),
@@ -162,23 +162,23 @@ impl SphSweFlood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        onlookers: &mut Onlookers<'_>,
+        observers: &mut Observers<'_>,
     ) -> Result<(), ModelError> {
-        onlookers.told = self.shown;
+        observers.told = self.shown;
         while self.state.time + self.state.time_step <= time {
-            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+            if stop.load(Ordering::Relaxed) || observers.call_back {
                 // Who has seen a row of gauges is not to see it again.
-                self.shown = onlookers.told.max(self.state.time);
+                self.shown = observers.told.max(self.state.time);
                 return Ok(());
             }
             let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
             let look = if keeps_maps { f64::INFINITY } else { self.state.next_look as f64 * self.map_period };
-            let before = (self.state.steps, onlookers.told);
+            let before = (self.state.steps, observers.told);
             self.make_room().map_err(|error| failed(&error))?;
-            if onlookers.measure() {
+            if observers.measure() {
                 self.measure_on_gpu()?;
             }
-            let done = self.advance_to_look(time, look, stop, onlookers)?;
+            let done = self.advance_to_look(time, look, stop, observers)?;
             if done.broken {
                 return Err(self.breakdown());
             }
@@ -186,12 +186,12 @@ impl SphSweFlood {
                 self.look();
             }
             // To the GPU, which rounds more coarsely, a step that ends at that time may end after it.
-            let is_stopped = stop.load(Ordering::Relaxed) || onlookers.call_back;
-            if (self.state.steps, onlookers.told) == before && !is_stopped {
+            let is_stopped = stop.load(Ordering::Relaxed) || observers.call_back;
+            if (self.state.steps, observers.told) == before && !is_stopped {
                 break;
             }
         }
-        self.show_to(onlookers, self.state.time, time.next_up()).map_err(|error| failed(&error))?;
+        self.show_to(observers, self.state.time, time.next_up()).map_err(|error| failed(&error))?;
         self.shown = time;
         Ok(())
     }
@@ -202,26 +202,26 @@ impl SphSweFlood {
         time: f64,
         look: f64,
         stop: &AtomicBool,
-        onlookers: &mut Onlookers<'_>,
-    ) -> Result<Progress, ModelError> {
-        let mut done = Progress::none(self.state.time, self.state.time_step);
+        observers: &mut Observers<'_>,
+    ) -> Result<BatchResult, ModelError> {
+        let mut done = BatchResult::none(self.state.time, self.state.time_step);
         let mut owed = self.state.owed.clone();
         let mut looked = self.state.maps.last();
         while done.time + done.step <= time && done.time < look {
             let now = done.time;
-            self.show_to(onlookers, now, now + done.step).map_err(|error| failed(&error))?;
-            if stop.load(Ordering::Relaxed) || onlookers.call_back {
+            self.show_to(observers, now, now + done.step).map_err(|error| failed(&error))?;
+            if stop.load(Ordering::Relaxed) || observers.call_back {
                 break;
             }
             let longest = self.on_gpu.as_ref().map_or(0.0, OnGpu::longest_batch);
             let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
             let looks = self.looks(done.looks);
-            let due = onlookers.due(time);
+            let due = observers.due(time);
             let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
-            let (target, most) = onlookers.steps_to_look(now, until);
+            let (target, most) = observers.steps_to_look(now, until);
             let Some(on_gpu) = &mut self.on_gpu else { break };
             let look = looks.last().copied().unwrap_or(look);
-            let span = Span { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
+            let span = BatchRequest { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
             let (mut progress, mut readings) = on_gpu.advance(span).map_err(|error| failed(&error))?;
             let particles = on_gpu.particles();
             if !readings.iter().all(Reading::is_sound) {
@@ -229,7 +229,7 @@ impl SphSweFlood {
                 readings.clear();
             }
             for (due, reading) in due.iter().zip(&readings) {
-                onlookers.tell(*due, &self.row_of_gpu(reading, &done));
+                observers.tell(*due, &self.row_of_gpu(reading, &done));
             }
             for (source, owed) in self.sources.iter().zip(&mut owed) {
                 owed.add(source.discharge.integral(now, progress.time));
@@ -240,18 +240,18 @@ impl SphSweFlood {
             }
             done = done.and(progress);
             let particle_steps = self.state.particle_steps + done.particle_steps;
-            onlookers.pass(Passed { time: done.time, particles, particle_steps });
+            observers.pass(ModelProgress { time: done.time, particles, particle_steps });
             let lacks_room = |on_gpu: &OnGpu| on_gpu.lacks_room(|horizon| self.most_births(&owed, now, horizon));
             let is_held = progress.steps == 0 && readings.is_empty();
             if is_held && target < until && !done.broken {
                 // To the GPU, which rounds more coarsely, a step that ends when somebody looks may end after it.
-                self.show_to(onlookers, now, target.next_up()).map_err(|error| failed(&error))?;
+                self.show_to(observers, now, target.next_up()).map_err(|error| failed(&error))?;
             } else if is_held || done.broken || self.on_gpu.as_ref().is_some_and(lacks_room) {
                 break;
             }
         }
         if done.steps > 0 {
-            let particles = self.fetched().map_err(|error| failed(&error))?;
+            let particles = self.downloaded().map_err(|error| failed(&error))?;
             let steps = self.state.steps + done.steps;
             if let Some(error) = self.defect_among(&particles, done.time, steps) {
                 return Err(error);
@@ -263,17 +263,17 @@ impl SphSweFlood {
     }
 
     /// The particles as the GPU has them.
-    fn fetched(&mut self) -> Result<Vec<Particle>, GpuError> {
+    fn downloaded(&mut self) -> Result<Vec<Particle>, GpuError> {
         let mut particles = Vec::new();
         if let Some(on_gpu) = &mut self.on_gpu {
-            on_gpu.fetch(&mut particles, &self.surroundings.terrain)?;
+            on_gpu.download(&mut particles, &self.surroundings.terrain)?;
         }
         Ok(particles)
     }
 
     /// Takes over what else the GPU has, after steps that did what `done` says: sources owe `owed`, and it was last
     /// looked at the maps at `looked` s.
-    fn take_over(&mut self, done: &Progress, owed: Vec<ExactSum>, looked: f64) -> Result<(), GpuError> {
+    fn take_over(&mut self, done: &BatchResult, owed: Vec<ExactSum>, looked: f64) -> Result<(), GpuError> {
         if let Some(on_gpu) = &self.on_gpu {
             let state = &mut self.state;
             on_gpu.falling(&mut state.falling)?;
@@ -312,7 +312,7 @@ impl SphSweFlood {
         births
     }
 
-    fn book(&mut self, progress: &Progress) {
+    fn book(&mut self, progress: &BatchResult) {
         let state = &mut self.state;
         state.time = progress.time;
         state.steps += progress.steps;

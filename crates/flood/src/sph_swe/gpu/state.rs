@@ -29,7 +29,7 @@ pub(crate) struct Water<'a> {
 
 /// What the water has done to obstacles.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct DoneToObstacles {
+pub(crate) struct ObstacleForces {
     /// Force on each now, over the density of water, m4/s2.
     pub forces: Vec<[f64; 2]>,
     /// Its sum over time, m4/s.
@@ -40,7 +40,7 @@ pub(crate) struct DoneToObstacles {
 
 impl OnGpu {
     /// Hands the water over.
-    pub fn send(&mut self, water: &Water<'_>) {
+    pub fn upload(&mut self, water: &Water<'_>) {
         let Water { particles, step, external, on_obstacles, impulses, put_back, falling, .. } = *water;
         let memory = &self.tasks.memory;
         let gpu = self.gpu().clone();
@@ -53,7 +53,7 @@ impl OnGpu {
         let sent: Vec<Packed> = particles.iter().map(|particle| self.origin.packed(particle)).collect();
         write(&memory.particles, bytemuck::cast_slice(&sent));
         self.begin_maps(water.maps);
-        self.done_before = DoneToObstacles { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
+        self.done_before = ObstacleForces { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
             [0, 1].map(|axis| sent.iter().map(|particle| particle.place_and_velocity[axis]).fold(none, pick))
         };
@@ -75,7 +75,7 @@ impl OnGpu {
     }
 
     /// Brings the particles back, where there is any news of them.
-    pub fn fetch(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
+    pub fn download(&mut self, particles: &mut Vec<Particle>, terrain: &Terrain) -> Result<(), GpuError> {
         if !self.ahead {
             return Ok(());
         }
@@ -105,7 +105,7 @@ impl OnGpu {
     }
 
     /// What was done to obstacles.
-    pub fn on_obstacles(&self) -> Result<DoneToObstacles, GpuError> {
+    pub fn on_obstacles(&self) -> Result<ObstacleForces, GpuError> {
         let (count, memory) = (self.obstacles.count, &self.tasks.memory);
         let pushed: Vec<OnObstacle> = read(self.gpu(), &memory.obstacles, count)?;
         let knocks: Vec<i32> = read(self.gpu(), &memory.knocks, 2 * count + 1)?;
@@ -115,6 +115,6 @@ impl OnGpu {
         });
         let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();
         let put_back = self.done_before.put_back + knocks[2 * count] as u64;
-        Ok(DoneToObstacles { forces, impulses: impulses.collect(), put_back })
+        Ok(ObstacleForces { forces, impulses: impulses.collect(), put_back })
     }
 }

@@ -3,7 +3,7 @@
 use super::gauges::Gauges;
 use super::maps::GpuMaps;
 use super::shared::{Memory, Status};
-use super::upload::Setting;
+use super::upload::GpuInputs;
 use corpuscle_gpu::{
     COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS,
     Task, sort_blocks, wgpu,
@@ -81,7 +81,7 @@ pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
 
 impl Tasks {
     /// The passes of a run that work on `memory`.
-    pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, setting: &Setting<'_>) -> Self {
+    pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, setting: &GpuInputs<'_>) -> Self {
         let task = |shader: Shader| task(gpu, shader, &memory);
         let obstacles = setting.surroundings.obstacles.names.len() as u32;
         Self {
@@ -129,7 +129,7 @@ impl Tasks {
         gpu.queue.write_buffer(groups, 0, bytemuck::cast_slice(&counts));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("arrange") });
         let mut pass = Pass::begin(&mut encoder, None);
-        self.leave.run_as_told(&mut pass, groups, SLOTS.particles);
+        self.leave.dispatch_indirect(&mut pass, groups, SLOTS.particles);
         self.sort(&mut pass);
         drop(pass);
         encoder.copy_buffer_to_buffer(sorted, 0, particles, 0, particles.size());
@@ -140,29 +140,29 @@ impl Tasks {
     fn sort(&self, pass: &mut Pass<'_>) {
         let groups = &self.memory.groups;
         self.sort.sort(pass, groups, SLOTS);
-        self.reorder.run_as_told(pass, groups, SLOTS.particles);
-        self.reaches.iter().for_each(|task| task.run_as_told(pass, groups, SLOTS.cells));
+        self.reorder.dispatch_indirect(pass, groups, SLOTS.particles);
+        self.reaches.iter().for_each(|task| task.dispatch_indirect(pass, groups, SLOTS.cells));
     }
 
     /// Takes one step more, where there is to be one.
     fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.memory.groups;
-        self.drift.run_as_told(pass, groups, SLOTS.particles);
+        self.drift.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some(births) = &self.births {
             births.run(pass, 1);
         }
         if let Some([land, landed]) = &self.land {
-            land.run_as_told(pass, groups, IN_AIR);
+            land.dispatch_indirect(pass, groups, IN_AIR);
             landed.run(pass, 1);
         }
-        self.leave.run_as_told(pass, groups, SLOTS.particles);
+        self.leave.dispatch_indirect(pass, groups, SLOTS.particles);
         self.sort(pass);
-        self.density.run_as_told(pass, groups, SLOTS.particles);
+        self.density.dispatch_indirect(pass, groups, SLOTS.particles);
         if let Some([push, on_obstacles]) = &self.push {
-            push.run_as_told(pass, groups, SLOTS.particles);
+            push.dispatch_indirect(pass, groups, SLOTS.particles);
             on_obstacles.run(pass, self.obstacles);
         }
-        self.forces.run_as_told(pass, groups, SLOTS.particles);
+        self.forces.dispatch_indirect(pass, groups, SLOTS.particles);
         self.end_step(pass);
     }
 }

@@ -24,7 +24,7 @@ const SLOTS: usize = 9;
 
 /// What the water moves in, and how.
 #[derive(Clone, Copy)]
-pub(crate) struct Setting<'a> {
+pub(crate) struct GpuInputs<'a> {
     pub surroundings: &'a Surroundings,
     pub scheme: &'a SphSwe,
     /// Particles in the air.
@@ -52,10 +52,10 @@ pub(super) struct Uploaded {
     pub zones: Vec<u32>,
 }
 
-impl Setting<'_> {
+impl GpuInputs<'_> {
     /// Numbers of the run: all but the cells of the particles, which change, and what ground and obstacles tell.
     fn parameters(&self, origin: Origin) -> Parameters {
-        let &Setting { surroundings, scheme, .. } = self;
+        let &GpuInputs { surroundings, scheme, .. } = self;
         let bounds = surroundings.edges.bounds;
         let [west, south] = origin.relative([bounds.x_min, bounds.y_min]);
         let [east, north] = origin.relative([bounds.x_max, bounds.y_max]);

@@ -7,7 +7,7 @@ pub(crate) use pass::{Inputs, OnFaces, fluxes_of_chunk};
 use riemann::{Sides, hll};
 
 use super::reconstruction::{AtFace, AtFaces};
-use corpuscle_lanes::{Lanes, Select, Simd, SimdBase};
+use corpuscle_simd::{Lanes, Select, Simd, SimdBase};
 use std::ops::{Add, Mul, Sub};
 
 /// What a face does to the cells on both sides.
@@ -96,7 +96,7 @@ pub(crate) fn own_thrust_at_border(at: &AtFace, own: [f64; 2], gravity: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use corpuscle_lanes::{Level, dispatch};
+    use corpuscle_simd::{Level, dispatch};
 
     /// Wet on both sides, and with dry ground above the level on one.
     #[test]

@@ -6,7 +6,7 @@ use super::super::mesh::{Face, Mesh, SOLID};
 use super::super::reconstruction::{Faces, at_side, at_wall, differences};
 use super::super::water::{DEPTH, LEVEL, Slopes, Water};
 use super::{Crossings, Flux, between};
-use corpuscle_lanes::{LANES, Lanes, LanesExt, Select, Simd, SimdBase, SimdFloat, SimdFrom, transposed};
+use corpuscle_simd::{LANES, Lanes, LanesExt, Select, Simd, SimdBase, SimdFloat, SimdFrom, transposed};
 
 /// What fluxes are found from.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! The approximate Riemann solver of Harten, Lax & van Leer (1983).
 
 use crate::voronoi::water::THIN;
-use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFloat};
+use corpuscle_simd::{Lanes, Select, Simd, SimdBase, SimdFloat};
 
 /// Waves slower than this carry nothing, m/s: without it the inverse of their speed may be no number.
 const SLOWEST: f64 = 1e-100;
@@ -47,7 +47,7 @@ fn wave_speeds<S: Simd>(simd: S, a: Sides<S>, b: Sides<S>, gravity: f64) -> [Lan
 #[cfg(test)]
 mod tests {
     use super::*;
-    use corpuscle_lanes::{Level, dispatch};
+    use corpuscle_simd::{Level, dispatch};
 
     const G: f64 = 9.81;
 

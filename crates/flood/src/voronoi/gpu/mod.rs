@@ -318,34 +318,34 @@ fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, 
     finish.run(pass, 1);
     for _ in 0..count {
         if sides.shares_discharges {
-            share.run_as_told(pass, &memory.groups, DISCHARGE_SLOT);
+            share.dispatch_indirect(pass, &memory.groups, DISCHARGE_SLOT);
         }
         for (fluxes, update, push) in [(fluxes_first, first, push_first), (fluxes_second, second, push_second)] {
             for (task, slot) in [(slopes, CELL_SLOT), (fluxes, FACE_SLOT), (kept, CELL_SLOT)] {
-                task.run_as_told(pass, &memory.groups, slot);
+                task.dispatch_indirect(pass, &memory.groups, slot);
             }
             if sides.has_obstacles {
-                push.run_as_told(pass, &memory.groups, BORDER_SLOT);
+                push.dispatch_indirect(pass, &memory.groups, BORDER_SLOT);
             }
-            update.run_as_told(pass, &memory.groups, CELL_SLOT);
+            update.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
             if sides.has_heights {
-                shift.run_as_told(pass, &memory.groups, CELL_SLOT);
+                shift.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
             }
         }
         if sides.holds_levels {
-            follow.run_as_told(pass, &memory.groups, BORDER_SLOT);
+            follow.dispatch_indirect(pass, &memory.groups, BORDER_SLOT);
         }
         if has_works {
-            look.run_as_told(pass, &memory.groups, CELL_SLOT);
+            look.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
         }
         if sides.has_crests {
-            crests.run_as_told(pass, &memory.groups, CREST_SLOT);
-            overtop.run_as_told(pass, &memory.groups, BESIDE_CREST_SLOT);
+            crests.dispatch_indirect(pass, &memory.groups, CREST_SLOT);
+            overtop.dispatch_indirect(pass, &memory.groups, BESIDE_CREST_SLOT);
         }
         if sides.structures > 0 {
-            structures.run_as_told(pass, &memory.groups, STRUCTURE_SLOT);
+            structures.dispatch_indirect(pass, &memory.groups, STRUCTURE_SLOT);
         }
-        end.run_as_told(pass, &memory.groups, CELL_SLOT);
+        end.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
         finish.run(pass, 1);
     }
 }

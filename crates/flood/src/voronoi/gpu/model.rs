@@ -6,8 +6,10 @@ use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 use crate::voronoi::structures::upload::take_over;
 use crate::voronoi::{DENSITY, VoronoiFlood};
-use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, Taken};
-use corpuscle_model::{Account, Companion, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, Passed};
+use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, PassTiming};
+use corpuscle_model::{
+    Account, AdvanceObserver, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, ModelProgress,
+};
 use corpuscle_scene::TimeSteps;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -74,7 +76,7 @@ impl GpuModel for VoronoiFlood {
         &mut self,
         time: f64,
         stop: &AtomicBool,
-        companion: &mut dyn Companion,
+        observer: &mut dyn AdvanceObserver,
         (mut next, _): (f64, bool),
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError> {
@@ -85,8 +87,8 @@ impl GpuModel for VoronoiFlood {
             if until > time {
                 break;
             }
-            if companion.gauges_after(self.shown).is_some_and(|due| due <= until) {
-                self.advance_with(until, stop, companion)?;
+            if observer.gauges_after(self.shown).is_some_and(|due| due <= until) {
+                self.advance_with(until, stop, observer)?;
                 if self.shown < until {
                     return Ok(());
                 }
@@ -98,15 +100,15 @@ impl GpuModel for VoronoiFlood {
                 false => flood.step_to(on_gpu, until, stop),
             })?;
             if !is_step && self.shown < until {
-                return self.with_gpu(Self::fetch);
+                return self.with_gpu(Self::download);
             }
             next = show(self.glance()?);
-            if !companion.passed(self.passed()) {
-                return self.with_gpu(Self::fetch);
+            if !observer.passed(self.passed()) {
+                return self.with_gpu(Self::download);
             }
         }
-        self.with_gpu(Self::fetch)?;
-        self.advance_with(time, stop, companion)
+        self.with_gpu(Self::download)?;
+        self.advance_with(time, stop, observer)
     }
 
     fn gpu_seconds(&self) -> Option<f64> {
@@ -123,7 +125,7 @@ impl GpuModel for VoronoiFlood {
         }
     }
 
-    fn pass_times(&self) -> Vec<(&'static str, Taken)> {
+    fn pass_times(&self) -> Vec<(&'static str, PassTiming)> {
         self.on_gpu.iter().flat_map(|on_gpu| on_gpu.solver.batches.pass_times()).collect()
     }
 }
@@ -151,7 +153,7 @@ impl VoronoiFlood {
     }
 
     /// The GPU takes the state anew before its next step.
-    pub(in crate::voronoi) fn tell_gpu(&mut self) {
+    pub(in crate::voronoi) fn mark_stale_on_gpu(&mut self) {
         if let Some(on_gpu) = &mut self.on_gpu {
             (on_gpu.is_stale, on_gpu.is_ahead, on_gpu.looked_before) = (true, false, None);
         }
@@ -161,7 +163,7 @@ impl VoronoiFlood {
     pub(in crate::voronoi) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         self.with_gpu(|flood, on_gpu| {
             flood.step_to(on_gpu, time, stop)?;
-            flood.fetch(on_gpu)
+            flood.download(on_gpu)
         })
     }
 
@@ -176,7 +178,7 @@ impl VoronoiFlood {
         done
     }
 
-    /// Takes steps up to a time, s. What the GPU came to stays there: see [`VoronoiFlood::fetch`].
+    /// Takes steps up to a time, s. What the GPU came to stays there: see [`VoronoiFlood::download`].
     fn step_to(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         // Water in the air falls on the CPU.
         while !self.state.falling.is_empty() && self.state.time < time && !stop.load(Ordering::Relaxed) {
@@ -186,7 +188,7 @@ impl VoronoiFlood {
         let mut is_arrived = self.clock(on_gpu) >= time;
         while !is_arrived {
             if stop.load(Ordering::Relaxed) {
-                self.fetch(on_gpu)?;
+                self.download(on_gpu)?;
                 self.shown = self.shown.max(self.state.time);
                 return Ok(());
             }
@@ -227,7 +229,7 @@ impl VoronoiFlood {
     }
 
     /// Takes over what the GPU came to, where it is ahead.
-    fn fetch(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+    fn download(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
         if on_gpu.is_ahead { self.take_over(on_gpu) } else { Ok(()) }
     }
 
@@ -242,14 +244,14 @@ impl VoronoiFlood {
     }
 
     /// How far it is, by what the GPU tells without what stays there.
-    fn passed(&self) -> Passed {
+    fn passed(&self) -> ModelProgress {
         let here = (self.particles(), self.particle_steps());
         let ahead = self.on_gpu.as_ref().filter(|on_gpu| on_gpu.is_ahead);
         let (particles, particle_steps) = ahead.map_or(here, |on_gpu| {
             let totals = on_gpu.solver.totals();
             (totals.wet, on_gpu.start.cell_steps + totals.cell_steps)
         });
-        Passed { time: self.shown, particles, particle_steps }
+        ModelProgress { time: self.shown, particles, particle_steps }
     }
 
     /// What is shown while the GPU goes on: the particles where they lie, or the frame while water is in the air.
@@ -257,7 +259,7 @@ impl VoronoiFlood {
         if let Some(particles) = self.particles_on_gpu()? {
             return Ok(Glance { frame: Frame { time: self.shown, sets: Vec::new() }, on_device: Some(particles) });
         }
-        self.with_gpu(Self::fetch)?;
+        self.with_gpu(Self::download)?;
         Ok(Glance { frame: self.frame(), on_device: None })
     }
 

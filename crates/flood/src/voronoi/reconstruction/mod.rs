@@ -5,7 +5,7 @@
 
 use super::mesh::{Face, Link, Mesh};
 use super::water::{DEPTH, EAST, LEVEL, NORTH, Slopes, THIN, Water, slope};
-use corpuscle_lanes::{Lanes, Select, Simd, SimdBase, SimdFrom};
+use corpuscle_simd::{Lanes, Select, Simd, SimdBase, SimdFrom};
 
 /// A neighbour whose bed stands above the level here counts the less, the thinner its water: in full from this part of the depth here on.
 pub(crate) const FILM: f64 = 4.0;
@@ -194,7 +194,7 @@ pub(crate) fn at_side(here: &Water, [nx, ny]: [f64; 2]) -> AtFace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use corpuscle_lanes::{Level, dispatch};
+    use corpuscle_simd::{Level, dispatch};
 
     #[test]
     fn the_limiter_keeps_smooth_differences_and_none_at_extrema() {

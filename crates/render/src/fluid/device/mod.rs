@@ -24,7 +24,7 @@ mod twin;
 use super::droplet::Batch;
 use super::water::{LIFE, REACH};
 use crate::{HeightField, RenderError, Stage};
-use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, Stopwatch, THREADS, Taken, uniform, wgpu};
+use corpuscle_gpu::{DeviceParticles, Gpu, MOST_GROUPS, PassTiming, Stopwatch, THREADS, uniform, wgpu};
 use glam::{DVec2, DVec3};
 use ground::Ground;
 use kernels::Kernels;
@@ -105,7 +105,7 @@ impl DeviceWater {
     }
 
     /// What each has taken since, by its name; nothing where the device has no clock.
-    pub fn taken(&self) -> impl Iterator<Item = (&'static str, Taken)> {
+    pub fn taken(&self) -> impl Iterator<Item = (&'static str, PassTiming)> {
         self.stopwatch.iter().flat_map(Stopwatch::taken)
     }
 

@@ -121,17 +121,17 @@ impl Tasks {
         let mut pass = Pass::begin(&mut encoder, stopwatch.as_deref_mut());
         let groups = &self.memory.groups;
         self.begin.run(&mut pass, 1);
-        self.count.run_as_told(&mut pass, groups, SLOTS.particles);
+        self.count.dispatch_indirect(&mut pass, groups, SLOTS.particles);
         self.sort.sort(&mut pass, groups, SLOTS);
         self.told.run(&mut pass, 1);
-        self.columns.run_as_told(&mut pass, groups, SLOTS.particles);
+        self.columns.dispatch_indirect(&mut pass, groups, SLOTS.particles);
         for settle in [&self.settle; SETTLINGS].into_iter().flatten() {
-            settle.run_as_told(&mut pass, groups, SETTLING);
+            settle.dispatch_indirect(&mut pass, groups, SETTLING);
             self.settled.run(&mut pass, 1);
         }
-        self.calm.run_as_told(&mut pass, groups, SLOTS.particles);
-        self.discs.run_as_told(&mut pass, groups, SLOTS.particles);
-        self.foam[self.turn].run_as_told(&mut pass, groups, ON_GROUND);
+        self.calm.dispatch_indirect(&mut pass, groups, SLOTS.particles);
+        self.discs.dispatch_indirect(&mut pass, groups, SLOTS.particles);
+        self.foam[self.turn].dispatch_indirect(&mut pass, groups, ON_GROUND);
         for task in [&self.levels, &self.faces] {
             task.run(&mut pass, ground.border_nodes().div_ceil(BORDER_GROUP));
         }

@@ -1,0 +1,51 @@
+//! Live changes: what is changed while a scene runs.
+
+use corpuscle_dew::LiveChange as Dew;
+use corpuscle_flood::LiveChange as Flood;
+use corpuscle_gas::LiveChange as Gas;
+use corpuscle_model::{Model, ModelError};
+
+/// A change of a model that runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LiveChange {
+    /// Of a gas.
+    Gas(Gas),
+    /// Of a flood.
+    Flood(Flood),
+    /// Of dew.
+    Dew(Dew),
+}
+
+impl From<Gas> for LiveChange {
+    fn from(change: Gas) -> Self {
+        Self::Gas(change)
+    }
+}
+
+impl From<Flood> for LiveChange {
+    fn from(change: Flood) -> Self {
+        Self::Flood(change)
+    }
+}
+
+impl From<Dew> for LiveChange {
+    fn from(change: Dew) -> Self {
+        Self::Dew(change)
+    }
+}
+
+impl From<corpuscle_dew::SourceChange> for LiveChange {
+    fn from(change: corpuscle_dew::SourceChange) -> Self {
+        Self::Dew(Dew::Source(change))
+    }
+}
+
+impl LiveChange {
+    pub(crate) fn change(self, model: &mut dyn Model) -> Result<(), ModelError> {
+        match self {
+            Self::Gas(change) => change.change(model),
+            Self::Flood(change) => change.change(model),
+            Self::Dew(change) => change.change(model),
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! How far solids are, on nodes: where it is looked for air of low utility.
+
+use crate::dew::Dew;
+use crate::gpu::origin::Origin;
+use crate::gpu::shared::Parameters;
+use crate::utility::FARTHER;
+use rayon::prelude::*;
+
+/// Nodes for each distance of particles: air that is missed or taken for too near is within some thousandths of it.
+const FINER: f64 = 2.0;
+
+/// Nodes beyond the room, for what looks two of them on.
+const BEYOND: f64 = 3.0;
+
+/// Tells where the distances are known, and gives them, m; nothing where air of low utility is not looked for.
+pub(crate) fn distance_field(parameters: &mut Parameters, dew: &Dew, origin: Origin) -> Vec<f32> {
+    let Some(low) = dew.settings.low_utility else { return Vec::new() };
+    let (h, apart) = (dew.scale.h(), dew.scale.spacing / FINER);
+    let corner = dew.room.low.map(|low| low - BEYOND * apart);
+    let nodes = dew.room.size().map(|size| (size / apart + 2.0 * BEYOND).ceil() as usize + 1);
+    parameters.field_corner = origin.relative(corner);
+    parameters.per_node = (1.0 / apart) as f32;
+    parameters.nodes = nodes.map(|count| count as u32);
+    parameters.low_beyond = (low.distance * h) as f32;
+    parameters.useless_beyond = ((low.distance + FARTHER) * h) as f32;
+    parameters.low_after = low.after as f32;
+    let distance = |number: usize| {
+        let index = [number % nodes[0], number / nodes[0] % nodes[1], number / (nodes[0] * nodes[1])];
+        let place = [0, 1, 2].map(|axis| corner[axis] + index[axis] as f64 * apart);
+        // A number that arithmetic bears where there is no solid.
+        dew.surfaces.iter().map(|surface| surface(place)).fold(1e6, f64::min) as f32
+    };
+    (0..nodes.iter().product()).into_par_iter().with_min_len(1024).map(distance).collect()
+}

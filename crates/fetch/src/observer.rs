@@ -1,0 +1,42 @@
+//! The observer of a fetch of terrain, by which it can be stopped.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// How far fetching has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Files of one degree by one degree that are done.
+    pub tiles: usize,
+    /// All of them.
+    pub of_tiles: usize,
+    /// Bytes that came over the network.
+    pub bytes: u64,
+}
+
+/// The observer of a fetch: it takes the progress, and may stop it.
+#[derive(Clone)]
+pub struct FetchObserver {
+    /// Fetching ends soon after this has become true.
+    pub stop: Arc<AtomicBool>,
+    /// Takes the progress.
+    pub show: Arc<dyn Fn(Progress) + Send + Sync>,
+}
+
+impl FetchObserver {
+    /// No observer.
+    pub fn none() -> Self {
+        Self { stop: Arc::new(AtomicBool::new(false)), show: Arc::new(|_| {}) }
+    }
+
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+impl fmt::Debug for FetchObserver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FetchObserver").field("stop", &self.stop).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,323 @@
+//! A run's folder while the run goes on.
+
+use crate::charts::{read_paths, write_chart, write_paths};
+use crate::checkpoint::{Progress, checksum};
+use crate::frames::{FrameFormat, write_pvd, write_surface};
+use crate::gauges::GaugeWriter;
+use crate::maps::{self, SNAPSHOT};
+use crate::whole::{write_bytes, write_whole};
+use crate::{Clock, RecordError, Summary, write_extent, write_run_up};
+use corpuscle_atomic_file::clear_unfinished;
+use corpuscle_model::{Chart, Frame, GaugeColumn, Map, Surface};
+use corpuscle_terrain::Terrain;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// A run's folder while the run goes on. Everything in it is readable at any time: files appear whole, and the gauge
+/// table grows row by row.
+#[derive(Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+    scene_text: String,
+    frame_format: FrameFormat,
+    frame_times: Vec<f64>,
+    map_times: Vec<f64>,
+    gauges: GaugeWriter,
+    log: File,
+}
+
+/// Makes the first of the folders `<parent>/<scene>-1`, `-2`, ... that does not exist yet, and gives its path.
+///
+/// # Errors
+/// [`RecordError::Write`].
+pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, RecordError> {
+    fs::create_dir_all(parent).map_err(RecordError::write(parent))?;
+    let mut number = 1;
+    loop {
+        let path = parent.join(format!("{scene}-{number}"));
+        // Made here and now, so that of two runs started together each gets its own.
+        match fs::create_dir(&path) {
+            Ok(()) => return Ok(path),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            Err(error) => return Err(RecordError::write(&path)(error)),
+        }
+    }
+}
+
+/// The ways of the particles that a run followed, from its folder; none where it followed none.
+///
+/// # Errors
+/// [`RecordError::Content`] where `path.csv` is damaged.
+pub fn followed_paths(run: &Path) -> Result<Vec<corpuscle_model::Path>, RecordError> {
+    read_paths(run)
+}
+
+impl RunFolder {
+    /// Starts a run's folder: a new one, or an empty one that is there.
+    ///
+    /// `scene_text` is the scene as run, with all defaults, as TOML.
+    ///
+    /// # Errors
+    /// [`RecordError::Exists`] where the folder holds anything, [`RecordError::Write`].
+    pub fn create(
+        path: &Path,
+        scene_text: &str,
+        gauges: &[GaugeColumn],
+        frame_format: FrameFormat,
+    ) -> Result<Self, RecordError> {
+        fs::create_dir_all(path).map_err(RecordError::write(path))?;
+        if fs::read_dir(path).map_err(RecordError::read(path))?.next().is_some() {
+            return Err(RecordError::Exists { path: path.to_owned() });
+        }
+        let begin = || -> Result<_, RecordError> {
+            write_bytes(&path.join("scene.toml"), scene_text.as_bytes())?;
+            Ok((GaugeWriter::create(&path.join("gauges.csv"), gauges)?, open_log(path)?))
+        };
+        let (gauges, log) = begin().inspect_err(|_| clear_beginning(path))?;
+        Ok(Self {
+            path: path.to_owned(),
+            scene_text: scene_text.to_owned(),
+            frame_format,
+            frame_times: Vec::new(),
+            map_times: Vec::new(),
+            gauges,
+            log,
+        })
+    }
+
+    /// Takes up the folder of an interrupted run at its checkpoint: gives the folder, cut back to what had been
+    /// written then, how far the run had come, and the model's state.
+    ///
+    /// # Errors
+    /// [`RecordError::NoCheckpoint`], [`RecordError::Checkpoint`] where it is damaged or the scene was changed,
+    /// [`RecordError::Read`], [`RecordError::Write`].
+    pub fn resume(path: &Path) -> Result<(Self, Clock, Vec<u8>), RecordError> {
+        let scene_path = path.join("scene.toml");
+        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let checkpoint = checkpoint_path(path);
+        if !checkpoint.exists() {
+            return Err(RecordError::NoCheckpoint { path: path.to_owned() });
+        }
+        let (progress, state) = Progress::read(&checkpoint, &scene_text)?;
+        let folder = Self {
+            gauges: GaugeWriter::resume(&path.join("gauges.csv"), progress.gauge_rows)?,
+            path: path.to_owned(),
+            scene_text,
+            frame_format: progress.frame_format,
+            frame_times: progress.frame_times,
+            map_times: progress.map_times,
+            log: open_log(path)?,
+        };
+        folder.cut_back()?;
+        Ok((folder, progress.clock, state))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// True where there is a checkpoint to go on from.
+    pub fn has_checkpoint(&self) -> bool {
+        checkpoint_path(&self.path).exists()
+    }
+
+    /// How particles are written.
+    pub fn frame_format(&self) -> FrameFormat {
+        self.frame_format
+    }
+
+    /// Times of the frames written so far, s.
+    pub fn frame_times(&self) -> &[f64] {
+        &self.frame_times
+    }
+
+    /// Gauge rows written so far.
+    pub fn gauge_rows(&self) -> usize {
+        self.gauges.rows()
+    }
+
+    /// Adds a particle frame: `frames/frame_NNNNNN.vtp` and `frames.pvd`, or `.csv`, numbered from 0.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_frame(&mut self, frame: &Frame) -> Result<(), RecordError> {
+        if self.frame_format != FrameFormat::None {
+            let folder = self.subfolder("frames")?;
+            self.frame_format.write(&folder, self.frame_times.len(), frame)?;
+        }
+        self.frame_times.push(frame.time);
+        self.write_pvd()
+    }
+
+    /// Adds a row to `gauges.csv`. It is in the file when this returns.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`]; [`RecordError::GaugeCount`].
+    pub fn append_gauges(&mut self, time: f64, values: &[f64]) -> Result<(), RecordError> {
+        self.gauges.append(time, values)
+    }
+
+    /// Adds the map `depth` of this time, s: `maps/depth_NNNNNN.tif`, numbered from 0, and its time to
+    /// `maps/times.csv`. A model without this map writes none.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_snapshot(&mut self, time: f64, maps: &[Map], terrain: &Terrain) -> Result<(), RecordError> {
+        let Some(map) = maps.iter().find(|map| map.name == SNAPSHOT) else { return Ok(()) };
+        let folder = self.subfolder("maps")?;
+        maps::write_map(&maps::snapshot_path(&folder, self.map_times.len()), terrain.map_grid(), &map.values)?;
+        self.map_times.push(time);
+        maps::write_times(&folder, &self.map_times)
+    }
+
+    /// Writes the maps that stand for the whole run (all but `depth`), `maps/max_depth.tif` and so on, and the flooded
+    /// extent `maps/extent.geojson` and its run-up line `maps/run_up.geojson`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_final_maps(&self, maps: &[Map], terrain: &Terrain) -> Result<(), RecordError> {
+        let folder = self.subfolder("maps")?;
+        for map in maps.iter().filter(|map| map.name != SNAPSHOT) {
+            maps::write_map(&folder.join(format!("{}.tif", map.name)), terrain.map_grid(), &map.values)?;
+        }
+        match maps.iter().find(|map| map.name == "max_depth") {
+            Some(depth) => {
+                write_extent(&folder.join("extent.geojson"), terrain, &depth.values)?;
+                write_run_up(&folder.join("run_up.geojson"), terrain, &depth.values)
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Writes what is known of the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
+    /// writes none.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_surfaces(&self, surfaces: &[Surface]) -> Result<(), RecordError> {
+        if surfaces.is_empty() {
+            return Ok(());
+        }
+        let folder = self.subfolder("maps")?;
+        surfaces.iter().try_for_each(|surface| {
+            let name = format!("{}.vtp", surface.name.replace(' ', "_"));
+            write_whole(&folder.join(name), |file| write_surface(file, surface))
+        })
+    }
+
+    /// Writes charts as tables, `charts/NAME.csv`, and paths, `path.csv`. A model without them writes none.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn write_charts(&self, charts: &[Chart], paths: &[corpuscle_model::Path]) -> Result<(), RecordError> {
+        if !charts.is_empty() {
+            let folder = self.subfolder("charts")?;
+            charts.iter().try_for_each(|chart| write_chart(&folder, chart))?;
+        }
+        if paths.is_empty() { Ok(()) } else { write_paths(&self.path, paths) }
+    }
+
+    /// Writes the checkpoint over the one before.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`]; the checkpoint before stays.
+    pub fn write_checkpoint(&self, clock: Clock, state: &[u8]) -> Result<(), RecordError> {
+        self.subfolder("checkpoint")?;
+        let progress = Progress {
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene_sha256: checksum(&[self.scene_text.as_bytes()]),
+            clock,
+            frame_format: self.frame_format,
+            frame_times: self.frame_times.clone(),
+            map_times: self.map_times.clone(),
+            gauge_rows: self.gauges.rows(),
+        };
+        progress.write(&checkpoint_path(&self.path), state)
+    }
+
+    /// Adds a line to `log.txt`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn log(&mut self, line: &str) -> Result<(), RecordError> {
+        self.log.write_all(format!("{line}\n").as_bytes()).map_err(RecordError::write(&self.path.join("log.txt")))
+    }
+
+    /// Writes `summary.json`.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`].
+    pub fn finish(&self, summary: &Summary) -> Result<(), RecordError> {
+        summary.write(&self.path)
+    }
+
+    fn subfolder(&self, name: &str) -> Result<PathBuf, RecordError> {
+        let path = self.path.join(name);
+        fs::create_dir_all(&path).map_err(RecordError::write(&path))?;
+        Ok(path)
+    }
+
+    fn write_pvd(&self) -> Result<(), RecordError> {
+        match self.frame_format {
+            FrameFormat::Vtp => write_pvd(&self.path.join("frames"), &self.frame_times),
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes away what was written after the checkpoint.
+    fn cut_back(&self) -> Result<(), RecordError> {
+        for folder in FOLDERS.map(|name| self.path.join(name)) {
+            clear_unfinished(&folder).map_err(RecordError::write(&folder))?;
+        }
+        let frames = self.path.join("frames");
+        remove_numbered(&frames, "frame_", self.frame_times.len())?;
+        if frames.exists() {
+            self.write_pvd()?;
+        }
+        let maps = self.path.join("maps");
+        remove_numbered(&maps, "depth_", self.map_times.len())?;
+        if maps.exists() {
+            maps::write_times(&maps, &self.map_times)?;
+        }
+        let summary = self.path.join("summary.json");
+        match fs::remove_file(&summary) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(RecordError::write(&summary)(error)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Where a run writes files.
+const FOLDERS: [&str; 6] = ["", "frames", "maps", "charts", "pictures", "checkpoint"];
+
+fn checkpoint_path(folder: &Path) -> PathBuf {
+    folder.join("checkpoint").join("state")
+}
+
+/// Takes away what a run wrote that could not begin, so that it can be tried again into the same folder.
+fn clear_beginning(folder: &Path) {
+    for name in ["scene.toml", "gauges.csv", "log.txt"] {
+        let _ = fs::remove_file(folder.join(name));
+    }
+    // Stays where anything else is in it.
+    let _ = fs::remove_dir(folder);
+}
+
+fn open_log(folder: &Path) -> Result<File, RecordError> {
+    let path = folder.join("log.txt");
+    OpenOptions::new().create(true).append(true).open(&path).map_err(RecordError::write(&path))
+}
+
+/// Removes files `<prefix>NNNNNN.<any>` whose number is `first` or more.
+fn remove_numbered(folder: &Path, prefix: &str, first: usize) -> Result<(), RecordError> {
+    let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
+    for path in entries.flatten().map(|entry| entry.path()) {
+        let number = path.file_stem().and_then(|stem| stem.to_str()?.strip_prefix(prefix)?.parse::<usize>().ok());
+        if number.is_some_and(|number| number >= first) {
+            fs::remove_file(&path).map_err(RecordError::write(&path))?;
+        }
+    }
+    Ok(())
+}

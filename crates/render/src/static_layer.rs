@@ -1,0 +1,134 @@
+//! What stands still is drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that throws
+//! shadows where all that throws one stands still.
+
+use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
+use crate::view::SHADOW_PIXELS;
+use crate::view::depth_map;
+use crate::{Drawable, Light, Target};
+use corpuscle_gpu::{Gpu, wgpu};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A number for how a thing looks that stands still; no two are the same.
+pub(crate) fn new_state() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Colour and depth of what stands still, of one size.
+#[derive(Debug, Default)]
+pub(crate) struct StaticLayer {
+    /// What the last picture was drawn by: camera, light and size, and the state of each thing that stands.
+    by: Option<(Vec<u8>, Vec<u64>)>,
+    textures: Option<[wgpu::Texture; 2]>,
+    /// True where the textures hold it.
+    drawn: bool,
+    /// The sun's depth map, and whether light throws shadows that it is for.
+    shadows: Option<(wgpu::TextureView, bool)>,
+}
+
+/// What is to be done with what stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum StaticUse {
+    /// Something is other than it was: drawn with the rest.
+    Changed,
+    /// Nothing has changed since the last picture: drawn alone, and kept.
+    Rests,
+    /// It was kept.
+    Kept,
+}
+
+impl StaticLayer {
+    /// The sun's depth map for such a light; what it holds stays from picture to picture.
+    pub fn shadows(&mut self, gpu: &Gpu, light: &Light) -> wgpu::TextureView {
+        let throws = light.throws_shadows();
+        if let Some((map, _)) = self.shadows.as_ref().filter(|(_, threw)| *threw == throws) {
+            return map.clone();
+        }
+        let map = depth_map(gpu, if throws { SHADOW_PIXELS } else { 1 });
+        self.shadows = Some((map.clone(), throws));
+        self.by = None;
+        map
+    }
+
+    /// What is to be done in a picture by a camera and light.
+    pub fn look(&mut self, view: &[u8], light: &Light, things: &[&mut dyn Drawable]) -> StaticUse {
+        let states: Vec<u64> = things.iter().filter_map(|thing| thing.static_state()).collect();
+        let moves = |thing: &&mut dyn Drawable| {
+            thing.static_state().is_none() && thing.throws_shadow() && !thing.lets_light_through()
+        };
+        if states.is_empty() || (light.throws_shadows() && things.iter().any(moves)) {
+            self.by = None;
+            return StaticUse::Changed;
+        }
+        let same = self.by.as_ref().is_some_and(|(last, of)| last == view && *of == states);
+        if !same {
+            self.by = Some((view.to_vec(), states));
+            self.drawn = false;
+            return StaticUse::Changed;
+        }
+        if std::mem::replace(&mut self.drawn, true) { StaticUse::Kept } else { StaticUse::Rests }
+    }
+
+    /// Keeps what was drawn into a target.
+    pub fn keep(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+        let kept = self.textures.get_or_insert_with(|| {
+            [("static colours", COLOUR_FORMAT), ("static depth", DEPTH_FORMAT)].map(|(label, format)| {
+                gpu.device.create_texture(&wgpu::TextureDescriptor {
+                    label: Some(label),
+                    size: target.colour.size(),
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: wgpu::TextureDimension::D2,
+                    format,
+                    usage: wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST,
+                    view_formats: &[],
+                })
+            })
+        });
+        copy(encoder, [&target.colour, &target.depth], [&kept[0], &kept[1]]);
+    }
+
+    /// Lays what was kept into a target.
+    pub fn lay(&self, encoder: &mut wgpu::CommandEncoder, target: &Target) {
+        if let Some([colour, depth]) = &self.textures {
+            copy(encoder, [colour, depth], [&target.colour, &target.depth]);
+        }
+    }
+}
+
+fn copy(encoder: &mut wgpu::CommandEncoder, from: [&wgpu::Texture; 2], to: [&wgpu::Texture; 2]) {
+    for (from, to) in from.into_iter().zip(to) {
+        encoder.copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A thing that stands, or moves and throws a shadow, or none.
+    struct Thing(Option<u64>, bool);
+
+    impl Drawable for Thing {
+        fn static_state(&self) -> Option<u64> {
+            self.0
+        }
+
+        fn throws_shadow(&self) -> bool {
+            self.1
+        }
+    }
+
+    #[test]
+    fn what_moves_without_a_shadow_leaves_the_rest_in_peace() {
+        let look = |throws: bool, light: &Light| {
+            let (mut static_layer, mut ground, mut moving) =
+                (StaticLayer::default(), Thing(Some(new_state()), true), Thing(None, throws));
+            [(); 3].map(|()| static_layer.look(&[1], light, &[&mut ground, &mut moving]))
+        };
+        let kept = [StaticUse::Changed, StaticUse::Rests, StaticUse::Kept];
+        assert_eq!(look(false, &Light::day()), kept);
+        assert_eq!(look(true, &Light::day()), [StaticUse::Changed; 3]);
+        assert_eq!(look(true, &Light::day().without_shadows()), kept);
+    }
+}
