@@ -1,5 +1,5 @@
 // Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for. Twin of
-// `step` in `dew.rs` and of `next_step` in `dew/motion.rs`.
+// `step` in `dew/mod.rs` and of `next_step` in `dew/motion.rs`.
 #import dew_particles
 #import group_reduction
 

@@ -1,4 +1,4 @@
-// Saturation, and what passes between air and the surface of a solid. Twin of `humid_air.rs` and of `Exchange::flux`.
+// Saturation, and what passes between air and the surface of a solid. Twin of `humid_air/mod.rs` and of `Exchange::flux`.
 #import dew_particles
 
 // exp(x) - 1 without losing the digits of what is small: the series for a sixteenth of x, then four times (1 + e)^2 - 1.

@@ -1,4 +1,4 @@
-// What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures.rs`.
+// What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures/mod.rs`.
 #import dew_particles
 #import group_reduction
 

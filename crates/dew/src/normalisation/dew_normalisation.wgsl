@@ -1,4 +1,4 @@
-// The tensor by which the Laplacian of diffusion is normalised. Twin of `normalisation.rs`.
+// The tensor by which the Laplacian of diffusion is normalised. Twin of `normalisation/mod.rs`.
 #import dew_particles
 
 // A symmetric matrix: xx, yy, zz; xy, xz, yz.

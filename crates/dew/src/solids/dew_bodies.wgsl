@@ -1,5 +1,5 @@
 // What the particles of each solid sum up to in a step, and to what they are brought where the temperature that they are held at changes: a
-// group for each solid. The latter is the twin of `hold` in `dew.rs`.
+// group for each solid. The latter is the twin of `hold` in `dew/mod.rs`.
 #import dew_particles
 #import dew_rows
 #import group_reduction

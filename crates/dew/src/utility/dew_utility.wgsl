@@ -1,4 +1,4 @@
-// Which air matters to no solid. Twin of `utility.rs`; how far the solids are is read off nodes half a spacing apart.
+// Which air matters to no solid. Twin of `utility/mod.rs`; how far the solids are is read off nodes half a spacing apart.
 #import dew_particles
 
 const MATTERS = 0u;

@@ -1,4 +1,4 @@
-// The ground: bicubic Hermite patches between nodes of height, slope along y, slope along x and twist, per cell. Twin of `surface.rs`
+// The ground: bicubic Hermite patches between nodes of height, slope along y, slope along x and twist, per cell. Twin of `surface/mod.rs`
 // in the crate terrain.
 #import declared
 
