@@ -4,7 +4,8 @@ use crate::shared::declared;
 use corpuscle_gpu::{DECLARED, Gpu, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
-const LIBRARY: [(&str, &str); 16] = [
+const LIBRARY: [(&str, &str); 17] = [
+    ("full_screen", include_str!("full_screen.wgsl")),
     ("view", include_str!("view.wgsl")),
     ("sky", include_str!("sky/sky.wgsl")),
     ("light", include_str!("light.wgsl")),

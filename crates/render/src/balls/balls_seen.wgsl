@@ -1,13 +1,8 @@
 // Shades the balls whose numbers were drawn, each pixel once.
 #import ball
+#import full_screen
 
 @group(2) @binding(0) var numbers: texture_2d<u32>;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fragment(@builtin(position) pixel: vec4f) -> Drawn {

@@ -1,5 +1,6 @@
 // Fogged glass: what is behind is scattered, so it blurs and whitens by the area that droplets cover.
 #import sky
+#import full_screen
 
 @group(1) @binding(0) var covered: texture_2d<f32>;
 @group(1) @binding(1) var behind: texture_2d<f32>;
@@ -9,12 +10,6 @@ const TAPS: i32 = 32;
 // Radius of the blur behind dense fog, part of the picture's height, and the part of light that comes back from it.
 const BLUR: f32 = 0.03;
 const WHITE: f32 = 0.42;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fragment(@builtin(position) pixel: vec4f) -> @location(0) vec4f {

@@ -1,13 +1,8 @@
 // A floor that cannot be told from the backdrop but by the shadows on it.
 #import light
+#import full_screen
 
 @group(1) @binding(0) var<uniform> plane: Floor;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fragment(@builtin(position) pixel: vec4f) -> Drawn {

@@ -1,15 +1,9 @@
 // Puts the shaded fluid into the picture, with its depth.
 #import fluid
+#import full_screen
 
 @group(1) @binding(1) var distances: texture_2d<f32>;
 @group(1) @binding(2) var shaded: texture_2d<f32>;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    // One triangle that covers the target.
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> Drawn {

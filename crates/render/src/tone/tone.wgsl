@@ -1,16 +1,11 @@
 // From linear light to the bytes of a picture: samples averaged, highlights pressed, the overlay laid over.
 #import declared
 #import press
+#import full_screen
 
 @group(0) @binding(0) var<uniform> tone: Tone;
 @group(0) @binding(1) var light: texture_2d<f32>;
 @group(0) @binding(2) var overlay: texture_2d<f32>;
-
-@vertex
-fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    let corner = vec2f(f32(index & 1u), f32(index >> 1u));
-    return vec4f(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 // The mean of a pixel's samples.
 fn pixel_at(pixel: vec2u) -> vec3f {
