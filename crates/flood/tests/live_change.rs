@@ -1,11 +1,9 @@
 //! Live changes of a flood.
 
+mod common;
+
 use corpuscle_flood::{FloodModel, LiveChange, SphSweFlood, VoronoiFlood};
 use corpuscle_model::Model;
-use corpuscle_scene::{FloodScene, Scene};
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 const RIVER: &str = r#"
@@ -44,24 +42,13 @@ water = [{ depth_m = 1 }]
 edges = { west = "wall", south = "wall", north = "wall", east = "wall" }
 "#;
 
-fn parse(text: &str, settings: &[(&str, &str)]) -> (FloodScene, Arc<Terrain>) {
-    let settings: Vec<_> = settings.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let mut scene = Scene::parse(text, "test", &settings).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap().clone();
-    let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
-    (scene, terrain)
-}
-
 fn open(text: &str, settings: &[(&str, &str)]) -> SphSweFlood {
-    let (scene, terrain) = parse(text, settings);
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), terrain).unwrap()
+    common::sph_swe(&common::scene_with(text, settings))
 }
 
 /// A flood of scheme voronoi.
 fn open_cells(text: &str, settings: &[(&str, &str)]) -> VoronoiFlood {
-    let (scene, terrain) = parse(text, settings);
-    VoronoiFlood::new(&scene.flood, 1, Path::new("."), terrain).unwrap()
+    common::voronoi(&common::scene_with(text, settings))
 }
 
 fn go(flood: &mut dyn FloodModel, time: f64) {

@@ -1,11 +1,11 @@
 //! What scheme sph-swe promises to whoever runs it.
 
+mod common;
+
+use common::{scene, sph_swe};
 use corpuscle_flood::SphSweFlood;
 use corpuscle_model::Model;
-use corpuscle_scene::{FloodScene, Scene};
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
+use corpuscle_scene::FloodScene;
 use std::sync::atomic::AtomicBool;
 
 const RIVER: &str = r#"
@@ -41,20 +41,9 @@ line = [[150, 180], [150, 20]]
 "#;
 
 fn river(change: impl FnOnce(&mut FloodScene)) -> SphSweFlood {
-    let mut scene = parse(RIVER);
+    let mut scene = scene(RIVER);
     change(&mut scene);
-    open(&scene)
-}
-
-fn parse(text: &str) -> FloodScene {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    scene.flood().unwrap().clone()
-}
-
-fn open(scene: &FloodScene) -> SphSweFlood {
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+    sph_swe(&scene)
 }
 
 fn go(flood: &mut SphSweFlood, time: f64) {
@@ -73,7 +62,7 @@ fn water_reaches_up_to_walls_and_periodic_sides() {
         water = [{ depth_m = 1 }]
         edges = { west = "wall", east = "wall", south = "periodic", north = "periodic" }
     "#;
-    let maps = open(&parse(basin)).maps();
+    let maps = sph_swe(&scene(basin)).maps();
     let depth = &maps.iter().find(|map| map.name == "depth").unwrap().values;
     let dry = depth.iter().filter(|depth| depth.is_nan()).count();
     assert_eq!(dry, 0, "of {} positions", depth.len());
@@ -133,7 +122,7 @@ fn what_falls_lands() {
     let text = "run.until_s = 10\nterrain.plane = { extent = { length_m = 40, width_m = 40, cell_m = 1 } }\n\
                 flood.scheme = \"sph-swe\"\nflood.spacing_m = 1\nflood.spacing_depth_m = 1\n\
                 [[flood.water]]\nblock = { from = [10, 10], to = [20, 20], height_m = 5, layers = 2 }\n";
-    let mut flood = open(&parse(text));
+    let mut flood = sph_swe(&scene(text));
     assert_eq!(flood.frame().sets[0].len(), 200);
     assert!(flood.particles().is_empty());
     // The upper layer's fall of 6.5 m takes 1.15 s.

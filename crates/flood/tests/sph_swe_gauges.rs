@@ -1,12 +1,11 @@
 //! Gauges of scheme sph-swe that the GPU reads itself show what they show where the water is brought back for them.
 
+mod common;
+
+use common::on_gpu::on_gpu;
 use corpuscle_flood::SphSweFlood;
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{AdvanceObserver, GpuModel, Model, ModelProgress};
-use corpuscle_scene::Scene;
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Fast water between walls, over an open side and round two houses; a gauge in one of them, one that falls dry and one that is wetted.
@@ -90,14 +89,8 @@ block = { from = [10, 8], to = [30, 22], height_m = 0.7, layers = 2 }
 velocity_m_per_s = [1, -0.5]
 "#;
 
-fn on_gpu(text: &str, gpu: &Gpu) -> SphSweFlood {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    let mut flood = SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
-    flood.use_gpu(gpu.clone()).unwrap();
-    flood
+fn flood(text: &str, gpu: &Gpu) -> SphSweFlood {
+    on_gpu(common::sph_swe(&common::scene(text)), gpu)
 }
 
 /// Takes rows at multiples of a period, and calls the water back after each of some.
@@ -158,7 +151,7 @@ fn brought_back(flood: &mut SphSweFlood, times: impl Iterator<Item = f64>) -> Ve
 
 /// Compares them, times that are no multiples of steps among them, some of which lie within one step.
 fn compare(text: &str, gpu: &Gpu, period: f64, until: f64) {
-    let [mut measured, mut plain] = [(); 2].map(|()| on_gpu(text, gpu));
+    let [mut measured, mut plain] = [(); 2].map(|()| flood(text, gpu));
     for flood in [&mut measured, &mut plain] {
         flood.place_gauge("by hand", [21.0, 14.0]).unwrap();
     }
@@ -192,7 +185,7 @@ fn rows_read_on_the_gpu_are_those_of_the_water_that_comes_back() {
 #[test]
 fn who_is_called_back_goes_on_with_the_next_row() {
     let Some(gpu) = require_gpu("gauges on the GPU") else { return };
-    let [mut plain, mut interrupted] = [(); 2].map(|()| on_gpu(HOUSES, &gpu));
+    let [mut plain, mut interrupted] = [(); 2].map(|()| flood(HOUSES, &gpu));
     let [mut all, mut parts] = [usize::MAX, 20].map(|rows| Notes::new(0.0137, rows));
     go_on(&mut plain, 0.8, &mut all);
     go_on(&mut interrupted, 0.8, &mut parts);

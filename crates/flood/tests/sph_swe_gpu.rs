@@ -1,9 +1,11 @@
 //! Scheme sph-swe on a GPU does what it does on the CPU.
 
+mod common;
+
 use corpuscle_flood::{LiveChange, Particle, SphSweFlood};
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{Balance, GpuModel, Model, ModelError};
-use corpuscle_scene::{FloodScene, Scene, builtin};
+use corpuscle_scene::{Scene, builtin};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
@@ -131,22 +133,12 @@ block = { from = [10, 8], to = [30, 22], height_m = 0.7, layers = 2 }
 velocity_m_per_s = [1, -0.5]
 "#;
 
-fn parse(text: &str) -> FloodScene {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    scene.flood().unwrap().clone()
-}
-
 fn open(text: &str) -> SphSweFlood {
-    let scene = parse(text);
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+    common::sph_swe(&common::scene(text))
 }
 
 fn on_gpu(text: &str, gpu: &Gpu) -> SphSweFlood {
-    let mut flood = open(text);
-    flood.use_gpu(gpu.clone()).unwrap();
-    flood
+    common::on_gpu::on_gpu(open(text), gpu)
 }
 
 fn step(flood: &mut SphSweFlood, count: usize) {

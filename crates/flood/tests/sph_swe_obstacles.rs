@@ -1,24 +1,13 @@
 //! Water of scheme sph-swe goes round obstacles.
 
+mod common;
+
+use common::{scene, scene_with, sph_swe};
 use corpuscle_flood::SphSweFlood;
 use corpuscle_model::Model;
-use corpuscle_scene::{FloodScene, Scene};
 use corpuscle_terrain::Terrain;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-
-fn parse(text: &str, overrides: &[(&str, &str)]) -> FloodScene {
-    let overrides: Vec<_> = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let mut scene = Scene::parse(text, "test", &overrides).unwrap();
-    scene.resolve_defaults();
-    scene.flood().unwrap().clone()
-}
-
-fn open(scene: &FloodScene) -> SphSweFlood {
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
-}
 
 fn go(flood: &mut SphSweFlood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
@@ -62,7 +51,10 @@ fn distance([x, y]: [f64; 2]) -> f64 {
 /// A bore against the block and the tower, on a flat bed.
 fn bore() -> SphSweFlood {
     let water = "[{ depth_m = 2, polygon = [[0, 0], [7, 0], [7, 30], [0, 30]] }, { depth_m = 0.3, polygon = [[7, 0], [40, 0], [40, 30], [7, 30]] }]";
-    open(&parse(LAKE, &[("flood.water", water), ("terrain.bump.height_m", "0"), ("flood.spacing_depth_m", "1")]))
+    sph_swe(&scene_with(
+        LAKE,
+        &[("flood.water", water), ("terrain.bump.height_m", "0"), ("flood.spacing_depth_m", "1")],
+    ))
 }
 
 #[test]
@@ -105,7 +97,7 @@ fn obstacles_come_from_files_and_bad_ones_are_named() {
             "run.until_s = 1\nterrain.plane.extent = {{ length_m = 40, width_m = 20, cell_m = 1 }}\n[flood]\nscheme = \"sph-swe\"\nspacing_m = 1\nwater = [{{ \
              depth_m = 1 }}]\nobstacle = [{{ name = \"houses\", file = \"{file}\" }}]"
         );
-        let scene = parse(&text, &[]);
+        let scene = scene(&text);
         let terrain = Terrain::open(&scene.terrain, 1, &folder).unwrap();
         SphSweFlood::new(&scene.flood, 1, &folder, Arc::new(terrain))
     };
@@ -124,9 +116,9 @@ fn obstacles_come_from_files_and_bad_ones_are_named() {
 #[test]
 fn water_higher_than_an_obstacle_is_told() {
     let low = LAKE.replace("circle =", "height_m = 1\ncircle =");
-    let mut flood = open(&parse(&low, &[]));
+    let mut flood = sph_swe(&scene(&low));
     go(&mut flood, 0.5);
     let warnings = flood.warnings();
     assert!(warnings.iter().any(|warning| warning.contains("'tower'")), "{warnings:?}");
-    assert!(!open(&parse(LAKE, &[])).warnings().iter().any(|warning| warning.contains("'tower'")));
+    assert!(!sph_swe(&scene(LAKE)).warnings().iter().any(|warning| warning.contains("'tower'")));
 }

@@ -1,12 +1,11 @@
 //! What is drawn of scheme sph-swe on the GPU is what the frame has.
 
+mod common;
+
+use common::on_gpu::{assert_gauges_alike, assert_shown_as_plain, assert_shows_nothing, in_order, on_gpu, seen};
 use corpuscle_flood::SphSweFlood;
-use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
-use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelProgress, Values};
-use corpuscle_scene::Scene;
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{Glance, GpuModel, Model, Values};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water runs fast against a house, over the eastern side, and a block of it falls.
@@ -44,26 +43,8 @@ water = [{ depth_m = 1, velocity_m_per_s = [1, 0.5] }]
 sph_swe = { radius_m = 0.3 }
 "#;
 
-fn open(text: &str) -> SphSweFlood {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
-}
-
-fn on_gpu(text: &str, gpu: &Gpu) -> SphSweFlood {
-    let mut flood = open(text);
-    flood.use_gpu(gpu.clone()).unwrap();
-    flood
-}
-
-/// The particles as they lie on the GPU, by ids, and where they are counted from.
-fn seen(flood: &SphSweFlood, gpu: &Gpu) -> (Vec<DeviceParticle>, [f64; 3]) {
-    let particles = flood.particles_on_gpu().unwrap().unwrap();
-    let mut all = particles.read(gpu).unwrap();
-    all.sort_unstable_by_key(|particle| particle.id);
-    (all, particles.origin)
+fn flood(text: &str, gpu: &Gpu) -> SphSweFlood {
+    on_gpu(common::sph_swe(&common::scene(text)), gpu)
 }
 
 /// Compares them with the frame, which must have `in_air` of them in the air.
@@ -93,7 +74,7 @@ fn compare(flood: &SphSweFlood, gpu: &Gpu, in_air: bool) {
 fn particles_on_the_gpu_are_those_of_the_frame() {
     let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
     for (text, in_air) in [(FALL, true), (SMALL, false)] {
-        let mut flood = on_gpu(text, &gpu);
+        let mut flood = flood(text, &gpu);
         compare(&flood, &gpu, in_air);
         // Between two steps, and after the block has come down.
         for (time, in_air) in [(0.3, in_air), (4.0, false)] {
@@ -107,7 +88,7 @@ fn particles_on_the_gpu_are_those_of_the_frame() {
 #[test]
 fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     let Some(gpu) = require_gpu("a flood shown on the GPU") else { return };
-    let [mut shown, mut plain] = [(); 2].map(|()| on_gpu(FALL, &gpu));
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(FALL, &gpu));
     let stop = AtomicBool::new(false);
     let (mut last, mut times) = (Vec::new(), Vec::new());
     let mut show = |Glance { frame, on_device }: Glance| {
@@ -122,8 +103,7 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     // The start, and 90 steps.
     assert_eq!((times.len(), shown.steps()), (91, 90));
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times[90] == shown.time(), "{times:?} {}", shown.time());
-    last.sort_unstable_by_key(|particle| particle.id);
-    assert!(last == seen(&shown, &gpu).0);
+    assert!(in_order(last) == seen(&shown, &gpu).0);
     // Looking does not change what the water does. A little more, lest rounding take the last step for less.
     plain.advance_to(shown.time() + 1e-3 * shown.time_step(), &AtomicBool::new(false)).unwrap();
     assert_eq!(plain.steps(), 90);
@@ -133,72 +113,23 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
 #[test]
 fn who_asks_for_times_sees_the_water_of_these_times() {
     let Some(gpu) = require_gpu("water at times") else { return };
-    let [mut shown, mut plain] = [(); 2].map(|()| on_gpu(FALL, &gpu));
-    let mut looks = Vec::new();
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(FALL, &gpu));
     // Some fall between two steps; one at the end.
-    let until = 0.9;
-    let times: Vec<f64> = (1..=30).map(|look| until * f64::from(look) / 30.0).collect();
-    let mut show = |Glance { frame, on_device }: Glance| {
-        let (time, particles) = (frame.time, on_device.unwrap());
-        looks.push((time, particles.read(&gpu).unwrap()));
-        times.iter().copied().find(|later| *later > time).unwrap_or(f64::INFINITY)
-    };
-    shown.advance_shown(until, &AtomicBool::new(false), &mut (), (times[0], true), &mut show).unwrap();
-    assert!(looks.iter().map(|(time, _)| *time).eq(times.iter().copied()));
-    for (time, look) in &mut looks {
-        look.sort_unstable_by_key(|particle| particle.id);
-        plain.advance_to(*time, &AtomicBool::new(false)).unwrap();
-        assert!(*look == seen(&plain, &gpu).0, "{time} s");
-    }
+    assert_shown_as_plain(&mut shown, &mut plain, 0.9, &gpu);
     assert!(shown.steps() == plain.steps() && shown.steps() % 30 != 0, "{} steps", shown.steps());
     assert!(shown.particles() == plain.particles());
-}
-
-/// Takes gauges every tenth of a second, and is told how far it is.
-struct Rows(Vec<(f64, Vec<f64>)>);
-
-impl AdvanceObserver for Rows {
-    fn gauges_after(&self, time: f64) -> Option<f64> {
-        Some(((time / 0.1 + 1e-9).floor() + 1.0) * 0.1)
-    }
-
-    fn gauges(&mut self, time: f64, row: &[f64]) {
-        self.0.push((time, row.to_vec()));
-    }
-
-    fn passed(&mut self, _passed: ModelProgress) -> bool {
-        true
-    }
 }
 
 #[test]
 fn who_is_shown_has_the_gauges_of_who_is_not() {
     let Some(gpu) = require_gpu("gauges beside a flood that is shown") else { return };
-    let stop = AtomicBool::new(false);
-    let [shown, plain] = [true, false].map(|is_shown| {
-        let (mut flood, mut rows) = (on_gpu(FALL, &gpu), Rows(Vec::new()));
-        if is_shown {
-            flood.advance_shown(1.05, &stop, &mut rows, (0.0, true), &mut |glance| glance.frame.time + 0.03).unwrap();
-        } else {
-            flood.advance_with(1.05, &stop, &mut rows).unwrap();
-        }
-        rows.0
-    });
-    assert_eq!([&shown, &plain].map(Vec::len), [10, 10]);
-    for ((time, one), (same_time, other)) in shown.iter().zip(&plain) {
-        // What comes and goes is summed up batch by batch, and batches differ.
-        let is_near = one.iter().zip(other).all(|(one, other)| (one - other).abs() <= 1e-7 * one.abs());
-        assert!(time == same_time && is_near, "{time} s: {one:?} {other:?}");
-    }
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(FALL, &gpu));
+    assert_gauges_alike(&mut shown, &mut plain, 1e-7);
 }
 
 #[test]
 fn without_a_gpu_nobody_is_shown_anything() {
     let Some(gpu) = require_gpu("a flood without a GPU") else { return };
-    assert!(on_gpu(SMALL, &gpu).gpu().is_some_and(|device| device.is_same(&gpu)));
-    let mut flood = open(SMALL);
-    assert!(flood.gpu().is_none() && flood.particles_on_gpu().unwrap().is_none());
-    let mut show = |_: Glance| panic!("there is no GPU");
-    flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), (0.0, true), &mut show).unwrap();
-    assert!(flood.time() == 0.5 && flood.steps() > 0);
+    assert!(flood(SMALL, &gpu).gpu().is_some_and(|device| device.is_same(&gpu)));
+    assert_shows_nothing(&mut common::sph_swe(&common::scene(SMALL)));
 }

@@ -1,17 +1,11 @@
 //! Estimates of the water that is to come, beside what comes.
 
-use corpuscle_flood::{SphSweFlood, VoronoiFlood};
-use corpuscle_scene::Scene;
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
+mod common;
+
+use corpuscle_flood::SphSweFlood;
 
 fn open(text: &str) -> SphSweFlood {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    SphSweFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+    common::sph_swe(&common::scene(text))
 }
 
 /// Particles of scheme sph-swe, of 4 m3 each.
@@ -30,19 +24,10 @@ fn inflow_comes_as_it_is_written() {
 #[test]
 fn cells_to_get_wet_are_counted() {
     let to_come = |rest: &str| {
-        let mut scene = Scene::parse(
-            &format!(
-                "run.until_s = 600\nterrain.plane = {{ slope_east = 0.02, extent = {{ length_m = 100, width_m = 40, cell_m = 2 }} }}\n[flood]\n\
+        let flood = common::voronoi(&common::scene(&format!(
+            "run.until_s = 600\nterrain.plane = {{ slope_east = 0.02, extent = {{ length_m = 100, width_m = 40, cell_m = 2 }} }}\n[flood]\n\
                  scheme = \"voronoi\"\nspacing_m = 2\n{rest}"
-            ),
-            "test",
-            &[],
-        )
-        .unwrap();
-        scene.resolve_defaults();
-        let scene = scene.flood().unwrap();
-        let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-        let flood = VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
+        )));
         [100.0, 600.0].map(|until| flood.particles_to_come(0.0, until) / 1000.0)
     };
     let near = |found: [f64; 2], expected: [f64; 2]| (0..2).all(|k| (found[k] - expected[k]).abs() < 0.02);

@@ -1,8 +1,9 @@
 //! What scheme voronoi promises to whoever runs it.
 
+mod common;
+
 use corpuscle_flood::{LiveChange, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
-use corpuscle_scene::{FloodScene, Scene};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -63,19 +64,8 @@ name = "bridge line"
 line = [[150, 180], [150, 20]]
 "#;
 
-fn parse(text: &str) -> FloodScene {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    scene.flood().unwrap().clone()
-}
-
-fn open(scene: &FloodScene) -> VoronoiFlood {
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
-}
-
 fn river() -> VoronoiFlood {
-    open(&parse(RIVER))
+    common::voronoi(&common::scene(RIVER))
 }
 
 fn go(flood: &mut VoronoiFlood, time: f64) {
@@ -87,7 +77,7 @@ fn basin(keys: &str, seed: u64, ground: impl Fn(f64, f64) -> f64 + Sync) -> Resu
     let text = format!(
         "run.until_s = 600\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\n{keys}"
     );
-    let scene = parse(&text);
+    let scene = common::scene(&text);
     let bounds = Bounds { x_min: 0.0, x_max: 66.0, y_min: 0.0, y_max: 30.0 };
     VoronoiFlood::new(&scene.flood, seed, Path::new("."), Arc::new(Terrain::gridded(bounds, 0.5, ground)))
 }
@@ -136,7 +126,7 @@ fn a_restored_run_goes_on_to_the_same_bits() {
     }
     go(&mut whole, 25.0);
     for state in saved {
-        let scene = parse(RIVER);
+        let scene = common::scene(RIVER);
         let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
         let mut resumed = VoronoiFlood::to_restore(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap();
         resumed.restore(&state).unwrap();
@@ -368,7 +358,7 @@ fn bad_places_are_refused_in_words() {
 fn dry_land_has_no_cells() {
     let text = "run.until_s = 60\nterrain.plane.extent = { length_m = 20000, width_m = 20000, cell_m = 100 }\n[flood]\n\
                 scheme = \"voronoi\"\nspacing_m = 10\nwater = [{ depth_m = 1, polygon = [[9000, 9000], [9300, 9000], [9300, 9300], [9000, 9300]] }]";
-    let mut flood = open(&parse(text));
+    let mut flood = common::voronoi(&common::scene(text));
     assert!(flood.cells() < 20_000, "{}", flood.cells());
     let before = flood.cells();
     go(&mut flood, 200.0);
@@ -418,7 +408,7 @@ fn water_starts_by_expressions_and_rasters() {
     let terrain =
         Arc::new(Terrain::gridded(Bounds { x_min: 0.0, x_max: 66.0, y_min: 0.0, y_max: 30.0 }, 0.5, |x, _| 0.01 * x));
     let open = |keys: &str| {
-        let scene = parse(&format!(
+        let scene = common::scene(&format!(
             "run.until_s = 1\nterrain.plane.extent = {{ length_m = 66, width_m = 30, cell_m = 1 }}\n[flood]\nscheme = \"voronoi\"\nspacing_m = 1.5\n{WALLS}water = [{{ {keys} }}]"
         ));
         VoronoiFlood::new(&scene.flood, 1, folder.path(), Arc::clone(&terrain))

@@ -1,19 +1,15 @@
 //! Rain, and what soaks into the ground.
 
+mod common;
+
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::{Balance, Model};
-use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 fn open(text: &str) -> VoronoiFlood {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
+    common::voronoi(&common::scene(text))
 }
 
 fn go(flood: &mut VoronoiFlood, time: f64) {
@@ -179,9 +175,7 @@ fn rasters_say_where_it_rains_and_what_the_ground_is() {
         manning = 0.1
         infiltration.constant.rate_mm_per_h = 36.0
     "#;
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
+    let scene = common::scene(text);
     let terrain = Arc::new(Terrain::open(&scene.terrain, 1, folder.path()).unwrap());
     let mut flood = VoronoiFlood::new(&scene.flood, 1, folder.path(), Arc::clone(&terrain)).unwrap();
     go(&mut flood, 80.0);

@@ -1,12 +1,11 @@
 //! What is drawn of scheme voronoi on a GPU is what the frame has.
 
+mod common;
+
+use common::on_gpu::{Rows, assert_gauges_alike, assert_shown_as_plain, assert_shows_nothing, in_order, on_gpu, seen};
 use corpuscle_flood::VoronoiFlood;
-use corpuscle_gpu::{DeviceParticle, Gpu, require_gpu};
-use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelProgress, Values};
-use corpuscle_scene::Scene;
-use corpuscle_terrain::Terrain;
-use std::path::Path;
-use std::sync::Arc;
+use corpuscle_gpu::{Gpu, require_gpu};
+use corpuscle_model::{Glance, GpuModel, Model, Values};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Water runs fast against a house, over the eastern side, and onto dry ground far away.
@@ -32,29 +31,8 @@ at = [30, 20]
 
 const BLOCK: &str = "[[flood.water]]\nblock = { from = [10, 8], to = [30, 22], height_m = 2.5, layers = 2 }\n";
 
-fn open(text: &str) -> VoronoiFlood {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    VoronoiFlood::new(&scene.flood, 1, Path::new("."), Arc::new(terrain)).unwrap()
-}
-
-fn on_gpu(text: &str, gpu: &Gpu) -> VoronoiFlood {
-    let mut flood = open(text);
-    flood.use_gpu(gpu.clone()).unwrap();
-    flood
-}
-
-/// The particles as they lie on the GPU, by ids, and where they are counted from.
-fn seen(flood: &VoronoiFlood, gpu: &Gpu) -> (Vec<DeviceParticle>, [f64; 3]) {
-    let particles = flood.particles_on_gpu().unwrap().unwrap();
-    (in_order(particles.read(gpu).unwrap()), particles.origin)
-}
-
-fn in_order(mut particles: Vec<DeviceParticle>) -> Vec<DeviceParticle> {
-    particles.sort_unstable_by_key(|particle| particle.id);
-    particles
+fn flood(text: &str, gpu: &Gpu) -> VoronoiFlood {
+    on_gpu(common::voronoi(&common::scene(text)), gpu)
 }
 
 fn compare(flood: &VoronoiFlood, gpu: &Gpu) {
@@ -84,10 +62,10 @@ fn compare(flood: &VoronoiFlood, gpu: &Gpu) {
 #[test]
 fn particles_on_the_gpu_are_those_of_the_frame() {
     let Some(gpu) = require_gpu("a flood drawn where it lies") else { return };
-    let mut stored = on_gpu(&RUN.replace("spacing_m = 1\n", "spacing_m = 2\nstorage = \"level-volume\"\n"), &gpu);
+    let mut stored = flood(&RUN.replace("spacing_m = 1\n", "spacing_m = 2\nstorage = \"level-volume\"\n"), &gpu);
     stored.advance_to(1.0, &AtomicBool::new(false)).unwrap();
     compare(&stored, &gpu);
-    let mut flood = on_gpu(RUN, &gpu);
+    let mut flood = flood(RUN, &gpu);
     compare(&flood, &gpu);
     // Between two steps, and after cells were added.
     let cells = flood.cells();
@@ -102,7 +80,7 @@ fn particles_on_the_gpu_are_those_of_the_frame() {
 #[test]
 fn water_in_the_air_is_shown() {
     let Some(gpu) = require_gpu("a falling block beside a GPU") else { return };
-    let mut flood = on_gpu(&format!("{RUN}{BLOCK}"), &gpu);
+    let mut flood = flood(&format!("{RUN}{BLOCK}"), &gpu);
     let mut kinds = Vec::new();
     let mut show = |Glance { frame, on_device }: Glance| {
         assert!(on_device.is_some() != frame.sets.iter().any(|set| set.len() > 400));
@@ -116,7 +94,7 @@ fn water_in_the_air_is_shown() {
 #[test]
 fn who_is_shown_every_step_sees_the_water_that_comes_back() {
     let Some(gpu) = require_gpu("a flood shown on the GPU") else { return };
-    let [mut shown, mut plain] = [(); 2].map(|()| on_gpu(RUN, &gpu));
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(RUN, &gpu));
     let stop = AtomicBool::new(false);
     let (mut last, mut times) = (Vec::new(), Vec::new());
     let mut show = |Glance { frame, on_device }: Glance| {
@@ -138,69 +116,25 @@ fn who_is_shown_every_step_sees_the_water_that_comes_back() {
 #[test]
 fn who_asks_for_times_sees_the_water_of_these_times() {
     let Some(gpu) = require_gpu("water at times") else { return };
-    let [mut shown, mut plain] = [(); 2].map(|()| on_gpu(RUN, &gpu));
-    let mut looks = Vec::new();
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(RUN, &gpu));
     // Some fall between two steps; one at the end.
-    let until = 0.9;
-    let times: Vec<f64> = (1..=30).map(|look| until * f64::from(look) / 30.0).collect();
-    let mut show = |Glance { frame, on_device }: Glance| {
-        looks.push((frame.time, in_order(on_device.unwrap().read(&gpu).unwrap())));
-        times.iter().copied().find(|later| *later > frame.time).unwrap_or(f64::INFINITY)
-    };
-    shown.advance_shown(until, &AtomicBool::new(false), &mut (), (times[0], true), &mut show).unwrap();
-    assert!(looks.iter().map(|(time, _)| *time).eq(times.iter().copied()));
-    for (time, look) in looks {
-        plain.advance_to(time, &AtomicBool::new(false)).unwrap();
-        assert!(look == seen(&plain, &gpu).0, "{time} s");
-    }
+    assert_shown_as_plain(&mut shown, &mut plain, 0.9, &gpu);
     assert!(shown.save() == plain.save());
-}
-
-/// Takes gauges every tenth of a second, and calls the flood back at a time.
-struct Rows(Vec<(f64, Vec<f64>)>, f64);
-
-impl AdvanceObserver for Rows {
-    fn gauges_after(&self, time: f64) -> Option<f64> {
-        Some(((time / 0.1 + 1e-9).floor() + 1.0) * 0.1)
-    }
-
-    fn gauges(&mut self, time: f64, row: &[f64]) {
-        self.0.push((time, row.to_vec()));
-    }
-
-    fn passed(&mut self, passed: ModelProgress) -> bool {
-        assert!(passed.particles > 400 && passed.particle_steps > 0);
-        passed.time < self.1
-    }
 }
 
 #[test]
 fn who_is_shown_has_the_gauges_of_who_is_not() {
     let Some(gpu) = require_gpu("gauges beside a flood that is shown") else { return };
-    let stop = AtomicBool::new(false);
-    let [shown, plain] = [true, false].map(|is_shown| {
-        let (mut flood, mut rows) = (on_gpu(RUN, &gpu), Rows(Vec::new(), f64::INFINITY));
-        if is_shown {
-            flood.advance_shown(1.05, &stop, &mut rows, (0.0, true), &mut |glance| glance.frame.time + 0.03).unwrap();
-        } else {
-            flood.advance_with(1.05, &stop, &mut rows).unwrap();
-        }
-        rows.0
-    });
-    assert_eq!([&shown, &plain].map(Vec::len), [10, 10]);
-    for ((time, one), (same_time, other)) in shown.iter().zip(&plain) {
-        // What comes and goes is summed up batch by batch, and batches differ.
-        let is_near = one.iter().zip(other).all(|(one, other)| (one - other).abs() <= 1e-9 * one.abs());
-        assert!(time == same_time && is_near, "{time} s: {one:?} {other:?}");
-    }
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(RUN, &gpu));
+    assert_gauges_alike(&mut shown, &mut plain, 1e-9);
 }
 
 /// Called back between two steps of the GPU, it has what the GPU came to.
 #[test]
 fn who_is_called_back_has_a_sound_state() {
     let Some(gpu) = require_gpu("a flood that is called back") else { return };
-    let [mut shown, mut plain] = [(); 2].map(|()| on_gpu(RUN, &gpu));
-    let mut rows = Rows(Vec::new(), 0.55);
+    let [mut shown, mut plain] = [(); 2].map(|()| flood(RUN, &gpu));
+    let mut rows = Rows::until(0.55);
     let stop = AtomicBool::new(false);
     shown.advance_shown(5.0, &stop, &mut rows, (0.0, true), &mut |glance| glance.frame.time + 0.03).unwrap();
     assert!((0.55..0.65).contains(&shown.time()), "{}", shown.time());
@@ -210,9 +144,5 @@ fn who_is_called_back_has_a_sound_state() {
 
 #[test]
 fn without_a_gpu_nobody_is_shown_anything() {
-    let mut flood = open(RUN);
-    assert!(flood.gpu().is_none() && flood.particles_on_gpu().unwrap().is_none());
-    let mut show = |_: Glance| panic!("there is no GPU");
-    flood.advance_shown(0.5, &AtomicBool::new(false), &mut (), (0.0, true), &mut show).unwrap();
-    assert!(flood.time() == 0.5 && flood.steps() > 0);
+    assert_shows_nothing(&mut common::voronoi(&common::scene(RUN)));
 }

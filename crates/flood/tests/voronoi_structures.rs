@@ -1,11 +1,10 @@
 //! Outflows by rating, held levels, culverts and weirs.
 
+mod common;
+
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::Model;
-use corpuscle_scene::Scene;
-use corpuscle_terrain::Terrain;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Two pools of 30 m by 30 m with a wall 6 m thick between them, and what `keys` add.
@@ -24,11 +23,7 @@ fn pools(depths: [f64; 2], spacing: f64, keys: &str) -> VoronoiFlood {
          obstacle = [{{ name = \"wall\", polygon = [[30, 0], [36, 0], [36, 30], [30, 30]] }}]\n{keys}",
         standing.join(", ")
     );
-    let mut scene = Scene::parse(&text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
-    VoronoiFlood::new(&scene.flood, 1, Path::new("."), terrain).unwrap()
+    common::voronoi(&common::scene(&text))
 }
 
 fn go(flood: &mut VoronoiFlood, time: f64) {
@@ -127,10 +122,7 @@ fn a_held_polygon_keeps_a_pool_at_its_level() {
 fn links_too_close_for_the_particles_are_refused() {
     let text = "run.until_s = 1\nterrain.plane = {}\n[flood]\nspacing_m = 10\n\
                 link = [{ name = \"pipe\", from = [500, 500], to = [510, 500], law = { culvert = { diameter_m = 1 } } }]";
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    let scene = scene.flood().unwrap();
-    let terrain = Arc::new(Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap());
-    let error = VoronoiFlood::new(&scene.flood, 1, Path::new("."), terrain).err().unwrap().to_string();
+    let scene = common::scene(text);
+    let error = VoronoiFlood::new(&scene.flood, 1, Path::new("."), common::terrain(&scene)).err().unwrap().to_string();
     assert!(error.contains("'pipe'") && error.contains("10.000 m apart"), "{error}");
 }

@@ -1,25 +1,15 @@
 //! Scheme voronoi: obstacles and walls cut cells.
 
+mod common;
+
 use corpuscle_flood::VoronoiFlood;
 use corpuscle_model::Model;
-use corpuscle_scene::{FloodScene, Scene};
 use corpuscle_terrain::{Bounds, Terrain};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-
-fn parse(text: &str) -> FloodScene {
-    let mut scene = Scene::parse(text, "test", &[]).unwrap();
-    scene.resolve_defaults();
-    scene.flood().unwrap().clone()
-}
-
-fn open(scene: &FloodScene, seed: u64) -> VoronoiFlood {
-    let terrain = Terrain::open(&scene.terrain, 1, Path::new(".")).unwrap();
-    VoronoiFlood::new(&scene.flood, seed, Path::new("."), Arc::new(terrain)).unwrap()
-}
 
 fn go(flood: &mut VoronoiFlood, time: f64) {
     flood.advance_to(time, &AtomicBool::new(false)).unwrap();
@@ -84,7 +74,7 @@ fn a_lake_round_obstacles_and_lines_on_a_rough_bed_stays_at_rest() {
         let heights: Vec<f64> = (0..61 * 37).map(|_| random.random_range(0.0..1.9)).collect();
         let ground = move |x: f64, y: f64| heights[(y as usize).min(36) * 61 + (x as usize).min(60)];
         let terrain = Arc::new(Terrain::gridded(bounds, 1.0, ground));
-        let scene = parse(&scene);
+        let scene = common::scene(&scene);
         let mut flood = VoronoiFlood::new(&scene.flood, seed, Path::new("."), terrain).unwrap();
         let covered: f64 = flood.wet_cells().map(|cell| cell.area).sum();
         assert!((covered + area - 60.0 * 36.0).abs() < 1e-9 * 60.0 * 36.0, "{}", covered + area - 60.0 * 36.0);
@@ -114,7 +104,7 @@ fn pools_beside_a_thin_wall_stay_apart() {
         } else {
             scene
         };
-        let mut flood = open(&parse(&scene), 1);
+        let mut flood = common::voronoi(&common::scene(&scene));
         let volume = |flood: &VoronoiFlood| {
             let west = flood.wet_cells().filter(|cell| cell.depth > 2.0);
             west.map(|cell| cell.area * cell.depth).sum::<f64>()
@@ -148,7 +138,7 @@ fn an_overtopped_levee_is_a_weir() {
          discharge_m3_per_s = 12\n[[flood.gauge]]\nname = \"pool\"\nat = [25, 10]\n[[flood.section]]\nname = \"below\"\nline = [[50, 0], [50, 20]]\n",
         plane(60.0, 20.0, 1.0)
     );
-    let mut flood = open(&parse(&scene), 1);
+    let mut flood = common::voronoi(&common::scene(&scene));
     go(&mut flood, 300.0);
     let head = gauge(&flood, "pool.level_m") - 2.0;
     let width = 2.0_f64.hypot(22.0) / 22.0 * 20.0;
@@ -170,7 +160,7 @@ fn discharge_of_street(spacing: f64, finer: &str) -> f64 {
          [[flood.section]]\nname = \"street\"\nline = [[20, 0], [20, 40]]\n{finer}",
         plane(90.0, 40.0, 1.0)
     );
-    let mut flood = open(&parse(&scene), 1);
+    let mut flood = common::voronoi(&common::scene(&scene));
     go(&mut flood, 200.0);
     let (mut sum, count) = (0.0, 20);
     for step in 1..=count {
@@ -206,11 +196,11 @@ fn no_water_comes_into_obstacles_on_any_number_of_threads() {
         "{}[flood]\nscheme = \"voronoi\"\nspacing_m = 1\nwater = [{{ level_m = 2, polygon = [[0, 0], [6, 0], [6, 24], [0, 24]] }}]\n{WALLS}\n{text}",
         plane(48.0, 24.0, 1.0)
     );
-    let scene = parse(&scene);
+    let scene = common::scene(&scene);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut flood = open(&scene, 1);
+            let mut flood = common::voronoi(&scene);
             go(&mut flood, 10.0);
             flood
         })
@@ -238,7 +228,7 @@ fn rain_on_roofs_runs_off() {
          [[8, 7], [30, 9], [28, 24], [7, 21]]\nheight_m = 5\n",
         plane(40.0, 30.0, 1.0)
     );
-    let mut flood = open(&parse(&scene), 1);
+    let mut flood = common::voronoi(&common::scene(&scene));
     go(&mut flood, 300.0);
     let exact = 0.1e-3 * flood.time() * 1200.0;
     let stored = gauge(&flood, "water.stored_m3");
@@ -267,8 +257,8 @@ fn odd_walls_never_panic() {
              \"g\"\nat = [20, 15]\n[[flood.obstacle]]\nname = \"a\"\n{wall}\n[[flood.obstacle]]\nname = \"b\"\n{wall}\n",
             plane(40.0, 30.0, 1.0)
         );
-        let terrain = Terrain::open(&parse(&scene).terrain, 1, Path::new(".")).unwrap();
-        match VoronoiFlood::new(&parse(&scene).flood, 1, Path::new("."), Arc::new(terrain)) {
+        let scene = common::scene(&scene);
+        match VoronoiFlood::new(&scene.flood, 1, Path::new("."), common::terrain(&scene)) {
             Ok(mut flood) => {
                 go(&mut flood, 3.0);
                 let error = flood.ledger().balances[0].relative_error();
