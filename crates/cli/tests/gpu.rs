@@ -35,12 +35,12 @@ fn the_gpu_refuses_what_it_does_not_compute_and_says_what_to_do() {
     let place = Place::new();
     place.write("lake.toml", LAKE);
     let local = ["--set", "flood.time_steps=local"];
-    let refused = place.run(&[&["run", "lake.toml", "--backend", "gpu", "-o", "GPU"][..], &local].concat());
+    let refused = place.run(&[&["run", "lake.toml", "--backend", "gpu", "-o", "gpu"][..], &local].concat());
     let refused = refused.expect_status(2);
     for words in ["local time steps run on the CPU only", "flood.time_steps"] {
         assert!(refused.stderr.contains(words), "{}", refused.stderr);
     }
-    assert!(!place.path("GPU").exists());
+    assert!(!place.path("gpu").exists());
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn dew_runs_on_the_gpu() {
     }
     let place = Place::new();
     let on_gpu = place
-        .run(&["run", "dew/pane", "--until", "0.06", "--backend", "gpu", "-o", "GPU", "--json"])
+        .run(&["run", "dew/pane", "--until", "0.06", "--backend", "gpu", "-o", "gpu", "--json"])
         .expect_status(0)
         .json();
     assert_eq!((&on_gpu["backend"], &on_gpu["status"]), (&"gpu".into(), &"done".into()));

@@ -21,9 +21,9 @@ pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain,
 /// # Errors
 /// [`Error::Fetch`], for which see there.
 #[cfg(feature = "fetch")]
-pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::FetchObserver) -> Result<u64, Error> {
+pub fn fetch_terrain(scene: &corpuscle_scene::Scene, observer: &corpuscle_fetch::FetchObserver) -> Result<u64, Error> {
     match scene.flood().map(|scene| &scene.terrain) {
-        Some(Scene::Fetch(scene)) => Ok(fetched(scene, watch)?.bytes),
+        Some(Scene::Fetch(scene)) => Ok(fetched(scene, observer)?.bytes),
         _ => Ok(0),
     }
 }
@@ -31,8 +31,8 @@ pub fn fetch_terrain(scene: &corpuscle_scene::Scene, watch: &corpuscle_fetch::Fe
 #[cfg(feature = "fetch")]
 fn fetched(
     scene: &corpuscle_scene::TerrainFetch,
-    watch: &corpuscle_fetch::FetchObserver,
+    observer: &corpuscle_fetch::FetchObserver,
 ) -> Result<corpuscle_fetch::Fetched, Error> {
     let part = corpuscle_terrain::MapBox::new(scene.bbox).map_err(corpuscle_fetch::FetchError::Box)?;
-    Ok(corpuscle_fetch::fetch(&corpuscle_fetch::Source::from_environment()?, &part, watch)?)
+    Ok(corpuscle_fetch::fetch(&corpuscle_fetch::Source::from_environment()?, &part, observer)?)
 }

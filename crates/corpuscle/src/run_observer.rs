@@ -54,7 +54,7 @@ pub(crate) struct RunObserver<'a, 'sink> {
     pub until: f64,
     pub meter: &'a Meter,
     pub on_progress: &'a mut dyn FnMut(&Progress),
-    pub keeping: CheckpointTimer,
+    pub checkpoints: CheckpointTimer,
     pub glances: Glances<'a>,
     /// What a sink failed with.
     pub failed: Option<Error>,
@@ -114,6 +114,6 @@ impl AdvanceObserver for SharedRunObserver<'_, '_, '_> {
     fn passed(&mut self, passed: ModelProgress) -> bool {
         let observer = &mut *self.0.borrow_mut();
         (observer.on_progress)(&observer.meter.progress(passed, observer.until));
-        observer.failed.is_none() && !observer.keeping.is_due()
+        observer.failed.is_none() && !observer.checkpoints.is_due()
     }
 }

@@ -59,7 +59,7 @@ impl Simulation {
         &*self.model
     }
 
-    /// The model, to be moved by hand.
+    /// The model, for live changes.
     pub fn model_mut(&mut self) -> &mut dyn Model {
         &mut *self.model
     }
@@ -184,20 +184,20 @@ impl Simulation {
             let Some(next) = due.min_by(f64::total_cmp) else {
                 return Ok(Status::Done);
             };
-            let keeping = CheckpointTimer { kept, every: keep_every };
+            let checkpoints = CheckpointTimer { kept, every: keep_every };
             let glances = Glances { due: &glances, seen };
-            let along = RunObserver {
+            let observer = RunObserver {
                 sinks,
                 gauges,
                 pauses,
                 until,
                 meter: &meter,
                 on_progress,
-                keeping,
+                checkpoints,
                 glances,
                 failed: None,
             };
-            seen = self.advance(next, stop, along)?.max(self.model.time());
+            seen = self.advance(next, stop, observer)?.max(self.model.time());
             let has_arrived = self.model.time() >= next;
             for (sink, picture) in sinks.iter_mut().zip(picture) {
                 if has_arrived && picture == Some(next) {
@@ -208,7 +208,7 @@ impl Simulation {
                 }
             }
             let stopped = self.model.time() < until && stop.load(Ordering::Relaxed);
-            if stopped || keeping.is_due() {
+            if stopped || checkpoints.is_due() {
                 self.keep(sinks, start)?;
                 kept = Instant::now();
             }
@@ -231,21 +231,21 @@ impl Simulation {
 
     /// Goes on to a time, s; gives up to when glances were given.
     #[cfg(feature = "pictures")]
-    fn advance(&mut self, time: f64, stop: &AtomicBool, along: RunObserver<'_, '_>) -> Result<f64, Error> {
-        let first = along.glances.next();
-        let along = RefCell::new(along);
-        let mut show = |glance| along.borrow_mut().show(&glance);
-        self.advance_shown(time, stop, &mut SharedRunObserver(&along), first, &mut show)?;
-        let RunObserver { glances, failed, .. } = along.into_inner();
+    fn advance(&mut self, time: f64, stop: &AtomicBool, observer: RunObserver<'_, '_>) -> Result<f64, Error> {
+        let first = observer.glances.next();
+        let observer = RefCell::new(observer);
+        let mut show = |glance| observer.borrow_mut().show(&glance);
+        self.advance_shown(time, stop, &mut SharedRunObserver(&observer), first, &mut show)?;
+        let RunObserver { glances, failed, .. } = observer.into_inner();
         // A model that was called back may stand a little before what it has shown.
         failed.map_or(Ok(glances.seen), Err)
     }
 
     #[cfg(not(feature = "pictures"))]
-    fn advance(&mut self, time: f64, stop: &AtomicBool, along: RunObserver<'_, '_>) -> Result<f64, Error> {
-        let along = RefCell::new(along);
-        self.model.advance_with(time, stop, &mut SharedRunObserver(&along))?;
-        let RunObserver { glances, failed, .. } = along.into_inner();
+    fn advance(&mut self, time: f64, stop: &AtomicBool, observer: RunObserver<'_, '_>) -> Result<f64, Error> {
+        let observer = RefCell::new(observer);
+        self.model.advance_with(time, stop, &mut SharedRunObserver(&observer))?;
+        let RunObserver { glances, failed, .. } = observer.into_inner();
         failed.map_or(Ok(glances.seen), Err)
     }
 

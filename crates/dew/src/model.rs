@@ -216,7 +216,7 @@ impl Model for Dew {
         }
         (self.shown, self.state) = (shown, state);
         self.set_evaporation();
-        self.take_hand();
+        self.apply_overrides();
         self.renew_gpu(self.has_been_touched())
     }
 }

@@ -302,7 +302,7 @@ impl Dew {
     }
 
     /// Drops take over what condensed, where it is their turn; there are so many particles of air.
-    pub(crate) fn tend_drops(&mut self, air: usize) {
+    pub(crate) fn update_drops(&mut self, air: usize) {
         let step = self.state.steps;
         let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
         wetting.step = step;

@@ -477,7 +477,7 @@ fn air_of_low_utility_is_found_round_a_ball_and_taken_out() {
 }
 
 #[test]
-fn what_a_hand_changes_changes_on_the_gpu() {
+fn live_changes_act_on_the_gpu() {
     let Some(gpu) = require_gpu("live changes on the GPU") else { return };
     let setup = ball(through_flow(), true);
     let changed = |mut dew: Dew| {

@@ -74,7 +74,7 @@ fn water_on(dew: &Dew) -> f64 {
 }
 
 #[test]
-fn a_pane_that_is_cooled_by_hand_fogs() {
+fn a_pane_that_is_cooled_live_fogs() {
     let cooled = LiveChange::SolidTemperature { solid: 0, celsius: 5.0 };
     let (left, cold) = (after(PANE, &[], 0.8), after(PANE, &[cooled], 0.8));
     assert!(water_on(&left) == 0.0 && water_on(&cold) > 1e-9, "{} {}", water_on(&left), water_on(&cold));
@@ -101,7 +101,7 @@ fn a_pane_that_is_free_is_given_its_heat() {
 }
 
 #[test]
-fn air_comes_in_as_a_hand_says() {
+fn air_comes_in_as_it_is_changed_live() {
     let face = [0, 1];
     let cold = LiveChange::SolidTemperature { solid: 0, celsius: 15.0 };
     let of = |changes: &[LiveChange]| {
@@ -123,7 +123,7 @@ fn air_comes_in_as_a_hand_says() {
 }
 
 #[test]
-fn a_fan_drives_as_a_hand_says() {
+fn a_fan_drives_as_it_is_changed_live() {
     // The fastest downwards where the fan is.
     let downwards = |dew: &Dew| {
         let within = |place: [f64; 3]| place[0] > 0.0075 && (0.006..0.012).contains(&place[2]);

@@ -1,4 +1,4 @@
-//! The observer of a fetch of terrain, by which it can be stopped.
+//! Progress of a fetch of terrain, and its cancellation.
 
 use std::fmt;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ pub struct FetchObserver {
 }
 
 impl FetchObserver {
-    /// No observer.
+    /// An observer that does nothing.
     pub fn none() -> Self {
         Self { stop: Arc::new(AtomicBool::new(false)), show: Arc::new(|_| {}) }
     }

@@ -373,7 +373,7 @@ fn a_lost_gpu_ends_with_an_error_and_the_state_of_before() {
 }
 
 #[test]
-fn what_a_hand_changes_is_changed_on_the_gpu() {
+fn live_changes_act_on_the_gpu() {
     let Some(gpu) = require_gpu("live changes on the GPU") else { return };
     let (mut host, mut device) = (open(RIVER), on_gpu(RIVER, &gpu));
     for flood in [&mut host, &mut device] {

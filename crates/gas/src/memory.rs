@@ -1,6 +1,6 @@
 //! Memory for large tables.
 //!
-//! Events come from all over the gas, one after the other: in pages of 4 KiB nearly every one of them misses in the processor's table of
+//! Events come from all over the gas, one after the other: in pages of 4 KiB nearly every one of them misses in the CPU's table of
 //! pages. Large pages are asked for where the system gives them.
 //! And what will be needed soon can be asked for ahead.
 

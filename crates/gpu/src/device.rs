@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GpuKind {
-    /// A GPU.
+    /// A GPU in hardware.
     Hardware,
     /// A program in its place, such as Mesa's lavapipe.
     Software,
@@ -51,7 +51,7 @@ impl Gpu {
     pub(crate) const TIMING: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
 
-    /// Opens the best device: a GPU of its own, then one built in, then software. The first that keeps to the portable floor
+    /// Opens the best device: a discrete GPU, then an integrated one, then software. The first that keeps to the portable floor
     /// is taken.
     ///
     /// # Errors

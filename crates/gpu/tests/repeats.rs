@@ -113,14 +113,14 @@ fn no_structure_stands_twice() {
 
 /// Structures that the device sees come from declarations, which give the WGSL too.
 #[test]
-fn no_structure_is_laid_out_live() {
+fn no_structure_is_laid_out_by_hand() {
     let shaders = sources("wgsl");
     let has_shaders = |source: &Source| shaders.iter().any(|shader| shader.of == source.of);
-    let is_by_hand = |source: &&Source| source.text.contains("repr(C)") && source.text.contains("Pod");
+    let is_handwritten = |source: &&Source| source.text.contains("repr(C)") && source.text.contains("Pod");
     let code = sources("rs");
-    let live_change = code.iter().filter(is_by_hand).filter(|source| has_shaders(source));
-    let live_change: Vec<_> = live_change.map(|source| &source.file).collect();
-    assert!(live_change.len() == 1 && live_change[0].ends_with("gpu/src/declare.rs"), "{live_change:#?}");
+    let handwritten = code.iter().filter(is_handwritten).filter(|source| has_shaders(source));
+    let handwritten: Vec<_> = handwritten.map(|source| &source.file).collect();
+    assert!(handwritten.len() == 1 && handwritten[0].ends_with("gpu/src/declare.rs"), "{handwritten:#?}");
 }
 
 /// Kernels of models, and of crates that only compute, get their bindings from declarations.

@@ -14,8 +14,7 @@ pub struct ModelProgress {
     pub particle_steps: u64,
 }
 
-/// Callbacks called while a model advances: one takes the rows of gauges that fall due, one the progress, by which it may have the model return
-/// early. A model that computes on a GPU need not bring its whole state back for them.
+/// Callbacks while a model advances: `gauges` takes the rows that fall due, `passed` the progress, and may have the model return early. A model that computes on a GPU need not bring its whole state back for them.
 pub trait AdvanceObserver {
     /// The first time after `time`, s, at which the gauges are to be read; none where there is none. It is asked for times to come as well, before
     /// the rows until then are taken.

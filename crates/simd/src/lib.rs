@@ -1,6 +1,6 @@
-//! Several numbers at once: vector instructions of the processor at hand, chosen at run time by `fearless_simd`.
+//! Several numbers at once: vector instructions of the CPU at hand, chosen at run time by `fearless_simd`.
 //!
-//! Every operation used here gives the same bits on every processor: no fused multiplication and addition, and sums in
+//! Every operation used here gives the same bits on every CPU: no fused multiplication and addition, and sums in
 //! one fixed order.
 
 #![warn(missing_docs)]

@@ -64,7 +64,7 @@ pub(crate) fn rounding(double: f64, single: f64) -> f64 {
     if is_gpu() { single } else { double }
 }
 
-/// Refuses what the GPU's program has not.
+/// Refuses what the GPU code does not compute.
 pub(crate) fn refuse_on_gpu(what: &str) -> Result<(), ModelError> {
     if is_gpu() { Err(ModelError::Setup(format!("the GPU cannot yet compute {what}"))) } else { Ok(()) }
 }

@@ -134,7 +134,7 @@ impl Glide<'_> {
     }
 }
 
-/// Goes along with the model.
+/// The observer of a glide.
 struct GlideObserver<'a, 'b>(&'a RefCell<Glide<'b>>);
 
 impl AdvanceObserver for GlideObserver<'_, '_> {

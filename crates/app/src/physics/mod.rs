@@ -39,7 +39,7 @@ pub(crate) fn round(value: f64) -> f64 {
 /// Where steps are taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
-    /// On the GPU that draws the window, where it is one and the scene is work for it.
+    /// On the device that draws the window, where that is a GPU and the scene is large enough.
     #[default]
     Auto,
     /// On the CPU.

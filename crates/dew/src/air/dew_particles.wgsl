@@ -48,13 +48,13 @@ fn unpacked_column(packed: PackedColumn) -> Column {
     return Column(a.xyz, a.w, b.xyz, b.w, c.xyz, c.w, d.xyz, d.w);
 }
 
-// e^T Q e of a tensor of a column for an offset. Twin of `factor` in `normalisation.rs`.
+// e^T Q e of a tensor of a column for an offset. Twin of `factor` in `normalisation/mod.rs`.
 fn factor(diagonal: vec3f, doubled: vec3f, offset: vec3f) -> f32 {
     let across = offset.xxy * offset.yzz;
     return (dot(diagonal, offset * offset) + dot(doubled, across)) / max(dot(offset, offset), 1e-30);
 }
 
-// Temperature from that at which the air's properties are as told, K.
+// Temperature from that at which the air's properties are as uploaded, K.
 fn from_reference(temperature: f32) -> f32 {
     return temperature - parameters.reference;
 }

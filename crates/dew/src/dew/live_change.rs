@@ -1,6 +1,6 @@
 //! Live changes of dew: what is changed while it runs.
 //!
-//! A change holds from the end of the last step on, at most one step before the time shown. The energy that solids get by them is booked.
+//! A change holds from the end of the last step on, at most one step before the time shown. The energy that solids get by live changes is booked.
 
 use super::{COLD, Dew, SourceChange, State};
 use crate::fan::Fan;
@@ -70,7 +70,7 @@ pub enum LiveChange {
     Source(SourceChange),
 }
 
-/// All that live changes can change, as it is.
+/// All values that live changes can set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Overrides {
     room: Room,
@@ -277,7 +277,7 @@ impl Dew {
     }
 
     /// All is as the state's overrides say, or as it was set up where there are none.
-    pub(crate) fn take_hand(&mut self) {
+    pub(crate) fn apply_overrides(&mut self) {
         let Some(overrides) = self.state.overrides.clone().or_else(|| self.as_set_up.clone()) else { return };
         if self.as_set_up.is_none() {
             self.as_set_up = Some(self.as_it_is());

@@ -84,7 +84,7 @@ pub struct Dew {
     pub(crate) evaporation: Vec<f64>,
     /// Whether air rises and sinks by its warmth and vapour.
     pub(crate) buoyant: bool,
-    /// What live changes can change, as it was set up, once one has.
+    /// The values before the first live change; none before it.
     as_set_up: Option<Overrides>,
     /// The GPU, where it takes the steps.
     #[cfg(feature = "gpu")]
@@ -119,7 +119,7 @@ pub(crate) struct State {
     pub inlet_phase: [[f64; 2]; 3],
     pub water: Account,
     pub energy: Account,
-    /// What live changes can change, once one has.
+    /// The values after live changes; none where there was none.
     pub overrides: Option<Overrides>,
     /// What all air of a closed room is still to gain for accelerated time: temperature, K, and vapour, part of the mass.
     #[serde(default)]
@@ -271,7 +271,7 @@ impl Dew {
         self.state.steps += 1;
         self.state.particle_steps += self.state.air.len() as u64;
         self.hold();
-        self.tend_drops(self.state.air.len());
+        self.update_drops(self.state.air.len());
         let next = self.next_step(&self.work.stiff, extremes);
         self.state.time_step = next;
         self.check_step(extremes.speed_squared.sqrt(), step, next)

@@ -42,7 +42,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let site = own[i];
     let solid = solids[i];
-    let water = max(waters[i].told + total(waters[i].gained), 0.0);
+    let water = max(waters[i].uploaded + total(waters[i].gained), 0.0);
     var surface = Surface(total(solid.temperature), water, 1.0, 0.0, 0.0, 0.0, 0.0, waters[i].evaporation);
     if (site.flags & NEAR_SURFACE) != 0u {
         let sums = from_air(site, surface);

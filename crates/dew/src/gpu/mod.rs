@@ -43,10 +43,10 @@ pub(crate) struct GpuSolver {
     rows: Vec<[f64; 2]>,
     status: Status,
     /// The time of the state that was sent, s.
-    sent_at: f64,
+    uploaded_at: f64,
     /// Particles that there is room for.
     room: usize,
-    /// Water on the particles of the solids when it was last told, kg.
+    /// Water on the particles of the solids when it was last uploaded, kg.
     water_uploaded: Vec<f64>,
     /// Heat that came from each solid until the last batch, J.
     held_before: Vec<f64>,
@@ -138,7 +138,7 @@ impl GpuSolver {
             rows,
             // One more cell holds what has gone.
             status: Status { cells, ..Status::zeroed() },
-            sent_at: 0.0,
+            uploaded_at: 0.0,
             room,
             water_uploaded: vec![0.0; of_solids],
             held_before,
@@ -202,19 +202,19 @@ impl GpuSolver {
         };
         // Who draws before the first step reads it too.
         self.batches.gpu().queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
-        self.sent_at = state.time;
+        self.uploaded_at = state.time;
         self.ahead = false;
     }
 
-    /// Tells the water on the particles of the solids, kg, where drops have moved, and what part of the evaporation of a wet surface it lets go.
+    /// Uploads the water on the particles of the solids, kg, where drops have moved, and what part of the evaporation of a wet surface it lets go.
     pub fn upload_water(&mut self, water: &[f64], evaporation: &[f64]) {
-        let tell = |(&water, &evaporation): (&f64, &f64)| shared::Water {
-            told: water as f32,
+        let packed = |(&water, &evaporation): (&f64, &f64)| shared::Water {
+            uploaded: water as f32,
             evaporation: evaporation as f32,
             ..shared::Water::default()
         };
-        let told: Vec<shared::Water> = water.iter().zip(evaporation).map(tell).collect();
-        self.batches.gpu().queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&told));
+        let uploaded: Vec<shared::Water> = water.iter().zip(evaporation).map(packed).collect();
+        self.batches.gpu().queue.write_buffer(&self.tasks.memory.waters, 0, bytemuck::cast_slice(&uploaded));
         self.water_uploaded.clear();
         self.water_uploaded.extend_from_slice(water);
     }
@@ -225,7 +225,7 @@ impl GpuSolver {
             read(self.batches.gpu(), &self.tasks.memory.waters, self.water_uploaded.len())?;
         water.clear();
         // What rounding leaves of the last of the water is nothing.
-        let now = |(told, water): (&f64, &shared::Water)| (told + from_pair(water.gained)).max(0.0);
+        let now = |(uploaded, water): (&f64, &shared::Water)| (uploaded + from_pair(water.gained)).max(0.0);
         water.extend(self.water_uploaded.iter().zip(&waters).map(now));
         Ok(())
     }
@@ -268,7 +268,7 @@ impl GpuSolver {
             particles: self.status.particles,
             cells: self.status.cells,
             step: self.status.step,
-            until: to_pair(until - self.sent_at),
+            until: to_pair(until - self.uploaded_at),
             next_id: self.status.next_id,
             phase: self.status.phase,
             density_excess_beyond: self.status.density_excess_beyond,
@@ -298,7 +298,7 @@ impl GpuSolver {
 
     /// Time at the end of the last step, s.
     fn time(&self) -> f64 {
-        self.sent_at + from_pair(self.status.time)
+        self.uploaded_at + from_pair(self.status.time)
     }
 
     /// Loses the device where it is time.
@@ -332,7 +332,7 @@ impl GpuSolver {
             held_heat,
             supplied,
             drift: self.status.drift.map(f64::from),
-            utility_seen: self.sent_at + from_pair(self.status.seen),
+            utility_seen: self.uploaded_at + from_pair(self.status.seen),
             inlet_phase: [0, 1, 2].map(|axis| [phase(axis, 0), phase(axis, 1)]),
             density_excess_beyond: wide(self.status.density_excess_beyond),
             running_mean_before: wide(self.status.running_mean_before),

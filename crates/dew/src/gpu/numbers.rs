@@ -26,7 +26,7 @@ fn narrow(vector: [f64; 3]) -> [f32; 3] {
 
 /// The fans of a model, and room for more.
 pub(super) fn gpu_fans(dew: &Dew, origin: Origin) -> [shared::Fan; MOST_FANS as usize] {
-    let told = |fan: &Fan| {
+    let packed = |fan: &Fan| {
         let [low, high] = fan.corners();
         shared::Fan {
             low: origin.relative(low),
@@ -37,7 +37,7 @@ pub(super) fn gpu_fans(dew: &Dew, origin: Origin) -> [shared::Fan; MOST_FANS as 
             unused: 0.0,
         }
     };
-    std::array::from_fn(|number| dew.fans.get(number).map_or_else(shared::Fan::default, told))
+    std::array::from_fn(|number| dew.fans.get(number).map_or_else(shared::Fan::default, packed))
 }
 
 impl Parameters {

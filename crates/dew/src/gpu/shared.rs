@@ -257,7 +257,7 @@ corpuscle_gpu::declare! {
             pub conductivity_per_kelvin: f32,
             /// Of the diffusivity of vapour, 1/K.
             pub diffusivity_per_kelvin: f32,
-            /// Temperature at which properties are as told, from the ambient air's, K.
+            /// Temperature at which properties are as uploaded, from the ambient air's, K.
             pub reference: f32,
             /// By low and high x, y, z.
             pub inlets: [Inlet; 6],
@@ -293,7 +293,7 @@ corpuscle_gpu::declare! {
             pub unused: [f32; 2],
         }
 
-        /// A particle as it lies in memory: devices read sixteen bytes at a time where they are told so, and a [`Particle`] member by member.
+        /// A particle as it lies in memory: devices read sixteen bytes at a time where they are uploaded so, and a [`Particle`] member by member.
         pub struct Packed {
             /// See [`Particle`].
             pub place_and_density: [f32; 4],
@@ -389,8 +389,8 @@ corpuscle_gpu::declare! {
 
         /// Water on a particle of a solid.
         pub struct Water {
-            /// When the host last told, kg.
-            pub told: f32,
+            /// When the host last uploaded, kg.
+            pub uploaded: f32,
             /// Part of the evaporation of a wet surface that it lets go.
             pub evaporation: f32,
             /// Gained since, kg.

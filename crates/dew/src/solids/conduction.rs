@@ -24,7 +24,7 @@ impl Conduction {
     /// Finds the pairs.
     ///
     /// dT_i/dt = (1/(rho_i c_i)) sum_j V_j k_ij (T_j - T_i) lap W_ij (Cleary & Monaghan 1999 with the viscosity kernel's
-    /// Laplacian), normalised where the particles stand as they do: see `normalisation.rs`.
+    /// Laplacian), normalised where the particles stand as they do: see `normalisation/mod.rs`.
     pub fn new(solids: &Solids, room: &Room, scale: &Scale, mean: Mean) -> Self {
         let h = scale.h();
         let all = Searched::new(&solids.sites(room, h, |_| true), h);

@@ -88,7 +88,7 @@ impl SphSweFlood {
     }
 
     /// All is as the state's overrides say.
-    pub(super) fn take_hand(&mut self) -> Result<(), ModelError> {
+    pub(super) fn apply_overrides(&mut self) -> Result<(), ModelError> {
         let overrides = self.state.overrides.clone();
         for (inflow, rows) in overrides.discharges {
             let table = load(&Series::Table(rows), Path::new(""))?;

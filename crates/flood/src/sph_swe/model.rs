@@ -169,7 +169,7 @@ impl Model for SphSweFlood {
         let is_changed = self.state.overrides != Overrides::default() || state.overrides != Overrides::default();
         self.clear_overrides();
         (self.shown, self.state) = (shown, state);
-        self.take_hand()?;
+        self.apply_overrides()?;
         self.arrange();
         if is_changed {
             return self.renew_gpu();

@@ -1,4 +1,4 @@
-//! What a user changes of a flood while it runs.
+//! Live changes of a flood of scheme voronoi.
 //!
 //! A change holds from the end of the last step on. What comes and goes by it is booked as all other water is.
 

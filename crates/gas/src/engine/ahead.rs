@@ -10,7 +10,7 @@ use super::grid::Grid;
 use crate::memory::prefetch;
 use crate::world::{Ball, NONE};
 
-/// From this number of balls on looking ahead pays: fewer are found in a processor's own cache (2 MiB is usual) often enough.
+/// From this number of balls on looking ahead pays: fewer are found in a CPU's own cache (2 MiB is usual) often enough.
 pub(super) const MANY: usize = 50_000;
 
 /// How many buckets behind the front are looked into. Too many, and what was asked for is thrown out again before it is used.

@@ -57,7 +57,7 @@ impl<const D: usize> Gas<D> {
         if let Some(time) = self.setup.reversed_at.filter(|_| !self.reversed) {
             offer(time, Due::Reverse);
         }
-        self.hand.due().for_each(|(time, due)| offer(time, due));
+        self.live.due().for_each(|(time, due)| offer(time, due));
         if let Some(every) = self.setup.measure.every {
             offer(self.next_look as f64 * every, Due::Look);
         }

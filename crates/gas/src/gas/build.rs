@@ -54,7 +54,7 @@ impl<const D: usize> Gas<D> {
             shown: 0.0,
             checked: (0.0, 0),
             si: false,
-            hand: Default::default(),
+            live: Default::default(),
         };
         gas.initial = [gas.energy(), gas.momentum().iter().sum()];
         Ok(gas)

@@ -39,7 +39,7 @@ pub struct Gas<const D: usize> {
     checked: (f64, u64),
     si: bool,
     /// What live changes added and removed.
-    hand: LiveTally,
+    live: LiveTally,
 }
 
 /// Balls of one name.
@@ -67,7 +67,7 @@ enum Due {
     Reverse,
     /// A piston that is dragged is where it is to be.
     Arrive(usize),
-    /// A temperature that is held live.
+    /// The thermostat scales velocities.
     Regulate,
     Look,
 }

@@ -112,8 +112,8 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let gained: f64 = world.wall_tallies.iter().map(|tally| tally.gained.value()).sum();
         let lost: f64 = world.wall_tallies.iter().map(|tally| tally.lost.value()).sum();
-        let gained = gained + self.hand.gained.value();
-        let outflow = lost + world.tally.dissipated.value() + self.hand.lost.value();
+        let gained = gained + self.live.gained.value();
+        let outflow = lost + world.tally.dissipated.value() + self.live.lost.value();
         let quantity = if self.si { "energy_J" } else { "energy" };
         Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy(), least: 0.0 }
     }
@@ -125,7 +125,7 @@ impl<const D: usize> Gas<D> {
         for tally in &world.wall_tallies {
             book(-tally.momentum.value() + tally.dragged.value());
         }
-        book(self.hand.momentum.value());
+        book(self.live.momentum.value());
         let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
         world.field.gravity.iter().for_each(|gravity| book(mass * gravity * self.shown));
         let now: f64 = self.momentum().iter().sum();
@@ -236,7 +236,7 @@ impl<const D: usize> Model for Gas<D> {
 
     fn ledger(&self) -> Ledger {
         let mut balances = vec![self.energy_balance(), self.momentum_balance()];
-        let (added, removed) = (self.hand.added as f64, self.hand.removed as f64);
+        let (added, removed) = (self.live.added as f64, self.live.removed as f64);
         if added + removed > 0.0 {
             let now = self.len() as f64;
             let initial = now - added + removed;

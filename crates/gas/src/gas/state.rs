@@ -25,7 +25,7 @@ struct State {
     initial: [f64; 2],
     shown: f64,
     checked: (f64, u64),
-    hand: LiveTally,
+    live: LiveTally,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -76,7 +76,7 @@ impl<const D: usize> Gas<D> {
             initial: self.initial,
             shown: self.shown,
             checked: self.checked,
-            hand: self.hand.clone(),
+            live: self.live.clone(),
         };
         postcard::to_stdvec(&state).unwrap_or_default()
     }
@@ -89,9 +89,9 @@ impl<const D: usize> Gas<D> {
         if state.dimensions != D || state.knots.len() != self.plans.len() {
             return Err(other());
         }
-        // Balls may have been put in and taken out live since the start.
-        let at_the_start = |balls: usize, hand: &LiveTally| (balls as u64 + hand.removed).checked_sub(hand.added);
-        if at_the_start(self.len(), &self.hand) != at_the_start(state.world.time.len(), &state.hand) {
+        // Balls may have been put in and taken out by live changes since the start.
+        let at_the_start = |balls: usize, live: &LiveTally| (balls as u64 + live.removed).checked_sub(live.added);
+        if at_the_start(self.len(), &self.live) != at_the_start(state.world.time.len(), &state.live) {
             return Err(other());
         }
         state.world.put_into(self.mover.world_mut()).ok_or_else(other)?;
@@ -111,7 +111,7 @@ impl<const D: usize> Gas<D> {
         }
         (self.lifted, self.reversed, self.next_look) = (state.lifted, state.reversed, state.next_look);
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
-        (self.checked, self.hand) = (state.checked, state.hand);
+        (self.checked, self.live) = (state.checked, state.live);
         Ok(())
     }
 }

@@ -83,7 +83,7 @@ impl BallPainter {
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
         let layout = layout(gpu);
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "balls",
             module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -92,12 +92,15 @@ impl BallPainter {
         };
         let seen = SeenPainter::new(renderer, &layout).into();
         Self {
-            opaque: recipe.opaque(gpu),
-            cast: recipe.cast(gpu, "throw_shadow"),
-            matt: PipelineDescriptor { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..recipe }
+            opaque: descriptor.opaque(gpu),
+            cast: descriptor.cast(gpu, "throw_shadow"),
+            matt: PipelineDescriptor { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..descriptor }
                 .opaque(gpu),
-            discs: PipelineDescriptor { module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")), ..recipe }
-                .opaque(gpu),
+            discs: PipelineDescriptor {
+                module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")),
+                ..descriptor
+            }
+            .opaque(gpu),
             layout,
             seen,
             maker: OnceLock::new(),

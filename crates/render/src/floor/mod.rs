@@ -32,7 +32,7 @@ impl Floor {
                 count: None,
             }],
         });
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "floor",
             module: &shaders::module(gpu, "floor", include_str!("floor.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -45,7 +45,7 @@ impl Floor {
             layout: &layout,
             entries: &[wgpu::BindGroupEntry { binding: 0, resource: place.as_entire_binding() }],
         });
-        Self { pipeline: recipe.opaque(gpu), group, place, height, state: static_layer::new_state() }
+        Self { pipeline: descriptor.opaque(gpu), group, place, height, state: static_layer::new_state() }
     }
 
     /// Moves it to another height, m.

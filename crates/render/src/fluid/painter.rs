@@ -124,7 +124,7 @@ fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLa
     let attributes = layout.vertex_attributes();
     let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
     let groups = [view, settings];
-    let recipe = |label, module| PipelineDescriptor {
+    let descriptor = |label, module| PipelineDescriptor {
         label,
         module,
         groups: &groups,
@@ -133,5 +133,5 @@ fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLa
     };
     let nearest = shaders::module(gpu, "fluid_depth", include_str!("fluid_depth.wgsl"));
     let added = shaders::module(gpu, "fluid_thickness", include_str!("fluid_thickness.wgsl"));
-    [recipe("depth", &nearest).nearest(gpu, DISTANCE), recipe("thickness", &added).added(gpu, THICKNESS)]
+    [descriptor("depth", &nearest).nearest(gpu, DISTANCE), descriptor("thickness", &added).added(gpu, THICKNESS)]
 }

@@ -35,14 +35,14 @@ impl WaterSides {
         let gpu = renderer.gpu();
         let layout = Vertex::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "sides of water",
             module: &shaders::module(gpu, "sides", include_str!("sides.wgsl")),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Vertex, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        Self { pipeline: recipe.opaque(gpu), stage: *stage, buffer: None }
+        Self { pipeline: descriptor.opaque(gpu), stage: *stage, buffer: None }
     }
 
     /// Takes the water of these particles at the borders of this ground instead of that before.

@@ -121,7 +121,7 @@ impl Solid {
             false => ("solids", include_str!("solids.wgsl")),
         };
         let (opaque, glass) = ([renderer.view_layout(), &layout], [renderer.view_layout(), &layout, &behind.layout]);
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: name,
             module: &shaders::module(gpu, name, text),
             groups: if is_glass { &glass } else { &opaque },
@@ -129,8 +129,8 @@ impl Solid {
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
         Self {
-            pipeline: recipe.opaque(gpu),
-            cast: (!is_glass).then(|| recipe.cast(gpu, "throw_shadow")),
+            pipeline: descriptor.opaque(gpu),
+            cast: (!is_glass).then(|| descriptor.cast(gpu, "throw_shadow")),
             group,
             buffer: instances(gpu, "solid", &vertices),
             count: vertices.len() as u32,

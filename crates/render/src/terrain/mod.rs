@@ -58,7 +58,7 @@ impl Terrain {
         let gpu = renderer.gpu();
         let layout = layout(gpu);
         let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "terrain",
             module: &shaders::module(gpu, "terrain", include_str!("terrain.wgsl")),
             groups: &[renderer.view_layout(), &layout],
@@ -79,11 +79,11 @@ impl Terrain {
         let shape = [upload_heights(gpu, stage, &field)?, upload_slopes(gpu, &field)?];
         let colours = upload_colours(gpu, colours)?;
         Ok(Self {
-            opaque: recipe.opaque(gpu),
-            plain: recipe.opaque_by(gpu, "fragment_plain"),
+            opaque: descriptor.opaque(gpu),
+            plain: descriptor.opaque_by(gpu, "fragment_plain"),
             quick: false,
             state: static_layer::new_state(),
-            cast: recipe.cast(gpu, "throw_shadow"),
+            cast: descriptor.cast(gpu, "throw_shadow"),
             group: group(gpu, &layout, &settings, &shape, &colours),
             layout,
             settings,

@@ -23,7 +23,7 @@ impl Walls {
         let gpu = renderer.gpu();
         let layout = Vertex::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "sides of the ground",
             module: &shaders::module(gpu, "walls", include_str!("walls.wgsl")),
             groups: &[renderer.view_layout()],
@@ -32,8 +32,8 @@ impl Walls {
         };
         let all = vertices(stage, field, base);
         Self {
-            opaque: recipe.opaque(gpu),
-            cast: recipe.cast(gpu, "throw_shadow"),
+            opaque: descriptor.opaque(gpu),
+            cast: descriptor.cast(gpu, "throw_shadow"),
             buffer: instances(gpu, "sides of the ground", &all),
             count: all.len() as u32,
         }

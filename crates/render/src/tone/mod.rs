@@ -32,14 +32,14 @@ impl Tone {
             label: Some("tone"),
             entries: &[entry(0, uniform), entry(1, texture), entry(2, texture)],
         });
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "tone",
             module: &shaders::module(gpu, "tone", include_str!("tone.wgsl")),
             groups: &[&layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
-        Self { pipeline: recipe.flat(gpu, PICTURE_FORMAT), layout }
+        Self { pipeline: descriptor.flat(gpu, PICTURE_FORMAT), layout }
     }
 
     /// Draws the finished picture. `pressed` is false where colours are to stay as they are. The overlay has the picture's size and its

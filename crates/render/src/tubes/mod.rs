@@ -42,14 +42,14 @@ impl TubePainter {
         let gpu = renderer.gpu();
         let layout = TubeInstance::layout();
         let attributes = layout.vertex_attributes();
-        let recipe = PipelineDescriptor {
+        let descriptor = PipelineDescriptor {
             label: "tubes",
             module: &shaders::module(gpu, "tubes", include_str!("tubes.wgsl")),
             groups: &[renderer.view_layout()],
             buffers: &[buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         };
-        Self { opaque: recipe.opaque(gpu), cast: recipe.cast(gpu, "throw_shadow") }
+        Self { opaque: descriptor.opaque(gpu), cast: descriptor.cast(gpu, "throw_shadow") }
     }
 
     /// Tubes along lines through points, m. A point that is not a number parts a line.

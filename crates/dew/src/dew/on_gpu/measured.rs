@@ -5,7 +5,7 @@ use corpuscle_model::{AdvanceObserver, Model, ModelError, ModelProgress};
 use std::sync::atomic::AtomicBool;
 
 impl Dew {
-    /// [`Model::advance_with`] on the GPU, which is shown where frames are wanted. Where gauges tell how near the air comes to walls, all of it comes back for them.
+    /// [`Model::advance_with`] on the GPU, with frames where they are wanted. Where gauges tell how near the air comes to walls, all of it comes back for them.
     pub(crate) fn advance_measured(
         &mut self,
         time: f64,
@@ -13,7 +13,7 @@ impl Dew {
         observer: &mut dyn AdvanceObserver,
         mut frame_request: Option<FrameRequest<'_>>,
     ) -> Result<(), ModelError> {
-        self.advance_and_fetch(|dew| {
+        self.advance_and_download(|dew| {
             while dew.shown < time {
                 dew.show_to(&mut frame_request)?;
                 let now = dew.shown;

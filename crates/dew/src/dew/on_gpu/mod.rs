@@ -133,11 +133,11 @@ impl Dew {
             self.shown = time;
             return Ok(());
         }
-        self.advance_and_fetch(|dew| dew.go_on_gpu(time, stop))
+        self.advance_and_download(|dew| dew.go_on_gpu(time, stop))
     }
 
     /// Brings the state back after steps that may break down. Where the GPU fails, it is that of before.
-    fn advance_and_fetch(
+    fn advance_and_download(
         &mut self,
         advance: impl FnOnce(&mut Self) -> Result<Option<ModelError>, GpuError>,
     ) -> Result<(), ModelError> {
@@ -170,7 +170,7 @@ impl Dew {
             let most = self.steps_to_drops();
             let Some(solver) = &mut self.gpu_solver else { break };
             let progress = solver.advance(time, most)?;
-            self.book_progress(&progress);
+            self.book_batch(&progress);
             self.update_drops_beside_gpu()?;
             if progress.broken {
                 let last = if progress.steps > 0 { progress.last_step } else { progress.step };
@@ -206,7 +206,7 @@ impl Dew {
         }
     }
 
-    /// Drops take over what condensed, where it is their turn, and the GPU is told what water there is then.
+    /// Drops take over what condensed, where it is their turn, and the water is uploaded.
     fn update_drops_beside_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         let [air, _] = solver.filling();
@@ -218,7 +218,7 @@ impl Dew {
             return Ok(());
         }
         solver.download_water(&mut self.state.water_on)?;
-        self.tend_drops(air);
+        self.update_drops(air);
         if let Some(solver) = &mut self.gpu_solver {
             solver.upload_water(&self.state.water_on, &self.evaporation);
         }
@@ -238,7 +238,7 @@ impl Dew {
         Ok(())
     }
 
-    fn book_progress(&mut self, progress: &BatchResult) {
+    fn book_batch(&mut self, progress: &BatchResult) {
         let mass = self.particle_mass();
         let (heat_capacity, latent_heat) = (self.air.heat_capacity, self.latent_heat);
         let State { water, energy, held_heat, supplied, .. } = &mut self.state;

@@ -17,10 +17,10 @@ impl OnGpu {
         self.steps.is_multiple_of(LAID_OUT) && self.particles() + births(horizon) > self.room
     }
 
-    /// Takes some steps, through all of a span at most. Nothing comes back between two steps. Gives what was done, and of the rows of gauges that are due those
+    /// Takes some steps, through all of a request at most. Nothing comes back between two steps. Gives what was done, and of the rows of gauges that are due those
     /// that were passed.
-    pub fn advance(&mut self, span: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
-        let BatchRequest { until, most, look, looks, looked, births, due } = span;
+    pub fn advance(&mut self, request: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
+        let BatchRequest { until, most, look, looks, looked, births, due } = request;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             self.clock_began = self.time();

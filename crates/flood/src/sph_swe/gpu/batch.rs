@@ -9,7 +9,7 @@ pub(crate) struct Birth {
     pub velocity: [f64; 2],
 }
 
-/// What a batch of steps is asked for, in s.
+/// A request for a batch of steps; times in s.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BatchRequest<'a> {
     pub until: f64,

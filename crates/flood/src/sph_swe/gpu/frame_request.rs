@@ -5,16 +5,16 @@ use crate::sph_swe::SphSweFlood;
 use corpuscle_gpu::GpuError;
 use corpuscle_model::{Frame, Glance};
 
-/// Who looks at the particles on the GPU.
+/// A request for frames of the particles on the GPU.
 pub(crate) struct FrameRequest<'a> {
-    /// When it wants to see them, s: at the end of the next step if that has passed.
+    /// When the next is wanted, s: at the end of the next step if that has passed.
     pub wanted: f64,
-    /// Is called with the time, s, and the particles; returns when it wants to see them next, s.
+    /// Is called with the time, s, and the particles; returns when the next is wanted, s.
     pub show: &'a mut dyn FnMut(Glance) -> f64,
 }
 
 impl SphSweFlood {
-    /// Shows the particles, as the GPU has them after a step that ended at `now`, to who wants to see them before `before`, s.
+    /// Shows the particles, as the GPU has them after a step that ended at `now`, where a frame is wanted before `before`, s.
     pub(super) fn show_to(&self, observers: &mut Observers<'_>, now: f64, before: f64) -> Result<(), GpuError> {
         let (Some(on_gpu), Some(frame_request)) = (&self.on_gpu, &mut observers.frame_request) else { return Ok(()) };
         let mut is_first = true;

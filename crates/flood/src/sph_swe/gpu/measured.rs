@@ -17,7 +17,7 @@ pub(in crate::sph_swe) struct Observers<'a> {
     pub observer: Option<&'a mut dyn AdvanceObserver>,
     /// The time of the last row of gauges that was taken, or from which they are to be, s.
     pub told: f64,
-    /// Whether the observer has the model return.
+    /// Whether the model is to return.
     pub call_back: bool,
 }
 

@@ -29,7 +29,7 @@ use corpuscle_terrain::Bounds;
 use obstacles::GpuObstacles;
 use seen::Seen;
 use shared::{Parameters, Status};
-use state::ObstacleForces;
+use state::ObstacleTotals;
 use std::sync::OnceLock;
 use tasks::Tasks;
 use upload::{GpuInputs, Origin};
@@ -69,7 +69,7 @@ pub(super) struct OnGpu {
     /// Whether the host has not the state that is here.
     ahead: bool,
     /// As it was when the water was handed over.
-    done_before: ObstacleForces,
+    totals_before: ObstacleTotals,
 }
 
 impl OnGpu {
@@ -77,10 +77,10 @@ impl OnGpu {
     ///
     /// # Errors
     /// [`GpuError::Memory`], [`GpuError::TooMany`].
-    pub fn new(gpu: Gpu, count: usize, setting: &GpuInputs<'_>) -> Result<Self, GpuError> {
+    pub fn new(gpu: Gpu, count: usize, inputs: &GpuInputs<'_>) -> Result<Self, GpuError> {
         let most_cells = (CELLS_A_PARTICLE * count).clamp(FEWEST_CELLS, MOST_CELLS);
-        let uploaded = setting.upload(&gpu, count, most_cells)?;
-        let (tasks, parameters) = (Tasks::new(&gpu, uploaded.memory, uploaded.sort, setting), uploaded.parameters);
+        let uploaded = inputs.upload(&gpu, count, most_cells)?;
+        let (tasks, parameters) = (Tasks::new(&gpu, uploaded.memory, uploaded.sort, inputs), uploaded.parameters);
         Ok(Self {
             batches: Batches::new(gpu, "sph-swe"),
             tasks,
@@ -89,15 +89,15 @@ impl OnGpu {
             seen: OnceLock::new(),
             parameters,
             origin: uploaded.origin,
-            bounds: setting.surroundings.edges.bounds,
+            bounds: inputs.surroundings.edges.bounds,
             status: Status::default(),
             room: count,
-            room_in_air: setting.falling,
+            room_in_air: inputs.falling,
             most_cells,
             steps: 0,
             clock_began: 0.0,
             ahead: false,
-            done_before: ObstacleForces::default(),
+            totals_before: ObstacleTotals::default(),
         })
     }
 

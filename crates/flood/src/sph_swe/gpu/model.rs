@@ -89,7 +89,7 @@ impl SphSweFlood {
     /// The same with room for so many particles.
     pub(super) fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let scheme = self.parameters();
-        let setting = GpuInputs {
+        let inputs = GpuInputs {
             surroundings: &self.surroundings,
             scheme: &scheme,
             falling: self.state.falling.len(),
@@ -102,7 +102,7 @@ impl SphSweFlood {
             h: self.h,
             spacing: self.spacing,
         };
-        let mut on_gpu = OnGpu::new(gpu, room, &setting)?;
+        let mut on_gpu = OnGpu::new(gpu, room, &inputs)?;
         if !self.looks_for_overtopping() {
             on_gpu.keep_maps(&self.surroundings.terrain, &self.surroundings.obstacles, &self.state.maps)?;
         }
@@ -221,8 +221,8 @@ impl SphSweFlood {
             let (target, most) = observers.steps_to_look(now, until);
             let Some(on_gpu) = &mut self.on_gpu else { break };
             let look = looks.last().copied().unwrap_or(look);
-            let span = BatchRequest { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
-            let (mut progress, mut readings) = on_gpu.advance(span).map_err(|error| failed(&error))?;
+            let request = BatchRequest { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
+            let (mut progress, mut readings) = on_gpu.advance(request).map_err(|error| failed(&error))?;
             let particles = on_gpu.particles();
             if !readings.iter().all(Reading::is_sound) {
                 progress.broken = true;
@@ -334,7 +334,7 @@ fn times(discharge: &Table, owed: f64, volume: f64, from: f64, until: f64) -> Ve
     let mut earliest = from;
     let time = |number: usize| {
         let (mut low, mut high) = (earliest, until);
-        // To a billionth of the span.
+        // To a billionth of the request.
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
             *if come(middle) >= number as f64 * volume { &mut high } else { &mut low } = middle;

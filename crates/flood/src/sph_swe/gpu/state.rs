@@ -29,7 +29,7 @@ pub(crate) struct Water<'a> {
 
 /// What the water has done to obstacles.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ObstacleForces {
+pub(crate) struct ObstacleTotals {
     /// Force on each now, over the density of water, m4/s2.
     pub forces: Vec<[f64; 2]>,
     /// Its sum over time, m4/s.
@@ -53,7 +53,7 @@ impl OnGpu {
         let sent: Vec<Packed> = particles.iter().map(|particle| self.origin.packed(particle)).collect();
         write(&memory.particles, bytemuck::cast_slice(&sent));
         self.begin_maps(water.maps);
-        self.done_before = ObstacleForces { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
+        self.totals_before = ObstacleTotals { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
             [0, 1].map(|axis| sent.iter().map(|particle| particle.place_and_velocity[axis]).fold(none, pick))
         };
@@ -101,11 +101,11 @@ impl OnGpu {
     /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the water was handed over, m4/s.
     pub(super) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
         let knock = f64::from(KNOCK) * f64::from(self.parameters.new_volume);
-        self.done_before.impulses[number][axis] + sum + knock * f64::from(knocks)
+        self.totals_before.impulses[number][axis] + sum + knock * f64::from(knocks)
     }
 
     /// What was done to obstacles.
-    pub fn on_obstacles(&self) -> Result<ObstacleForces, GpuError> {
+    pub fn on_obstacles(&self) -> Result<ObstacleTotals, GpuError> {
         let (count, memory) = (self.obstacles.count, &self.tasks.memory);
         let pushed: Vec<OnObstacle> = read(self.gpu(), &memory.obstacles, count)?;
         let knocks: Vec<i32> = read(self.gpu(), &memory.knocks, 2 * count + 1)?;
@@ -114,7 +114,7 @@ impl OnGpu {
             [0, 1].map(|axis| self.impulse(number, axis, sums[axis], knocks[2 * number + axis]))
         });
         let forces = pushed.iter().map(|pushed| pushed.force.map(f64::from)).collect();
-        let put_back = self.done_before.put_back + knocks[2 * count] as u64;
-        Ok(ObstacleForces { forces, impulses: impulses.collect(), put_back })
+        let put_back = self.totals_before.put_back + knocks[2 * count] as u64;
+        Ok(ObstacleTotals { forces, impulses: impulses.collect(), put_back })
     }
 }

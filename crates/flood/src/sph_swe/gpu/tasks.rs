@@ -81,13 +81,13 @@ pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
 
 impl Tasks {
     /// The passes of a run that work on `memory`.
-    pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, setting: &GpuInputs<'_>) -> Self {
+    pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, inputs: &GpuInputs<'_>) -> Self {
         let task = |shader: Shader| task(gpu, shader, &memory);
-        let obstacles = setting.surroundings.obstacles.names.len() as u32;
+        let obstacles = inputs.surroundings.obstacles.names.len() as u32;
         Self {
             drift: task(DRIFT),
-            births: (!setting.sources.is_empty()).then(|| task(BIRTHS)),
-            land: (setting.falling > 0).then(|| [LAND, LANDED].map(task)),
+            births: (!inputs.sources.is_empty()).then(|| task(BIRTHS)),
+            land: (inputs.falling > 0).then(|| [LAND, LANDED].map(task)),
             leave: task(LEAVE),
             reorder: task(REORDER),
             reaches: [REACH_OWN, REACH_ROWS, REACH].map(task),

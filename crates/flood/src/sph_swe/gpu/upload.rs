@@ -1,4 +1,4 @@
-//! What the shaders are told of a run.
+//! Uploads of the data of a run.
 
 use super::MOST_BIRTHS;
 use super::gauges::MOST_ROWS;
@@ -22,7 +22,7 @@ use rand_chacha::ChaCha8Rng;
 /// Slots of three numbers of groups: see `sph_finish.wgsl`.
 const SLOTS: usize = 9;
 
-/// What the water moves in, and how.
+/// Inputs of the GPU solver: what the water moves in, and how.
 #[derive(Clone, Copy)]
 pub(crate) struct GpuInputs<'a> {
     pub surroundings: &'a Surroundings,

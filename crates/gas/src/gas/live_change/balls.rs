@@ -1,4 +1,4 @@
-//! Balls that are put in and taken out live.
+//! Balls that are put in and taken out while a gas runs.
 
 use super::super::Gas;
 use crate::hash::Hash;
@@ -23,7 +23,7 @@ impl<const D: usize> Gas<D> {
         let like = self.first_of(set)?;
         let temperature = self.temperature();
         let mut random = ChaCha8Rng::seed_from_u64(self.setup.seed);
-        random.set_stream(FIRST_STREAM + self.hand.added + self.hand.removed);
+        random.set_stream(FIRST_STREAM + self.live.added + self.live.removed);
         let kind = self.mover.world().balls[like].kind;
         let places = self.free_places(self.mover.world().radius(like), count, &mut random)?;
         self.come_to_now();
@@ -42,7 +42,7 @@ impl<const D: usize> Gas<D> {
             world.records.push(record);
             self.book_ball(self.len() - 1, 1.0);
         }
-        self.hand.added += count as u64;
+        self.live.added += count as u64;
         self.mover.begin_window();
         Ok(())
     }
@@ -64,7 +64,7 @@ impl<const D: usize> Gas<D> {
         self.come_to_now();
         self.mover.begin_window();
         let mut random = ChaCha8Rng::seed_from_u64(self.setup.seed);
-        random.set_stream(FIRST_STREAM + self.hand.added + self.hand.removed);
+        random.set_stream(FIRST_STREAM + self.live.added + self.live.removed);
         ids.sort_unstable();
         for _ in 0..count {
             let id = ids.swap_remove(random.random_range(0..ids.len()));
@@ -72,7 +72,7 @@ impl<const D: usize> Gas<D> {
             self.take_out(id, last);
             ids.iter_mut().filter(|other| **other == last).for_each(|other| *other = id);
         }
-        self.hand.removed += count as u64;
+        self.live.removed += count as u64;
         self.mover.begin_window();
         Ok(())
     }
@@ -109,7 +109,7 @@ impl<const D: usize> Gas<D> {
         // The ledger counts gravity's push on all balls that there are from the start on.
         let pushed: f64 = gravity.iter().sum::<f64>() * world.time();
         let momentum = sign * mass * (velocity.iter().sum::<f64>() - pushed);
-        self.hand.book(energy, momentum);
+        self.live.book(energy, momentum);
     }
 
     /// Places in the box where balls of a radius overlap nothing.

@@ -195,7 +195,7 @@ impl<const D: usize> Gas<D> {
             world.note_bend(ball);
         }
         self.mover.begin_window();
-        self.hand.book(energy.value(), momentum.value());
+        self.live.book(energy.value(), momentum.value());
     }
 
     /// A piston's acceleration is the pressure from outside on its area, over its mass, as where it was set up.

@@ -1,4 +1,4 @@
-//! Pistons that are held, dragged and let go live.
+//! Pistons that are held, dragged and let go while a gas runs.
 
 use super::super::Gas;
 use crate::world::Facing;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Speed at which a piston is dragged, over the thermal speed of the balls: slow enough that the gas follows.
 const DRAG: f64 = 0.3;
 
-/// Packing up to which a gas is compressed live, in two and three dimensions: well below where balls jam.
+/// Packing up to which a gas is compressed by dragging, in two and three dimensions: well below where balls jam.
 const PRESSED: [f64; 2] = [0.6, 0.45];
 
 /// A piston that is held.
@@ -38,15 +38,15 @@ impl<const D: usize> Gas<D> {
         let wall = &mut world.walls[number];
         let way = to - wall.place_at(now);
         let speed = (DRAG * energy.sqrt()).copysign(way);
-        let held = self.hand.grips.iter().position(|grip| grip.wall == number);
-        let free = held.map(|held| self.hand.grips.swap_remove(held));
+        let held = self.live.grips.iter().position(|grip| grip.wall == number);
+        let free = held.map(|held| self.live.grips.swap_remove(held));
         let mass = wall.mass.or(free.map(|free| free.mass)).unwrap_or(f64::INFINITY);
         let acceleration = free.map_or(wall.acceleration, |free| free.acceleration);
         let moves = speed != 0.0 && way != 0.0;
         wall.bend(now, if moves { speed } else { 0.0 });
         (wall.mass, wall.acceleration) = (None, 0.0);
         let arrives = if moves { time + way / speed } else { f64::INFINITY };
-        self.hand.grips.push(Grip { wall: number, mass, acceleration, arrives, to });
+        self.live.grips.push(Grip { wall: number, mass, acceleration, arrives, to });
         self.mover.wall_bent(number);
         Ok(())
     }
@@ -54,10 +54,10 @@ impl<const D: usize> Gas<D> {
     /// Lets a piston go, at rest: what presses it drives it again.
     pub(super) fn let_go(&mut self, [axis, end]: [usize; 2]) -> Result<(), ModelError> {
         let number = self.piston([axis, end])?;
-        let Some(held) = self.hand.grips.iter().position(|grip| grip.wall == number) else {
+        let Some(held) = self.live.grips.iter().position(|grip| grip.wall == number) else {
             return Err(ModelError::Setup("this piston is not held".into()));
         };
-        let grip = self.hand.grips.swap_remove(held);
+        let grip = self.live.grips.swap_remove(held);
         self.come_to_now();
         let world = self.mover.world_mut();
         let now = world.now;
@@ -70,7 +70,7 @@ impl<const D: usize> Gas<D> {
 
     /// A piston that was dragged is where it was to be.
     pub(in super::super) fn arrive(&mut self, held: usize) {
-        let Some(grip) = self.hand.grips.get_mut(held) else { return };
+        let Some(grip) = self.live.grips.get_mut(held) else { return };
         grip.arrives = f64::INFINITY;
         let (number, to) = (grip.wall, grip.to);
         let world = self.mover.world_mut();
@@ -89,13 +89,13 @@ impl<const D: usize> Gas<D> {
         let area = self.area_across(axis);
         let facing = self.mover.world().walls[number].facing;
         let inward = if facing == Facing::Up { 1.0 } else { -1.0 };
-        let held = self.hand.grips.iter_mut().find(|grip| grip.wall == number);
+        let held = self.live.grips.iter_mut().find(|grip| grip.wall == number);
         held.map(|grip| grip.acceleration = inward * pressure * area / grip.mass).is_some()
     }
 
     /// Number of the piston at an end of an axis, free or held.
     pub(super) fn piston(&self, [axis, end]: [usize; 2]) -> Result<usize, ModelError> {
-        let held = |number: usize| self.hand.grips.iter().any(|grip| grip.wall == number);
+        let held = |number: usize| self.live.grips.iter().any(|grip| grip.wall == number);
         let facing = if end == 0 { Facing::Up } else { Facing::Down };
         let walls = self.mover.world().walls.iter().enumerate();
         let mut at_end = walls.filter(|(_, wall)| wall.axis == axis && wall.facing == facing);

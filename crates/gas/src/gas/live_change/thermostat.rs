@@ -21,7 +21,7 @@ impl<const D: usize> Gas<D> {
     /// Holds the temperature from now on, or no longer.
     pub(super) fn hold_temperature(&mut self, temperature: Option<f64>) -> Result<(), ModelError> {
         let Some(temperature) = temperature else {
-            self.hand.thermostat = None;
+            self.live.thermostat = None;
             return Ok(());
         };
         if self.temperature() <= 0.0 {
@@ -33,14 +33,14 @@ impl<const D: usize> Gas<D> {
         let every = OFTEN * shortest / thermal;
         self.come_to_now();
         let next = self.mover.world().time() + every;
-        self.hand.thermostat = Some(Thermostat { temperature, every, next });
+        self.live.thermostat = Some(Thermostat { temperature, every, next });
         self.scale_energy(temperature / self.temperature());
         Ok(())
     }
 
     /// Scales the velocities to the temperature that is held.
     pub(in super::super) fn regulate(&mut self) {
-        let Some(thermostat) = &mut self.hand.thermostat else { return };
+        let Some(thermostat) = &mut self.live.thermostat else { return };
         thermostat.next += thermostat.every;
         let (wanted, now) = (thermostat.temperature, self.temperature_at_the_event());
         // Where nothing moves there is nothing to scale.
