@@ -5,7 +5,7 @@ mod common;
 use common::on_gpu::on_gpu;
 use corpuscle_flood::SphSweFlood;
 use corpuscle_gpu::{Gpu, require_gpu};
-use corpuscle_model::{AdvanceObserver, GpuModel, Model, ModelProgress};
+use corpuscle_model::{AdvanceObserver, Model, ModelProgress};
 use std::sync::atomic::AtomicBool;
 
 /// Fast water between walls, over an open side and round two houses; a gauge in one of them, one that falls dry and one that is wetted.
