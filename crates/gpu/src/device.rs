@@ -1,7 +1,8 @@
 //! Choice of a device.
 
 use crate::GpuError;
-use std::sync::{Arc, OnceLock};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// What kind of device pictures are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,7 +25,12 @@ pub struct Gpu {
     /// A GPU, or a program in its place.
     pub kind: GpuKind,
     faults: Faults,
+    compiled: Compiled,
 }
+
+/// The compute pipelines of a device by the text of their shaders, so that no shader is compiled twice: a second model on the same device has them.
+#[derive(Debug, Clone, Default)]
+struct Compiled(Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>);
 
 /// The first thing that went wrong on a device, which tells of it when it likes.
 #[derive(Debug, Clone, Default)]
@@ -86,7 +92,7 @@ impl Gpu {
         let software = info.device_type == wgpu::DeviceType::Cpu;
         let kind = if software { GpuKind::Software } else { GpuKind::Hardware };
         let faults = Faults::of(&device);
-        Self { device, queue, name: info.name, kind, faults }
+        Self { device, queue, name: info.name, kind, faults, compiled: Compiled::default() }
     }
 
     /// Whether this is the same device, opened once: what lies on one is not on another. (wgpu's own comparison takes the first devices of two
@@ -119,6 +125,21 @@ impl Gpu {
             None => Ok(()),
             Some(reason) => Err(GpuError::Lost { name: self.name.clone(), reason: reason.clone() }),
         }
+    }
+
+    /// The compute pipeline of a shader's text; it is compiled where this device has not compiled it yet.
+    pub(crate) fn pipeline(
+        &self,
+        text: String,
+        compile: impl FnOnce(&str) -> wgpu::ComputePipeline,
+    ) -> wgpu::ComputePipeline {
+        let mut compiled = self.compiled.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let pipeline = compiled.get(&text).cloned();
+        pipeline.unwrap_or_else(|| {
+            let pipeline = compile(&text);
+            compiled.insert(text, pipeline.clone());
+            pipeline
+        })
     }
 
     /// Largest memory that a shader can see as one piece, bytes.
@@ -169,5 +190,38 @@ pub fn require_gpu(test: &str) -> Option<Gpu> {
             eprintln!("skipped {test}: {error}");
             None
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The pipeline of a shader that does nothing but have a name.
+    fn compile(gpu: &Gpu, text: &str) -> wgpu::ComputePipeline {
+        let source = wgpu::ShaderSource::Wgsl(text.into());
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
+    }
+
+    #[test]
+    fn a_device_compiles_a_shader_once() {
+        let Some(gpu) = require_gpu("shaders compiled once") else { return };
+        let mut count = 0;
+        let texts = ["one", "other", "one"].map(|name| format!("@compute @workgroup_size(1) fn {name}() {{}}"));
+        for text in texts {
+            gpu.clone().pipeline(text, |text| {
+                count += 1;
+                compile(&gpu, text)
+            });
+        }
+        assert_eq!(count, 2);
     }
 }

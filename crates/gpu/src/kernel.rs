@@ -28,22 +28,24 @@ pub struct Task {
 }
 
 impl<B: Buffers> Kernel<B> {
-    /// Compiles the shader `text`, joined from its pieces, which imports the declaration.
+    /// Compiles the shader `text`, joined from its pieces, which imports the declaration; a device compiles the same shader once.
     ///
     /// # Panics
     /// Where a piece is missing from `library` or the shader is wrong, which a test of all shaders finds.
     pub fn new(gpu: &Gpu, name: &'static str, text: &str, library: ShaderLibrary<'_>) -> Self {
         let complete = B::declaration().complete(name, text, library);
         let (text, used) = complete.expect("a test completes every shader");
-        let source = wgpu::ShaderSource::Wgsl(for_device(gpu, text).into());
-        let module = module(gpu, wgpu::ShaderModuleDescriptor { label: Some(name), source });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
+        let pipeline = gpu.pipeline(for_device(gpu, text), |text| {
+            let source = wgpu::ShaderSource::Wgsl(text.into());
+            let module = module(gpu, wgpu::ShaderModuleDescriptor { label: Some(name), source });
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: None,
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
         });
         Self { name, pipeline, used, of: PhantomData }
     }
