@@ -8,9 +8,9 @@ use std::time::Instant;
 /// one particle here or there decides.
 const SPH_SWE: [(&str, f64); 3] = [("flood/rough-terrain", 0.1), ("flood/cuboid", 0.05), ("flood/cylinder", 0.05)];
 
-/// Cases of scheme voronoi: both come to the same within rounding, but where thin fronts decide, or where a lake is stirred more than single precision itself
-/// stirs it.
-const VORONOI: [(&str, f64); 31] = [
+/// Cases of scheme voronoi with lakes at rest and exact solutions: both come to the same within rounding, but where a lake is stirred more than single precision
+/// itself stirs it.
+const VORONOI: [(&str, f64); 15] = [
     ("flood/voronoi/lake-blocks", 0.1),
     ("flood/voronoi/lake-islands", 0.1),
     ("flood/voronoi/lake-jacksboro", 0.1),
@@ -26,6 +26,10 @@ const VORONOI: [(&str, f64); 31] = [
     ("flood/voronoi/infiltration", 0.01),
     ("flood/voronoi/structures", 0.01),
     ("flood/voronoi/cylinder-force", 0.01),
+];
+
+/// Other cases of scheme voronoi, where thin fronts may decide.
+const MORE_VORONOI: [(&str, f64); 16] = [
     ("flood/voronoi/momentum", 0.01),
     ("flood/voronoi/ledger", 0.01),
     ("flood/voronoi/energy", 0.01),
@@ -134,6 +138,13 @@ fn floods_of_scheme_voronoi_are_on_the_gpu_what_they_are_on_the_cpu() {
     compare(gpu, &VORONOI);
 }
 
+/// In a test of its own, so that both run beside each other.
+#[test]
+fn more_floods_of_scheme_voronoi_are_on_the_gpu_what_they_are_on_the_cpu() {
+    let Some(gpu) = require_gpu("more cases of scheme voronoi on the GPU") else { return };
+    compare(gpu, &MORE_VORONOI);
+}
+
 #[test]
 fn dew_of_cases_is_on_the_gpu_what_it_is_on_the_cpu() {
     let Some(gpu) = require_gpu("cases of dew on the GPU") else { return };
@@ -168,7 +179,7 @@ fn on_the_cpu_only(name: &str) -> bool {
 
 #[test]
 fn no_case_of_floods_and_dew_is_left_out() {
-    let compared = SPH_SWE.iter().chain(&VORONOI).chain(&DEW).map(|(name, _)| *name);
+    let compared = SPH_SWE.iter().chain(&VORONOI).chain(&MORE_VORONOI).chain(&DEW).map(|(name, _)| *name);
     let all: Vec<&str> =
         compared.chain(SMALL_DEW.map(|(name, _)| name)).chain(WITHOUT_AIR.map(|(name, _)| name)).collect();
     let missing: Vec<_> =
