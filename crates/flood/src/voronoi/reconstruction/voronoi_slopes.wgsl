@@ -1,5 +1,6 @@
 // Slopes of wet cells: least squares over the neighbours. See `slopes` in `reconstruction/mod.rs`.
 #import declared
+#import time_steps
 #import voronoi_differences
 
 // Difference of the velocity to that of the mirror image behind a wall.
@@ -20,7 +21,7 @@ fn difference(link: Link, here: Water) -> vec4f {
 
 @compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= parameters.cells {
+    if id.x >= parameters.cells || !is_seen(id.x) {
         return;
     }
     let here = water[id.x];
