@@ -273,7 +273,8 @@ fn the_other_built_in_scenes_are_refused() {
         let error = open(scene.name, &[]).use_gpu().unwrap_err();
         assert!(error.is_refusal() && error.to_string().contains("--backend"), "{}: {error}", scene.name);
     }
-    let local = [("flood.time_steps".to_owned(), "local".to_owned())];
-    let error = open_as_changed("flood/dam-break", &local).use_gpu().unwrap_err();
-    assert!(error.is_refusal() && error.to_string().contains("local time steps"), "{error}");
+    let rate = [("flood.scheme", "sph-swe"), ("flood.sph_swe.smoothing", "rate")];
+    let rate = rate.map(|(path, value)| (path.to_owned(), value.to_owned()));
+    let error = open_as_changed("flood/dam-break", &rate).use_gpu().unwrap_err();
+    assert!(error.is_refusal() && error.to_string().contains("smoothing"), "{error}");
 }

@@ -4,6 +4,7 @@
 #import voronoi_faces
 #import voronoi_riemann
 #import voronoi_boundaries
+#import time_steps
 
 // Thrust of the ground between a cell's centroid and the face, of the difference to the other side, and of the cell itself, per length. `over_bed` is the depth
 // over the face's bed, `level` that of the side above the face's bed. As in `between` of `fluxes/mod.rs`, put so that large numbers do not cancel: all
@@ -43,13 +44,13 @@ fn between(face: Face, here: Water, there: Water) -> Flux {
         thrust_on(a, here.depth, depth_a, above_a, depth_b), thrust_on(b, there.depth, depth_b, above_b, depth_a)
     );
     let carried = length * turned_back(vec2f(found.y, found.x * along), normal);
-    return Flux(carried, thrust, length * found.x, 0.0);
+    return Flux(carried, thrust, length * found.x, 0u);
 }
 
 fn over_border(face: Face, here: Water) -> Flux {
     let border = borders[face.border];
     if here.depth <= 0.0 && !may_bring(border) {
-        return Flux(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
+        return Flux(vec2f(0.0), vec2f(0.0), 0.0, 0u);
     }
     let length = length(face.normal);
     let normal = face.normal / length;
@@ -58,7 +59,7 @@ fn over_border(face: Face, here: Water) -> Flux {
         at = at_wall(here, slopes[face.first], face.between, face.offset, normal);
     }
     let found = through_border(border, beyond[face.border], at, here.shift);
-    return Flux(length * turned_back(found.carried, normal), vec2f(found.thrust, 0.0), length * found.volume, 0.0);
+    return Flux(length * turned_back(found.carried, normal), vec2f(found.thrust, 0.0), length * found.volume, 0u);
 }
 
 @compute @workgroup_size(GROUP)
@@ -66,9 +67,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= parameters.faces {
         return;
     }
+    let near = near_of_face(id.x);
+    if !is_needed(near) {
+        return;
+    }
     let face = faces[id.x];
     let here = water[face.first];
-    var flux = Flux(vec2f(0.0), vec2f(0.0), 0.0, 0.0);
+    var flux = Flux(vec2f(0.0), vec2f(0.0), 0.0, 0u);
     if face.second == NONE {
         flux = over_border(face, here);
     } else {
@@ -77,5 +82,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             flux = between(face, here, there);
         }
     }
+    flux.near = near;
     fluxes[id.x] = flux;
 }

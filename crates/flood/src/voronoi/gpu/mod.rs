@@ -19,6 +19,7 @@ pub(super) use shared::{
 };
 pub(super) use tables::Tables;
 
+use super::local::{HIGHEST, REPEATED, WIDENED};
 use super::water::Column as ColumnOfCpu;
 use corpuscle_gpu::{
     BATCH_START, Batches, Buffers, COMPENSATED_SUMS, GROUP_REDUCTION, Gpu, GpuError, Halt, Kernel, Pass, ShaderLibrary,
@@ -26,8 +27,9 @@ use corpuscle_gpu::{
 };
 use seen::Seen;
 use shared::{
-    BESIDE_CREST_SLOT, BORDER_SLOT, CELL_SLOT, CREST_SLOT, Column, DISCHARGE_SLOT, FACE_SLOT, Memory, Push, Record,
-    STRUCTURE_SLOT, Status, Supply,
+    BESIDE_CREST_SLOT, BORDER_SLOT, CELL_SLOT, CREST_SLOT, Column, DISCHARGE_SLOT, FACE_SLOT, Memory, PART_BORDER_SLOT,
+    PART_CELL_SLOT, PART_FACE_SLOT, PLAN_CELL_SLOT, PLAN_FACE_SLOT, PLAN_SLOT, Push, Record, STRUCTURE_SLOT, Status,
+    Supply,
 };
 use std::sync::OnceLock;
 use upload::Input;
@@ -36,6 +38,8 @@ const LIBRARY: ShaderLibrary<'_> = &[
     COMPENSATED_SUMS,
     GROUP_REDUCTION,
     ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
+    ("voronoi_look_up", include_str!("voronoi_look_up.wgsl")),
+    ("voronoi_local", include_str!("../local/voronoi_local.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../rain/infiltration_laws.wgsl")),
     ("voronoi_water", include_str!("voronoi_water.wgsl")),
@@ -50,58 +54,143 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_boundaries", include_str!("../boundaries/voronoi_boundaries.wgsl")),
 ];
 
-/// Pieces in which versions of a shader differ: the stage, whether water comes and goes beside its motion, and whether it was looked at before that.
-const VERSIONS: [[(&str, &str); 2]; 3] = [
-    [
-        ("stage", "const IS_SECOND = false;\nconst IS_LOOKED_AT = false;\n"),
-        ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n"),
-    ],
-    [
-        ("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = false;\n"),
-        ("exchange", include_str!("../rain/voronoi_exchange.wgsl")),
-    ],
-    [
-        ("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = true;\n"),
-        ("exchange", include_str!("../rain/voronoi_exchange.wgsl")),
-    ],
+/// Which stage of a step a kernel is for.
+#[derive(Debug, Clone, Copy)]
+enum Stage {
+    /// The first, or none.
+    First,
+    /// The second.
+    Second,
+    /// The end of a step after the water was looked at, before structures work.
+    LookedAt,
+}
+
+impl Stage {
+    /// The pieces in which the versions of a shader for the stages differ: the stage itself, and whether water comes and goes beside its motion.
+    fn pieces(self) -> [(&'static str, &'static str); 2] {
+        let exchange = ("exchange", include_str!("../rain/voronoi_exchange.wgsl"));
+        match self {
+            Self::First => [
+                ("stage", "const IS_SECOND = false;\nconst IS_LOOKED_AT = false;\n"),
+                ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n"),
+            ],
+            Self::Second => [("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = false;\n"), exchange],
+            Self::LookedAt => [("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = true;\n"), exchange],
+        }
+    }
+}
+
+/// The pieces in which shaders differ where cells take steps of their own.
+fn time_step_pieces(are_local: bool) -> [(&'static str, &'static str); 3] {
+    if are_local {
+        [
+            ("time_steps", include_str!("../local/voronoi_local.wgsl")),
+            ("next", include_str!("../local/voronoi_local_next.wgsl")),
+            ("record_step", "fn record_step(cell: u32) {}\n"),
+        ]
+    } else {
+        [
+            ("time_steps", include_str!("../local/voronoi_global.wgsl")),
+            ("next", include_str!("../local/voronoi_global_next.wgsl")),
+            ("record_step", include_str!("../maps/voronoi_record_step.wgsl")),
+        ]
+    }
+}
+
+/// The kernels, in the order of [`SHADERS`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Name {
+    Begin,
+    Slopes,
+    FluxesFirst,
+    FluxesSecond,
+    Kept,
+    UpdateFirst,
+    UpdateSecond,
+    PushFirst,
+    PushSecond,
+    Shift,
+    Share,
+    Follow,
+    Look,
+    Crests,
+    Overtop,
+    Structures,
+    End,
+    EndWithExchange,
+    EndOfWorks,
+    Finish,
+    // Where cells take steps of their own.
+    Part,
+    ShowFirst,
+    ShowSecond,
+    EndPart,
+    Levels,
+    SpreadThere,
+    SpreadBack,
+    Paces,
+    Near,
+    Plan,
+}
+
+/// Each kernel with the name and text of its shader, and its stage.
+const SHADERS: [(Name, &str, &str, Stage); 30] = [
+    (Name::Begin, "voronoi_begin", include_str!("voronoi_begin.wgsl"), Stage::First),
+    (Name::Slopes, "voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), Stage::First),
+    (Name::FluxesFirst, "voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), Stage::First),
+    (Name::FluxesSecond, "voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), Stage::Second),
+    (Name::Kept, "voronoi_kept", include_str!("../fluxes/voronoi_kept.wgsl"), Stage::First),
+    (Name::UpdateFirst, "voronoi_update", include_str!("voronoi_update.wgsl"), Stage::First),
+    (Name::UpdateSecond, "voronoi_update", include_str!("voronoi_update.wgsl"), Stage::Second),
+    (Name::PushFirst, "voronoi_push", include_str!("../walls/voronoi_push.wgsl"), Stage::First),
+    (Name::PushSecond, "voronoi_push", include_str!("../walls/voronoi_push.wgsl"), Stage::Second),
+    (Name::Shift, "voronoi_shift", include_str!("../voronoi_shift.wgsl"), Stage::First),
+    (Name::Share, "voronoi_share", include_str!("../boundaries/voronoi_share.wgsl"), Stage::First),
+    (Name::Follow, "voronoi_follow", include_str!("../boundaries/voronoi_follow.wgsl"), Stage::Second),
+    (Name::Look, "voronoi_look", include_str!("voronoi_look.wgsl"), Stage::Second),
+    (Name::Crests, "voronoi_crests", include_str!("../walls/voronoi_crests.wgsl"), Stage::Second),
+    (Name::Overtop, "voronoi_overtop", include_str!("../walls/voronoi_overtop.wgsl"), Stage::Second),
+    (Name::Structures, "voronoi_structures", include_str!("../structures/voronoi_structures.wgsl"), Stage::Second),
+    (Name::End, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::First),
+    (Name::EndWithExchange, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::Second),
+    (Name::EndOfWorks, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::LookedAt),
+    (Name::Finish, "voronoi_finish", include_str!("voronoi_finish.wgsl"), Stage::First),
+    (Name::Part, "voronoi_part", include_str!("../local/voronoi_part.wgsl"), Stage::First),
+    (Name::ShowFirst, "voronoi_show", include_str!("../local/voronoi_show.wgsl"), Stage::First),
+    (Name::ShowSecond, "voronoi_show", include_str!("../local/voronoi_show.wgsl"), Stage::Second),
+    (Name::EndPart, "voronoi_end_part", include_str!("../local/voronoi_end_part.wgsl"), Stage::Second),
+    (Name::Levels, "voronoi_levels", include_str!("../local/voronoi_levels.wgsl"), Stage::First),
+    (Name::SpreadThere, "voronoi_spread", include_str!("../local/voronoi_spread.wgsl"), Stage::First),
+    (Name::SpreadBack, "voronoi_spread", include_str!("../local/voronoi_spread.wgsl"), Stage::Second),
+    (Name::Paces, "voronoi_paces", include_str!("../local/voronoi_paces.wgsl"), Stage::First),
+    (Name::Near, "voronoi_near", include_str!("../local/voronoi_near.wgsl"), Stage::First),
+    (Name::Plan, "voronoi_plan", include_str!("../local/voronoi_plan.wgsl"), Stage::First),
 ];
 
-/// Name, text and version of the kernels.
-const SHADERS: [(&str, &str, usize); 20] = [
-    ("voronoi_slopes", include_str!("../reconstruction/voronoi_slopes.wgsl"), 0),
-    ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 0),
-    ("voronoi_fluxes", include_str!("../fluxes/voronoi_fluxes.wgsl"), 1),
-    ("voronoi_kept", include_str!("../fluxes/voronoi_kept.wgsl"), 0),
-    ("voronoi_update", include_str!("voronoi_update.wgsl"), 0),
-    ("voronoi_update", include_str!("voronoi_update.wgsl"), 1),
-    ("voronoi_end", include_str!("voronoi_end.wgsl"), 0),
-    ("voronoi_end", include_str!("voronoi_end.wgsl"), 1),
-    ("voronoi_finish", include_str!("voronoi_finish.wgsl"), 0),
-    ("voronoi_begin", include_str!("voronoi_begin.wgsl"), 0),
-    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 0),
-    ("voronoi_push", include_str!("../walls/voronoi_push.wgsl"), 1),
-    ("voronoi_share", include_str!("../boundaries/voronoi_share.wgsl"), 0),
-    ("voronoi_follow", include_str!("../boundaries/voronoi_follow.wgsl"), 1),
-    ("voronoi_look", include_str!("voronoi_look.wgsl"), 1),
-    ("voronoi_crests", include_str!("../walls/voronoi_crests.wgsl"), 1),
-    ("voronoi_overtop", include_str!("../walls/voronoi_overtop.wgsl"), 1),
-    ("voronoi_structures", include_str!("../structures/voronoi_structures.wgsl"), 1),
-    ("voronoi_end", include_str!("voronoi_end.wgsl"), 2),
-    ("voronoi_shift", include_str!("../voronoi_shift.wgsl"), 0),
-];
+/// Parts of a step at most, where cells take steps of their own.
+const MOST_PARTS: usize = 1 << HIGHEST;
 
-/// The kernel that finds the water of columns.
-const BEGIN: usize = 9;
+/// How often distances go on to neighbours, there and back: at least as often as the farthest that counts, two neighbours beyond those near which stages are repeated.
+const SPREADS: usize = (WIDENED[0] as usize + REPEATED + 3).div_ceil(2);
 
-/// The kernels with what they work on.
-type Tasks = [Task; SHADERS.len()];
+/// The kernels of a flood, in the order of [`SHADERS`]; the last only where cells take steps of their own.
+fn kernels(gpu: &Gpu, are_local: bool) -> Vec<Kernel<Memory>> {
+    let all = if are_local { SHADERS.len() } else { Name::Part as usize };
+    let kernel = |&(_, name, text, stage): &(Name, &'static str, &str, Stage)| {
+        let library: Vec<_> =
+            LIBRARY.iter().copied().chain(stage.pieces()).chain(time_step_pieces(are_local)).collect();
+        Kernel::new(gpu, name, text, &library)
+    };
+    SHADERS[..all].iter().map(kernel).collect()
+}
 
 /// A flood on a GPU.
 pub(crate) struct GpuSolver {
     pub batches: Batches,
-    kernels: [Kernel<Memory>; SHADERS.len()],
+    kernels: Vec<Kernel<Memory>>,
     memory: Memory,
-    tasks: Tasks,
+    /// The kernels with what they work on.
+    tasks: Vec<Task>,
     cells: usize,
     sides: Sides,
     status: Status,
@@ -127,6 +216,8 @@ pub(super) struct Sides {
     holds_levels: bool,
     /// Whether discharges are shared out over border faces.
     shares_discharges: bool,
+    /// Whether cells may take steps of their own.
+    are_steps_local: bool,
 }
 
 /// The state of a flood as it came back.
@@ -170,12 +261,9 @@ impl GpuSolver {
     /// # Errors
     /// [`GpuError::Memory`], [`GpuError::TooMany`].
     pub fn new(gpu: Gpu, input: &Input<'_>) -> Result<Self, GpuError> {
-        let kernels = SHADERS.map(|(name, text, version)| {
-            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
-            Kernel::new(&gpu, name, text, &library)
-        });
+        let kernels = kernels(&gpu, input.are_steps_local());
         let (memory, status) = input.upload(&gpu)?;
-        let tasks = kernels.each_ref().map(|kernel| kernel.on(&gpu, &memory));
+        let tasks = kernels.iter().map(|kernel| kernel.on(&gpu, &memory)).collect();
         let (cells, sides) = (input.cells(), input.sides());
         let mut solver = Self {
             batches: Batches::new(gpu, "voronoi"),
@@ -198,7 +286,7 @@ impl GpuSolver {
     pub fn renew(&mut self, input: &Input<'_>) -> Result<(), GpuError> {
         let gpu = self.batches.gpu();
         (self.memory, self.status) = input.upload(gpu)?;
-        self.tasks = self.kernels.each_ref().map(|kernel| kernel.on(gpu, &self.memory));
+        self.tasks = self.kernels.iter().map(|kernel| kernel.on(gpu, &self.memory)).collect();
         self.seen = OnceLock::new();
         (self.cells, self.sides) = (input.cells(), input.sides());
         self.begin();
@@ -208,7 +296,7 @@ impl GpuSolver {
     /// Finds the water of the columns that were uploaded.
     fn begin(&mut self) {
         let groups = self.cells.div_ceil(THREADS as usize) as u32;
-        self.batches.submit(|pass| self.tasks[BEGIN].run(pass, groups));
+        self.batches.submit(|pass| self.tasks[Name::Begin as usize].run(pass, groups));
     }
 
     /// Takes steps up to a time, s, or as many as a batch has, `most` at most. The number of steps.
@@ -223,7 +311,7 @@ impl GpuSolver {
         *status = batches.run(
             count,
             (&memory.status, &*status),
-            |pass| steps((tasks, *sides), memory, pass, count),
+            |pass| Steps { tasks, memory, sides: *sides }.take(pass, count),
             |gpu| Ok(read(gpu, &memory.status, 1)?[0]),
         )?;
         Ok((u64::from(self.status.steps), Halt::of(self.status.halted)))
@@ -285,68 +373,101 @@ impl GpuSolver {
     }
 }
 
-/// Takes so many steps, or fewer.
-fn steps((tasks, sides): (&Tasks, Sides), memory: &Memory, pass: &mut Pass<'_>, count: u32) {
-    let [
-        slopes,
-        fluxes_first,
-        fluxes_second,
-        kept,
-        first,
-        second,
-        end,
-        end_with_exchange,
-        finish,
-        _,
-        push_first,
-        push_second,
-        share,
-        follow,
-        look,
-        crests,
-        overtop,
-        structures,
-        end_of_works,
-        shift,
-    ] = tasks;
-    let has_works = sides.has_crests || sides.structures > 0;
-    let end = match sides.exchanges {
-        _ if has_works => end_of_works,
-        true => end_with_exchange,
-        false => end,
-    };
-    finish.run(pass, 1);
-    for _ in 0..count {
-        if sides.shares_discharges {
-            share.dispatch_indirect(pass, &memory.groups, DISCHARGE_SLOT);
+/// The passes of steps.
+struct Steps<'a> {
+    tasks: &'a [Task],
+    memory: &'a Memory,
+    sides: Sides,
+}
+
+impl Steps<'_> {
+    /// Takes so many steps, or fewer.
+    fn take(&self, pass: &mut Pass<'_>, count: u32) {
+        self.finish(pass);
+        for _ in 0..count {
+            self.step(pass);
+            self.finish(pass);
         }
-        for (fluxes, update, push) in [(fluxes_first, first, push_first), (fluxes_second, second, push_second)] {
-            for (task, slot) in [(slopes, CELL_SLOT), (fluxes, FACE_SLOT), (kept, CELL_SLOT)] {
-                task.dispatch_indirect(pass, &memory.groups, slot);
+    }
+
+    /// Runs a kernel with as many groups as a slot says.
+    fn run(&self, pass: &mut Pass<'_>, name: Name, slot: u32) {
+        self.tasks[name as usize].dispatch_indirect(pass, &self.memory.groups, slot);
+    }
+
+    /// Books a step, decides whether there is another, and plans it where cells take steps of their own.
+    fn finish(&self, pass: &mut Pass<'_>) {
+        self.tasks[Name::Finish as usize].run(pass, 1);
+        if !self.sides.are_steps_local {
+            return;
+        }
+        self.run(pass, Name::Levels, PLAN_CELL_SLOT);
+        for _ in 0..SPREADS {
+            self.run(pass, Name::SpreadThere, PLAN_CELL_SLOT);
+            self.run(pass, Name::SpreadBack, PLAN_CELL_SLOT);
+        }
+        self.run(pass, Name::Paces, PLAN_CELL_SLOT);
+        self.run(pass, Name::Near, PLAN_FACE_SLOT);
+        self.run(pass, Name::Plan, PLAN_SLOT);
+    }
+
+    fn step(&self, pass: &mut Pass<'_>) {
+        let sides = self.sides;
+        if sides.shares_discharges {
+            self.run(pass, Name::Share, DISCHARGE_SLOT);
+        }
+        if sides.are_steps_local {
+            for _ in 0..MOST_PARTS {
+                self.tasks[Name::Part as usize].run(pass, 1);
+                self.move_water(pass, [PART_CELL_SLOT, PART_FACE_SLOT, PART_BORDER_SLOT]);
+                self.run(pass, Name::EndPart, PART_CELL_SLOT);
             }
-            if sides.has_obstacles {
-                push.dispatch_indirect(pass, &memory.groups, BORDER_SLOT);
-            }
-            update.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
-            if sides.has_heights {
-                shift.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
-            }
+        } else {
+            self.move_water(pass, [CELL_SLOT, FACE_SLOT, BORDER_SLOT]);
         }
         if sides.holds_levels {
-            follow.dispatch_indirect(pass, &memory.groups, BORDER_SLOT);
+            self.run(pass, Name::Follow, BORDER_SLOT);
         }
+        let has_works = sides.has_crests || sides.structures > 0;
         if has_works {
-            look.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
+            self.run(pass, Name::Look, CELL_SLOT);
         }
         if sides.has_crests {
-            crests.dispatch_indirect(pass, &memory.groups, CREST_SLOT);
-            overtop.dispatch_indirect(pass, &memory.groups, BESIDE_CREST_SLOT);
+            self.run(pass, Name::Crests, CREST_SLOT);
+            self.run(pass, Name::Overtop, BESIDE_CREST_SLOT);
         }
         if sides.structures > 0 {
-            structures.dispatch_indirect(pass, &memory.groups, STRUCTURE_SLOT);
+            self.run(pass, Name::Structures, STRUCTURE_SLOT);
         }
-        end.dispatch_indirect(pass, &memory.groups, CELL_SLOT);
-        finish.run(pass, 1);
+        let end = match sides.exchanges {
+            _ if has_works => Name::EndOfWorks,
+            true => Name::EndWithExchange,
+            false => Name::End,
+        };
+        self.run(pass, end, CELL_SLOT);
+    }
+
+    /// Both stages of the water's motion, in a step or a part of it, with the slots of cells, faces and border faces.
+    fn move_water(&self, pass: &mut Pass<'_>, [cells, faces, borders]: [u32; 3]) {
+        let stages = [
+            [Name::ShowFirst, Name::FluxesFirst, Name::PushFirst, Name::UpdateFirst],
+            [Name::ShowSecond, Name::FluxesSecond, Name::PushSecond, Name::UpdateSecond],
+        ];
+        for [show, fluxes, push, update] in stages {
+            if self.sides.are_steps_local {
+                self.run(pass, show, cells);
+            }
+            self.run(pass, Name::Slopes, cells);
+            self.run(pass, fluxes, faces);
+            self.run(pass, Name::Kept, cells);
+            if self.sides.has_obstacles {
+                self.run(pass, push, borders);
+            }
+            self.run(pass, update, cells);
+            if self.sides.has_heights {
+                self.run(pass, Name::Shift, cells);
+            }
+        }
     }
 }
 
@@ -370,12 +491,22 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid_and_within_the_floor() {
-        let drawing = (seen::SHADER.0, seen::SHADER.1, 0);
-        for (name, text, version) in SHADERS.into_iter().chain([drawing]) {
-            let library: Vec<_> = LIBRARY.iter().copied().chain(VERSIONS[version]).collect();
-            let (text, _) = Memory::declaration().complete(name, text, &library).unwrap_or_else(|e| panic!("{e}"));
-            check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let drawing = (Name::Begin, seen::SHADER.0, seen::SHADER.1, Stage::First);
+        for are_local in [false, true] {
+            let local_only = |name: Name| name as usize >= Name::Part as usize;
+            let all = SHADERS.into_iter().filter(|(name, ..)| are_local || !local_only(*name));
+            for (_, name, text, stage) in all.chain([drawing]) {
+                let library: Vec<_> =
+                    LIBRARY.iter().copied().chain(stage.pieces()).chain(time_step_pieces(are_local)).collect();
+                let (text, _) = Memory::declaration().complete(name, text, &library).unwrap_or_else(|e| panic!("{e}"));
+                check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+            }
         }
+    }
+
+    #[test]
+    fn kernels_stand_in_the_order_of_their_names() {
+        assert!(SHADERS.iter().enumerate().all(|(number, (name, ..))| *name as usize == number));
     }
 
     #[test]

@@ -10,7 +10,6 @@ use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, PassTiming};
 use corpuscle_model::{
     Account, AdvanceObserver, CpuOnly, ExactSum, Frame, Glance, GpuModel, Model, ModelError, ModelProgress,
 };
-use corpuscle_scene::TimeSteps;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A GPU that takes the steps.
@@ -37,9 +36,6 @@ struct Start {
     /// s.
     time: f64,
 }
-
-/// What to do where the GPU does not compute a scene yet.
-const WITHOUT: &str = "leave `--backend gpu` out";
 
 fn device(error: &GpuError) -> ModelError {
     ModelError::Device(error.to_string())
@@ -133,23 +129,12 @@ impl GpuModel for VoronoiFlood {
 impl VoronoiFlood {
     /// What of the scene the GPU does not compute yet, and what to do; none where it computes all.
     pub(in crate::voronoi) fn on_cpu_only(&self) -> Option<CpuOnly> {
-        let settings = &self.settings;
-        let rain = self.weather.as_ref().map(|weather| &weather.intensity);
-        let missing = [
-            (
-                settings.time_steps == TimeSteps::Local,
-                "local time steps run on the CPU only",
-                "take flood.time_steps = \"global\"",
-            ),
-            (
-                rain.is_some_and(|rain| matches!(rain, Intensity::Function(_))),
-                "rain by a function falls on the CPU only",
-                "",
-            ),
-        ];
-        let (_, what, instead) = missing.into_iter().find(|(is_there, ..)| *is_there)?;
-        let remedy = if instead.is_empty() { WITHOUT } else { instead };
-        Some(CpuOnly { what, remedy })
+        let weather = self.weather.as_ref();
+        let falls_by_function = weather.is_some_and(|weather| matches!(weather.intensity, Intensity::Function(_)));
+        falls_by_function.then_some(CpuOnly {
+            what: "rain by a function falls on the CPU only",
+            remedy: "leave `--backend gpu` out",
+        })
     }
 
     /// The GPU takes the state anew before its next step.
@@ -309,7 +294,8 @@ impl VoronoiFlood {
         if is_new {
             (self.state.before, self.state.time) = (time - last_step, time);
         }
-        self.state.time_step = step;
+        // The CPU plans the steps of cells itself, where it goes on.
+        self.state.time_step = if self.solver.local.is_some() { step.min(self.solver.plan()) } else { step };
         self.state.particle_steps = on_gpu.start.cell_steps + cell_steps;
         if self.weather.as_ref().is_some_and(Weather::soaks) {
             self.state.soaked.depth = soaked;

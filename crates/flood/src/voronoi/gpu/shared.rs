@@ -1,6 +1,6 @@
 //! What the host and the shaders of scheme `voronoi` share: one declaration, from which the WGSL comes too.
 
-use super::super::{friction, water};
+use super::super::{friction, local, water};
 use corpuscle_gpu::{DeviceParticles, Stepping};
 
 corpuscle_gpu::declare! {
@@ -20,6 +20,28 @@ corpuscle_gpu::declare! {
         pub const BESIDE_CREST_SLOT: u32 = 5;
         /// Slot with one group for all structures.
         pub const STRUCTURE_SLOT: u32 = 6;
+        /// Slot with a thread for each cell, in a part of a step.
+        pub const PART_CELL_SLOT: u32 = 7;
+        /// Slot with a thread for each face, in a part of a step.
+        pub const PART_FACE_SLOT: u32 = 8;
+        /// Slot with a thread for each border face, in a part of a step.
+        pub const PART_BORDER_SLOT: u32 = 9;
+        /// Slot with a thread for each cell, where steps of cells are planned.
+        pub const PLAN_CELL_SLOT: u32 = 10;
+        /// Slot with a thread for each face, where steps of cells are planned.
+        pub const PLAN_FACE_SLOT: u32 = 11;
+        /// Slot with one group where steps of cells are planned.
+        pub const PLAN_SLOT: u32 = 12;
+        /// Cells with the shortest step are so many neighbours away at most from those that need it.
+        pub const WIDENED_SHORTEST: u32 = local::WIDENED[0];
+        /// The same of twice the shortest step.
+        pub const WIDENED_TWICE: u32 = local::WIDENED[1];
+        /// Cells as many neighbours away from a cell of a lower level repeat their stages with it.
+        pub const REPEATED: u32 = local::REPEATED as u32;
+        /// Steps of their own are taken where they save at least this part of the work.
+        pub const LEAST_SAVED: f32 = local::LEAST_SAVED as f32;
+        /// A distance in neighbours that stays beyond all that count.
+        pub const BEYOND_REACH: u32 = 200;
         /// Stands for no cell, no face, no border.
         pub const NONE: u32 = u32::MAX;
         /// The border reflects.
@@ -182,6 +204,14 @@ corpuscle_gpu::declare! {
             pub since_draught: f32,
             /// Steps since the start of the run.
             pub all_steps: u32,
+            /// The part of the step that is gone through, where cells take steps of their own.
+            pub part: u32,
+            /// Number of the shortest steps in a step: 1 where all cells take the same; 0 where that is still to be planned.
+            pub parts: u32,
+            /// Cells of a pace up to this take part now.
+            pub now: u32,
+            /// The shortest step, s.
+            pub shortest: f32,
             /// Fills up.
             pub unused: u32,
         }
@@ -202,8 +232,8 @@ corpuscle_gpu::declare! {
             pub end_link: u32,
             /// Whether tiles round it are not made yet.
             pub rim: u32,
-            /// Fills up.
-            pub unused: u32,
+            /// Level, pace, near and view where cells take steps of their own, two bits each: see `local/mod.rs`.
+            pub paces: u32,
         }
 
         /// A face as one of its cells sees it.
@@ -416,8 +446,18 @@ corpuscle_gpu::declare! {
             pub thrust: [f32; 2],
             /// From the first cell to the second, m3/s, where both have the water for it.
             pub volume: f32,
-            /// Fills up.
-            pub unused: f32,
+            /// The lower pace near its two cells, where cells take steps of their own.
+            pub near: u32,
+        }
+
+        /// What the steps of a group of cells come to.
+        pub struct Plan {
+            /// The highest level of a cell.
+            pub highest: u32,
+            /// Number of wet cells.
+            pub wet: u32,
+            /// How often they go through their stages in the longest step, in quarters of the shortest.
+            pub quarters: u32,
         }
 
         /// What happened in a cell: see the maps.
@@ -493,7 +533,8 @@ corpuscle_gpu::declare! {
         uniform parameters: Parameters,
         /// How far it is.
         storage status: Status,
-        /// Numbers of groups for cells, for faces, for border faces, for discharges that are shared out, for crests, for cells beside them and for structures: 3 each.
+        /// Numbers of groups for cells, for faces, for border faces, for discharges that are shared out, for crests, for cells beside them, for structures, and for parts
+        /// of a step and their plan: 3 each.
         storage groups: [u32],
         /// Each cell.
         storage ground: [Ground],
@@ -510,9 +551,9 @@ corpuscle_gpu::declare! {
         storage discharges: [SharedDischarge],
         /// The parts of border faces in them.
         storage parts: [Part],
-        /// Columns now, then columns before the step.
+        /// Columns now, then columns before the step; where cells take steps of their own then those at the start of these, and the sums of what they come to.
         storage columns: [Column],
-        /// Water of each cell.
+        /// Water of each cell; where cells take steps of their own then that in their second stages.
         storage water: [Water],
         /// Slopes of each cell.
         storage slopes: [Slopes],
@@ -520,6 +561,10 @@ corpuscle_gpu::declare! {
         storage fluxes: [Flux],
         /// The part of its outflow that each cell has the water for.
         storage kept: [f32],
+        /// Distances of each cell from those with the shortest step and twice that, in neighbours: 8 bits each, and once more for the next.
+        storage distances: [u32],
+        /// For each group of cells.
+        storage plans: [Plan],
         /// What happened in each cell.
         storage records: [Record],
         /// For each group of cells, and for structures.

@@ -3,14 +3,15 @@
 use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
-    CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, Parameters, Passed, Place, Push,
-    Record, Shown, Slopes, Status, Water,
+    CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, PLAN_SLOT, Parameters, Passed,
+    Place, Plan, Push, Record, Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
 use crate::voronoi::Inflow;
 use crate::voronoi::boundaries::Boundaries;
 use crate::voronoi::friction::Slowing;
+use crate::voronoi::local::Local;
 use crate::voronoi::maps;
 use crate::voronoi::mesh::{self, Mesh};
 use crate::voronoi::rain::{Soaked, Weather};
@@ -57,6 +58,11 @@ impl Input<'_> {
         !self.structures.is_empty() || !self.solver.crests.is_empty()
     }
 
+    /// Whether cells may take steps of their own.
+    pub fn are_steps_local(&self) -> bool {
+        self.solver.local.is_some()
+    }
+
     /// What there is beside the motion of the water.
     pub fn sides(&self) -> Sides {
         Sides {
@@ -68,6 +74,7 @@ impl Input<'_> {
             has_crests: !self.solver.crests.is_empty(),
             holds_levels: self.boundaries.holds_levels(),
             shares_discharges: self.boundaries.shares_discharges(),
+            are_steps_local: self.are_steps_local(),
         }
     }
 
@@ -107,7 +114,7 @@ impl Input<'_> {
         let memory = Memory {
             parameters: uniform(gpu, "parameters", &parameters),
             status: filled(gpu, "status", &[status])?,
-            groups: filled(gpu, "groups", &[[0_u32, 1, 1]; 7])?,
+            groups: filled(gpu, "groups", &[[0_u32, 1, 1]; PLAN_SLOT as usize + 1])?,
             ground: filled(gpu, "cells", &(0..cells).map(|cell| self.ground(cell)).collect::<Vec<_>>())?,
             links: filled(gpu, "links", &(0..cells).flat_map(|cell| links(mesh, cell)).collect::<Vec<_>>())?,
             faces: filled(gpu, "faces", &self.faces())?,
@@ -116,10 +123,12 @@ impl Input<'_> {
             discharges: filled(gpu, "discharges", &sides.discharges)?,
             parts: filled(gpu, "parts of discharges", &sides.parts)?,
             columns: filled(gpu, "columns", &self.columns())?,
-            water: storage::<Water>(gpu, "water", cells)?,
+            water: storage::<Water>(gpu, "water", if self.are_steps_local() { 2 * cells } else { cells })?,
             slopes: storage::<Slopes>(gpu, "slopes", cells)?,
             fluxes: storage::<Flux>(gpu, "fluxes", faces)?,
             kept: storage::<f32>(gpu, "kept parts", cells)?,
+            distances: storage::<u32>(gpu, "distances of cells", if self.are_steps_local() { 2 * cells } else { 0 })?,
+            plans: storage::<Plan>(gpu, "plans of groups", if self.are_steps_local() { groups } else { 0 })?,
             records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
             passed: storage::<Passed>(gpu, "sums of groups", groups + 1)?,
             found: storage::<Found>(gpu, "steps of groups", groups)?,
@@ -159,6 +168,8 @@ impl Input<'_> {
 
     fn status(&self) -> Status {
         let wet = self.solver.wet_cells() as u32;
+        // Cells that take steps of their own have these planned on the GPU.
+        let parts = Local::in_use(self.solver.local.as_ref()).map_or(1, Local::parts);
         Status {
             clock: to_pair(self.time),
             step: self.step as f32,
@@ -167,6 +178,8 @@ impl Input<'_> {
             since_draught: (self.time - self.soaked.until) as f32,
             all_steps: self.steps as u32,
             wet,
+            parts: if parts > 1 { 0 } else { 1 },
+            shortest: (self.step / f64::from(parts)) as f32,
             ..Status::default()
         }
     }
@@ -186,7 +199,7 @@ impl Input<'_> {
             first_link: mesh.first_link[cell],
             end_link: mesh.first_link[cell + 1],
             rim: u32::from(mesh.rim[cell] != 0),
-            unused: 0,
+            paces: 0,
         }
     }
 
@@ -221,7 +234,11 @@ impl Input<'_> {
     fn columns(&self) -> Vec<Column> {
         let column =
             |column: &water::Column| Column { volume: to_pair(column.volume), momentum: single(column.momentum) };
-        self.solver.columns.iter().chain(self.solver.before()).map(column).collect()
+        let mut columns: Vec<_> = self.solver.columns.iter().chain(self.solver.before()).map(column).collect();
+        if self.are_steps_local() {
+            columns.resize(4 * self.cells(), Column::default());
+        }
+        columns
     }
 }
 

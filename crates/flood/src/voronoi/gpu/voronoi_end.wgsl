@@ -3,7 +3,7 @@
 #import declared
 #import compensated_sums
 #import stage
-#import voronoi_record
+#import record_step
 #import voronoi_stable
 #import exchange
 #import group_reduction
@@ -29,7 +29,7 @@ fn end_step(cell: u32) -> Found {
     var own = Found();
     var before = FAR;
     if !IS_LOOKED_AT {
-        record(cell, water[cell]);
+        record_step(cell);
         before = stable_step(cell);
     }
     exchange(cell, &own);

@@ -1,7 +1,7 @@
 // Books a step, and decides whether there is another before the time that the host waits for.
 #import declared
 #import compensated_sums
-#import voronoi_tables
+#import next
 #import group_reduction
 
 // What happened in a step: see `Passed` and `Found`. Energy is what left and what came in, of both.
@@ -109,16 +109,6 @@ fn decide() -> u32 {
     return select(ARRIVED, GOING, difference(status.until, status.clock) > 0.0);
 }
 
-// What a table comes to in the next step.
-fn look_up(table: u32) {
-    let header = TABLE * table;
-    let sum = integral(table, status.clock, status.step);
-    tables[header + INTEGRAL] = bitcast<u32>(sum);
-    tables[header + MEAN] = bitcast<u32>(sum / status.step);
-    tables[header + AT_BEGINNING] = bitcast<u32>(value_at(table, status.clock));
-    tables[header + AT_BEGINNING + 1u] = bitcast<u32>(value_at(table, add(status.clock, status.step)));
-}
-
 @compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     let was = status.halted;
@@ -138,8 +128,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         groups[3u * CREST_SLOT] = select(0u, groups_for(parameters.crests), goes_on);
         groups[3u * BESIDE_CREST_SLOT] = select(0u, groups_for(parameters.beside_crests), goes_on);
         groups[3u * STRUCTURE_SLOT] = select(0u, 1u, goes_on);
-        for (var table = 0u; table < parameters.tables && goes_on; table++) {
-            look_up(table);
-        }
+        prepare_next(was, goes_on);
     }
 }

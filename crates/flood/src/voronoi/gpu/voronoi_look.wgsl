@@ -1,6 +1,6 @@
 // Looks at the water after its motion, before structures work: records of the maps, and how long the next step may be.
 #import declared
-#import voronoi_record
+#import record_step
 #import voronoi_stable
 #import group_reduction
 
@@ -18,7 +18,7 @@ fn main(
 ) {
     var own = FAR;
     if id.x < parameters.cells {
-        record(id.x, water[id.x]);
+        record_step(id.x);
         own = stable_step(id.x);
     }
     let step = reduce_group(thread, own);

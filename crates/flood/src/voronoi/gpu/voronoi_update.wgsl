@@ -2,6 +2,7 @@
 // `update` in `solver.rs`. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
+#import time_steps
 #import compensated_sums
 #import voronoi_friction
 #import voronoi_water
@@ -42,9 +43,10 @@ fn energy_of(cell: u32, flux: Flux, volume: f32) -> f32 {
     return volume * (parameters.gravity * (ground[cell].bed + water[cell].depth + water[cell].shift) + 0.5 * dot(velocity, velocity));
 }
 
-fn gather(cell: u32) -> Gathered {
+fn gather(cell: u32, base: Column) -> Gathered {
     let zero = vec2f(0.0);
-    var all = Gathered(columns[cell].volume, zero, zero, zero, zero, zero, zero);
+    let step = step_of(cell);
+    var all = Gathered(base.volume, zero, zero, zero, zero, zero, zero);
     for (var number = ground[cell].first_link; number < ground[cell].end_link; number++) {
         let link = links[number];
         if link.face == NONE {
@@ -54,13 +56,13 @@ fn gather(cell: u32) -> Gathered {
         let is_second_cell = link.side == 1u;
         let part = kept_of(cell, link, select(flux.volume, -flux.volume, is_second_cell));
         // The same bits on both sides.
-        let volume = opaque(status.step * flux.volume * part);
-        let carried = status.step * part * flux.carried;
+        let volume = opaque(step * flux.volume * part);
+        let carried = step * part * flux.carried;
         all.volume = add(all.volume, select(-volume, volume, is_second_cell));
         all.carried += select(-carried, carried, is_second_cell);
-        all.thrust -= status.step * select(flux.thrust.x, flux.thrust.y, is_second_cell) * link.normal;
+        all.thrust -= step * select(flux.thrust.x, flux.thrust.y, is_second_cell) * link.normal;
         if link.neighbour == NONE {
-            let half = 0.5 * volume;
+            let half = 0.5 * share_of(cell) * volume;
             all.outflow = add(all.outflow, max(half, 0.0));
             all.inflow = add(all.inflow, max(-half, 0.0));
             let energy = energy_of(cell, flux, half);
@@ -71,37 +73,47 @@ fn gather(cell: u32) -> Gathered {
     return all;
 }
 
-// The column of a cell after the stage; what ground, borders and friction gave of momentum is added to `gained`.
-fn next_column(cell: u32, all: Gathered, gained: ptr<function, vec2f>) -> Column {
+// The column of a cell after the stage, its velocity not bounded yet; what ground, borders and friction gave of momentum is added to `gained`.
+fn next_column(cell: u32, base: Column, all: Gathered, gained: ptr<function, vec2f>) -> Column {
     let area = ground[cell].area;
     var volume = tidy(all.volume);
     if volume.x < 0.0 {
         volume = vec2f(0.0);
     }
-    let pushed = columns[cell].momentum + (all.carried + all.thrust);
-    let factor = friction_factor(ground[cell].friction, volume.x / area, length(pushed) / area, status.step);
+    let pushed = base.momentum + (all.carried + all.thrust);
+    let factor = friction_factor(ground[cell].friction, volume.x / area, length(pushed) / area, step_of(cell));
     var momentum = factor * pushed;
-    *gained += 0.5 * (all.thrust + all.beyond + (factor - 1.0) * pushed);
+    *gained += 0.5 * share_of(cell) * (all.thrust + all.beyond + (factor - 1.0) * pushed);
     if IS_SECOND {
-        let before = columns[parameters.cells + cell];
+        let before = start_of(cell);
         volume = 0.5 * tidy(add_pair(volume, before.volume));
         momentum = 0.5 * (momentum + before.momentum);
     }
-    let bounded = bounded_momentum(momentum, volume.x, area);
-    *gained += select(0.5, 1.0, IS_SECOND) * (bounded - momentum);
-    return Column(volume, bounded);
+    return Column(volume, momentum);
+}
+
+// Gives a cell its new column; `gained` as in `next_column`.
+fn take_on(cell: u32, next: Column, gained: ptr<function, vec2f>) {
+    let area = ground[cell].area;
+    let bounded = bounded_momentum(next.momentum, next.volume.x, area);
+    *gained += select(0.5 * share_of(cell), 1.0, IS_SECOND) * (bounded - next.momentum);
+    let own = Column(next.volume, bounded);
+    columns[cell] = own;
+    water[cell] = water_of(own, area);
 }
 
 // Takes a cell on by the stage; what passed.
 fn go_on(cell: u32) -> Passed {
-    let all = gather(cell);
+    let base = base_of(cell);
+    let all = gather(cell, base);
     var gained = vec2f(0.0);
-    let next = next_column(cell, all, &gained);
-    if !IS_SECOND {
+    var next = next_column(cell, base, all, &gained);
+    if begins() {
         columns[parameters.cells + cell] = columns[cell];
     }
-    columns[cell] = next;
-    water[cell] = water_of(next, ground[cell].area);
+    if !IS_SECOND || ends_with(cell, &next) {
+        take_on(cell, next, &gained);
+    }
     let change = all.carried + all.thrust;
     let is_sound = is_finite(all.volume.x) && is_finite(change.x) && is_finite(change.y);
     return Passed(all.outflow, all.inflow, all.energy, gained.x + gained.y, select(1u, 0u, is_sound));
@@ -124,15 +136,15 @@ fn main(
     @builtin(local_invocation_index) thread: u32,
 ) {
     var own = Passed();
-    if id.x < parameters.cells {
+    if id.x < parameters.cells && is_in_step(id.x) {
         own = go_on(id.x);
     }
     let all = reduce_group(thread, own);
     if thread == 0u {
-        if IS_SECOND {
-            passed[group.x] = combine(all, passed[group.x]);
-        } else {
+        if begins() {
             passed[group.x] = all;
+        } else {
+            passed[group.x] = combine(all, passed[group.x]);
         }
     }
 }

@@ -5,9 +5,9 @@ fn is_not_a_number(value: f32) -> bool {
     return (bitcast<u32>(value) & 0x7fffffffu) > 0x7f800000u;
 }
 
-// The time at which a depth was passed is found on the straight line between the depths before and after.
-fn record(cell: u32, now: Water) {
-    let before = columns[parameters.cells + cell].volume.x / ground[cell].area;
+// What the water did in a step of `step` s from a time on, by the depth before it and the water now. The time at which a depth was passed is found on the straight
+// line between the depths before and after.
+fn record(cell: u32, now: Water, before: f32, start: f32, step: f32) {
     let wet_depth = parameters.wet_depth;
     if now.depth <= wet_depth && before <= wet_depth {
         return;
@@ -16,9 +16,9 @@ fn record(cell: u32, now: Water) {
     let fallen = select((before - wet_depth) / (before - now.depth), 1.0, now.depth >= wet_depth);
     var own = records[cell];
     if is_not_a_number(own.arrival) {
-        own.arrival = status.clock.x + risen * status.step;
+        own.arrival = start + risen * step;
     }
-    own.duration += max(fallen - risen, 0.0) * status.step;
+    own.duration += max(fallen - risen, 0.0) * step;
     if now.depth > wet_depth {
         let speed = length(now.velocity);
         own.max_depth = max(own.max_depth, now.depth);

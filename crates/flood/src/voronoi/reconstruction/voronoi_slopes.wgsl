@@ -1,5 +1,6 @@
 // Slopes of wet cells: least squares over the neighbours. See `slopes` in `reconstruction/mod.rs`.
 #import declared
+#import time_steps
 #import voronoi_differences
 
 // Difference of the velocity to that of the mirror image behind a wall.
@@ -8,7 +9,7 @@ fn mirrored(link: Link, velocity: vec2f) -> vec2f {
 }
 
 // Differences of depth, level and velocity.
-fn difference(link: Link, here: Water) -> vec4f {
+fn difference_to(link: Link, here: Water) -> vec4f {
     if link.neighbour == NONE {
         return vec4f(0.0, 0.0, mirrored(link, here.velocity));
     }
@@ -20,7 +21,7 @@ fn difference(link: Link, here: Water) -> vec4f {
 
 @compute @workgroup_size(GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    if id.x >= parameters.cells {
+    if id.x >= parameters.cells || !is_seen(id.x) {
         return;
     }
     let here = water[id.x];
@@ -31,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     for (var number = ground[id.x].first_link; number < ground[id.x].end_link; number++) {
         let link = links[number];
         if any(link.gradient != vec2f(0.0)) {
-            let change = difference(link, here);
+            let change = difference_to(link, here);
             found.x += link.gradient.x * change;
             found.y += link.gradient.y * change;
         }

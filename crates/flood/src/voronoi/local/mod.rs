@@ -13,12 +13,17 @@ use rayon::prelude::*;
 /// The shortest step is doubled so often at most.
 pub(crate) const HIGHEST: u8 = 2;
 
+/// A wave that is as fast as its cells allow must not reach cells with longer steps before the end of the longest: cells so many neighbours away at most from those
+/// that need the shortest step take it too, and cells so many away from those that need twice that take no longer one.
+#[cfg(feature = "gpu")]
+pub(crate) const WIDENED: [u32; 2] = [(1 << HIGHEST) + (1 << (HIGHEST - 1)), 1 << (HIGHEST - 1)];
+
 /// Cells as many neighbours away from a cell of a lower level repeat their stages with it: what happens in both stages of a cell does not depend on
 /// cells farther away. A flux depends on the two cells beside it and on what these can give, so on their other fluxes, and all of these on slopes.
-const REPEATED: usize = 6;
+pub(crate) const REPEATED: usize = 6;
 
 /// Steps of their own are taken where they save at least this part of the work.
-const LEAST_SAVED: f64 = 0.25;
+pub(crate) const LEAST_SAVED: f64 = 0.25;
 
 /// Cells that are gone through by a thread at a time.
 const CHUNK: usize = 1024;
