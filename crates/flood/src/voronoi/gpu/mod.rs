@@ -39,6 +39,8 @@ const LIBRARY: ShaderLibrary<'_> = &[
     GROUP_REDUCTION,
     ("voronoi_tables", include_str!("voronoi_tables.wgsl")),
     ("voronoi_look_up", include_str!("voronoi_look_up.wgsl")),
+    ("voronoi_groups", include_str!("voronoi_groups.wgsl")),
+    ("voronoi_plans", include_str!("../local/voronoi_plans.wgsl")),
     ("voronoi_local", include_str!("../local/voronoi_local.wgsl")),
     ("voronoi_record", include_str!("../maps/voronoi_record.wgsl")),
     ("infiltration_laws", include_str!("../rain/infiltration_laws.wgsl")),

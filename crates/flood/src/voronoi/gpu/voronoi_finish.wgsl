@@ -2,6 +2,7 @@
 #import declared
 #import compensated_sums
 #import next
+#import voronoi_groups
 #import group_reduction
 
 // What happened in a step: see `Passed` and `Found`. Energy is what left and what came in, of both.
@@ -33,10 +34,6 @@ fn combine(a: Sums, b: Sums) -> Sums {
         a.at_rim + b.at_rim,
         a.is_broken | b.is_broken,
     );
-}
-
-fn groups_for(count: u32) -> u32 {
-    return (count + GROUP - 1u) / GROUP;
 }
 
 // What motion and end of the step did in a group of cells.

@@ -1,6 +1,7 @@
 // What `voronoi_finish.wgsl` does for the next step where cells may take steps of their own: they are planned after each step, and once after an upload that left
 // it open; where that was done before, tables are looked up.
 #import declared
+#import voronoi_groups
 #import voronoi_look_up
 
 fn prepare_next(was: u32, goes_on: bool) {

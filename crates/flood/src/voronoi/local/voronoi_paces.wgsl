@@ -1,12 +1,6 @@
 // How often each cell goes through its stages, and what that comes to: see `plan` in `local/mod.rs`.
 #import declared
-#import group_reduction
-
-alias Reduced = Plan;
-
-fn combine(a: Plan, b: Plan) -> Plan {
-    return Plan(max(a.highest, b.highest), a.wet + b.wet, a.quarters + b.quarters);
-}
+#import voronoi_plans
 
 // The lowest level of cells so far away from cells of the levels 0 and 1, where it is at most `own`.
 fn lowest(distance: vec2u, beyond: u32, own: u32) -> u32 {

@@ -1,9 +1,6 @@
 // Begins a part of a step, or none where the step has fewer: see `begin` in `local/mod.rs`. One thread.
 #import declared
-
-fn groups_for(count: u32) -> u32 {
-    return (count + GROUP - 1u) / GROUP;
-}
+#import voronoi_groups
 
 @compute @workgroup_size(1)
 fn main() {

@@ -1,19 +1,13 @@
 // Decides whether cells take steps of their own, and how long the next step is: see `plan` in `local/mod.rs`. One group.
 #import declared
 #import voronoi_look_up
-#import group_reduction
-
-alias Reduced = Plan;
-
-fn combine(a: Plan, b: Plan) -> Plan {
-    return Plan(max(a.highest, b.highest), a.wet + b.wet, a.quarters + b.quarters);
-}
+#import voronoi_plans
+#import voronoi_groups
 
 @compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
     var own = Plan();
-    let groups_of_cells = (parameters.cells + GROUP - 1u) / GROUP;
-    for (var group = thread; group < groups_of_cells; group += GROUP) {
+    for (var group = thread; group < groups_for(parameters.cells); group += GROUP) {
         own = combine(own, plans[group]);
     }
     let all = reduce_group(thread, own);
