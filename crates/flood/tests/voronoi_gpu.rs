@@ -531,6 +531,22 @@ fn what_acts_on_water_does_so_where_steps_differ() {
     assert_local(&floods[1], keys);
 }
 
+/// Onto dry ground, where films drain: no cell gives more than it has, and water arrives when it does on the CPU.
+#[test]
+fn films_drain_where_steps_differ() {
+    let Some(gpu) = require_gpu("films with local time steps on the GPU") else { return };
+    let keys = format!("manning = 0.02\n{WALLS}");
+    let dam = |x: f64, _: f64| if x < 60.0 { 0.9 } else { -0.15 };
+    let floods = both(gpu, 4.0, || over_a_hole("local", &keys, dam));
+    agree(&floods, 1e-6, 1e-5);
+    assert!(floods[1].wet_cells().all(|cell| cell.depth > 0.0));
+    let [cpu, gpu] = floods.each_ref().map(|flood| flood.maps().swap_remove(3).values);
+    let arrived: Vec<_> = cpu.iter().zip(&gpu).filter(|(a, b)| **a > 0.0 && !b.is_nan()).collect();
+    let off = arrived.iter().map(|(a, b)| f64::from((*a - *b).abs())).sum::<f64>() / arrived.len() as f64;
+    eprintln!("{} arrivals, {off:.1e} s off", arrived.len());
+    assert!(arrived.len() > 500 && off < 1e-3, "{} {off}", arrived.len());
+}
+
 #[test]
 fn a_lake_stays_at_rest_where_steps_differ() {
     let Some(gpu) = require_gpu("a lake with local time steps on the GPU") else { return };

@@ -269,6 +269,10 @@ impl VoronoiFlood {
         self.take_over(on_gpu)?;
         let missing = self.solver.missing_tiles();
         self.make_tiles(missing)?;
+        if self.solver.local.is_some() {
+            // Tiles that are made end the steps of cells: the CPU plans them anew as well.
+            self.state.time_step = self.solver.plan();
+        }
         self.upload(on_gpu)
     }
 
