@@ -151,7 +151,7 @@ mod tests {
         assert!(open(&file).unwrap_err().contains("notes.txt"));
         assert!(open(&folder.path().join("none.tif")).unwrap_err().contains("none.tif"));
         let scene = folder.path().join("own.TOML");
-        fs::write(&scene, corpuscle::scene::BUILTIN[0].text).unwrap();
+        fs::write(&scene, corpuscle::scene::builtin("flood/valley").unwrap().text).unwrap();
         let Ok(Start::Scene(source)) = open(&scene) else { panic!("no scene") };
         assert!(source.scene().is_ok() && source.folder == folder.path());
     }

@@ -1,7 +1,7 @@
 //! The scenes that come with the program, each with a picture and a sentence.
 
 use crate::style::STRONG;
-use corpuscle::scene::{BUILTIN, Builtin, Scene};
+use corpuscle::scene::{Builtin, Scene, kinds, scenes};
 use egui::text::LayoutJob;
 use egui::{
     Color32, ColorImage, CornerRadius, FontFamily, FontId, Galley, Rect, Response, RichText, Role, ScrollArea, Sense,
@@ -32,18 +32,23 @@ pub struct Gallery {
     brought_to: String,
 }
 
-/// The models, as they stand in the list.
-const MODELS: [(&str, &str); 3] = [("gas", "Gas"), ("flood", "Flood"), ("dew", "Dew")];
+/// The models that have scenes, as they are named and as they stand in the list.
+fn models() -> impl Iterator<Item = (&'static str, String)> {
+    kinds().into_iter().filter(|kind| !kind.scenes.is_empty()).map(|kind| {
+        let (first, rest) = kind.name.split_at(1);
+        (kind.name, first.to_uppercase() + rest)
+    })
+}
 
 impl Gallery {
     /// All scenes.
     pub fn new() -> Self {
-        let entry = |scene: &Builtin| {
+        let entry = |scene: Builtin| {
             let read = Scene::parse(scene.text, scene.name, &[]);
             let (title, description) = read.map_or_else(|_| Default::default(), |read| (read.title, read.description));
-            Entry { scene: *scene, title, sentence: first_sentence(&description), texture: None }
+            Entry { scene, title, sentence: first_sentence(&description), texture: None }
         };
-        Self { entries: BUILTIN.iter().map(entry).collect(), brought_to: String::new() }
+        Self { entries: scenes().map(entry).collect(), brought_to: String::new() }
     }
 
     /// The scenes of a model.
@@ -56,7 +61,7 @@ impl Gallery {
         let mut chosen = None;
         let is_new = self.brought_to != open;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for (model, name) in MODELS {
+            for (model, name) in models() {
                 ui.add_space(6.0);
                 ui.label(RichText::new(name).small().weak());
                 for entry in self.of(model) {
@@ -83,7 +88,7 @@ impl Gallery {
         let gap = 14.0;
         let columns = ((ui.available_width() + gap) / (216.0 + gap)).floor().clamp(1.0, 6.0);
         let width = (ui.available_width() - gap * (columns - 1.0)) / columns;
-        for (model, name) in MODELS {
+        for (model, name) in models() {
             ui.add_space(18.0);
             ui.label(RichText::new(name).text_style(egui::TextStyle::Name(STRONG.into())).size(15.0));
             ui.add_space(4.0);

@@ -2,7 +2,8 @@
 
 use crate::icons::{self, Icon};
 use crate::snapshot::Snapshot;
-use corpuscle::scene::{Scene, Units};
+use corpuscle::models;
+use corpuscle::scene::Scene;
 use corpuscle_drawing::text;
 use egui::{Align, Color32, CornerRadius, Layout, Rect, RichText, Role, Sense, Slider, Ui, WidgetInfo, vec2};
 
@@ -80,29 +81,23 @@ impl Transport<'_> {
     }
 
     fn time(&self, time: f64) -> String {
-        match self.scene.gas().map(|gas| gas.units) {
-            Some(Units::Reduced) => text::short_number(time),
-            Some(Units::Si) => text::any_time(time),
-            None => text::any_time(time),
-        }
+        let has_units = models::of(self.scene).is_ok_and(|kind| kind.has_si_units(self.scene));
+        if has_units { text::any_time(time) } else { text::short_number(time) }
     }
 
     fn numbers(&self, ui: &mut Ui) {
         let Some(snapshot) = self.snapshot else { return };
         let particles = text::number(snapshot.particles as f64);
-        let words = match self.scene.gas() {
-            Some(_) => format!("{particles} balls"),
-            None => format!("{particles} particles"),
-        };
+        let (called, work) = models::of(self.scene).map_or(("", ""), |kind| (kind.particles(), kind.work()));
+        let words = format!("{particles} {called}");
         let count = ui.label(RichText::new(words).small().weak());
         let told = |response: egui::Response| match self.computed_on {
             Some(computed_on) => response.on_hover_text(computed_on),
             None => response,
         };
         told(count);
-        let work = if self.scene.gas().is_some() { "collisions/s" } else { "particle steps/s" };
         let rate = if snapshot.playing {
-            format!("{:.0} pictures/s  ·  {} {work}", self.pictures, text::short_number(snapshot.rate))
+            format!("{:.0} pictures/s  ·  {} {work}/s", self.pictures, text::short_number(snapshot.rate))
         } else {
             String::new()
         };

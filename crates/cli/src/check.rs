@@ -9,7 +9,7 @@ use crate::scene_argument;
 use crate::terrain::fetch_for;
 use corpuscle::Simulation;
 use corpuscle::model::Model;
-use corpuscle::scene::{ModelScene, Scene, Scheme};
+use corpuscle::models;
 use corpuscle::terrain::Terrain;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -31,18 +31,6 @@ const SHORTEST_PROBE: f64 = 1e-3;
 /// Parts of a run for which the particles to come are counted.
 const ESTIMATE_PARTS: usize = 20;
 
-/// Memory for each particle of scheme sph-swe, bytes, measured: state, sorted copies, neighbours and work space.
-const BYTES_PER_PARTICLE: f64 = 1000.0;
-
-/// Memory for each wet particle of scheme voronoi, bytes, 533 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.
-const BYTES_PER_CELL_OF_WATER: f64 = 560.0;
-
-/// Memory for each ball of a gas, bytes: 340 measured where no frames are written, and room to write them.
-const BYTES_PER_BALL: f64 = 500.0;
-
-/// Memory for each particle of dew, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
-const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
-
 /// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
 
@@ -55,6 +43,9 @@ struct Report {
     /// None for a model without one.
     terrain: Option<Ground>,
     particles_at_start: usize,
+    /// What particles are called.
+    #[serde(skip)]
+    called: &'static str,
     particles_to_come: usize,
     memory_bytes: f64,
     /// At the start; none where nothing moves yet.
@@ -126,7 +117,7 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     let probe = Probe::run(&mut simulation)?;
     let estimated_wall_time_s = probe.estimate(&simulation);
     let (terrain, scene) = (simulation.terrain(), simulation.scene());
-    let (run, is_gas) = (&scene.run, scene.gas().is_some());
+    let (run, kind) = (&scene.run, models::of(scene).map_err(corpuscle::Error::from)?);
     let terrain = terrain.map(|terrain| Ground::of(terrain));
     let cells = terrain.as_ref().map_or(0, |ground| ground.columns * ground.rows);
     let particles = (particles_at_start + particles_to_come) as f64;
@@ -137,9 +128,10 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         model: simulation.model().name(),
         terrain,
         particles_at_start,
+        called: kind.particles(),
         particles_to_come,
-        memory_bytes: particles * bytes_per_particle(scene) + cells as f64 * BYTES_PER_CELL,
-        time_step_s: probe.time_step.filter(|_| !is_gas),
+        memory_bytes: particles * kind.bytes_per_particle(scene) + cells as f64 * BYTES_PER_CELL,
+        time_step_s: probe.time_step.filter(|_| kind.work() != "collisions"),
         estimated_wall_time_s,
         until_s: run.until_s,
         frames: rows(run.frame_period_s()),
@@ -148,15 +140,6 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
         notes: simulation.notes().to_vec(),
         warnings: simulation.warnings(),
     })
-}
-
-fn bytes_per_particle(scene: &Scene) -> f64 {
-    match &scene.model {
-        ModelScene::Gas(_) => BYTES_PER_BALL,
-        ModelScene::Dew(_) => BYTES_PER_AIR_PARTICLE,
-        ModelScene::Flood(flood) if flood.flood.scheme == Scheme::Voronoi => BYTES_PER_CELL_OF_WATER,
-        ModelScene::Flood(_) => BYTES_PER_PARTICLE,
-    }
 }
 
 /// What a short run shows.
@@ -276,11 +259,10 @@ fn text(report: &Report) -> String {
 }
 
 fn particles_line(report: &Report) -> String {
-    let Report { model, particles_at_start, particles_to_come, .. } = report;
-    match (&report.terrain, *model) {
-        (Some(_), _) => format!("particles  {particles_at_start} at the start, about {particles_to_come} to come"),
-        (None, "gas") => format!("balls      {particles_at_start}"),
-        (None, _) => format!("particles  {particles_at_start} at the start"),
+    let Report { called, particles_at_start, particles_to_come, .. } = report;
+    match &report.terrain {
+        Some(_) => format!("{called:10} {particles_at_start} at the start, about {particles_to_come} to come"),
+        None => format!("{called:10} {particles_at_start} at the start"),
     }
 }
 

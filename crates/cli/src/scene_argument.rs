@@ -2,7 +2,7 @@
 
 use crate::refusal::refuse;
 use crate::suggestion::suggest_scene;
-use corpuscle::scene::{BUILTIN, Scene, builtin};
+use corpuscle::scene::{Scene, builtin, scenes};
 use std::path::{Path, PathBuf};
 
 /// A scene that a user named.
@@ -15,12 +15,15 @@ pub struct Named {
     pub short_name: String,
 }
 
+/// What runs when no scene is named.
+const DEFAULT: &str = "flood/valley";
+
 /// Endings of terrain files; `.gz` may follow.
 const TERRAIN_ENDINGS: [&str; 4] = ["tif", "tiff", "asc", "agr"];
 
 /// Finds and reads the scene called `name`: a built-in one, or a file.
 pub fn read(name: Option<&str>, overrides: &[(String, String)]) -> anyhow::Result<Named> {
-    let name = name.unwrap_or(BUILTIN[0].name);
+    let name = name.unwrap_or(DEFAULT);
     if let Some(found) = builtin(name) {
         let scene = Scene::parse(found.text, name, overrides).map_err(corpuscle::Error::from)?;
         let short_name = name.rsplit('/').next().unwrap_or(name).to_owned();
@@ -50,12 +53,11 @@ fn is_terrain(path: &Path) -> bool {
 
 /// The text for a scene that is neither built in nor a file.
 pub fn not_found(name: &str) -> String {
-    let nearest = BUILTIN
-        .iter()
+    let nearest = scenes()
         .map(|scene| (strsim::jaro_winkler(name, scene.name), scene.name))
         .filter(|(likeness, _)| *likeness > 0.7)
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    let names: Vec<_> = BUILTIN.iter().map(|scene| scene.name).collect();
+    let names: Vec<_> = scenes().map(|scene| scene.name).collect();
     let meant = nearest.map(|(_, name)| format!("; did you mean {name}?")).unwrap_or_default();
     format!("there is no file and no built-in scene `{name}`{meant} (built in: {})", names.join(", "))
 }

@@ -5,7 +5,7 @@ use crate::output::{print, print_json};
 use crate::refusal::refuse;
 use crate::scene_argument::not_found;
 use anyhow::Context;
-use corpuscle::scene::{BUILTIN, Builtin, Scene, builtin};
+use corpuscle::scene::{self, Builtin, Scene, builtin};
 use serde_json::json;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -26,7 +26,7 @@ pub fn scenes(options: &ScenesOptions, as_json: bool) -> anyhow::Result<ExitCode
 
 fn list(as_json: bool) -> anyhow::Result<ExitCode> {
     let mut rows = Vec::new();
-    for scene in BUILTIN {
+    for scene in scene::scenes() {
         let read = Scene::parse(scene.text, scene.name, &[]).map_err(corpuscle::Error::from)?;
         rows.push((scene.name, read.title, read.description));
     }

@@ -21,7 +21,8 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
         with.gpu = Some(Gpu::open().map_err(corpuscle::Error::from)?);
     }
     let mut report = options.report.as_deref().map(ValidationReport::create).transpose()?;
-    let mut chosen = select(cases(), |case| case.name, &options.cases)?;
+    let cases = cases();
+    let mut chosen = select(&cases, |case| case.name, &options.cases)?;
     chosen.retain(|case| !options.fast || !case.slow);
     if with.gpu.is_some() {
         for case in chosen.extract_if(.., |case| case.name.starts_with("gas/")) {

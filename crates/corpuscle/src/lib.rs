@@ -22,7 +22,9 @@ mod error;
 mod filming;
 mod ground;
 mod live_change;
+pub mod models;
 mod open;
+pub mod parameters;
 #[cfg(feature = "pictures")]
 pub mod pictures;
 mod progress;
@@ -54,6 +56,7 @@ pub use filming::Filming;
 #[cfg(feature = "fetch")]
 pub use ground::fetch_terrain;
 pub use live_change::LiveChange;
+pub use models::register;
 pub use progress::Progress;
 pub use recorder::Recorder;
 pub use simulation::Simulation;

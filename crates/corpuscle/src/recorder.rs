@@ -1,8 +1,9 @@
 //! A run's folder as a sink.
 
+use crate::models::{self, Recorded};
 use crate::{Error, Simulation, Sink};
 use corpuscle_model::Model;
-use corpuscle_output::{Clock, DewReport, FrameFormat, GasReport, Report, RunFolder, Status, Summary, compare_extent};
+use corpuscle_output::{Clock, FrameFormat, RunFolder, Status, Summary};
 use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
@@ -55,6 +56,10 @@ impl Recorder {
         Self { folder, terrain: simulation.terrain().cloned(), scene: simulation.scene().clone() }
     }
 
+    fn recorded<'a>(&'a self, model: &'a dyn Model) -> Recorded<'a> {
+        Recorded { folder: self.folder.path(), scene: &self.scene, terrain: self.terrain.as_deref(), model }
+    }
+
     /// The folder.
     pub fn path(&self) -> &Path {
         self.folder.path()
@@ -78,13 +83,7 @@ impl Sink for Recorder {
         if let Some(terrain) = &self.terrain {
             self.folder.write_snapshot(model.time(), &model.maps(), terrain)?;
         }
-        if self.scene.gas().is_some() {
-            GasReport::new(self.folder.path(), &self.scene, model)?.write_moment()?;
-        }
-        if self.scene.dew().is_some() {
-            DewReport::new(self.folder.path(), &self.scene, model)?.write_moment()?;
-        }
-        Ok(())
+        models::of(&self.scene)?.record_frame(&self.recorded(model))
     }
 
     fn checkpoint(&mut self, model: &dyn Model, clock: Clock) -> Result<(), Error> {
@@ -92,16 +91,14 @@ impl Sink for Recorder {
     }
 
     fn finish(&mut self, model: &dyn Model, summary: &mut Summary) -> Result<(), Error> {
-        if let (Some(scene), Some(terrain)) = (self.scene.flood(), &self.terrain) {
+        let kind = models::of(&self.scene)?;
+        if let Some(terrain) = &self.terrain {
             let maps = model.maps();
             if !maps.is_empty() {
                 self.folder.write_final_maps(&maps, terrain)?;
             }
-            let depth = maps.iter().find(|map| map.name == "max_depth");
-            if let (Some(observed), Some(depth)) = (&scene.flood.observed_extent, depth) {
-                summary.extent = Some(compare_extent(observed, terrain, &depth.values)?);
-            }
         }
+        kind.complete(&self.recorded(model), summary)?;
         for warning in &summary.warnings {
             self.folder.log(&format!("warning: {warning}"))?;
         }
@@ -111,11 +108,6 @@ impl Sink for Recorder {
         if summary.status == Status::Stopped {
             return Ok(());
         }
-        match &self.terrain {
-            Some(terrain) => Report::read(self.folder.path(), &self.scene, terrain)?.write()?,
-            None if self.scene.gas().is_some() => GasReport::new(self.folder.path(), &self.scene, model)?.write()?,
-            None => DewReport::new(self.folder.path(), &self.scene, model)?.write()?,
-        }
-        Ok(())
+        kind.write_report(&self.recorded(model))
     }
 }

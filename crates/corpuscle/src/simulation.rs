@@ -1,5 +1,6 @@
 //! A scene made ready, and its run.
 
+use crate::models::{self, COLLISIONS};
 use crate::run_observer::{CheckpointTimer, Glances, Meter, RunObserver, SharedRunObserver};
 use crate::schedule::Schedule;
 use crate::{Error, LiveChange, Progress, Sink};
@@ -163,7 +164,7 @@ impl Simulation {
             let schedules = if self.glances(&**sink) { &mut glances } else { &mut pictures };
             schedules[number] = sink.picture_period().map(|period| Schedule::new(period, until));
         }
-        let counted = if self.scene.gas().is_some() { "collisions" } else { "particle-steps" };
+        let counted = models::of(&self.scene)?.work();
         let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
         if !self.resumed {
             for sink in &mut *sinks {
@@ -263,7 +264,7 @@ impl Simulation {
         let model = &*self.model;
         let wall_time_s = self.wall_time(start);
         let rate = model.particle_steps() as f64 / wall_time_s;
-        let is_gas = self.scene.gas().is_some();
+        let collides = models::of(&self.scene).is_ok_and(|kind| kind.work() == COLLISIONS);
         Summary {
             model: model.name().into(),
             backend: model.backend().into(),
@@ -273,9 +274,9 @@ impl Simulation {
             steps: model.steps(),
             simulated_time_s: model.time(),
             wall_time_s,
-            particle_steps_per_s: (!is_gas).then_some(rate),
-            collisions: is_gas.then(|| model.steps()),
-            collisions_per_s: is_gas.then(|| model.steps() as f64 / wall_time_s),
+            particle_steps_per_s: (!collides).then_some(rate),
+            collisions: collides.then(|| model.steps()),
+            collisions_per_s: collides.then(|| model.steps() as f64 / wall_time_s),
             warnings: self.warnings(),
             ledger: ledger_entries(&model.ledger()),
             extent: None,

@@ -1,7 +1,7 @@
 //! The built-in scenes open, and their places are where their comments say.
 
 use corpuscle::Simulation;
-use corpuscle::scene::{BUILTIN, FloodScene, Scene, Terrain, builtin};
+use corpuscle::scene::{FloodScene, Scene, Terrain, builtin, scenes};
 use corpuscle::terrain::valley_centre;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -23,7 +23,7 @@ fn is_at_hand(scene: &Scene) -> bool {
 
 #[test]
 fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
-    for builtin in BUILTIN {
+    for builtin in scenes() {
         let scene = Scene::parse(builtin.text, builtin.name, &smaller(builtin.name)).unwrap();
         if !is_at_hand(&scene) {
             continue;
@@ -44,7 +44,7 @@ fn every_built_in_scene_opens_and_its_written_form_opens_alike() {
 
 #[test]
 fn every_dew_scene_fogs_and_keeps_its_water_and_energy() {
-    for builtin in BUILTIN.iter().filter(|scene| scene.name.starts_with("dew/")) {
+    for builtin in scenes().filter(|scene| scene.name.starts_with("dew/")) {
         let scene = Scene::parse(builtin.text, builtin.name, &smaller(builtin.name)).unwrap();
         let mut simulation = Simulation::open(scene, Path::new("")).unwrap();
         let until = 0.01 * simulation.scene().run.until_s;

@@ -5,7 +5,7 @@
 use corpuscle::Simulation;
 use corpuscle::gpu::require_gpu;
 use corpuscle::model::{GaugeColumn, Map, Model, Values};
-use corpuscle::scene::{BUILTIN, Scene, builtin};
+use corpuscle::scene::{Scene, builtin, scenes};
 use corpuscle_dew::Dew;
 use corpuscle_flood::{SphSweFlood, VoronoiFlood};
 use std::any::Any;
@@ -268,7 +268,7 @@ fn the_other_built_in_scenes_are_refused() {
     let floods = FLOODS.iter().map(|flood| flood.0).chain(VORONOI.iter().map(|flood| flood.0));
     let compared: Vec<_> = floods.chain(DEW.iter().map(|dew| dew.0)).collect();
     let fetched = |text: &str| text.contains("[terrain.fetch]");
-    let others = BUILTIN.iter().filter(|scene| !compared.contains(&scene.name) && !fetched(scene.text));
+    let others = scenes().filter(|scene| !compared.contains(&scene.name) && !fetched(scene.text));
     for scene in others.filter(|scene| scene.name != "gas/million") {
         let error = open(scene.name, &[]).use_gpu().unwrap_err();
         assert!(error.is_refusal() && error.to_string().contains("--backend"), "{}: {error}", scene.name);

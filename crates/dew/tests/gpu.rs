@@ -9,7 +9,7 @@ use corpuscle_dew::{
 };
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{GpuModel, Model, ModelError};
-use corpuscle_scene::{ModelScene, Scene, builtin};
+use corpuscle_scene::{Scene, builtin};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -613,7 +613,7 @@ fn built_in(name: &str) -> Dew {
     let changes = changes.map(|(key, value)| (key.to_owned(), value.to_owned()));
     let mut scene = Scene::parse(builtin(name).unwrap().text, name, &changes).unwrap();
     scene.resolve_defaults();
-    let ModelScene::Dew(written) = &scene.model else { panic!("{name} is no dew") };
+    let written = scene.dew().unwrap();
     corpuscle_dew::open(written, 1, Path::new("")).unwrap()
 }
 

@@ -43,7 +43,7 @@ fn closed() -> String {
 fn scene(text: &str) -> Dew {
     let mut scene = Scene::parse(text, "test", &[]).unwrap();
     scene.resolve_defaults();
-    let corpuscle_scene::ModelScene::Dew(dew) = &scene.model else { panic!("no dew") };
+    let dew = scene.dew().unwrap();
     open(dew, 1, Path::new(".")).unwrap()
 }
 

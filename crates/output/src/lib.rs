@@ -27,7 +27,9 @@ pub use extent::{ExtentScores, compare_extent, write_extent, write_run_up};
 pub use frames::{FrameFiles, FrameFormat};
 pub use gauges::GaugeTable;
 pub use picture::Key as GasKey;
-pub use report::{DewReport, GasReport, Report, ValidatedCase, ValidatedMeasure, ValidationReport, gas_key};
+pub use report::{
+    DewReport, GasReport, PlainReport, Report, ValidatedCase, ValidatedMeasure, ValidationReport, gas_key,
+};
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
 pub use stills::write_picture;
 pub use summary::{LedgerEntry, Status, Summary, ledger_entries};

@@ -1,5 +1,7 @@
 //! The scenes that come with the program.
 
+use crate::kinds;
+
 /// A scene that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Builtin {
@@ -15,8 +17,8 @@ macro_rules! builtin_scenes {
     };
 }
 
-/// All of them; the first is what runs when no scene is named.
-pub const BUILTIN: &[Builtin] = builtin_scenes![
+/// Those of floods.
+pub(crate) const FLOOD: &[Builtin] = builtin_scenes![
     "flood/valley",
     "flood/rough-terrain",
     "flood/cuboid",
@@ -27,6 +29,10 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "flood/city",
     "flood/iowa-river",
     "flood/chishui",
+];
+
+/// Those of gases.
+pub(crate) const GAS: &[Builtin] = builtin_scenes![
     "gas/maxwell",
     "gas/paper-2000",
     "gas/piston",
@@ -38,14 +44,18 @@ pub const BUILTIN: &[Builtin] = builtin_scenes![
     "gas/atmosphere",
     "gas/argon",
     "gas/million",
-    "dew/pane",
-    "dew/lens",
-    "dew/windscreen",
-    "dew/glassware",
-    "dew/three-boundaries",
 ];
 
-/// The built-in scene called `name`.
+/// Those of dew.
+pub(crate) const DEW: &[Builtin] =
+    builtin_scenes!["dew/pane", "dew/lens", "dew/windscreen", "dew/glassware", "dew/three-boundaries",];
+
+/// All of them, by model.
+pub fn scenes() -> impl Iterator<Item = Builtin> {
+    kinds().into_iter().flat_map(|kind| kind.scenes).copied()
+}
+
+/// The scene called `name`.
 pub fn builtin(name: &str) -> Option<Builtin> {
-    BUILTIN.iter().copied().find(|scene| scene.name == name)
+    scenes().find(|scene| scene.name == name)
 }

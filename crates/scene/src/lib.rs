@@ -23,21 +23,21 @@ mod units;
 mod write;
 mod written;
 
-pub use builtin::{BUILTIN, Builtin, builtin};
+pub use builtin::{Builtin, builtin, scenes};
+pub use check::{Check, Checked};
 pub use dew::Dew;
 pub use error::{Place, Problem, SceneError};
 pub use expression::{Expression, ExpressionError};
 pub use flood::*;
 pub use gas::*;
-pub use model::{FloodScene, ModelScene};
+pub use model::{ModelScene, ModelTables, ReadError, SceneKind, Tables, kinds, register};
 pub use series::{Series, Table};
 pub use terrain::*;
 
 use serde::{Deserialize, Serialize};
 
 /// A scene: everything that a run depends on.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(into = "written::Written")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// One line: what is seen here.
     pub title: String,
@@ -48,7 +48,7 @@ pub struct Scene {
     /// How long to run and how often to look.
     pub run: Run,
     /// What is moved.
-    pub model: ModelScene,
+    pub model: ModelTables,
 }
 
 /// How long to run and how often to look. For a gas in reduced units read its unit of time for s.

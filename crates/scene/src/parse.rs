@@ -1,9 +1,9 @@
 //! From text to a scene.
 
 use crate::document::Document;
-use crate::written::Written;
+use crate::model::ReadError;
+use crate::written::{self, Unread};
 use crate::{Problem, Scene, SceneError, units};
-use serde::Deserialize;
 use std::path::Path;
 
 impl Scene {
@@ -30,17 +30,16 @@ impl Scene {
     }
 
     fn read_document(document: &Document<'_>, in_us: bool) -> Result<Self, Box<Problem>> {
-        let written = Written::deserialize(toml::de::ValueDeserializer::from(document.root()))
-            .map_err(|error| explain(&error, document))?;
-        let checked = written.into_scene().and_then(|scene| {
-            scene.find_problem()?;
-            all_was_read(&scene, document)?;
-            Ok(scene)
-        });
-        let mut scene = checked.map_err(|mut problem| {
+        let placed = |mut problem: Box<Problem>| {
             problem.place = document.place_of(&problem.key).or_else(|| Some(document.whole()));
             problem
+        };
+        let mut scene = written::scene(document.root()).map_err(|unread| match unread {
+            Unread::Read(ReadError::Type(error)) => explain(&error, document),
+            Unread::Read(ReadError::Problem(problem)) => placed(problem),
+            Unread::Key(key, known) => placed(Problem::new(&*key, unknown_word(&key, &known, true))),
         })?;
+        scene.find_problem().and_then(|()| all_was_read(&scene, document)).map_err(placed)?;
         if in_us {
             units::convert(&mut scene, &document.root())?;
         }
@@ -73,7 +72,11 @@ fn explain(error: &toml::de::Error, document: &Document<'_>) -> Box<Problem> {
     }
     let unknown = message.strip_prefix("unknown field ").or_else(|| message.strip_prefix("unknown variant "));
     let what = match unknown {
-        Some(rest) => unknown_word(rest, message.starts_with("unknown field")),
+        Some(rest) => {
+            let mut words = words_in_ticks(rest);
+            let given = words.next().unwrap_or_default();
+            unknown_word(given, &words.collect::<Vec<_>>(), message.starts_with("unknown field"))
+        }
         None => wrong_type(message),
     };
     Box::new(Problem { key, what, place })
@@ -97,11 +100,8 @@ fn what_to_give(path: &str, name: &str) -> String {
     }
 }
 
-/// "unknown field `a`, expected one of `b`, `c`" as a sentence that offers the nearest.
-fn unknown_word(rest: &str, is_key: bool) -> String {
-    let mut words = words_in_ticks(rest);
-    let given = words.next().unwrap_or_default();
-    let known: Vec<&str> = words.collect();
+/// A sentence that says of a word that it is unknown, and offers the nearest of the known ones.
+fn unknown_word(given: &str, known: &[&str], is_key: bool) -> String {
     let what =
         if is_key { " is not a key that is known here".to_owned() } else { format!(": `{given}` is not known here") };
     let nearest = known
@@ -152,9 +152,9 @@ mod tests {
 
     #[test]
     fn the_nearest_word_is_offered_and_a_far_one_is_not() {
-        let near = unknown_word("`spacng_m`, expected one of `scheme`, `spacing_m`", true);
+        let near = unknown_word("spacng_m", &["scheme", "spacing_m"], true);
         assert!(near.contains("did you mean `spacing_m`?"), "{near}");
-        let far = unknown_word("`zzz`, expected one of `scheme`, `spacing_m`", true);
+        let far = unknown_word("zzz", &["scheme", "spacing_m"], true);
         assert!(!far.contains("did you mean") && far.contains("scheme, spacing_m"), "{far}");
     }
 }

@@ -1,10 +1,7 @@
-//! Defaults that depend on the rest of the scene.
+//! Defaults and paths that depend on the rest of the scene.
 
-use crate::dew::{Dew, HumidityTransport, Mean, Scheme};
-use crate::{Gas, ModelScene, Run, Scene, Wall};
-
-/// Colours that go well together and are told apart by colour-blind eyes too (Okabe & Ito 2008).
-const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#4d4d4d"];
+use crate::Scene;
+use std::path::Path;
 
 impl Scene {
     /// Fills in what was left out and depends on nothing but the scene.
@@ -12,82 +9,17 @@ impl Scene {
         let gauge_period = self.run.gauge_period_s();
         self.run.frame_every_s = Some(self.run.frame_period_s());
         self.run.gauge_every_s = Some(gauge_period);
-        match &mut self.model {
-            ModelScene::Flood(scene) => _ = scene.flood.map_every_s.get_or_insert(gauge_period),
-            ModelScene::Gas(gas) => gas.resolve_defaults(&self.run),
-            ModelScene::Dew(dew) => dew.resolve_defaults(),
-        }
-    }
-}
-
-impl Dew {
-    fn resolve_defaults(&mut self) {
-        let is_physical = self.scheme == Scheme::Physical;
-        let (mean, humidity) = match self.scheme {
-            Scheme::Physical => (Mean::Harmonic, HumidityTransport::MassFraction),
-            Scheme::Paper => (Mean::Arithmetic, HumidityTransport::RelativeHumidity),
-        };
-        self.transport.conductivity_mean.get_or_insert(mean);
-        self.transport.humidity.get_or_insert(humidity);
-        self.transport.latent_heat.get_or_insert(is_physical);
-    }
-}
-
-impl Gas {
-    fn resolve_defaults(&mut self, run: &Run) {
-        let dimensions = self.dimensions();
-        self.gravity.get_or_insert_with(|| vec![0.0; dimensions]);
-        let contact_time = self.default_contact_time();
-        self.contact_time_s.get_or_insert(contact_time);
-        if dimensions == 3 {
-            self.walls.z_min.get_or_insert(Wall::Fixed);
-            self.walls.z_max.get_or_insert(Wall::Fixed);
-        }
-        self.measure.from_s.get_or_insert(0.1 * run.until_s);
-        let pair_distance = self.default_pair_distance();
-        self.measure.pair_distance.get_or_insert(pair_distance);
-        for ball in &mut self.ball {
-            ball.velocity.get_or_insert_with(|| vec![0.0; dimensions]);
-        }
-        for species in &mut self.species {
-            species.velocity.get_or_insert_with(|| vec![0.0; dimensions]);
-            let whole = || crate::Region { from: vec![0.0; dimensions], to: self.size.clone() };
-            species.region.get_or_insert_with(whole);
-        }
-        self.resolve_colours();
+        self.model.resolve_defaults(&self.run);
     }
 
-    fn default_contact_time(&self) -> f64 {
-        if self.restitution == 1.0 {
-            return 0.0;
-        }
-        let boltzmann = self.units.boltzmann();
-        // Root mean square speed along one direction.
-        let flight = |radius: f64, temperature: f64, mass: f64| radius / (boltzmann * temperature / mass).sqrt();
-        let flights = self.species.iter().map(|s| flight(s.radius, s.temperature, s.mass));
-        let shortest = flights.fold(f64::INFINITY, f64::min);
-        if shortest.is_finite() { 1e-4 * shortest } else { 0.0 }
-    }
-
-    fn default_pair_distance(&self) -> f64 {
-        let radii = self.species.iter().map(|species| species.radius).chain(self.ball.iter().map(|ball| ball.radius));
-        let largest = radii.fold(0.0, f64::max);
-        let shortest = self.size.iter().copied().fold(f64::INFINITY, f64::min);
-        (10.0 * largest).min(0.5 * shortest)
-    }
-
-    /// Each species, and each name of balls that is none, takes the next colour.
-    fn resolve_colours(&mut self) {
-        let mut named: Vec<(String, String)> = Vec::new();
-        let balls = self.ball.iter_mut().map(|ball| (&ball.name, &mut ball.colour));
-        let species = self.species.iter_mut().map(|species| (&species.name, &mut species.colour));
-        for (name, colour) in species.chain(balls) {
-            let known = named.iter().find(|(known, _)| known == name).map(|(_, colour)| colour.clone());
-            let default = known.unwrap_or_else(|| COLOURS[named.len() % COLOURS.len()].to_owned());
-            let colour = colour.get_or_insert(default);
-            if named.iter().all(|(known, _)| known != name) {
-                named.push((name.clone(), colour.clone()));
-            }
+    /// Makes every path absolute; relative ones are taken from `folder`, the folder of the scene's file.
+    pub fn resolve_paths(&mut self, folder: &Path) {
+        // The folder of `scene.toml` alone is empty, which `absolute` refuses.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        // Where the current folder is gone the path stays relative, and opening the file says so.
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+        for path in self.model.paths() {
+            *path = folder.join(&*path);
         }
     }
 }

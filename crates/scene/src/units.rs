@@ -1,7 +1,7 @@
 //! Floods in feet. Where `flood.units` is `"us"`, keys end in `_ft`, `_ft3_per_s`, `_in_per_h` and so on. They are read as if they
 //! ended in `_m` and so on, checked as they are written, and then turned into metres.
 
-use crate::{FloodScene, ModelScene, Problem, Scene};
+use crate::{FloodScene, Problem, Scene};
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 use toml::{Spanned, Value};
@@ -87,10 +87,9 @@ fn words_in_us(text: &str) -> String {
 
 /// Turns what `given` writes of a flood in feet into metres. What is left out has its default in metres already.
 pub(crate) fn convert(scene: &mut Scene, given: &Spanned<DeValue<'_>>) -> Result<(), Box<Problem>> {
-    let (ModelScene::Flood(flood), Some(given)) = (&mut scene.model, given.get_ref().get("flood")) else {
+    let (Some(FloodScene { flood, .. }), Some(given)) = (scene.model.get_mut(), given.get_ref().get("flood")) else {
         return Ok(());
     };
-    let FloodScene { flood, .. } = flood.as_mut();
     let failed = |error: String| Problem::new("flood.units", error);
     let mut value = Value::try_from(&*flood).map_err(|error| failed(error.to_string()))?;
     convert_below(&mut value, given);

@@ -1,12 +1,17 @@
-//! A scene as its file writes it: the tables of one model, side by side with what all scenes have.
+//! A scene as its file writes it: what all scenes have, side by side with the tables of one model.
 
-use crate::{Dew, Flood, FloodScene, Gas, ModelScene, Problem, Run, Scene, Terrain};
-use serde::{Deserialize, Serialize};
+use crate::model::{ReadError, SceneKind, Tables, kinds};
+use crate::{Problem, Run, Scene};
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// The keys of a scene file.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Written {
+/// The keys that all scenes have.
+const KEYS: [&str; 4] = ["title", "description", "seed", "run"];
+
+/// What all scenes have.
+#[derive(Deserialize)]
+struct General {
     #[serde(default)]
     title: String,
     #[serde(default)]
@@ -14,65 +19,76 @@ pub(crate) struct Written {
     #[serde(default = "default_seed")]
     seed: u64,
     run: Run,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    terrain: Option<Terrain>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    flood: Option<Flood>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    gas: Option<Gas>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    dew: Option<Dew>,
 }
 
 fn default_seed() -> u64 {
     1
 }
 
-impl Written {
-    /// The scene, where the tables are those of one model.
-    pub(crate) fn into_scene(self) -> Result<Scene, Box<Problem>> {
-        let Self { title, description, seed, run, terrain, flood, gas, dew } = self;
-        let other = if gas.is_some() { "gas" } else { "dew" };
-        let model = match (terrain, flood, gas, dew) {
-            (Some(terrain), Some(flood), None, None) => ModelScene::Flood(Box::new(FloodScene { terrain, flood })),
-            (None, None, Some(gas), None) => ModelScene::Gas(Box::new(gas)),
-            (None, None, None, Some(dew)) => ModelScene::Dew(Box::new(dew)),
-            (None, Some(_), None, None) => return Err(missing("terrain", GROUND)),
-            (Some(_), None, None, None) => return Err(missing("flood", WATER)),
-            (None, None, None, None) => return Err(Problem::new("", NO_MODEL)),
-            (_, _, Some(_), Some(_)) => return Err(Problem::new("dew", two_models("dew", "gas"))),
-            (Some(_), _, _, _) => return Err(Problem::new("terrain", no_ground(other))),
-            (None, Some(_), _, _) => return Err(Problem::new("flood", two_models("flood", other))),
-        };
-        Ok(Scene { title, description, seed, run, model })
+/// Why a document is no scene.
+pub(crate) enum Unread {
+    /// As [`ReadError`].
+    Read(ReadError),
+    /// There is a key at the top that no scene has; and all that are known there.
+    Key(String, Vec<&'static str>),
+}
+
+impl From<toml::de::Error> for Unread {
+    fn from(error: toml::de::Error) -> Self {
+        Self::Read(ReadError::Type(error))
     }
 }
 
-const GROUND: &str = "give the ground, as in [terrain.file] with path = \"dem.tif\", or one of [terrain.tiles], \
-                      [terrain.fetch], [terrain.valley], [terrain.rough-hills], [terrain.plane], [terrain.bump], [terrain.bowl]";
-const WATER: &str = "give a table [flood] with spacing_m and the water of the scene";
-const NO_MODEL: &str =
-    "the scene has no model: give a table [flood] and the ground, [terrain], or a table [gas], or a table [dew]";
-
-fn no_ground(model: &str) -> String {
-    format!(": only a flood has ground; take out [terrain], or [{model}]")
+impl From<Box<Problem>> for Unread {
+    fn from(problem: Box<Problem>) -> Self {
+        Self::Read(ReadError::Problem(problem))
+    }
 }
 
-fn two_models(one: &str, other: &str) -> String {
-    format!(": a scene has one model; take out [{one}], or [{other}]")
-}
-
-fn missing(key: &str, give: &str) -> Box<Problem> {
-    Problem::new(key, format!(" is missing: {give}"))
-}
-
-impl From<Scene> for Written {
-    fn from(Scene { title, description, seed, run, model }: Scene) -> Self {
-        let (terrain, flood, gas, dew) = match model {
-            ModelScene::Flood(scene) => (Some(scene.terrain), Some(scene.flood), None, None),
-            ModelScene::Gas(gas) => (None, None, Some(*gas), None),
-            ModelScene::Dew(dew) => (None, None, None, Some(*dew)),
+/// The scene of a document.
+pub(crate) fn scene(root: Spanned<DeValue<'_>>) -> Result<Scene, Unread> {
+    let span = root.span();
+    let DeValue::Table(root) = root.into_inner() else { return Err(Problem::new("", "a scene is a table").into()) };
+    let kinds = kinds();
+    let is_of_model = |key: &str| kinds.iter().any(|kind| kind.tables.contains(&key));
+    let [mut general, mut of_model] = [DeTable::new(), DeTable::new()];
+    for (key, value) in root {
+        match &**key.get_ref() {
+            name if KEYS.contains(&name) => general.insert(key, value),
+            name if is_of_model(name) => of_model.insert(key, value),
+            name => {
+                let known = KEYS.into_iter().chain(kinds.iter().flat_map(|kind| kind.tables).copied());
+                return Err(Unread::Key(name.to_owned(), known.collect()));
+            }
         };
-        Self { title, description, seed, run, terrain, flood, gas, dew }
+    }
+    let general = Spanned::new(span, DeValue::Table(general));
+    let General { title, description, seed, run } = General::deserialize(ValueDeserializer::from(general))?;
+    let mut tables = Tables(of_model);
+    let kind = kind_of(&kinds, &tables)?;
+    let model = kind.read(&mut tables).map_err(Unread::Read)?;
+    Ok(Scene { title, description, seed, run, model })
+}
+
+/// The model of a scene: the one that its tables are of.
+fn kind_of<'a>(kinds: &'a [SceneKind], Tables(tables): &Tables<'_>) -> Result<&'a SceneKind, Box<Problem>> {
+    let mut there: Vec<(usize, &SceneKind, &str)> = Vec::new();
+    for (key, _) in tables {
+        let is_its = |kind: &&SceneKind| kind.tables.contains(&&**key.get_ref());
+        there.extend(kinds.iter().find(is_its).map(|kind| (key.span().start, kind, &**key.get_ref())));
+    }
+    there.sort_by_key(|(place, ..)| *place);
+    let Some(&(_, kind, first)) = there.first() else {
+        let names: Vec<_> = kinds.iter().map(|kind| format!("[{}]", kind.tables.join("] and ["))).collect();
+        return Err(Problem::new(
+            "",
+            format!("the scene has no model: give the tables of one: {}", names.join(", or ")),
+        ));
+    };
+    match there.iter().find(|(_, other, _)| other.name != kind.name) {
+        Some((.., other)) => {
+            Err(Problem::new(*other, format!(": a scene has one model; take out [{other}], or [{first}]")))
+        }
+        None => Ok(kind),
     }
 }

@@ -193,7 +193,7 @@ fn solids() {
 #[test]
 fn a_scene_has_one_model() {
     let both = refuse(&format!("{GOOD}\n[gas]\nsize = [1, 1]"));
-    assert!(both.contains("take out [dew], or [gas]"), "{both}");
+    assert!(both.contains("take out [gas], or [dew]"), "{both}");
     let flood = refuse(&format!("{GOOD}\n[flood]"));
     assert!(flood.contains("take out [flood], or [dew]"), "{flood}");
     let ground = refuse(&format!("{GOOD}\n[terrain.plane]"));

@@ -1,6 +1,6 @@
 //! Every way a scene can be wrong is refused with its line, key, value and what would be right.
 
-use corpuscle_scene::{ModelScene, Scene};
+use corpuscle_scene::{FloodScene, Scene};
 
 /// A scene without fault; each test spoils one line of it.
 const GOOD: &str = r#"title = "test"
@@ -136,9 +136,9 @@ fn missing_keys_and_tables() {
         ("[run]\nuntil_s = 1\n", ["test.toml: the scene has no model", "[gas]"]),
         (
             "[run]\nuntil_s = 1\n[terrain.plane]\n[gas]\nsize = [1, 1]\n",
-            ["test.toml:3:2: terrain", "only a flood has ground"],
+            ["test.toml:4:1: gas", "take out [gas], or [terrain]"],
         ),
-        ("[run]\nuntil_s = 1\n[flood]\n[gas]\nsize = [1, 1]\n", ["test.toml:3:1: flood", "one model"]),
+        ("[run]\nuntil_s = 1\n[flood]\n[gas]\nsize = [1, 1]\n", ["test.toml:4:1: gas", "take out [gas], or [flood]"]),
         ("[run]\nuntil_s = 1\n[terrain.plane]\n", ["test.toml: flood is missing", "[flood]"]),
         ("[run]\nuntil_s = 1\n[terrain]\n[flood]\n", ["test.toml:3:1: terrain", "exactly one"]),
         ("[run]\nuntil_s = 1\n[terrain.bowl]\n[terrain.plane]\n[flood]\n", ["terrain", "exactly one kind, found more"]),
@@ -238,8 +238,8 @@ fn overrides_are_named() {
 #[test]
 fn a_scene_made_in_memory_is_checked_too() {
     let mut scene = Scene::parse(GOOD, "test.toml", &[]).unwrap();
-    let ModelScene::Flood(flood) = &mut scene.model else { panic!("{scene:?}") };
-    flood.flood.spacing_m = Some(f64::NAN);
+    let FloodScene { flood, .. } = scene.model.get_mut().unwrap();
+    flood.spacing_m = Some(f64::NAN);
     assert_eq!(scene.check().unwrap_err().to_string(), "flood.spacing_m = nan: must be a finite number");
 }
 

@@ -169,7 +169,7 @@ fn full(terrain: Terrain) -> Scene {
         observed_extent: Some("a".into()),
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
-    let model = ModelScene::Flood(Box::new(FloodScene { terrain, flood }));
+    let model = ModelTables::new(FloodScene { terrain, flood });
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 
@@ -198,8 +198,8 @@ fn soils() -> Vec<Scene> {
     let green_ampt = Infiltration::GreenAmpt(GreenAmpt { conductivity_mm_per_h: 1.0, suction_m: 1.0, deficit: 1.0 });
     let with = |(infiltration, friction)| {
         let mut scene = full(Terrain::Plane(Plane::default()));
-        let ModelScene::Flood(flood) = &mut scene.model else { unreachable!() };
-        (flood.flood.infiltration, flood.flood.friction) = (Some(infiltration), Some(friction));
+        let FloodScene { flood, .. } = scene.model.get_mut().unwrap();
+        (flood.infiltration, flood.friction) = (Some(infiltration), Some(friction));
         scene
     };
     let frictions = [Friction::Chezy(1.0), Friction::Linear(1.0), Friction::Linear(1.0)];
@@ -261,7 +261,7 @@ fn full_gas(method: Method) -> Scene {
         }],
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
-    let model = ModelScene::Gas(Box::new(gas));
+    let model = ModelTables::new(gas);
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 
@@ -353,7 +353,7 @@ fn full_dew() -> Scene {
         solid: shapes.into_iter().enumerate().map(solid).collect(),
     };
     let run = Run { until_s: 1.0, frame_every_s: Some(1.0), gauge_every_s: Some(1.0), checkpoint_every_wall_s: 1.0 };
-    let model = ModelScene::Dew(Box::new(dew));
+    let model = ModelTables::new(dew);
     Scene { title: String::new(), description: String::new(), seed: 1, run, model }
 }
 

@@ -12,7 +12,7 @@ mod gas;
 mod gpu_copy;
 mod missed;
 
-pub use bench::{Bench, BenchOptions, PassTime, Rate, benches};
-pub use case::{Case, Options, Row, cases};
+pub use bench::{Bench, BenchOptions, PassTime, Rate, benches, register_bench};
+pub use case::{Case, Options, Row, cases, register_case};
 pub use corpuscle_flood::FloodModel;
 pub use flood::bench::{BenchWater, bench_water};

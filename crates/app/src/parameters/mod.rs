@@ -1,26 +1,15 @@
 //! Parameters of the open scene: from the scene's own keys, each with its range, its unit and its value as written.
 
-mod builder;
-mod dew;
-mod flood;
-mod gas;
 mod slider;
-mod values;
 
 use crate::icons::{self, Icon};
-use crate::physics::Change;
-use builder::{Builder, Control, Group, Parameter, groups};
-use corpuscle::LiveChange;
+use corpuscle::parameters::{
+    Builder, Change, Control, Group, Parameter, as_number, largest, multiplied, parameters, set, value_at,
+};
 use corpuscle::scene::Scene;
 use egui::{Align, ComboBox, Layout, RichText, Ui, WidgetInfo};
 use slider::{is_long, slider, written};
 use toml::{Table, Value};
-use values::{as_number, largest, multiplied, set, value_at};
-
-/// A change while the scene goes on.
-fn live(change: impl Into<LiveChange> + Send + 'static) -> Option<Change> {
-    Some(Box::new(move |simulation| simulation.change_live(change)))
-}
 
 /// Names of the gauges that changes of a scene add.
 fn placed(changes: &[(String, String)]) -> Vec<String> {
@@ -30,11 +19,6 @@ fn placed(changes: &[(String, String)]) -> Vec<String> {
         Some(row.get("v")?.get("name")?.as_str()?.to_owned())
     };
     gauges.filter_map(|(_, text)| name(text)).collect()
-}
-
-/// The number in a key, as in `flood.inflow.0.discharge_m3_per_s`.
-fn number_in(path: &str) -> Option<usize> {
-    path.split('.').find_map(|word| word.parse().ok())
 }
 
 /// The parameters of the open scene.
@@ -66,7 +50,9 @@ impl Parameters {
         let mut whole = written.clone();
         whole.resolve_defaults();
         let document: Table = whole.to_toml().ok().and_then(|text| text.parse().ok()).unwrap_or_default();
-        let Builder { groups, document: written, left_out } = groups(&whole, now, document);
+        let Ok(Builder { groups, document: written, left_out }) = parameters(&whole, now, document) else {
+            return Self::none();
+        };
         Self { groups, written, left_out, placed: placed(&changes), applied: changes.clone(), changes }
     }
 
@@ -242,13 +228,13 @@ impl Parameters {
 mod tests {
     use super::*;
     use crate::Source;
-    use corpuscle::scene::BUILTIN;
+    use corpuscle::scene::scenes;
 
     /// Every value that is offered can be set through its path, to the ends of its range or another choice.
     #[test]
     fn every_parameter_of_every_scene_can_be_changed() {
         let mut refused = Vec::new();
-        for builtin in BUILTIN {
+        for builtin in scenes() {
             let scene = Scene::parse(builtin.text, builtin.name, &[]).unwrap();
             let parameters = Parameters::new(&scene, &scene, Vec::new());
             let all: Vec<_> = parameters.groups.iter().flat_map(|group| &group.parameters).collect();
@@ -265,7 +251,7 @@ mod tests {
                 };
                 for value in values {
                     let changes = vec![(parameter.path.clone(), value.clone())];
-                    let changed = Source { changes, ..Source::from(*builtin) }.scene();
+                    let changed = Source { changes, ..Source::from(builtin) }.scene();
                     if let Err(error) = changed {
                         refused.push(format!("{} {} = {value}: {error}", builtin.name, parameter.path));
                     }

@@ -9,8 +9,8 @@ mod thread;
 use crate::background_device::BackgroundDevice;
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
-use corpuscle::Simulation;
 use corpuscle::gpu::Gpu;
+pub use corpuscle::parameters::Change;
 use corpuscle::pictures::{Pictures, Scenery};
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
@@ -73,9 +73,6 @@ pub enum Command {
     /// Change something while it runs.
     Change(Change),
 }
-
-/// What changes while it runs.
-pub type Change = Box<dyn FnOnce(&mut Simulation) -> Result<(), corpuscle::Error> + Send>;
 
 /// What the physics tells.
 pub enum Event {

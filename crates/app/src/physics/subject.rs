@@ -37,7 +37,7 @@ impl Subject {
         let asked = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
         let choice = match backend {
             Backend::Auto => simulation.use_best_on(gpu),
-            Backend::Gpu if simulation.scene().gas().is_some() => asked(false, "a gas computes nowhere else"),
+            Backend::Gpu if simulation.model().on_gpu().is_none() => asked(false, "this model computes nowhere else"),
             Backend::Gpu => {
                 simulation.use_this_gpu(gpu.clone())?;
                 asked(true, &gpu.name)

@@ -8,7 +8,8 @@ use crate::icons::{self, Icon};
 use crate::physics::Opened;
 use crate::snapshot::Snapshot;
 use corpuscle::model::Chart;
-use corpuscle::scene::{ModelScene, Scene, Units};
+use corpuscle::models;
+use corpuscle::scene::Scene;
 use egui::{ComboBox, RichText, Role, Ui, WidgetInfo, vec2};
 use history::History;
 use speeds::Speeds;
@@ -40,18 +41,12 @@ pub struct Plots {
     time_unit: &'static str,
 }
 
-/// Columns that are shown before the others, by the beginning of their headers. Of a flood those come first that the
-/// scene asks for, as they are.
-const FIRST_OF_GAS: &[&str] = &["gas.temperature", "gas.pressure_walls"];
-const FIRST_OF_FLOOD: &[&str] = &[];
-const FIRST_OF_DEW: &[&str] = &["solids.covered_area"];
-
 impl Plots {
     /// The plots of a scene that was opened.
     pub fn new(opened: &Opened) -> Self {
         let gas = opened.scene.gas();
         let by_name = |beginning: &&str| opened.gauges.iter().position(|gauge| gauge.starts_with(*beginning));
-        let mut first: Vec<usize> = first_of(&opened.scene.model).iter().filter_map(by_name).collect();
+        let mut first: Vec<usize> = first_of(&opened.scene).iter().filter_map(by_name).collect();
         first.extend(0..opened.gauges.len());
         first.dedup();
         let mut chosen: Vec<Kind> = gas.iter().filter(|_| opened.history.is_none()).map(|_| Kind::Speeds(0)).collect();
@@ -182,19 +177,13 @@ impl Plots {
     }
 }
 
-fn first_of(model: &ModelScene) -> &'static [&'static str] {
-    match model {
-        ModelScene::Gas(_) => FIRST_OF_GAS,
-        ModelScene::Flood(_) => FIRST_OF_FLOOD,
-        ModelScene::Dew(_) => FIRST_OF_DEW,
-    }
+/// Gauges that are plotted before the others, by the beginning of their headers.
+fn first_of(scene: &Scene) -> &'static [&'static str] {
+    models::of(scene).map_or(&[], |kind| kind.first_gauges())
 }
 
 fn time_unit(scene: &Scene) -> &'static str {
-    match scene.gas().map(|gas| gas.units) {
-        Some(Units::Reduced) => "",
-        Some(Units::Si) | None => "s",
-    }
+    if models::of(scene).is_ok_and(|kind| kind.has_si_units(scene)) { "s" } else { "" }
 }
 
 /// The numbers of a chart: one row for each point.
@@ -225,7 +214,7 @@ mod tests {
             let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
             let simulation = Simulation::open(scene, Path::new("")).unwrap();
             let columns: Vec<_> = simulation.model().gauge_columns().iter().map(|column| column.header()).collect();
-            for first in first_of(&simulation.scene().model) {
+            for first in first_of(simulation.scene()) {
                 assert!(columns.iter().any(|column| column.starts_with(first)), "{name} {first}: {columns:?}");
             }
         }

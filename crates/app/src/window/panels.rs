@@ -6,7 +6,7 @@ use crate::icons::{self, Icon};
 use crate::physics::{Change, Command};
 use crate::spot::Asked;
 use crate::transport::{Pressed, Transport};
-use corpuscle::scene::Units;
+use corpuscle::models;
 use egui::{Frame, Margin, Panel, RichText, ScrollArea, Ui, vec2};
 
 impl Window {
@@ -89,7 +89,11 @@ impl Window {
         }
         if let Some(open) = &mut self.open
             && let (Some(picked), Some(snapshot)) = (&open.picked, &open.snapshot)
-            && picked.card(&mut over, &snapshot.known, open.scene.gas().is_none_or(|gas| gas.units == Units::Si))
+            && picked.card(
+                &mut over,
+                &snapshot.known,
+                models::of(&open.scene).is_ok_and(|kind| kind.has_si_units(&open.scene)),
+            )
         {
             open.picked = None;
         }

@@ -14,7 +14,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     let gpu = if options.backend == Backend::Gpu { Some(Gpu::open().map_err(corpuscle::Error::from)?) } else { None };
     let with = corpuscle_validate::BenchOptions { quick: options.quick, passes: options.passes && gpu.is_some(), gpu };
     let mut rates = Vec::new();
-    for bench in select(benches(), |bench| bench.name, &options.names)? {
+    for bench in select(&benches(), |bench| bench.name, &options.names)? {
         if with.gpu.is_some() && bench.name.starts_with("gas/") {
             eprintln!("{} left out: it computes on the CPU only", bench.name);
             continue;

@@ -1,8 +1,7 @@
 //! Pictures of a model that steps on the device that draws: its particles stay there.
 
-use super::dew::shows_air;
-use super::{Moment, Pictures, Subject};
-use crate::{Error, Simulation};
+use super::{Moment, Pictures};
+use crate::{Error, Simulation, models};
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
@@ -26,9 +25,9 @@ impl Simulation {
         self.stepping_gpu().is_some_and(|device| device.is_same(gpu))
     }
 
-    /// Whether pictures show the particles that lie on the GPU: of dew they show the air only where the scene says so.
+    /// Whether pictures show the particles that lie on the GPU.
     fn shows_particles(&self) -> bool {
-        self.scene().dew().is_none_or(shows_air)
+        models::of(self.scene()).is_ok_and(|kind| kind.shows_particles(self.scene()))
     }
 
     /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
@@ -80,17 +79,13 @@ impl Pictures {
 
     /// Whether pictures show all that there is by a glance: not where the ground shows the water's depth.
     pub fn show_glances(&self) -> bool {
-        !matches!(&self.subject, Subject::Flood(flood) if flood.shows_depth())
+        self.subject.shows_glances()
     }
 
     /// The particles of a model on the device that draws; none where they are elsewhere, or the host is to draw them.
     fn on_device(&self, model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
         let is_here = gpu_of(model).is_some_and(|device| device.is_same(self.gpu()));
-        match &self.subject {
-            Subject::Flood(flood) if is_here && !flood.shows_depth() => particles_of(model),
-            Subject::Dew(dew) if is_here && dew.shows_air() => particles_of(model),
-            _ => Ok(None),
-        }
+        if is_here && self.subject.draws_from_device() { particles_of(model) } else { Ok(None) }
     }
 }
 

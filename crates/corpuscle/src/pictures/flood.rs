@@ -3,12 +3,12 @@
 use super::lines::plates;
 use super::look::{self, DepthClasses};
 use super::times::Times;
-use super::{GroundLook, Look, Moment, OwnView, Shown, Studio};
+use super::{GroundLook, Look, Moment, OwnView, Shown, Studio, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
 use corpuscle_flood::{line_walls, obstacle_shapes, usual_depth};
-use corpuscle_gpu::DeviceParticles;
+use corpuscle_gpu::{DeviceParticles, Gpu, PassTiming};
 use corpuscle_model::{ParticleSet, Values};
 use corpuscle_render::{
     Axes, BallStyle, Balls, BallsOfDevice, ColourTable, DeviceWater, Drawable, Droplet, Floor, Fluid, FluidStyle,
@@ -43,7 +43,7 @@ const LINE_WIDTH: f64 = 0.003;
 const WALLS: [u8; 3] = [206, 196, 184];
 
 /// Draws a flood.
-pub(super) struct FloodPicture {
+pub(crate) struct FloodPicture {
     stage: Stage,
     ground: Terrain,
     floor: Floor,
@@ -57,7 +57,7 @@ pub(super) struct FloodPicture {
     sides: WaterSides,
     pub(super) fluid: Option<Fluid>,
     /// Whether compute shaders draw its particles.
-    pub(super) splats: bool,
+    splats: bool,
     /// How many times clearer or more turbid the water is than clear deep water.
     turbid: f64,
     /// Where depth is drawn as a map has it, its classes.
@@ -68,8 +68,66 @@ pub(super) struct FloodPicture {
     heights: f64,
 }
 
+impl Subject for FloodPicture {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+        let gpu = studio.renderer.gpu();
+        let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
+        let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
+        let light = studio.lit(Light::day().from_azimuth(DIRECTION[0] + SUN));
+        let is_of_frame = |set: &&ParticleSet| !set.is_empty() && (moment.on_device.is_none() || self.depth.is_some());
+        let sets: Vec<ParticleSet> =
+            moment.frame.sets.iter().filter(is_of_frame).map(|set| raised(set, self.heights)).collect();
+        let overlay = self.overlay(studio, title, moment, is_plan);
+        if let Some(depth) = &self.depth {
+            self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
+        }
+        let mut discs: Vec<Balls> = match (studio.look, moment.on_device) {
+            (Look::Full, _) => Vec::new(),
+            _ if self.depth.is_some() => Vec::new(),
+            (Look::Simple, Some(particles)) => vec![self.discs_of_device(studio, particles)?],
+            (Look::Simple, None) => sets.iter().map(|set| self.discs(studio, set)).collect(),
+        };
+        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
+        let quick = studio.look == Look::Simple;
+        self.ground.draw_quickly(quick);
+        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
+        if !is_plan && !quick {
+            things.push(&mut self.floor);
+        }
+        things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
+        things.extend(discs.iter_mut().map(|set| set as &mut dyn Drawable));
+        if let Some(fluid) = self.fluid.as_mut().filter(|_| is_wet) {
+            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
+        }
+        let shown = studio.take(&self.stage, &camera, &light, &mut things, overlay)?;
+        self.note_times();
+        Ok(shown)
+    }
+
+    /// Not where the ground shows the water's depth in place of the water: that is the host's to draw.
+    fn draws_from_device(&self) -> bool {
+        self.depth.is_none()
+    }
+
+    fn shows_glances(&self) -> bool {
+        self.depth.is_none()
+    }
+
+    fn splat(&mut self) {
+        self.splats = true;
+    }
+
+    fn measure(&mut self, gpu: &Gpu) {
+        self.measure_passes(gpu);
+    }
+
+    fn taken(&self) -> Vec<(&'static str, PassTiming)> {
+        self.taken_by_passes()
+    }
+}
+
 impl FloodPicture {
-    pub(super) fn new(
+    pub(crate) fn new(
         studio: &Studio,
         settings: &Settings,
         ground: &Ground,
@@ -121,46 +179,6 @@ impl FloodPicture {
             blues: ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() },
             heights,
         })
-    }
-
-    /// Whether the ground shows the water's depth in place of the water.
-    pub(super) fn shows_depth(&self) -> bool {
-        self.depth.is_some()
-    }
-
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
-        let gpu = studio.renderer.gpu();
-        let camera = studio.camera(&self.stage, &OWN_VIEW, moment.frame.time);
-        let is_plan = matches!(camera.lens, Lens::Orthographic { .. });
-        let light = studio.lit(Light::day().from_azimuth(DIRECTION[0] + SUN));
-        let is_of_frame = |set: &&ParticleSet| !set.is_empty() && (moment.on_device.is_none() || self.depth.is_some());
-        let sets: Vec<ParticleSet> =
-            moment.frame.sets.iter().filter(is_of_frame).map(|set| raised(set, self.heights)).collect();
-        let overlay = self.overlay(studio, title, moment, is_plan);
-        if let Some(depth) = &self.depth {
-            self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
-        }
-        let mut discs: Vec<Balls> = match (studio.look, moment.on_device) {
-            (Look::Full, _) => Vec::new(),
-            _ if self.depth.is_some() => Vec::new(),
-            (Look::Simple, Some(particles)) => vec![self.discs_of_device(studio, particles)?],
-            (Look::Simple, None) => sets.iter().map(|set| self.discs(studio, set)).collect(),
-        };
-        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
-        let quick = studio.look == Look::Simple;
-        self.ground.draw_quickly(quick);
-        let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
-        if !is_plan && !quick {
-            things.push(&mut self.floor);
-        }
-        things.extend(self.buildings.iter_mut().map(|building| building as &mut dyn Drawable));
-        things.extend(discs.iter_mut().map(|set| set as &mut dyn Drawable));
-        if let Some(fluid) = self.fluid.as_mut().filter(|_| is_wet) {
-            things.extend([&mut self.sides as &mut dyn Drawable, fluid]);
-        }
-        let shown = studio.take(&self.stage, &camera, &light, &mut things, overlay)?;
-        self.note_times();
-        Ok(shown)
     }
 
     /// Takes the water of a moment, of these sets where it does not lie on the device; false where there is none.

@@ -1,18 +1,20 @@
 //! Pictures of a run's moments: what is shown of each model, from where, in which colours.
 
 mod device;
-mod dew;
-mod flood;
-mod gas;
+pub(crate) mod dew;
+pub(crate) mod flood;
+pub(crate) mod gas;
 mod hand;
 mod lines;
 mod look;
+mod particles;
 mod scenery;
 mod show;
+mod subject;
 mod times;
 mod viewpoint;
 
-use crate::{Error, Simulation};
+use crate::{Error, Simulation, models};
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
@@ -20,15 +22,15 @@ use corpuscle_render::{
     BallPainter, Camera, CapPainter, Drawable, FluidPainter, Light, Overlay, RenderError, Renderer, Stage, Target,
     TubePainter,
 };
-use corpuscle_scene::{Flood, ModelScene};
+use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
-use dew::DewPicture;
 use flood::FloodPicture;
-use gas::GasPicture;
 pub use hand::Hand;
 pub use look::GroundLook;
+pub use particles::Particles;
 pub use scenery::Scenery;
 pub use show::{Look, Shown};
+pub use subject::Subject;
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
 
@@ -71,11 +73,11 @@ pub struct Moment<'a> {
 pub struct Pictures {
     studio: Studio,
     title: String,
-    subject: Subject,
+    subject: Box<dyn Subject>,
 }
 
 /// What all subjects draw with.
-struct Studio {
+pub struct Studio {
     renderer: Renderer,
     balls: BallPainter,
     tubes: TubePainter,
@@ -90,13 +92,6 @@ struct Studio {
     paper: [f32; 3],
     /// True where texts and lines are drawn into the picture; false where whoever shows it draws them.
     overlaid: bool,
-}
-
-/// What is drawn.
-enum Subject {
-    Gas(Box<GasPicture>),
-    Flood(Box<FloodPicture>),
-    Dew(Box<DewPicture>),
 }
 
 impl Pictures {
@@ -122,22 +117,9 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
-        let Scenery { scene, terrain, surfaces } = scenery;
+        let Scenery { scene, terrain, .. } = scenery;
         let studio = Studio::new(gpu, &settings, terrain.as_deref())?;
-        let subject = match &scene.model {
-            ModelScene::Gas(gas) => Subject::Gas(Box::new(GasPicture::new((**gas).clone()))),
-            ModelScene::Dew(dew) => Subject::Dew(Box::new(DewPicture::new(&studio, dew, surfaces))),
-            ModelScene::Flood(scene) => {
-                let terrain = terrain.as_ref().expect("a flood that was opened has its ground");
-                Subject::Flood(Box::new(FloodPicture::new(
-                    &studio,
-                    &scene.flood,
-                    terrain,
-                    settings.ground,
-                    settings.heights,
-                )?))
-            }
-        };
+        let subject = models::of(scene)?.pictures(&studio, scenery, &settings)?;
         Ok(Self { studio, title: scene.title.clone(), subject })
     }
 
@@ -148,7 +130,7 @@ impl Pictures {
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
         let studio = Studio::new(gpu, &settings, Some(ground))?;
         let flood = FloodPicture::new(&studio, flood, ground, settings.ground, settings.heights)?;
-        Ok(Self { studio, title: String::new(), subject: Subject::Flood(Box::new(flood)) })
+        Ok(Self { studio, title: String::new(), subject: Box::new(flood) })
     }
 
     /// The device that draws, by its name.
@@ -162,16 +144,6 @@ impl Pictures {
     /// [`Error::Render`] where the device was lost.
     pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
         self.still(moment, &Hand::default())
-    }
-}
-
-impl Subject {
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
-        match self {
-            Self::Gas(gas) => gas.draw(studio, title, moment),
-            Self::Dew(dew) => dew.draw(studio, title, moment),
-            Self::Flood(flood) => flood.draw(studio, title, moment),
-        }
     }
 }
 

@@ -11,10 +11,25 @@ use std::sync::Arc;
 pub struct Scenery {
     pub(super) scene: Scene,
     pub(super) terrain: Option<Arc<Terrain>>,
-    pub(super) surfaces: Vec<Surface>,
+    surfaces: Vec<Surface>,
 }
 
 impl Scenery {
+    /// The scene as run.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The ground, where there is one.
+    pub fn terrain(&self) -> Option<&Terrain> {
+        self.terrain.as_deref()
+    }
+
+    /// The surfaces of solids.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
     /// That of a scene as it stands.
     pub fn of(simulation: &Simulation) -> Self {
         Self {

@@ -1,6 +1,6 @@
 //! Pictures that are shown where they are drawn, again and again, seen from where a hand moves the camera to.
 
-use super::{Hand, Moment, Pictures, Subject};
+use super::{Hand, Moment, Pictures};
 use crate::Error;
 use corpuscle_gpu::{Gpu, Image};
 use corpuscle_render::{Camera, Inlay, InlayPainter, Overlay, Stage, Target};
@@ -81,9 +81,7 @@ impl Pictures {
 
     /// The partition of a gas is drawn no longer from a time on, s: it was lifted by hand.
     pub fn lift_partition(&mut self, time: f64) {
-        if let Subject::Gas(gas) = &mut self.subject {
-            gas.lift_partition(time);
-        }
+        self.subject.lift_partition(time);
     }
 
     /// What was shown last, ready to be laid into a window.

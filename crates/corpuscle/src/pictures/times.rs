@@ -1,7 +1,7 @@
 //! What the passes of pictures take.
 
+use super::Pictures;
 use super::flood::FloodPicture;
-use super::{Pictures, Subject};
 use corpuscle_gpu::{Gpu, PassTiming};
 use corpuscle_render::FluidPass;
 use std::collections::BTreeMap;
@@ -13,30 +13,23 @@ impl Pictures {
     /// Times the passes that draw the water of a flood, from the next picture on: each of them then waits for the one before it.
     pub fn measure(&mut self) {
         let gpu = self.studio.renderer.gpu().clone();
-        if let Subject::Flood(flood) = &mut self.subject {
-            flood.measure(&gpu);
-        }
+        self.subject.measure(&gpu);
     }
 
     /// From now on compute shaders draw the particles of a flood's water in the place of raster units.
     pub fn splat(&mut self) {
-        if let Subject::Flood(flood) = &mut self.subject {
-            flood.splats = true;
-        }
+        self.subject.splat();
     }
 
     /// What they have taken since, by name: kernels that make discs by the device's own clock, where it has one; passes over pixels from
     /// the start of their encoding to their end on the device.
     pub fn taken(&self) -> Vec<(&'static str, PassTiming)> {
-        match &self.subject {
-            Subject::Flood(flood) => flood.taken(),
-            _ => Vec::new(),
-        }
+        self.subject.taken()
     }
 }
 
 impl FloodPicture {
-    fn measure(&mut self, gpu: &Gpu) {
+    pub(super) fn measure_passes(&mut self, gpu: &Gpu) {
         self.times = Some(Times::new());
         self.fluid.iter_mut().for_each(corpuscle_render::Fluid::measure);
         self.device_water.iter_mut().for_each(|water| water.measure(gpu));
@@ -52,7 +45,7 @@ impl FloodPicture {
         }
     }
 
-    fn taken(&self) -> Vec<(&'static str, PassTiming)> {
+    pub(super) fn taken_by_passes(&self) -> Vec<(&'static str, PassTiming)> {
         let discs = self.device_water.iter().flat_map(corpuscle_render::DeviceWater::taken);
         let pixels = self.times.iter().flatten().map(|(name, taken)| (*name, *taken));
         discs.chain(pixels).collect()

@@ -69,6 +69,14 @@ impl Studio {
         self.hand.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
     }
 
+    /// The camera of a time; straight from above where all lies in one plane.
+    pub(super) fn seen(&self, stage: &Stage, own: &OwnView, time: f64, is_flat: bool) -> Camera {
+        match is_flat {
+            true => self.hand.moved(Camera::plan(stage, self.aspect(), own.margins)),
+            false => self.camera(stage, own, time),
+        }
+    }
+
     /// True where the whole stage is in the picture whatever the time, so that axes along its edges are.
     pub(super) fn shows_all(&self) -> bool {
         let whole = |station: &Station| station.viewpoint.zoom <= 1.0 && station.target.is_none();

@@ -8,6 +8,7 @@ mod gauges;
 mod moments;
 mod page;
 mod parts;
+mod plain;
 mod snapshots;
 mod validation;
 
@@ -22,6 +23,7 @@ use snapshots::Snapshot;
 
 pub use dew::DewReport;
 pub use gas::{GasReport, gas_key};
+pub use plain::PlainReport;
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};

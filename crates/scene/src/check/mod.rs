@@ -6,10 +6,11 @@ mod gas;
 mod terrain;
 
 use crate::series::check_rows;
-use crate::{ModelScene, Problem, Run, Scene, SceneError, Series};
+use crate::{Problem, Run, Scene, SceneError, Series};
 use toml::Value;
 
-type Checked = Result<(), Box<Problem>>;
+/// Nothing, or the first thing that is not as it must be.
+pub type Checked = Result<(), Box<Problem>>;
 
 /// The sides of a box by name, for each axis.
 pub(crate) const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
@@ -31,19 +32,12 @@ impl Scene {
         let check = Check { values };
         check.all_finite()?;
         check.run(&self.run)?;
-        match &self.model {
-            ModelScene::Flood(scene) => {
-                check.terrain(&scene.terrain)?;
-                check.flood(&scene.flood)
-            }
-            ModelScene::Gas(gas) => check.gas(gas),
-            ModelScene::Dew(dew) => check.dew(dew),
-        }
+        self.model.check(&check)
     }
 }
 
-/// The scene's values by key, to be shown in messages.
-struct Check {
+/// Checks of a scene's values, which messages show by their keys, as in `"gas.species.0.count"`.
+pub struct Check {
     values: Value,
 }
 
@@ -72,34 +66,56 @@ impl Check {
         self.require(key, number < most, || format!("would make {number:.0} {of}; fewer than {most:.0} are possible"))
     }
 
-    fn above(&self, key: &str, value: f64, bound: f64) -> Checked {
+    /// Refuses a value that is not larger than a bound.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn above(&self, key: &str, value: f64, bound: f64) -> Checked {
         self.require(key, value > bound, || format!("must be larger than {bound}"))
     }
 
-    fn at_least(&self, key: &str, value: f64, bound: f64) -> Checked {
+    /// Refuses a value that is smaller than a bound.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn at_least(&self, key: &str, value: f64, bound: f64) -> Checked {
         self.require(key, value >= bound, || format!("must be at least {bound}"))
     }
 
-    fn require(&self, key: &str, holds: bool, otherwise: impl FnOnce() -> String) -> Checked {
+    /// Refuses a value unless something holds; `otherwise` says what must be.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn require(&self, key: &str, holds: bool, otherwise: impl FnOnce() -> String) -> Checked {
         if holds { Ok(()) } else { Err(self.problem(key, &otherwise())) }
     }
 
-    /// A name fit for headers of tables.
-    fn name(&self, key: &str, name: &str) -> Checked {
+    /// Refuses a name that is not fit for headers of tables.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn name(&self, key: &str, name: &str) -> Checked {
         let fit = |c: char| c.is_alphanumeric() || " _-".contains(c);
         self.require(key, !name.trim().is_empty() && name.chars().all(fit), || {
             "a name must be of letters, digits, spaces, `_` and `-`".into()
         })
     }
 
-    fn series(&self, key: &str, series: &Series) -> Checked {
+    /// Refuses values over time whose times do not rise.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn series(&self, key: &str, series: &Series) -> Checked {
         let Series::Table(rows) = series else { return Ok(()) };
         let at = |row: usize| if rows.is_empty() { key.to_owned() } else { format!("{key}.{row}") };
         check_rows(rows).map_err(|(row, what)| self.problem(&at(row), &what))
     }
 
-    /// Exactly one of the keys is given.
-    fn exactly_one(&self, key: &str, given: &[(&str, bool)]) -> Checked {
+    /// Refuses none and several where exactly one of the keys must be given.
+    ///
+    /// # Errors
+    /// The key, its value and what must be.
+    pub fn exactly_one(&self, key: &str, given: &[(&str, bool)]) -> Checked {
         let names: Vec<_> = given.iter().map(|(name, _)| *name).collect();
         let found: Vec<_> = given.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
         let names = names.join(", ");

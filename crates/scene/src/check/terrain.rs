@@ -7,7 +7,7 @@ use crate::{Bowl, Bump, Extent, RoughHills, Terrain, Valley};
 const MOST_CELLS: f64 = 1e9;
 
 impl Check {
-    pub(super) fn terrain(&self, terrain: &Terrain) -> Checked {
+    pub(crate) fn terrain(&self, terrain: &Terrain) -> Checked {
         match terrain {
             Terrain::File(file) => self.require("terrain.file.path", !file.path.as_os_str().is_empty(), || {
                 "must name a GeoTIFF or ESRI ASCII file".into()

@@ -4,6 +4,7 @@
 
 mod faces;
 mod fan;
+mod scene;
 mod solids;
 
 pub use faces::*;

@@ -5,6 +5,7 @@ mod adaptive;
 mod finer;
 mod obstacle;
 mod rain;
+mod scene;
 mod start;
 mod structures;
 
@@ -12,6 +13,7 @@ pub use adaptive::Adaptive;
 pub use finer::Finer;
 pub use obstacle::{Circle, Obstacle};
 pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
+pub use scene::FloodScene;
 pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 

@@ -15,7 +15,7 @@ pub(super) const ROUGH_TERRAIN: Case = Case {
             density is spread over the particles and how fast the fastest is, 20 s, 40 s and 60 s after the release. The paper's claim: \
             with it nothing piles up on valley floors, and nothing splashes about.",
     slow: true,
-    reduced: 3.0,
+    reduced: 4.0,
     run: rough_terrain,
 };
 

@@ -12,7 +12,7 @@ pub(super) const CUBOID: Case = Case {
     name: "flood/cuboid",
     about: "The built-in scene flood/cuboid, by scheme sph-swe: no particle inside the cuboid at any step.",
     slow: true,
-    reduced: 3.0,
+    reduced: 4.0,
     run: cuboid,
 };
 
@@ -20,7 +20,7 @@ pub(super) const CYLINDER: Case = Case {
     name: "flood/cylinder",
     about: "The built-in scene flood/cylinder, by scheme sph-swe: no particle inside the cylinder at any step.",
     slow: true,
-    reduced: 3.0,
+    reduced: 4.0,
     run: cylinder,
 };
 

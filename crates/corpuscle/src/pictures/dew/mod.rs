@@ -3,8 +3,9 @@
 
 mod section;
 
-use super::{Moment, OwnView, Shown, Studio};
+use super::{Moment, OwnView, Shown, Studio, Subject};
 use crate::Error;
+use crate::models::dew::shows_air;
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
@@ -26,40 +27,36 @@ const GLASS: [u8; 3] = [232, 242, 238];
 /// What is not glass.
 const MATT: [u8; 3] = [150, 152, 156];
 
-/// Whether the air of a scene is shown, and not but what lies on solids: where these are kept clear of it in different ways.
-pub(super) fn shows_air(dew: &Dew) -> bool {
-    dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
-}
-
 /// Draws dew.
-pub(super) enum DewPicture {
+pub(crate) enum DewPicture {
     Room(Room),
     Section(Section),
 }
 
 impl DewPicture {
-    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+    pub(crate) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
         match shows_air(dew) {
             true => Self::Section(Section::new(studio, dew, surfaces)),
             false => Self::Room(Room::new(studio, dew, surfaces)),
         }
     }
+}
 
-    /// Whether the air is seen.
-    pub(super) fn shows_air(&self) -> bool {
-        matches!(self, Self::Section(_))
-    }
-
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+impl Subject for DewPicture {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         match self {
             Self::Room(room) => room.draw(studio, title, moment),
             Self::Section(section) => section.draw(studio, title, moment),
         }
     }
+
+    fn draws_from_device(&self) -> bool {
+        matches!(self, Self::Section(_))
+    }
 }
 
 /// Drops on solids.
-pub(in crate::pictures) struct Room {
+pub(crate) struct Room {
     stage: Stage,
     solids: Vec<Solid>,
     floor: Floor,

@@ -20,7 +20,7 @@ const RADIUS: f64 = 0.3;
 const ZERO_CELSIUS: f64 = 273.15;
 
 /// Draws the section.
-pub(in crate::pictures) struct Section {
+pub(crate) struct Section {
     stage: Stage,
     solids: Vec<Solid>,
     colours: ColourTable,

@@ -3,7 +3,7 @@
 mod page;
 mod sides;
 
-use super::{Look, Moment, OwnView, Shown, Studio};
+use super::{Look, Moment, OwnView, Shown, Studio, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_model::{Container, Frame, ParticleSet};
@@ -38,7 +38,7 @@ const INK: [u8; 3] = [0x46, 0x52, 0x5e];
 const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
 
 /// Draws a gas.
-pub(super) struct GasPicture {
+pub(crate) struct GasPicture {
     gas: Gas,
     plates: Plates,
     /// Made when it is first needed.
@@ -53,19 +53,14 @@ struct View {
     key_place: KeyPlace,
 }
 
-impl GasPicture {
-    pub(super) fn new(gas: Gas) -> Self {
-        Self { gas, plates: Plates::default(), floor: None }
-    }
-
-    /// The partition is gone from a time on, s.
-    pub(super) fn lift_partition(&mut self, time: f64) {
+impl Subject for GasPicture {
+    fn lift_partition(&mut self, time: f64) {
         if let Some(partition) = &mut self.gas.partition {
             partition.lifted_at_s = Some(partition.lifted_at_s.map_or(time, |planned| planned.min(time)));
         }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let key = gas_key(&self.gas, moment.frame);
         let view = self.view(studio, moment, &key);
         let flat = self.gas.dimensions() == 2;
@@ -95,6 +90,12 @@ impl GasPicture {
             things.extend(self.plates.of(&self.gas, studio, &view, moment.frame.time));
         }
         studio.take(stage, &view.camera, &light, &mut things, overlay)
+    }
+}
+
+impl GasPicture {
+    pub(crate) fn new(gas: Gas) -> Self {
+        Self { gas, plates: Plates::default(), floor: None }
     }
 
     /// Where it is seen from. What moves does not move the camera.

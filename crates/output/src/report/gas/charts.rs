@@ -104,12 +104,13 @@ fn printed(unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use corpuscle_scene::{ModelScene, Scene};
+    use corpuscle_scene::Scene;
 
     #[test]
     fn columns_that_belong_together_stand_in_one_chart() {
         let text = "run.until_s = 1\n[gas]\nsize = [9, 9]\n[[gas.ball]]\nposition = [1, 1]\nradius = 1\nmass = 1";
-        let ModelScene::Gas(gas) = Scene::parse(text, "test", &[]).unwrap().model else { panic!() };
+        let scene = Scene::parse(text, "test", &[]).unwrap();
+        let gas = scene.gas().unwrap();
         let column = |gauge: &str, quantity, unit| GaugeColumn { gauge: gauge.into(), quantity, unit };
         let columns = [
             column("gas", "pressure_virial", "N_per_m"),
@@ -126,14 +127,14 @@ mod tests {
             rows: vec![vec![1.0; 7], vec![2.0, 2.0, 2.0, 2.0, 2.0, 1.0, f64::NAN]],
         };
         let told = |known: &[Chart]| -> Vec<_> {
-            let charts = over_time(&gas, &columns, &table, known);
+            let charts = over_time(gas, &columns, &table, known);
             charts.into_iter().map(|chart| (chart.name, chart.series.len(), chart.y.unit)).collect()
         };
         let entry = |name: &str, series, unit: &str| (name.to_owned(), series, unit.to_owned());
         let pressure = entry("pressure_virial_over_time", 2, "N/m");
         assert_eq!(told(&[]), [pressure.clone(), entry("temperature_over_time", 2, "K")]);
         assert_eq!(told(&[Chart { name: "temperature".into(), ..Chart::default() }]), [pressure]);
-        let charts = over_time(&gas, &columns, &table, &[]);
+        let charts = over_time(gas, &columns, &table, &[]);
         assert_eq!(charts[0].series[1].name, "on the walls");
         assert_eq!(charts[1].series[1].name, "heavy");
     }

@@ -22,7 +22,7 @@ const LARGEST_PRESSURE: f64 = 1e6;
 const MOST_PARTICLES: f64 = 1e8;
 
 impl Check {
-    pub(super) fn dew(&self, dew: &Dew) -> Checked {
+    pub(crate) fn dew(&self, dew: &Dew) -> Checked {
         for (axis, &length) in dew.size_m.iter().enumerate() {
             self.above(&format!("dew.size_m.{axis}"), length, 0.0)?;
         }

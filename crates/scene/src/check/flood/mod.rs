@@ -19,7 +19,7 @@ const OF_VORONOI: &str = "is for scheme = \"voronoi\", the default; scheme sph-s
 const FINEST: f64 = 64.0;
 
 impl Check {
-    pub(super) fn flood(&self, flood: &Flood) -> Checked {
+    pub(crate) fn flood(&self, flood: &Flood) -> Checked {
         if let Some(spacing) = flood.spacing_m {
             self.above("flood.spacing_m", spacing, 0.0)?;
         }

@@ -16,7 +16,7 @@ const MOST_BALLS: f64 = 2e8;
 const MOST_BINS: usize = 10_000;
 
 impl Check {
-    pub(super) fn gas(&self, gas: &Gas) -> Checked {
+    pub(crate) fn gas(&self, gas: &Gas) -> Checked {
         self.require("gas.size", (2..=3).contains(&gas.dimensions()), || {
             format!("must be the sides of a box, two or three numbers, not {}", gas.dimensions())
         })?;

@@ -17,7 +17,7 @@ pub(in super::super) const BEACH: Case = Case {
             profiles at eight times and the highest run-up against the exact solution of the shallow-water equations (Synolakis, J. Fluid Mech. \
             185, 1987, 523; NTHMP benchmark 1).",
     slow: true,
-    reduced: 2.0,
+    reduced: 4.0,
     run: canonical,
 };
 
@@ -26,7 +26,7 @@ pub(in super::super) const RUN_UP: Case = Case {
     about: "Run-up of solitary waves of 0.04 to 0.3 of the depth on the beach 1:19.85 by scheme voronoi, three seeds, spacing 0.1 d, against the runs of the \
             laboratory (Synolakis 1987; NTHMP benchmark 4). All but the lowest break. n 0.01, that of glass (Chow 1959, table 5-6).",
     slow: true,
-    reduced: 2.0,
+    reduced: 4.0,
     run: laboratory,
 };
 

@@ -18,7 +18,7 @@ pub(in super::super) const ISOLATED_BUILDING: Case = Case {
             0.12 m apart: flume of 35.8 m x 3.6 m, 0.4 m of water behind the gate, 0.02 m before it, n 0.01; depths at six gauges over 30 s, velocities at \
             five.",
     slow: true,
-    reduced: 2.0,
+    reduced: 3.0,
     run: |options: &Options| of_data(ISOLATED_BUILDING.name, "isolated_building", options, of_seed),
 };
 

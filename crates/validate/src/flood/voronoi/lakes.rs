@@ -37,7 +37,7 @@ pub(in super::super) const JACKSBORO: Case = Case {
             undisturbed, stirred by 1e-6 m/s, and after waves of 0.2 m. Peers at 100 m: smoothed particles of fixed volumes come to 1.3 m/s and gain \
             energy, in a variational scheme to 6e-3 m/s and 1.3e-2 m/s after waves.",
     slow: true,
-    reduced: 4.0,
+    reduced: 6.0,
     run: jacksboro,
 };
 

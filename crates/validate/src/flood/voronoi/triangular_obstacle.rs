@@ -18,7 +18,7 @@ pub(in super::super) const TRIANGULAR_OBSTACLE: Case = Case {
             the first 15.5 m, a sill 0.4 m high from 25.5 to 31.5 m and a pool of 0.15 m behind it, n 0.0125; depths 4, 10, 13 and 20 m below the dam over \
             40 s. A second-order finite-volume solution of the same equations has its front as early.",
     slow: true,
-    reduced: 2.0,
+    reduced: 3.0,
     run: |options: &Options| of_data(TRIANGULAR_OBSTACLE.name, "triangular_obstacle", options, of_seed),
 };
 

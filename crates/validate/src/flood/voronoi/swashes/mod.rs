@@ -20,7 +20,7 @@ pub(in super::super) const SWASHES: Case = Case {
     about: "Every exact solution in the folder of reference data (SWASHES 1.05, Delestre et al. 2013) by scheme voronoi, three seeds, three spacings: mean \
             |h - h_exact| / mean h_exact at the finest, and the order between the widest and the finest. Steady flows start dry or from still water.",
     slow: true,
-    reduced: 4.0,
+    reduced: 6.0,
     run: swashes,
 };
 

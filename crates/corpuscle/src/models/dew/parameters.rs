@@ -1,12 +1,9 @@
 //! Parameters of dew.
 
-use super::builder::{Builder, Control, Numbers};
-use super::values::{size, size_as_written};
-use super::{live, number_in};
-use crate::physics::Change;
-use corpuscle::scene::dew::{self, AirInflow};
-use corpuscle::scene::{Axis, Dew};
-use corpuscle::{DewLiveChange as LiveChange, DewSourceChange as Source};
+use crate::parameters::{Builder, Change, Control, Numbers, live, number_in, size, size_as_written};
+use corpuscle_dew::{LiveChange, SourceChange as Source};
+use corpuscle_scene::dew::{self, AirInflow};
+use corpuscle_scene::{Axis, Dew};
 
 const SCHEMES: &[(&str, &str)] = &[("physical", "\"physical\""), ("paper (as patented)", "\"paper\"")];
 const TREATMENTS: &[(&str, &str)] = &[

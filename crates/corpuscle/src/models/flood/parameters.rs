@@ -1,12 +1,8 @@
 //! Parameters of a flood.
 
-use super::builder::MOST_TIMES;
-use super::builder::{Builder, Control, Numbers};
-use super::values::{size, size_as_written};
-use super::{live, number_in};
-use crate::physics::Change;
-use corpuscle::FloodLiveChange as LiveChange;
-use corpuscle::scene::{Edge, Flood, Rain, Scheme, Series};
+use crate::parameters::{Builder, Change, Control, MOST_TIMES, Numbers, live, number_in, size, size_as_written};
+use corpuscle_flood::LiveChange;
+use corpuscle_scene::{Edge, Flood, Rain, Scheme, Series};
 
 const SCHEMES: &[(&str, &str)] = &[("voronoi", "\"voronoi\""), ("sph-swe (published)", "\"sph-swe\"")];
 const CONTROL: &[(&str, &str)] = &[("on", "true"), ("off", "false")];

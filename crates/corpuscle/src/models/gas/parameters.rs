@@ -1,10 +1,8 @@
 //! Parameters of a gas.
 
-use super::builder::{Builder, Control, Numbers};
-use super::live;
-use crate::physics::Change;
-use corpuscle::GasLiveChange as LiveChange;
-use corpuscle::scene::{Axis, Gas, Species, Wall};
+use crate::parameters::{Builder, Change, Control, Numbers, live};
+use corpuscle_gas::LiveChange;
+use corpuscle_scene::{Axis, Gas, Species, Wall};
 use std::f64::consts::PI;
 
 /// Ways to move a gas on, as a scene writes them; the step of the last is set apart.

@@ -1,10 +1,26 @@
-//! What can be changed in a scene: its values, each with its range and its unit.
+//! Parameters of a scene: values that a user may change, each with its range and its unit.
 
-use super::values::{as_number, largest, place_at, value_at};
-use super::{dew, flood, gas};
-use crate::physics::Change;
-use corpuscle::scene::{ModelScene, Scene, Series};
+mod values;
+
+use crate::{Error, LiveChange, Simulation};
+use corpuscle_model::ModelError;
+use corpuscle_scene::{Scene, Series};
 use toml::{Table, Value};
+use values::place_at;
+pub use values::{as_number, largest, multiplied, set, size, size_as_written, value_at};
+
+/// A change of a scene that runs.
+pub type Change = Box<dyn FnOnce(&mut Simulation) -> Result<(), Error> + Send>;
+
+/// A change of a model that runs.
+pub fn live(change: impl Into<LiveChange> + Send + 'static) -> Option<Change> {
+    Some(Box::new(move |simulation| simulation.change_live(change)))
+}
+
+/// The number in a key, as in `flood.inflow.0.discharge_m3_per_s`.
+pub fn number_in(path: &str) -> Option<usize> {
+    path.split('.').find_map(|word| word.parse().ok())
+}
 
 /// Asks for the number that another parameter has now, by its key.
 pub type Numbers<'a> = &'a dyn Fn(&str) -> Option<f64>;
@@ -54,24 +70,27 @@ pub struct Group {
 }
 
 /// How many times more a slider gives of what the scene says.
-pub(super) const MOST_TIMES: f64 = 5.0;
+pub const MOST_TIMES: f64 = 5.0;
 
 /// Groups as they are put together; what the scene does not have is left out.
-pub(super) struct Builder {
+pub struct Builder {
     /// The scene as written, with all defaults, and the values of keys that it leaves out and that are offered.
-    pub(super) document: Table,
-    pub(super) groups: Vec<Group>,
+    pub document: Table,
+    /// The groups.
+    pub groups: Vec<Group>,
     /// Keys that the scene leaves out.
-    pub(super) left_out: Vec<String>,
+    pub left_out: Vec<String>,
 }
 
 impl Builder {
-    pub(super) fn group(&mut self, name: impl Into<String>) -> &mut Self {
+    /// Begins a group: what follows stands under this heading.
+    pub fn group(&mut self, name: impl Into<String>) -> &mut Self {
         self.groups.push(Group { name: name.into(), parameters: Vec::new() });
         self
     }
 
-    pub(super) fn add(
+    /// A parameter; left out where the scene has no such value.
+    pub fn add(
         &mut self,
         path: impl Into<String>,
         name: &str,
@@ -91,7 +110,8 @@ impl Builder {
         self
     }
 
-    pub(super) fn number(
+    /// A number in a range.
+    pub fn number(
         &mut self,
         path: impl Into<String>,
         name: &str,
@@ -103,18 +123,12 @@ impl Builder {
     }
 
     /// A number above 0 from a tenth of what it is to ten times as much.
-    pub(super) fn scaled(
-        &mut self,
-        path: impl Into<String>,
-        name: &str,
-        unit: &'static str,
-        hint: &'static str,
-    ) -> &mut Self {
+    pub fn scaled(&mut self, path: impl Into<String>, name: &str, unit: &'static str, hint: &'static str) -> &mut Self {
         self.between(path, name, unit, [0.1, 10.0], hint)
     }
 
     /// A number above 0 in a range that is told in parts of what it is.
-    pub(super) fn between(
+    pub fn between(
         &mut self,
         path: impl Into<String>,
         name: &str,
@@ -134,7 +148,7 @@ impl Builder {
 
     /// A value over time, 0 or more: a number, up to `most` where it is 0, or by how many times what the scene says is multiplied. The first way to change it is for a number, the
     /// second for a factor.
-    pub(super) fn series(
+    pub fn series(
         &mut self,
         path: &str,
         name: &str,
@@ -161,7 +175,7 @@ impl Builder {
     }
 
     /// A value that the scene may leave out: it is then this.
-    pub(super) fn or(&mut self, path: &str, value: f64) -> &mut Self {
+    pub fn or(&mut self, path: &str, value: f64) -> &mut Self {
         if let Some(place) = place_at(&mut self.document, path) {
             *place = Value::Float(value);
             self.left_out.push(path.into());
@@ -170,7 +184,7 @@ impl Builder {
     }
 
     /// The last one changes while the scene goes on.
-    pub(super) fn live(&mut self, path: &str, change: Live) -> &mut Self {
+    pub fn live(&mut self, path: &str, change: Live) -> &mut Self {
         let last = self.groups.last_mut().and_then(|group| group.parameters.last_mut());
         if let Some(last) = last.filter(|last| last.path == path) {
             last.live = Some(change);
@@ -179,17 +193,48 @@ impl Builder {
     }
 }
 
-/// What can be changed in a scene as it is written; `now` is the scene with the changes that it goes on with.
-pub(super) fn groups(scene: &Scene, now: &Scene, document: Table) -> Builder {
-    let mut builder = Builder { document, groups: Vec::new(), left_out: Vec::new() };
-    match (&scene.model, &now.model) {
-        (ModelScene::Gas(gas), _) => gas::parameters(&mut builder, gas),
-        (ModelScene::Flood(flood), ModelScene::Flood(now)) => {
-            flood::parameters(&mut builder, &flood.flood, &now.flood);
+impl Builder {
+    /// All numbers of a table, each from a tenth of what it is to ten times as much: for a model that says nothing else.
+    pub fn numbers_of(&mut self, table: &str) -> &mut Self {
+        let mut paths = Vec::new();
+        if let Some(value) = self.document.get(table) {
+            numbers_below(value, table, &mut paths);
         }
-        (ModelScene::Dew(dew), _) => dew::parameters(&mut builder, dew),
-        (ModelScene::Flood(_), _) => {}
+        let (first, rest) = table.split_at(table.chars().next().map_or(0, char::len_utf8));
+        self.group(first.to_uppercase() + rest);
+        for (path, is_whole, value) in paths {
+            let name = path[table.len() + 1..].replace(['.', '_'], " ");
+            match is_whole {
+                true => self.add(path, &name, "", "", Control::Whole([0.0, (10.0 * value).max(10.0)])),
+                false => self.scaled(path, &name, "", ""),
+            };
+        }
+        self
     }
+}
+
+/// Paths of the numbers below a value, whether they are whole, and what they are.
+fn numbers_below(value: &Value, path: &str, found: &mut Vec<(String, bool, f64)>) {
+    match value {
+        Value::Integer(number) => found.push((path.into(), true, *number as f64)),
+        Value::Float(number) => found.push((path.into(), false, *number)),
+        Value::Table(table) => {
+            table.iter().for_each(|(key, value)| numbers_below(value, &format!("{path}.{key}"), found))
+        }
+        Value::Array(rows) => {
+            rows.iter().enumerate().for_each(|(row, value)| numbers_below(value, &format!("{path}.{row}"), found));
+        }
+        _ => {}
+    }
+}
+
+/// What can be changed in a scene as it is written; `now` is the scene with the changes that it goes on with.
+///
+/// # Errors
+/// [`ModelError::Setup`] where the scene is of a model that was not registered.
+pub fn parameters(scene: &Scene, now: &Scene, document: Table) -> Result<Builder, ModelError> {
+    let mut builder = Builder { document, groups: Vec::new(), left_out: Vec::new() };
+    crate::models::of(scene)?.parameters(&mut builder, scene, now);
     let whole = Control::Whole([0.0, 99.0]);
     builder.group("Run").scaled("run.until_s", "End", "s", "When the scene ends").add(
         "seed",
@@ -199,5 +244,5 @@ pub(super) fn groups(scene: &Scene, now: &Scene, document: Table) -> Builder {
         whole,
     );
     builder.groups.retain(|group| !group.parameters.is_empty());
-    builder
+    Ok(builder)
 }

@@ -1,9 +1,10 @@
 //! Values of a scene by their keys.
 
-use corpuscle::scene::Series;
+use corpuscle_scene::Series;
 use toml::{Table, Value};
 
-pub(super) fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option<String>) {
+/// Sets a value in a list of changes; none takes it out.
+pub fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option<String>) {
     let at = changes.iter().position(|(changed, _)| changed == path);
     match (at, value) {
         (Some(at), Some(value)) => changes[at].1 = value,
@@ -15,7 +16,8 @@ pub(super) fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option
     }
 }
 
-pub(super) fn as_number(value: &Value) -> Option<f64> {
+/// The number that a value is.
+pub fn as_number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(number) => Some(*number as f64),
         Value::Float(number) => Some(*number),
@@ -24,7 +26,7 @@ pub(super) fn as_number(value: &Value) -> Option<f64> {
 }
 
 /// The value at a path as on the command line: rows of lists are counted from 0.
-pub(super) fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
+pub fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
     let mut words = path.split('.');
     let mut value = document.get(words.next()?)?;
     for word in words {
@@ -59,13 +61,13 @@ pub(super) fn place_at<'a>(document: &'a mut Table, path: &str) -> Option<&'a mu
 }
 
 /// The largest value of a series of rows of time and value; none where it is no such series.
-pub(super) fn largest(series: &Value) -> Option<f64> {
+pub fn largest(series: &Value) -> Option<f64> {
     let values = series.as_array()?.iter().map(|row| as_number(row.as_array()?.get(1)?));
     values.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
 }
 
 /// How large a series is, to be compared with the same times a number.
-pub(super) fn size(series: &Series) -> f64 {
+pub fn size(series: &Series) -> f64 {
     match series {
         Series::Constant(value) => *value,
         Series::Table(rows) => rows.iter().map(|row| row[1]).fold(0.0, f64::max),
@@ -74,13 +76,13 @@ pub(super) fn size(series: &Series) -> f64 {
 }
 
 /// The size of a series or a factor as it is written in a scene.
-pub(super) fn size_as_written(value: &str) -> Option<f64> {
+pub fn size_as_written(value: &str) -> Option<f64> {
     let value = format!("v = {value}").parse::<Table>().ok()?.remove("v")?;
     as_number(&value).or_else(|| largest(&value))
 }
 
 /// A series of rows of time and value with its values multiplied, as it is written in a scene.
-pub(super) fn multiplied(series: &Value, times: f64) -> Option<String> {
+pub fn multiplied(series: &Value, times: f64) -> Option<String> {
     let row = |row: &Value| {
         let [time, value] = row.as_array()?.as_slice() else { return None };
         Some(Value::Array(vec![Value::Float(as_number(time)?), Value::Float(times * as_number(value)?)]))

@@ -1,0 +1,75 @@
+//! Dew.
+
+mod parameters;
+
+use super::{ModelKind, Opened, Opening, Recorded};
+use crate::Error;
+use crate::parameters::Builder;
+#[cfg(feature = "pictures")]
+use crate::pictures::{PictureSettings, Scenery, Studio, Subject, dew::DewPicture};
+use corpuscle_model::ModelError;
+use corpuscle_output::DewReport;
+use corpuscle_scene::{Dew, Scene, SceneKind};
+
+/// Memory for each particle, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
+const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
+
+/// Dew as the workbench knows it.
+pub(super) struct Kind;
+
+/// The air and solids of a scene.
+fn dew(scene: &Scene) -> Result<&Dew, ModelError> {
+    scene.dew().ok_or_else(|| ModelError::Setup("it is not the scene of dew".into()))
+}
+
+/// Whether pictures show the air, and not but what lies on solids: where these are kept clear of it in different ways.
+pub(crate) fn shows_air(dew: &Dew) -> bool {
+    dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
+}
+
+impl ModelKind for Kind {
+    fn scene(&self) -> SceneKind {
+        SceneKind::DEW
+    }
+
+    fn open(&self, opening: Opening<'_>) -> Result<Opened, Error> {
+        let Opening { scene, folder, .. } = opening;
+        Ok(Opened::plain(Box::new(corpuscle_dew::open(dew(scene)?, scene.seed, folder)?)))
+    }
+
+    fn bytes_per_particle(&self, _scene: &Scene) -> f64 {
+        BYTES_PER_AIR_PARTICLE
+    }
+
+    fn first_gauges(&self) -> &'static [&'static str] {
+        &["solids.covered_area"]
+    }
+
+    fn parameters(&self, builder: &mut Builder, scene: &Scene, _now: &Scene) {
+        if let Some(dew) = scene.dew() {
+            parameters::parameters(builder, dew);
+        }
+    }
+
+    fn record_frame(&self, run: &Recorded<'_>) -> Result<(), Error> {
+        Ok(DewReport::new(run.folder, run.scene, run.model)?.write_moment()?)
+    }
+
+    fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {
+        Ok(DewReport::new(run.folder, run.scene, run.model)?.write()?)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn pictures(
+        &self,
+        studio: &Studio,
+        scenery: &Scenery,
+        _settings: &PictureSettings,
+    ) -> Result<Box<dyn Subject>, Error> {
+        Ok(Box::new(DewPicture::new(studio, dew(scenery.scene())?, scenery.surfaces())))
+    }
+
+    fn shows_particles(&self, scene: &Scene) -> bool {
+        scene.dew().is_none_or(shows_air)
+    }
+}

@@ -1,0 +1,182 @@
+//! The models of the workbench: how the scenes of each are opened, recorded, shown and changed.
+//!
+//! [`ModelKind`] is all that the workbench asks of a model beside its physics; [`register`] adds one.
+
+pub(crate) mod dew;
+pub(crate) mod flood;
+pub(crate) mod gas;
+
+use crate::Error;
+use crate::parameters::Builder;
+#[cfg(feature = "pictures")]
+use crate::pictures::{Particles, PictureSettings, Scenery, Studio, Subject};
+use corpuscle_model::{Model, ModelError};
+use corpuscle_output::{PlainReport, Summary};
+use corpuscle_scene::{Scene, SceneKind};
+use corpuscle_terrain::Terrain;
+use std::path::Path;
+use std::sync::{Arc, PoisonError, RwLock};
+
+/// What the work of models that step is counted in.
+const PARTICLE_STEPS: &str = "particle-steps";
+
+/// What the work of models without steps is counted in.
+pub(crate) const COLLISIONS: &str = "collisions";
+
+/// A scene that is to be made ready.
+pub struct Opening<'a> {
+    /// Paths and defaults are resolved; what a model chooses where the scene leaves it open is written into it.
+    pub scene: &'a mut Scene,
+    /// Folder that relative paths of terrain and series start from.
+    pub folder: &'a Path,
+    /// Whether a saved state follows, so that particles need no places of their own.
+    pub is_restored: bool,
+}
+
+/// What comes of it.
+pub struct Opened {
+    /// The model.
+    pub model: Box<dyn Model>,
+    /// The ground, where there is one.
+    pub terrain: Option<Arc<Terrain>>,
+    /// What was chosen where the scene leaves it open, in sentences.
+    pub notes: Vec<String>,
+}
+
+impl Opened {
+    /// A model without ground.
+    pub fn plain(model: Box<dyn Model>) -> Self {
+        Self { model, terrain: None, notes: Vec::new() }
+    }
+}
+
+/// A run that is recorded.
+pub struct Recorded<'a> {
+    /// Its folder.
+    pub folder: &'a Path,
+    /// The scene as run.
+    pub scene: &'a Scene,
+    /// The ground, where there is one.
+    pub terrain: Option<&'a Terrain>,
+    /// The model, which shows the time of the frame, or the end.
+    pub model: &'a dyn Model,
+}
+
+/// A model as the workbench knows it. What has a default here is right for a model of particles in a box.
+pub trait ModelKind: Send + Sync {
+    /// Its tables in scene files, and the scenes of it that come with the program.
+    fn scene(&self) -> SceneKind;
+
+    /// Makes a scene ready to run.
+    ///
+    /// # Errors
+    /// Where the scene, or a file that it names, cannot be used.
+    fn open(&self, opening: Opening<'_>) -> Result<Opened, Error>;
+
+    /// What its particles are called, in the plural.
+    fn particles(&self) -> &'static str {
+        "particles"
+    }
+
+    /// What its work is counted in, in the plural.
+    fn work(&self) -> &'static str {
+        PARTICLE_STEPS
+    }
+
+    /// Memory that a particle takes, bytes.
+    fn bytes_per_particle(&self, _scene: &Scene) -> f64 {
+        1000.0
+    }
+
+    /// Whether the scene is in SI units; numbers are shown without units where it is not.
+    fn has_si_units(&self, _scene: &Scene) -> bool {
+        true
+    }
+
+    /// Gauges that are plotted before the others, by the beginning of their headers.
+    fn first_gauges(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Says what of a scene a user may change; `now` is the scene with the changes that it goes on with. By default all numbers of its tables.
+    fn parameters(&self, builder: &mut Builder, _scene: &Scene, _now: &Scene) {
+        for table in self.scene().tables {
+            builder.numbers_of(table);
+        }
+    }
+
+    /// Draws for the report what a frame shows.
+    ///
+    /// # Errors
+    /// Where that cannot be written.
+    fn record_frame(&self, _run: &Recorded<'_>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Completes the summary of a run that ended.
+    ///
+    /// # Errors
+    /// Where a file that the scene names cannot be used.
+    fn complete(&self, _run: &Recorded<'_>, _summary: &mut Summary) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Writes the report of a run whose other files are written.
+    ///
+    /// # Errors
+    /// Where the report cannot be written.
+    fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {
+        let time_unit = if self.has_si_units(run.scene) { "s" } else { "" };
+        Ok(PlainReport::new(run.folder, run.scene, run.model, time_unit).write()?)
+    }
+
+    /// What pictures show.
+    ///
+    /// # Errors
+    /// Where something cannot be drawn.
+    #[cfg(feature = "pictures")]
+    fn pictures(
+        &self,
+        _studio: &Studio,
+        scenery: &Scenery,
+        _settings: &PictureSettings,
+    ) -> Result<Box<dyn Subject>, Error> {
+        Ok(Box::new(Particles::new(scenery)))
+    }
+
+    /// Whether pictures show the particles that lie on a GPU which takes the steps.
+    fn shows_particles(&self, _scene: &Scene) -> bool {
+        true
+    }
+}
+
+static GAS: gas::Kind = gas::Kind;
+static FLOOD: flood::Kind = flood::Kind;
+static DEW: dew::Kind = dew::Kind;
+
+/// The models that are there from the start.
+static OWN: [&dyn ModelKind; 3] = [&GAS, &FLOOD, &DEW];
+
+static ADDED: RwLock<Vec<&'static dyn ModelKind>> = RwLock::new(Vec::new());
+
+/// Adds a model to the workbench, in this process: its scenes are read, opened, recorded, shown and changed as those of the others are.
+/// Nothing changes where one of that name is there.
+pub fn register(kind: &'static dyn ModelKind) {
+    let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);
+    let name = kind.scene().name;
+    if OWN.iter().chain(&*added).all(|known| known.scene().name != name) {
+        added.push(kind);
+        corpuscle_scene::register(kind.scene());
+    }
+}
+
+/// The model of a scene.
+///
+/// # Errors
+/// [`ModelError::Setup`] where it was not registered.
+pub fn of(scene: &Scene) -> Result<&'static dyn ModelKind, ModelError> {
+    let name = scene.model.name();
+    let added = ADDED.read().unwrap_or_else(PoisonError::into_inner);
+    let found = OWN.iter().chain(&*added).find(|kind| kind.scene().name == name).copied();
+    found.ok_or_else(|| ModelError::Setup(format!("there is no model `{name}` in this program")))
+}

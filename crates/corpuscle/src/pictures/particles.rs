@@ -1,0 +1,104 @@
+//! Pictures of particles in a box, for models that have none of their own: in a bright room, or on paper where all lie in one plane.
+
+use super::{Look, Moment, OwnView, Scenery, Shown, Studio, Subject};
+use crate::Error;
+use corpuscle_drawing::text;
+use corpuscle_model::{Container, Frame, ParticleSet};
+use corpuscle_render::{Axes, BallStyle, Balls, ColourTable, Drawable, Floor, Key, Light, Overlay, Shading, Stage};
+
+/// From where the box is seen, radians: to the right of its front, from above.
+const DIRECTION: [f64; 2] = [-1.02, 0.36];
+/// Room for axes round it.
+const OWN_VIEW: OwnView =
+    OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.11, 0.11, 0.14, 0.1] };
+/// How far the sun stands to the left of the eye, radians.
+const SUN: f64 = -0.9;
+/// Least radius of a particle, parts of the picture's height.
+const LEAST_RADIUS: f64 = 0.004;
+/// Room round particles without a box, parts of their extent.
+const ROOM: f64 = 0.1;
+/// The colours of sets, told apart by colour-blind eyes too (Okabe & Ito 2008).
+const COLOURS: [[u8; 3]; 6] =
+    [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
+
+/// Draws the particles of a frame as balls, each set in a colour.
+pub struct Particles {
+    has_si_units: bool,
+    /// The box of the first moment that was drawn.
+    stage: Option<Stage>,
+    floor: Option<Floor>,
+}
+
+impl Particles {
+    /// Those of a scene.
+    pub fn new(scenery: &Scenery) -> Self {
+        let scene = scenery.scene();
+        let has_si_units = crate::models::of(scene).is_ok_and(|kind| kind.has_si_units(scene));
+        Self { has_si_units, stage: None, floor: None }
+    }
+
+    fn overlay(&self, title: &str, frame: &Frame, stage: &Stage) -> Overlay {
+        let (unit, time) = match self.has_si_units {
+            true => ("m", text::any_time(frame.time)),
+            false => ("", text::short_number(frame.time)),
+        };
+        let kinds = frame.sets.iter().zip(COLOURS.iter().cycle());
+        let kinds: Vec<_> = kinds.map(|(set, colour)| (set.name.clone(), *colour)).collect();
+        Overlay {
+            title: title.into(),
+            time: format!("t = {time}"),
+            key: (kinds.len() > 1).then_some(Key::Kinds(kinds)),
+            axes: Some(Axes { from: stage.from.into(), to: stage.to.into(), unit: unit.into(), heights: 1.0 }),
+            ..Overlay::default()
+        }
+    }
+}
+
+impl Subject for Particles {
+    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+        let stage = *self.stage.get_or_insert_with(|| stage_of(moment));
+        let is_flat = stage.from.z == stage.to.z;
+        let light = match is_flat {
+            true => Light::paper_of(studio.paper),
+            false => studio.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
+        };
+        let camera = studio.seen(&stage, &OWN_VIEW, moment.frame.time, is_flat);
+        let shading = match (is_flat, studio.look) {
+            (true, _) => Shading::Discs,
+            (false, Look::Simple) => Shading::Matt,
+            (false, Look::Full) => Shading::Full,
+        };
+        let samples = f64::from(studio.target.size[1] * studio.target.samples);
+        let balls = |(set, colour): (&ParticleSet, &[u8; 3])| {
+            let least_radius = (LEAST_RADIUS * samples) as f32;
+            let style = BallStyle { shading, least_radius, ..BallStyle::new(ColourTable::plain(*colour)) };
+            let each = (0..set.len()).map(|at| (set.position[at], set.radius[at], 0.0));
+            studio.balls.balls(studio.renderer.gpu(), &stage, &style, each)
+        };
+        let mut sets: Vec<Balls> = moment.frame.sets.iter().zip(COLOURS.iter().cycle()).map(balls).collect();
+        let overlay = self.overlay(title, moment.frame, &stage);
+        let mut things: Vec<&mut dyn Drawable> = sets.iter_mut().map(|set| set as &mut dyn Drawable).collect();
+        if !is_flat && studio.look == Look::Full {
+            things.push(self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z)));
+        }
+        studio.take(&stage, &camera, &light, &mut things, overlay)
+    }
+}
+
+/// The box of a model, or one round its particles.
+fn stage_of(moment: &Moment<'_>) -> Stage {
+    if let Some(Container { from, to }) = moment.container {
+        return Stage::new(from, to);
+    }
+    let positions = || moment.frame.sets.iter().flat_map(|set| &set.position);
+    let end = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
+        std::array::from_fn(|axis| positions().map(|at| at[axis]).fold(start, pick))
+    };
+    if positions().next().is_none() {
+        return Stage::new([0.0; 3], [1.0; 3]);
+    }
+    let [from, to] = [end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)];
+    let size = (0..3).map(|axis| to[axis] - from[axis]).fold(0.0, f64::max).max(1e-9);
+    let room = |axis: usize| if from[axis] == to[axis] && axis == 2 { 0.0 } else { ROOM * size };
+    Stage::new(std::array::from_fn(|axis| from[axis] - room(axis)), std::array::from_fn(|axis| to[axis] + room(axis)))
+}
