@@ -2,7 +2,7 @@
 
 use super::super::{GRAVITY, rows, strip};
 use super::{Convergence, run, settings, worst};
-use crate::device::rounding;
+use crate::device::{rounding, sized};
 use crate::{Case, Options};
 use corpuscle_flood::{Filling, StartWater, VoronoiFlood};
 use corpuscle_model::{Model, ModelError};
@@ -36,7 +36,7 @@ pub(in super::super) const FINER: Case = Case {
     about: "The dam break of `flood/voronoi/stoker` with particles 4 m apart, and 1 m from 20 m above the dam on, three seeds: where cells are finer \
             the depth has less than half of the error, and it is none the worse elsewhere.",
     slow: true,
-    reduced: 6.0,
+    reduced: 2.0,
     run: finer,
 };
 
@@ -85,7 +85,7 @@ fn finer(_: &Options) -> Vec<crate::Row> {
 /// Errors of the depth below and above the dam, over those with all cells coarse.
 fn measure_finer() -> Result<Vec<crate::Row>, ModelError> {
     let part = Finer {
-        spacing_m: 1.0,
+        spacing_m: sized(1.0),
         polygon: Some(vec![[DAM - 20.0, -1.0], [LENGTH + 1.0, -1.0], [LENGTH + 1.0, 99.0], [DAM - 20.0, 99.0]]),
         ..Finer::default()
     };

@@ -18,7 +18,7 @@ pub(in super::super) const EA_TEST5: Case = Case {
             particles 50 m apart as the cells of the peer: 3000 m3/s at most over a line of 260 m, n 0.04, the first 5 h; highest depth and arrival (0.05 m) at \
             seven gauges against LISFLOOD-FP 8.1 FV1 on cells of 50 m.",
     slow: true,
-    reduced: 4.0,
+    reduced: 2.0,
     run: |options: &Options| of_data(EA_TEST5.name, "ea_test5", options, of_seed),
 };
 

@@ -15,7 +15,7 @@ pub(in super::super) const STRUCTURES: Case = Case {
             against their equations solved by small steps, by scheme voronoi, three seeds, particles 1, 2 and 4 m apart. The equations have level pools; \
             where water is taken the level is drawn down a little.",
     slow: false,
-    reduced: 3.0,
+    reduced: 2.0,
     run: |_: &Options| rows(STRUCTURES.name, measure()),
 };
 
