@@ -192,6 +192,8 @@ pub enum Frames {
     Vtp,
     /// Tables, one row for each particle
     Csv,
+    /// Extended XYZ, for OVITO, VMD and ASE
+    Xyz,
     /// No particle files
     None,
 }
@@ -201,6 +203,7 @@ impl From<Frames> for FrameFormat {
         match frames {
             Frames::Vtp => Self::Vtp,
             Frames::Csv => Self::Csv,
+            Frames::Xyz => Self::Xyz,
             Frames::None => Self::None,
         }
     }

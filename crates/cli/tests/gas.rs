@@ -94,3 +94,34 @@ fn what_cannot_be_is_refused_with_its_place_and_a_remedy() {
     assert!(refused.stderr.contains("bad.toml:15:"), "{}", refused.stderr);
     assert!(!place.path("runs").exists(), "a refused scene leaves no folder");
 }
+
+/// A run from a frame of another goes on as that did, to the bit.
+#[test]
+fn a_gas_starts_from_a_frame_of_another() {
+    let place = Place::new();
+    place.run(&["run", "gas/maxwell", "--until", "2", "--frames", "xyz", "-o", "one"]).expect_status(0);
+    for format in ["xyz", "csv"] {
+        place.run(&["run", "gas/maxwell", "--until", "0.5", "--frames", format, "-o", format]).expect_status(0);
+        let start = place.path(format!("{format}/frames/frame_000000.{format}"));
+        let scene = format!(
+            "[run]\nuntil_s = 2\nframe_every_s = 0.5\n[gas]\nsize = [800, 600]\nfollow = 410\nstart_file = {:?}\n",
+            start.display().to_string()
+        );
+        place.write("again.toml", &scene);
+        let again = format!("again-{format}");
+        place.run(&["run", "again.toml", "--frames", "xyz", "-o", &again]).expect_status(0);
+        let file = "frames/frame_000004.xyz";
+        assert!(place.read(&format!("one/{file}")) == place.read(&format!("{again}/{file}")), "{format}");
+    }
+    let scene = "[run]\nuntil_s = 2\n[gas]\nsize = [800, 600]\nstart_file = \"none.xyz\"\n";
+    place.write("none.toml", scene);
+    let refused = place.run(&["run", "none.toml"]).expect_status(2);
+    let error = refused.stderr;
+    assert!(error.contains("none.xyz") && error.contains("gas.start_file"), "{error}");
+    place.write(
+        "few.toml",
+        &scene.replace("none.xyz", "one/frames/frame_000000.xyz").replace("[gas]", "[gas]\nfollow = 800"),
+    );
+    let error = place.run(&["run", "few.toml"]).expect_status(2).stderr;
+    assert!(error.contains("ids run from 0 to 799"), "{error}");
+}

@@ -78,7 +78,7 @@ impl Sink for Recorder {
 
     fn frame(&mut self, model: &dyn Model) -> Result<(), Error> {
         if self.folder.frame_format() != FrameFormat::None {
-            self.folder.write_frame(&model.frame())?;
+            self.folder.write_frame(&model.frame(), model.container().as_ref())?;
         }
         if let Some(terrain) = &self.terrain {
             self.folder.write_snapshot(model.time(), &model.maps(), terrain)?;

@@ -1,6 +1,6 @@
 //! A gas as a scene asks for it.
 
-use crate::setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start};
+use crate::setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, file};
 use crate::{Gas, SetupError};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene as scene;
@@ -50,8 +50,15 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
         hole: partition.hole.as_ref().map(|hole| hole.from.iter().zip(&hole.to).map(|(&a, &b)| [a, b]).collect()),
     });
     setup.balls = written.ball.iter().map(ball).collect();
+    if let Some(path) = &written.start_file {
+        setup.balls.extend(file::read(&folder.join(path))?);
+    }
     setup.species = written.species.iter().map(species).collect();
     let count = setup.balls.len() + setup.species.iter().map(|species| setup.count_of(species)).sum::<usize>();
+    if let Some(ball) = setup.follow.filter(|ball| *ball >= count) {
+        let text = format!("gas.follow = {ball}: there is no such ball; ids run from 0 to {}", count.saturating_sub(1));
+        return Err(SetupError::Contradiction(text).into());
+    }
     let looks = (LOOKS * (MANY / count as f64).min(1.0)).max(40.0).round();
     setup.measure = Measure {
         from: written.measure.from_s.unwrap_or(0.0),

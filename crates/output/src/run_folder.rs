@@ -8,7 +8,7 @@ use crate::maps::{self, SNAPSHOT};
 use crate::whole::{write_bytes, write_whole};
 use crate::{Clock, RecordError, Summary, write_extent, write_run_up};
 use corpuscle_atomic_file::clear_unfinished;
-use corpuscle_model::{Chart, Frame, GaugeColumn, Map, Surface};
+use corpuscle_model::{Chart, Container, Frame, GaugeColumn, Map, Surface};
 use corpuscle_terrain::Terrain;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -138,14 +138,14 @@ impl RunFolder {
         self.gauges.rows()
     }
 
-    /// Adds a particle frame: `frames/frame_NNNNNN.vtp` and `frames.pvd`, or `.csv`, numbered from 0.
+    /// Adds a particle frame: `frames/frame_NNNNNN.vtp` and `frames.pvd`, or `.csv`, or `.xyz`, numbered from 0. `container` is the box round the particles.
     ///
     /// # Errors
     /// [`RecordError::Write`].
-    pub fn write_frame(&mut self, frame: &Frame) -> Result<(), RecordError> {
+    pub fn write_frame(&mut self, frame: &Frame, container: Option<&Container>) -> Result<(), RecordError> {
         if self.frame_format != FrameFormat::None {
             let folder = self.subfolder("frames")?;
-            self.frame_format.write(&folder, self.frame_times.len(), frame)?;
+            self.frame_format.write(&folder, self.frame_times.len(), frame, container)?;
         }
         self.frame_times.push(frame.time);
         self.write_pvd()

@@ -2,13 +2,15 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use corpuscle_model::{Column, Frame, ParticleSet, Values};
+use corpuscle_model::{Column, Container, Frame, ParticleSet, Values};
 use corpuscle_output::{FrameFiles, FrameFormat, RunFolder};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
+
+const BOX: Container = Container { from: [-1.0, 0.0, 0.5], to: [3.0, 1.5, 0.75] };
 
 /// Two sets, one with columns that the other has not, and numbers that are hard to write.
 fn frame() -> Frame {
@@ -34,7 +36,7 @@ fn frame() -> Frame {
 fn written(format: FrameFormat, file: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let mut run = RunFolder::create(&folder.path().join("run"), "", &[], format).unwrap();
-    run.write_frame(&frame()).unwrap();
+    run.write_frame(&frame(), Some(&BOX)).unwrap();
     fs::read_to_string(run.path().join("frames").join(file)).unwrap()
 }
 
@@ -57,6 +59,21 @@ fn csv_reads_back_to_the_bit() {
         }
     }
     assert_eq!(lines.next(), None);
+}
+
+#[test]
+fn xyz_says_what_stands_in_its_columns() {
+    let text = written(FrameFormat::Xyz, "frame_000000.xyz");
+    let lines: Vec<&str> = text.lines().take(3).collect();
+    assert_eq!(lines[0], "80000");
+    assert_eq!(
+        lines[1],
+        "Lattice=\"4 0 0 0 1.5 0 0 0 0.25\" Origin=\"-1 0 0.5\" pbc=\"F F F\" \
+         Properties=species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1:depth:R:1:flow:R:3 Time=0.30000000000000004"
+    );
+    // As many words as the columns say, with the place behind the species.
+    assert_eq!(lines[2].split(' ').count(), 1 + 3 + 1 + 3 + 1 + 1 + 1 + 3);
+    assert!(lines[2].starts_with("water 0.21000000000000002 "), "{}", lines[2]);
 }
 
 /// The arrays of a VTP by name, as bytes, and the texts of its ASCII arrays; panics where it is not well-formed XML.
@@ -135,7 +152,7 @@ fn vtp_is_well_formed_and_reads_back_to_the_bit() {
 fn an_empty_frame_is_a_file_too() {
     let folder = tempfile::tempdir().unwrap();
     let mut run = RunFolder::create(&folder.path().join("run"), "", &[], FrameFormat::Vtp).unwrap();
-    run.write_frame(&Frame { time: 0.0, sets: vec![] }).unwrap();
+    run.write_frame(&Frame { time: 0.0, sets: vec![] }, None).unwrap();
     let text = fs::read_to_string(run.path().join("frames/frame_000000.vtp")).unwrap();
     assert!(vtp_arrays(&text)["position"].is_empty());
 }
@@ -145,7 +162,7 @@ fn the_collection_lists_all_frames_with_their_times() {
     let folder = tempfile::tempdir().unwrap();
     let mut run = RunFolder::create(&folder.path().join("run"), "", &[], FrameFormat::Vtp).unwrap();
     for time in [0.0, 0.1 + 0.2] {
-        run.write_frame(&Frame { time, sets: vec![] }).unwrap();
+        run.write_frame(&Frame { time, sets: vec![] }, None).unwrap();
     }
     let text = fs::read_to_string(run.path().join("frames/frames.pvd")).unwrap();
     let mut reader = Reader::from_str(&text);
@@ -167,13 +184,13 @@ fn the_collection_lists_all_frames_with_their_times() {
 fn listed(format: FrameFormat) -> (tempfile::TempDir, FrameFiles) {
     let folder = tempfile::tempdir().unwrap();
     let mut run = RunFolder::create(&folder.path().join("run"), "", &[], format).unwrap();
-    run.write_frame(&frame()).unwrap();
+    run.write_frame(&frame(), Some(&BOX)).unwrap();
     let files = FrameFiles::list(run.path(), |_| frame().time).unwrap();
     (folder, files)
 }
 
 #[test]
-fn frames_read_back_to_the_bit_from_both_formats() {
+fn frames_read_back_to_the_bit_from_all_formats() {
     let bits = |frame: &Frame| {
         let mut all = vec![frame.time.to_bits()];
         for set in &frame.sets {
@@ -188,7 +205,7 @@ fn frames_read_back_to_the_bit_from_both_formats() {
         }
         all
     };
-    for format in [FrameFormat::Vtp, FrameFormat::Csv] {
+    for format in [FrameFormat::Vtp, FrameFormat::Csv, FrameFormat::Xyz] {
         let (_folder, files) = listed(format);
         assert_eq!(files.times().collect::<Vec<_>>(), [0.1 + 0.2]);
         let back = files.read(0).unwrap();
@@ -203,7 +220,8 @@ fn frames_read_back_to_the_bit_from_both_formats() {
 
 #[test]
 fn damaged_particle_files_are_errors_that_name_the_file() {
-    for (format, name) in [(FrameFormat::Vtp, "frame_000000.vtp"), (FrameFormat::Csv, "frame_000000.csv")] {
+    let xyz = (FrameFormat::Xyz, "frame_000000.xyz");
+    for (format, name) in [(FrameFormat::Vtp, "frame_000000.vtp"), (FrameFormat::Csv, "frame_000000.csv"), xyz] {
         let (folder, files) = listed(format);
         let path = folder.path().join("run/frames").join(name);
         let whole = fs::read_to_string(&path).unwrap();
@@ -218,6 +236,10 @@ fn damaged_particle_files_are_errors_that_name_the_file() {
             bend("water", "0x"),
             bend("set,id", "id,set"),
             bend("0.7", "seven"),
+            bend("species:S", "pos:R"),
+            bend("Time=", "time="),
+            bend("R:3:depth", "I:3:depth"),
+            bend(" 0.5 ", " "),
         ];
         for text in damaged.into_iter().filter(|text| *text != whole) {
             fs::write(&path, &text).unwrap();

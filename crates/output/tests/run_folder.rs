@@ -64,7 +64,7 @@ fn an_interrupted_run_that_is_resumed_ends_with_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene();
     let terrain = terrain(&scene);
-    for format in [FrameFormat::Vtp, FrameFormat::Csv, FrameFormat::None] {
+    for format in [FrameFormat::Vtp, FrameFormat::Csv, FrameFormat::Xyz, FrameFormat::None] {
         let [whole, broken] = ["whole", "broken"].map(|name| folder.path().join(format!("{name}-{format:?}")));
         write_run(&whole, &scene, &terrain, format);
         let mut run = RunFolder::create(&broken, &scene.to_toml().unwrap(), &gauge_columns(&scene), format).unwrap();
@@ -138,7 +138,7 @@ fn a_write_that_fails_names_the_file_and_spares_the_rest() {
     // A folder that stands where the next file should be.
     fs::create_dir(path.join("frames/frame_000019.vtp")).unwrap();
     let wave = common::Wave::new(&terrain);
-    let error = run.write_frame(&wave.frame(5700.0)).unwrap_err().to_string();
+    let error = run.write_frame(&wave.frame(5700.0), None).unwrap_err().to_string();
     assert!(error.contains("frame_000019.vtp") && error.contains("stays readable"), "{error}");
     assert_eq!(run.frame_times().len(), 19);
     assert_eq!(files(&path), before);

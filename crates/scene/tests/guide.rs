@@ -238,6 +238,7 @@ fn full_gas(method: Method) -> Scene {
             pair_distance: Some(1.0),
             pair_bins: 1,
         },
+        start_file: Some("a".into()),
         ball: vec![Ball {
             name: "a".into(),
             position: vec![0.0; 2],

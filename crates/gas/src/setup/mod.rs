@@ -1,6 +1,7 @@
 //! What a gas is made of: the set-up, independent of scene files.
 
 mod check;
+pub(crate) mod file;
 mod lattice;
 mod pistons;
 mod place;

@@ -4,6 +4,7 @@ mod csv;
 mod patches;
 mod read;
 mod vtp;
+mod xyz;
 
 pub(crate) use patches::write as write_surface;
 pub use read::FrameFiles;
@@ -11,7 +12,7 @@ pub use read::FrameFiles;
 use crate::RecordError;
 use crate::number::Shortest;
 use crate::whole::write_whole;
-use corpuscle_model::Frame;
+use corpuscle_model::{Container, Frame};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
@@ -25,6 +26,8 @@ pub enum FrameFormat {
     Vtp,
     /// One row for each particle.
     Csv,
+    /// Extended XYZ: opens in OVITO, VMD and ASE.
+    Xyz,
     /// No particle files.
     None,
 }
@@ -35,16 +38,24 @@ impl FrameFormat {
         match self {
             Self::Vtp => Some(format!("frame_{index:06}.vtp")),
             Self::Csv => Some(format!("frame_{index:06}.csv")),
+            Self::Xyz => Some(format!("frame_{index:06}.xyz")),
             Self::None => None,
         }
     }
 
-    /// Writes one frame into `folder`, whole or not at all.
-    pub(crate) fn write(self, folder: &Path, index: usize, frame: &Frame) -> Result<(), RecordError> {
+    /// Writes one frame into `folder`, whole or not at all; with the box round the particles where the format has one.
+    pub(crate) fn write(
+        self,
+        folder: &Path,
+        index: usize,
+        frame: &Frame,
+        container: Option<&Container>,
+    ) -> Result<(), RecordError> {
         let Some(name) = self.file_name(index) else { return Ok(()) };
         write_whole(&folder.join(name), |file| match self {
             Self::Csv => csv::write(file, frame),
-            _ => vtp::write(file, frame),
+            Self::Xyz => xyz::write(file, frame, container),
+            Self::Vtp | Self::None => vtp::write(file, frame),
         })
     }
 }

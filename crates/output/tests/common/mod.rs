@@ -225,7 +225,7 @@ pub fn advance(folder: &mut RunFolder, scene: &Scene, terrain: &Terrain, first: 
         }
         folder.append_gauges(time, &wave.gauge_row(scene, time)).unwrap();
         if index % 10 == 0 {
-            folder.write_frame(&wave.frame(time)).unwrap();
+            folder.write_frame(&wave.frame(time), None).unwrap();
             // Looking back from the time itself: only the depth is kept of these.
             folder.write_snapshot(time, &wave.maps(time, time + 1.0)[..1], terrain).unwrap();
         }

@@ -7,9 +7,11 @@
 mod scene;
 mod walls;
 
+pub use scene::colour_of_kind;
 pub use walls::*;
 
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// The `[gas]` table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,7 +39,7 @@ pub struct Gas {
     /// All velocities are turned round at this time, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversed_at_s: Option<f64>,
-    /// The ball, by its id, whose path is kept. Explicit balls have the first ids, from 0, then the species in order.
+    /// The ball, by its id, whose path is kept. Explicit balls have the first ids, from 0, then those of the file, then the species in order.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow: Option<u64>,
     /// The sides of the box.
@@ -49,6 +51,9 @@ pub struct Gas {
     /// What is measured.
     #[serde(default)]
     pub measure: Measure,
+    /// A file of balls that are there at the start, beside those of `ball` and `species`: extended XYZ or CSV.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_file: Option<PathBuf>,
     /// Balls told one by one.
     #[serde(default)]
     pub ball: Vec<Ball>,

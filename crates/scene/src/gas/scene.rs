@@ -5,6 +5,11 @@ use crate::check::{Check, Checked};
 use crate::{ModelScene, Run, Series};
 use std::path::PathBuf;
 
+/// The colour of a kind of balls that the scene gives none, by its number.
+pub fn colour_of_kind(number: usize) -> &'static str {
+    COLOURS[number % COLOURS.len()]
+}
+
 /// Colours that go well together and are told apart by colour-blind eyes too (Okabe & Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#4d4d4d"];
 
@@ -23,11 +28,11 @@ impl ModelScene for Gas {
         let walls = &mut self.walls;
         let always = [&mut walls.x_min, &mut walls.x_max, &mut walls.y_min, &mut walls.y_max];
         let all = always.into_iter().chain(walls.z_min.as_mut()).chain(walls.z_max.as_mut());
-        all.filter_map(|wall| match wall {
+        let of_walls = all.filter_map(|wall| match wall {
             Wall::Motion(Motion::Displacement(Series::File { csv, .. })) => Some(csv),
             _ => None,
-        })
-        .collect()
+        });
+        of_walls.chain(self.start_file.as_mut()).collect()
     }
 }
 
@@ -81,7 +86,7 @@ impl Gas {
         let species = self.species.iter_mut().map(|species| (&species.name, &mut species.colour));
         for (name, colour) in species.chain(balls) {
             let known = named.iter().find(|(known, _)| known == name).map(|(_, colour)| colour.clone());
-            let default = known.unwrap_or_else(|| COLOURS[named.len() % COLOURS.len()].to_owned());
+            let default = known.unwrap_or_else(|| colour_of_kind(named.len()).to_owned());
             let colour = colour.get_or_insert(default);
             if named.iter().all(|(known, _)| known != name) {
                 named.push((name.clone(), colour.clone()));

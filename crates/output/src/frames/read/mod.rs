@@ -3,11 +3,13 @@
 mod columns;
 mod csv;
 mod vtp;
+mod xyz;
 
 use crate::RecordError;
 use corpuscle_model::Frame;
 use quick_xml::Reader;
 use quick_xml::events::Event;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +20,7 @@ pub struct FrameFiles {
 }
 
 impl FrameFiles {
-    /// The particle files in a run's folder. Times of VTK files stand in `frames.pvd`; tables have none, theirs come from
+    /// The particle files in a run's folder. Times of VTK files stand in `frames.pvd`; those of others come from
     /// `time_of`, which is given the number of the frame.
     ///
     /// # Errors
@@ -32,7 +34,8 @@ impl FrameFiles {
             let files = collected(&text).map_err(|what| RecordError::content(&collection, what))?;
             files.into_iter().map(|(time, name)| (time, folder.join(name))).collect()
         } else {
-            let path = |index: usize| folder.join(format!("frame_{index:06}.csv"));
+            let ending = if folder.join("frame_000000.xyz").exists() { "xyz" } else { "csv" };
+            let path = |index: usize| folder.join(format!("frame_{index:06}.{ending}"));
             (0..)
                 .take_while(|index| path(*index).exists())
                 .map(|index| (time_of(index), path(index)))
@@ -63,8 +66,11 @@ impl FrameFiles {
     pub fn read(&self, index: usize) -> Result<Frame, RecordError> {
         let (time, path) = &self.files[index];
         let text = fs::read_to_string(path).map_err(RecordError::read(path))?;
-        let is_table = path.extension().is_some_and(|extension| extension == "csv");
-        let frame = if is_table { csv::read(&text, *time) } else { vtp::read(&text) };
+        let frame = match path.extension().and_then(OsStr::to_str) {
+            Some("csv") => csv::read(&text, *time),
+            Some("xyz") => xyz::read(&text),
+            _ => vtp::read(&text),
+        };
         frame.map_err(|what| RecordError::content(path, what))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_part};
 use corpuscle_model::{Container, Frame, Model, ParticleSet};
-use corpuscle_scene::{Axis, Gas, Units, Wall, padded};
+use corpuscle_scene::{Axis, Gas, Units, Wall, colour_of_kind, padded};
 
 /// The largest speed that is told apart, over the root mean square at the start.
 const FASTEST: f64 = 2.0;
@@ -26,7 +26,7 @@ pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
         ],
         sides: Axis::ALL.map(|axis| gas.walls.along(axis).map(side)),
         partition: partition(gas, model.time()),
-        discs: frame.sets.iter().flat_map(|set| discs(gas, set, &key)).collect(),
+        discs: frame.sets.iter().enumerate().flat_map(|(kind, set)| discs(gas, kind, set, &key)).collect(),
         way: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
         followed: gas.follow.and_then(|id| followed(gas, &frame, id, &key)),
         key,
@@ -65,11 +65,11 @@ pub fn gas_key(gas: &Gas, frame: &Frame) -> Key {
         };
         return Key::Speed { most: fastest(gas, frame), unit };
     }
-    let kind = |set: &ParticleSet| {
+    let kind = |(kind, set): (usize, &ParticleSet)| {
         let count = if set.len() == 1 { String::new() } else { format!(": {}", number(set.len() as f64)) };
-        (format!("{}{count}", set.name), colour_of(gas, &set.name))
+        (format!("{}{count}", set.name), colour_of(gas, kind, &set.name))
     };
-    Key::Kinds(frame.sets.iter().map(kind).collect())
+    Key::Kinds(frame.sets.iter().enumerate().map(kind).collect())
 }
 
 /// The speed that has the last colour: the same at all times, so that pictures can be compared; in a gas that cools by itself
@@ -92,16 +92,17 @@ fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|component| component * component).sum::<f64>().sqrt()
 }
 
-/// The colour that the scene gives to a set.
-fn colour_of(gas: &Gas, name: &str) -> Colour {
+/// The colour that the scene gives to a set, or the next of those for kinds.
+fn colour_of(gas: &Gas, kind: usize, name: &str) -> Colour {
     let species = gas.species.iter().filter(|species| species.name == name).map(|species| &species.colour);
     let balls = gas.ball.iter().filter(|ball| ball.name == name).map(|ball| &ball.colour);
     let colour = species.chain(balls).flatten().next();
-    colour.and_then(|colour| from_hex(colour)).unwrap_or(GREY)
+    let colour = colour.map_or_else(|| colour_of_kind(kind), String::as_str);
+    from_hex(colour).unwrap_or(GREY)
 }
 
-fn discs<'a>(gas: &Gas, set: &'a ParticleSet, key: &Key) -> impl Iterator<Item = Disc> + use<'a> {
-    let of_kind = colour_of(gas, &set.name);
+fn discs<'a>(gas: &Gas, kind: usize, set: &'a ParticleSet, key: &Key) -> impl Iterator<Item = Disc> + use<'a> {
+    let of_kind = colour_of(gas, kind, &set.name);
     let most = match key {
         Key::Speed { most, .. } => Some(*most),
         Key::Kinds(_) => None,
@@ -114,6 +115,8 @@ fn discs<'a>(gas: &Gas, set: &'a ParticleSet, key: &Key) -> impl Iterator<Item =
 }
 
 fn followed(gas: &Gas, frame: &Frame, id: u64, key: &Key) -> Option<Disc> {
-    let (set, index) = frame.sets.iter().find_map(|set| Some((set, set.id.iter().position(|found| *found == id)?)))?;
-    discs(gas, set, key).nth(index)
+    let mut sets = frame.sets.iter().enumerate();
+    let (kind, set, index) =
+        sets.find_map(|(kind, set)| Some((kind, set, set.id.iter().position(|found| *found == id)?)))?;
+    discs(gas, kind, set, key).nth(index)
 }

@@ -12,8 +12,8 @@ fn volume(radius: f64, dimensions: usize) -> f64 {
 
 impl Check {
     pub(super) fn balls(&self, gas: &Gas) -> Checked {
-        self.require("gas.species", !(gas.species.is_empty() && gas.ball.is_empty()), || {
-            "there are no balls; give [[gas.species]] with name, count, radius, mass and temperature, or [[gas.ball]]"
+        self.require("gas.species", !(gas.species.is_empty() && gas.ball.is_empty() && gas.start_file.is_none()), || {
+            "there are no balls; give [[gas.species]] with name, count, radius, mass and temperature, or [[gas.ball]], or gas.start_file"
                 .into()
         })?;
         for (index, ball) in gas.ball.iter().enumerate() {
@@ -178,7 +178,8 @@ impl Check {
         self.require("gas.size", filled < space, || {
             format!("the balls of all species together would fill {:.3} of the box", filled / space)
         })?;
-        let Some(follow) = gas.follow else { return Ok(()) };
+        // How many balls a file has is known when it is read.
+        let Some(follow) = gas.follow.filter(|_| gas.start_file.is_none()) else { return Ok(()) };
         self.require("gas.follow", (follow as f64) < most_balls, || {
             format!("there is no such ball: ids run from 0 to {}", most_balls - 1.0)
         })
