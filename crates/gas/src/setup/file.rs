@@ -122,14 +122,10 @@ mod tests {
     use super::*;
 
     fn balls<const D: usize>(name: &str, text: &str) -> Result<Vec<Ball<D>>, String> {
-        let folder =
-            std::env::temp_dir().join(format!("corpuscle-start-file-{}-{D}-{}", std::process::id(), text.len()));
-        fs::create_dir_all(&folder).unwrap();
-        let path = folder.join(name);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
         fs::write(&path, text).unwrap();
-        let read = read(&path).map_err(|error| error.to_string());
-        fs::remove_dir_all(&folder).unwrap();
-        read
+        read(&path).map_err(|error| error.to_string())
     }
 
     #[test]

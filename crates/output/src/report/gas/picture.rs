@@ -3,6 +3,7 @@
 use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_part};
 use corpuscle_model::{Container, Frame, Model, ParticleSet};
 use corpuscle_scene::{Axis, Gas, Units, Wall, colour_of_kind, padded};
+use std::collections::BTreeSet;
 
 /// The largest speed that is told apart, over the root mean square at the start.
 const FASTEST: f64 = 2.0;
@@ -92,12 +93,14 @@ fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|component| component * component).sum::<f64>().sqrt()
 }
 
-/// The colour that the scene gives to a set, or the next of those for kinds.
+/// The colour that the scene gives to a set; of one that it does not name, as from a file, the next that none of those has.
 fn colour_of(gas: &Gas, kind: usize, name: &str) -> Colour {
     let species = gas.species.iter().filter(|species| species.name == name).map(|species| &species.colour);
     let balls = gas.ball.iter().filter(|ball| ball.name == name).map(|ball| &ball.colour);
     let colour = species.chain(balls).flatten().next();
-    let colour = colour.map_or_else(|| colour_of_kind(kind), String::as_str);
+    let named = || gas.species.iter().map(|species| &species.name).chain(gas.ball.iter().map(|ball| &ball.name));
+    let next = || colour_of_kind(named().collect::<BTreeSet<_>>().len() + kind);
+    let colour = colour.map_or_else(next, String::as_str);
     from_hex(colour).unwrap_or(GREY)
 }
 
