@@ -78,8 +78,8 @@ fn who_is_followed_comes_back_again_and_again_and_nobody_else_does() {
     let known = |window: &corpuscle_app::Window| window.snapshot().unwrap().known.time;
     // A particle is clicked on while it goes on, and with it the ground below.
     let before = known(stage.window());
-    stage.click_picture([0.29, 0.39]);
     assert!(!stage.has("Follow it no longer"));
+    stage.click_picture([0.29, 0.39]);
     let told =
         |window: &corpuscle_app::Window| window.snapshot().unwrap().probed.is_some_and(|water| water.depth > 5.0);
     stage.until(SOON, "the spot tells of the water", told);
