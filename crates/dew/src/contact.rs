@@ -140,14 +140,12 @@ impl Block {
         self.pairs.clear();
         self.start.push(0);
         for site in sites {
-            arrangement.cells.each_range(site.position, reach, |range| {
-                for place in range {
-                    let r_squared = distance_squared(arrangement.at(place), site.position);
-                    if r_squared < reach * reach {
-                        self.pairs.push(Pair { other: place as u32, r: r_squared.sqrt() });
-                    }
+            for place in arrangement.cells.ranges_within(site.position, reach).flatten() {
+                let r_squared = distance_squared(arrangement.at(place), site.position);
+                if r_squared < reach * reach {
+                    self.pairs.push(Pair { other: place as u32, r: r_squared.sqrt() });
                 }
-            });
+            }
             self.start.push(self.pairs.len() as u32);
         }
     }

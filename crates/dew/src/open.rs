@@ -205,6 +205,7 @@ fn settings(scene: &written::Dew, start: &HumidAir) -> Settings {
     let paper = scene.scheme == Scheme::Paper;
     let of_scheme = if paper { written::Mean::Arithmetic } else { written::Mean::Harmonic };
     Settings {
+        kernel: scene.kernel,
         walls: walls(scene.boundary.treatment),
         mean: match scene.transport.conductivity_mean.unwrap_or(of_scheme) {
             written::Mean::Harmonic => Mean::Harmonic,

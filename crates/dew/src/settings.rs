@@ -1,5 +1,6 @@
 //! How the model works, as far as it can be chosen.
 
+use corpuscle_scene::KernelName;
 use serde::{Deserialize, Serialize};
 
 /// What keeps air out of solids.
@@ -86,6 +87,8 @@ pub struct LowUtility {
 pub struct Settings {
     /// Distance of air particles, m.
     pub spacing: f64,
+    /// The smoothing kernel.
+    pub kernel: KernelName,
     /// What keeps air out of solids.
     pub walls: WallTreatment,
     /// How heat passes between unlike neighbours.
@@ -122,6 +125,7 @@ impl Settings {
     pub fn new(spacing: f64, ambient_temperature: f64, ambient_vapour: f64) -> Self {
         Self {
             spacing,
+            kernel: KernelName::default(),
             walls: WallTreatment::default(),
             mean: Mean::default(),
             humidity: Humidity::default(),

@@ -4,6 +4,7 @@ use crate::air::{Arrangement, Column, Properties, Rates, Scale, Sums};
 use crate::contact::{Contact, Near, Pair};
 use crate::normalisation::{self, Moments};
 use crate::settings::WallTreatment;
+use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
 /// What walls add to each air particle near solids, kept between steps.
@@ -26,7 +27,7 @@ pub fn add_density(
 ) {
     let of_one = |near: &Near| {
         let joins = |pair: &&Pair| contact.walls[pair.other as usize] == WallTreatment::DensityCorrection;
-        let part = |pair: &Pair| contact.volumes[pair.other as usize] * scale.kernels.poly6(pair.r * pair.r);
+        let part = |pair: &Pair| contact.volumes[pair.other as usize] * scale.kernel.value(pair.r * pair.r);
         contact.of_air(near).iter().filter(joins).map(part).sum::<f64>()
     };
     contact.near.par_iter().map(of_one).collect_into_vec(&mut work.parts);
@@ -42,7 +43,7 @@ pub fn add_moments(contact: &Contact, arrangement: &Arrangement, scale: &Scale, 
         let mut moments = Moments::default();
         for pair in contact.of_air(near).iter().filter(|pair| pair.r > 0.0) {
             let number = pair.other as usize;
-            let weight = contact.volumes[number] * scale.kernels.viscosity_laplacian(pair.r) / (pair.r * pair.r);
+            let weight = contact.volumes[number] * scale.kernel.laplacian(pair.r) / (pair.r * pair.r);
             let products = normalisation::products(contact.offset(number, place));
             moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
         }
@@ -148,8 +149,8 @@ impl Push<'_> {
     /// pressure that is the same everywhere moves nothing. Air that comes against the wall at u is held up by rho c u (Joukowsky
     /// 1898: the pressure with which a rigid wall stops it). Particles spread from it as from each other.
     fn press(&self, contact: &Contact, kappa: f64, near: &Near, rates: &mut Rates) {
-        let Scale { kernels, to_gradient, .. } = *self.scale;
-        let slope = |r, volume| 2.0 * kappa * to_gradient * volume * kernels.spiky_slope(r);
+        let Scale { kernel, to_gradient, .. } = *self.scale;
+        let slope = |r, volume| 2.0 * kappa * to_gradient * volume * kernel.slope(r);
         let spread = self.along(contact, near, WallTreatment::DensityCorrection, slope);
         let own = self.column(near);
         let crowding = spread.iter().map(|along| along * along).sum::<f64>().sqrt();
@@ -172,10 +173,10 @@ impl Push<'_> {
     /// Air at a wall is at rest: viscosity against a wall half way between the air and the site.
     fn stick(&self, near: &Near, rates: &mut Rates) {
         let own = self.column(near);
-        let Scale { kernels, moment, .. } = *self.scale;
+        let Scale { kernel, moment, .. } = *self.scale;
         let weight = |pair: &Pair| {
             let factor = normalisation::factor(&own.tensor, self.contact.offset(pair.other as usize, own.position));
-            self.contact.volumes[pair.other as usize] * kernels.viscosity_laplacian(pair.r) * factor
+            self.contact.volumes[pair.other as usize] * kernel.laplacian(pair.r) * factor
         };
         let weight = self.contact.of_air(near).iter().map(weight).sum::<f64>() / moment;
         let viscosity = self.air.viscosity_at(own.temperature);

@@ -9,7 +9,7 @@ use corpuscle_dew::{
 };
 use corpuscle_gpu::{Gpu, require_gpu};
 use corpuscle_model::{GpuModel, Model, ModelError};
-use corpuscle_scene::{Scene, builtin};
+use corpuscle_scene::{KernelName, Scene, builtin};
 use corpuscle_solids::{Pose, Shape, Solid};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -183,6 +183,16 @@ fn air_and_solids_go_as_on_the_cpu() {
         for setup in [ball(faces, false), ball_on_floor(faces)] {
             assert_as_on_the_cpu(name, [stirred(&setup), on_gpu(stirred(&setup), &gpu)]);
         }
+    }
+}
+
+#[test]
+fn every_kernel_goes_as_on_the_cpu() {
+    let Some(gpu) = require_gpu("kernels on the GPU") else { return };
+    for kernel in KernelName::ALL {
+        let mut setup = ball_on_floor(all_faces()[2].1);
+        setup.settings.kernel = kernel;
+        assert_as_on_the_cpu(&format!("{kernel:?}"), [stirred(&setup), on_gpu(stirred(&setup), &gpu)]);
     }
 }
 

@@ -3,7 +3,7 @@
 use corpuscle_flood::{InitialWater, Particle, SphSweFlood};
 use corpuscle_model::Model;
 use corpuscle_scene::Scene;
-use corpuscle_sph::kernel::poly6;
+use corpuscle_sph::kernel::{Mueller, SmoothingKernel};
 use corpuscle_terrain::{Bounds, Terrain};
 use std::path::Path;
 use std::sync::Arc;
@@ -90,7 +90,8 @@ fn each_neighbour_counts_with_its_own_mass() {
     let (least, most) = (volumes().fold(f64::INFINITY, f64::min), volumes().fold(0.0, f64::max));
     assert!(some.len() > 200 && most > 1.5 * least, "{} particles of {least} to {most} m3", some.len());
     for particle in &some {
-        let of_one = |other: &Particle| other.volume * poly6(apart(particle, other).powi(2), particle.h);
+        let kernel = Mueller::<2>::new(particle.h);
+        let of_one = |other: &Particle| other.volume * kernel.value(apart(particle, other).powi(2));
         let depth: f64 = flood.particles().iter().map(of_one).sum();
         assert!((particle.depth / depth - 1.0).abs() < 1e-12, "{depth} m: {particle:?}");
     }

@@ -204,6 +204,22 @@ fn particle_by_particle_as_on_the_cpu() {
     }
 }
 
+/// In the open, at walls and round houses.
+#[test]
+fn every_kernel_goes_as_on_the_cpu() {
+    let Some(gpu) = require_gpu("kernels of scheme sph-swe on the GPU") else { return };
+    for name in ["mueller", "cubic-spline", "wendland-c2"] {
+        for text in [DAM, HOUSES] {
+            let text = format!("{text}\n[flood.sph_swe]\nkernel = \"{name}\"\n");
+            let (mut host, mut device) = (open(&text), on_gpu(&text, &gpu));
+            step(&mut host, 10);
+            step(&mut device, 10);
+            let apart = differences(&host, &device);
+            assert!(apart.iter().all(|apart| *apart < 1e-4), "{name}: {apart:?}");
+        }
+    }
+}
+
 /// Roughness from a raster and by kinds of ground, whose cells are no particle's.
 #[test]
 fn rough_ground_slows_as_on_the_cpu() {

@@ -27,8 +27,11 @@ fn all_shaders() -> Vec<(String, String)> {
     paths.sort();
     let name = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
     let all: Vec<_> = paths.iter().map(|path| (name(path), fs::read_to_string(path).unwrap())).collect();
-    let library: Vec<(&str, &str)> =
-        all.iter().map(|(name, text)| (name.as_str(), text.as_str())).chain([(DECLARED, MARK)]).collect();
+    let library: Vec<(&str, &str)> = all
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .chain([(DECLARED, MARK), ("smoothing_kernel", MARK)])
+        .collect();
     let is_whole = |(name, text): &&(String, String)| {
         let joined = corpuscle_gpu::join(name, text, &library);
         !text.contains("#import declared") && !joined.is_ok_and(|text| text.contains(MARK))
@@ -36,7 +39,7 @@ fn all_shaders() -> Vec<(String, String)> {
     all.iter().filter(is_whole).cloned().collect()
 }
 
-/// Stands for a declaration.
+/// Stands for what a model declares.
 const MARK: &str = "// declared";
 
 fn check(text: &str) -> Result<naga::Module, String> {

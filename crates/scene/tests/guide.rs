@@ -323,6 +323,7 @@ fn full_dew() -> Scene {
         size_m: [1.0; 3],
         spacing_m: 1.0,
         scheme: dew::Scheme::Paper,
+        kernel: KernelName::WendlandC2,
         gravity_m_per_s2: [0.0; 3],
         buoyancy: true,
         time_factor: 1.0,

@@ -1,130 +1,156 @@
-//! Square cells over the particles: counting sort, so that those of one cell and of one row of cells lie together.
+//! Cells over the particles: counting sort, so that those of one cell and of one row of cells lie together.
 
 use crate::counting::{self, range};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// A grid of square cells with the particles of each, as ranges of the sorted order.
-#[derive(Debug, Default)]
-pub struct Cells {
-    x_min: f64,
-    y_min: f64,
-    size: f64,
+/// A grid of cells in `D` dimensions with the particles of each, as ranges of the sorted order. Rows of cells lie along x.
+#[derive(Debug)]
+pub struct Cells<const D: usize> {
+    low: [f64; D],
+    pub(crate) size: [f64; D],
     /// 1 / size: a product takes a fraction of a quotient's time.
-    per_size: f64,
-    columns: usize,
-    rows: usize,
-    /// First particle of each cell, row by row; one entry more than cells.
-    start: Vec<u32>,
+    per_size: [f64; D],
+    pub(crate) count: [usize; D],
+    /// First particle of each cell, x fastest; one entry more than cells.
+    pub(crate) start: Vec<u32>,
     /// Cell of each particle, in the order given to [`Cells::sort`].
     cell: Vec<u32>,
-    /// Largest reach that touches each cell: how far a particle in it must look.
-    reach: Vec<f64>,
-    /// The same from the particles of the cell's own row.
-    along_rows: Vec<f64>,
     order: Vec<u32>,
+    /// How far a search from each cell must look, where that differs: see [`Cells::set_reach`].
+    pub(crate) reach: Vec<f64>,
+    /// The same from the particles of the cell's own row.
+    pub(crate) along_rows: Vec<f64>,
 }
 
 /// Fewer particles or cells than this are not worth a thread of their own.
 pub const FEWEST: usize = 2048;
 
-impl Cells {
-    /// Sorts the places `x`, `y` into cells of about `size` (larger where the area would take too many) and returns the
-    /// order: entry k is the particle that comes k-th. Stable: particles of one cell keep their order.
-    pub fn sort(&mut self, x: &[f64], y: &[f64], size: f64) -> &[u32] {
-        self.lay_over(x, y, size);
-        let cells = self.columns * self.rows;
-        let Self { x_min, y_min, per_size, columns, rows, .. } = *self;
-        let cell_of = |(&x, &y): (&f64, &f64)| {
-            let column = ((x - x_min) * per_size) as usize;
-            let row = ((y - y_min) * per_size) as usize;
-            (row.min(rows - 1) * columns + column.min(columns - 1)) as u32
+impl<const D: usize> Default for Cells<D> {
+    fn default() -> Self {
+        Self {
+            low: [0.0; D],
+            size: [0.0; D],
+            per_size: [0.0; D],
+            count: [0; D],
+            start: Vec::new(),
+            cell: Vec::new(),
+            order: Vec::new(),
+            reach: Vec::new(),
+            along_rows: Vec::new(),
+        }
+    }
+}
+
+/// Cells in a reach along x: more fit the search closer, fewer are less to count.
+const COLUMNS_IN_REACH: f64 = 4.0;
+
+impl<const D: usize> Cells<D> {
+    /// Sizes of cells that suit one reach of all particles, m: short along x, where rows of them are searched in one run.
+    pub fn sizes_for(reach: f64) -> [f64; D] {
+        std::array::from_fn(|axis| if axis == 0 { reach / COLUMNS_IN_REACH } else { reach })
+    }
+
+    /// Sorts places into cells of about `size`, m (larger where there would be too many), and returns the order: entry k is the particle that
+    /// comes k-th. Stable: particles of one cell keep their order.
+    pub fn sort(&mut self, places: [&[f64]; D], size: [f64; D]) -> &[u32] {
+        self.lay_over(places, size);
+        let mut cell = std::mem::take(&mut self.cell);
+        let cell_of = |particle: usize| {
+            let along = |axis: usize| self.along(axis, places[axis][particle]);
+            (0..D).rev().fold(0, |cell, axis| cell * self.count[axis] + along(axis)) as u32
         };
-        x.par_iter().zip(y).with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut self.cell);
+        (0..places[0].len()).into_par_iter().with_min_len(FEWEST).map(cell_of).collect_into_vec(&mut cell);
+        self.cell = cell;
+        let cells = self.count.iter().product();
         counting::sort(&self.cell, cells, &mut self.start, &mut self.order);
         &self.order
     }
 
-    fn lay_over(&mut self, x: &[f64], y: &[f64], size: f64) {
-        let (x_min, x_max) = range(x);
-        let (y_min, y_max) = range(y);
-        (self.x_min, self.y_min) = (x_min, y_min);
-        let most = (4 * x.len()).max(65_536) as f64;
-        let area = (x_max - x_min + size) * (y_max - y_min + size);
-        self.size = size.max((area / most).sqrt()).max((x_max - x_min).max(y_max - y_min) / most);
-        self.per_size = 1.0 / self.size;
-        self.columns = ((x_max - x_min) * self.per_size) as usize + 1;
-        self.rows = ((y_max - y_min) * self.per_size) as usize + 1;
+    fn lay_over(&mut self, places: [&[f64]; D], mut size: [f64; D]) {
+        let ranges = places.map(range);
+        let extent = ranges.map(|(low, high)| high - low);
+        // Four a particle in the plane, 16 in space, and as many as 65,536 and 262,144 at any rate.
+        let most = (4_usize.pow(D as u32 - 1) * places[0].len()).max(4_usize.pow(D as u32 + 6)) as f64;
+        let cells = |size: [f64; D]| (0..D).map(|axis| (extent[axis] / size[axis]).floor() + 1.0).product::<f64>();
+        while cells(size) > most {
+            size = size.map(|size| 1.5 * size);
+        }
+        self.low = ranges.map(|range| range.0);
+        self.size = size;
+        self.per_size = size.map(|size| 1.0 / size);
+        self.count = std::array::from_fn(|axis| (extent[axis] * self.per_size[axis]) as usize + 1);
     }
 
-    /// Learns how far particles look: `reach[k]` of the k-th particle in sorted order. After this a search from any
-    /// place covers all particles that reach it, whether or not it reaches them.
-    ///
-    /// A reach spreads to the cells that it touches first along the rows, then from row to row: a few cells more than a
-    /// circle would touch, for far less work.
-    pub fn set_reach(&mut self, reach: &[f64]) {
-        let Self { size, columns, rows, .. } = *self;
-        let in_cells = |reach: f64| (reach / size) as usize + 1;
-        self.along_rows.resize(columns * rows, 0.0);
-        let (start, along_rows) = (&self.start, &mut self.along_rows);
-        let rows_together = (FEWEST / columns).max(1);
-        let spread_along_row = |(row, line): (usize, &mut [f64])| {
-            line.fill(0.0);
-            for column in 0..columns {
-                let cell = row * columns + column;
-                let inside = start[cell] as usize..start[cell + 1] as usize;
-                let largest = reach[inside].iter().copied().fold(0.0, f64::max);
-                if largest > 0.0 {
-                    let cells = in_cells(largest);
-                    let touched = column.saturating_sub(cells)..(column + cells + 1).min(columns);
-                    line[touched].iter_mut().for_each(|seen| *seen = seen.max(largest));
-                }
+    #[inline(always)]
+    pub(crate) fn along(&self, axis: usize, value: f64) -> usize {
+        // A negative number becomes 0.
+        (((value - self.low[axis]) * self.per_size[axis]) as usize).min(self.count[axis] - 1)
+    }
+
+    /// Ranges of the sorted order that cover all particles within `reach` of a place along each axis, one a row of cells.
+    #[inline(always)]
+    pub fn ranges(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.rows_round(place, reach).map(move |row| self.along_row(row, place[0], reach))
+    }
+
+    /// The same of those within `reach` of it in all, from fewer cells.
+    #[inline(always)]
+    pub fn ranges_within(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = Range<usize>> + '_ {
+        let in_ball = move |row: [usize; D]| {
+            // Half of the chord that the row's nearest line cuts from the circle or the ball, with room for rounding.
+            let off = |axis: usize| self.distance_along(axis, row[axis], place[axis]);
+            let off_squared = (1..D).rev().map(|axis| off(axis) * off(axis));
+            let half_squared = off_squared.fold(reach * reach, |left, off_squared| left - off_squared);
+            if half_squared < -1e-9 * reach * reach {
+                return None;
             }
-            line.iter().copied().fold(0.0, f64::max)
+            Some(self.along_row(row, place[0], half_squared.max(0.0).sqrt() + 1e-9 * reach))
         };
-        let lines = along_rows.par_chunks_mut(columns).enumerate().with_min_len(rows_together);
-        let largest = lines.map(spread_along_row).reduce(|| 0.0, f64::max);
-        let farthest = in_cells(largest);
-        let along_rows = &self.along_rows;
-        let spread_to_rows = |(row, line): (usize, &mut [f64])| {
-            line.copy_from_slice(&along_rows[row * columns..][..columns]);
-            for other in row.saturating_sub(farthest)..(row + farthest + 1).min(rows) {
-                // What touches this row from that one reaches farther than the rows between them.
-                let between = (row.abs_diff(other).saturating_sub(1)) as f64 * size;
-                for (seen, &near) in line.iter_mut().zip(&along_rows[other * columns..][..columns]) {
-                    if near >= between && near > *seen {
-                        *seen = near;
-                    }
-                }
-            }
-        };
-        self.reach.resize(columns * rows, 0.0);
-        self.reach.par_chunks_mut(columns).enumerate().with_min_len(rows_together).for_each(spread_to_rows);
+        self.rows_round(place, reach).filter_map(in_ball)
     }
 
-    /// How far a search from (x, y) must look to find all particles that reach it.
-    #[inline]
-    pub fn reach_at(&self, x: f64, y: f64) -> f64 {
-        let column = (((x - self.x_min) * self.per_size).max(0.0) as usize).min(self.columns - 1);
-        let row = (((y - self.y_min) * self.per_size).max(0.0) as usize).min(self.rows - 1);
-        self.reach[row * self.columns + column]
+    /// Rows of cells that come within `reach` of a place along each axis but x.
+    #[inline(always)]
+    fn rows_round(&self, place: [f64; D], reach: f64) -> impl Iterator<Item = [usize; D]> {
+        let first: [usize; D] = std::array::from_fn(|axis| self.along(axis, place[axis] - reach));
+        let last: [usize; D] = std::array::from_fn(|axis| self.along(axis, place[axis] + reach));
+        std::iter::successors(Some(first), move |row| following(*row, first, last))
     }
 
-    /// Ranges of the sorted order that cover all particles within `reach` of (x, y), one a row of cells.
-    #[inline]
-    pub fn ranges(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
-        let column = |x: f64| (((x - self.x_min) * self.per_size).max(0.0) as usize).min(self.columns - 1);
-        let row = |y: f64| (((y - self.y_min) * self.per_size).max(0.0) as usize).min(self.rows - 1);
-        let (first, last) = (column(x - reach), column(x + reach));
-        (row(y - reach)..=row(y + reach)).map(move |row| {
-            let line = row * self.columns;
-            self.start[line + first] as usize..self.start[line + last + 1] as usize
-        })
+    /// Particles of a row's cells within `half` of `x`.
+    #[inline(always)]
+    fn along_row(&self, row: [usize; D], x: f64, half: f64) -> Range<usize> {
+        let line = (1..D).rev().fold(0, |line, axis| line * self.count[axis] + row[axis]) * self.count[0];
+        let (first, last) = (self.along(0, x - half), self.along(0, x + half));
+        self.start[line + first] as usize..self.start[line + last + 1] as usize
+    }
+
+    /// Distance of a coordinate from the slab of cells `cell`. The outermost slabs hold all that lies beyond, too.
+    #[inline(always)]
+    fn distance_along(&self, axis: usize, cell: usize, value: f64) -> f64 {
+        let low = self.low[axis] + cell as f64 * self.size[axis];
+        (low - value).max(value - (low + self.size[axis])).max(0.0)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.start.capacity() + self.cell.capacity() + self.order.capacity()) + 16 * self.reach.capacity()
+        4 * (self.start.capacity() + self.cell.capacity() + self.order.capacity())
+            + 8 * (self.reach.capacity() + self.along_rows.capacity())
     }
+}
+
+/// The next row of cells, y fastest; none after the last.
+#[inline(always)]
+fn following<const D: usize>(mut row: [usize; D], first: [usize; D], last: [usize; D]) -> Option<[usize; D]> {
+    for axis in 1..D {
+        if row[axis] < last[axis] {
+            row[axis] += 1;
+            return Some(row);
+        }
+        row[axis] = first[axis];
+    }
+    None
 }
 
 #[cfg(test)]
@@ -132,33 +158,43 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn covers_all_within_reach<const D: usize>(places: &[[f64; 3]], looks: &[[f64; 3]], reach: f64, size: [f64; D]) {
+        let along = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
+        let columns: [Vec<f64>; D] = std::array::from_fn(along);
+        let mut cells = Cells::<D>::default();
+        let order = cells.sort(columns.each_ref().map(|column| &column[..]), size).to_vec();
+        let mut all = order.clone();
+        all.sort_unstable();
+        assert!(all.iter().enumerate().all(|(k, &p)| k == p as usize));
+        for look in looks {
+            let place: [f64; D] = std::array::from_fn(|axis| look[axis]);
+            let found = |ranges: &mut dyn Iterator<Item = Range<usize>>| {
+                let found: Vec<u32> = ranges.flat_map(|range| order[range].to_vec()).collect();
+                assert!(found.iter().collect::<std::collections::HashSet<_>>().len() == found.len());
+                found
+            };
+            let in_box = found(&mut cells.ranges(place, reach));
+            let in_ball = found(&mut cells.ranges_within(place, reach));
+            assert!(in_ball.iter().all(|number| in_box.contains(number)));
+            for (j, other) in places.iter().enumerate() {
+                let apart = |axis: usize| (place[axis] - other[axis]).abs();
+                let squared: f64 = (0..D).map(|axis| apart(axis).powi(2)).sum();
+                assert!(squared >= reach * reach || in_ball.contains(&(j as u32)), "{place:?} {other:?}");
+                assert!((0..D).any(|axis| apart(axis) >= reach) || in_box.contains(&(j as u32)), "{place:?} {other:?}");
+            }
+        }
+    }
+
     proptest! {
         #[test]
         fn ranges_cover_all_within_reach(
-            places in prop::collection::vec((-50.0..50.0f64, -20.0..80.0f64, 0.1..9.0f64), 0..120),
-            size in 0.5..20.0f64,
+            places in prop::collection::vec(prop::array::uniform3(-5.0..8.0f64), 1..200),
+            looks in prop::collection::vec(prop::array::uniform3(-7.0..9.0f64), 1..20),
+            reach in 0.2..5.0f64,
+            finer in 1.0..5.0f64,
         ) {
-            let x: Vec<f64> = places.iter().map(|p| p.0).collect();
-            let y: Vec<f64> = places.iter().map(|p| p.1).collect();
-            let mut cells = Cells::default();
-            let order = cells.sort(&x, &y, size).to_vec();
-            let mut all = order.clone();
-            all.sort_unstable();
-            prop_assert!(all.iter().enumerate().all(|(k, &p)| k == p as usize));
-            let reach: Vec<f64> = order.iter().map(|&p| places[p as usize].2).collect();
-            cells.set_reach(&reach);
-            for (i, place) in places.iter().enumerate() {
-                let found: Vec<u32> = cells
-                    .ranges(x[i], y[i], cells.reach_at(x[i], y[i]))
-                    .flat_map(|range| order[range].to_vec())
-                    .collect();
-                for (j, other) in places.iter().enumerate() {
-                    let distance = ((x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2)).sqrt();
-                    if distance < place.2.max(other.2) {
-                        prop_assert!(found.contains(&(j as u32)));
-                    }
-                }
-            }
+            covers_all_within_reach::<2>(&places, &looks, reach, [reach / finer, reach]);
+            covers_all_within_reach::<3>(&places, &looks, reach, [reach / finer, reach, reach]);
         }
     }
 }

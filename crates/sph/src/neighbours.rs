@@ -1,12 +1,16 @@
-//! Lists of neighbours: pairs of particles of which one reaches the other.
+//! Lists of neighbours: for each particle those within reach.
 
 use crate::Cells;
 use corpuscle_simd::{LANES, Lanes, Level, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
-use fearless_simd::{mask32x8, u32x8};
+use fearless_simd::{mask32x8, mask64x8, u32x8};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Particles of one block of lists; work is shared out by blocks, so results never depend on the number of threads.
 pub const BLOCK: usize = 256;
+
+/// Distance at which nothing is felt, m; its square is still a number.
+pub const FAR_AWAY: f64 = 1e150;
 
 /// For each particle, its neighbours. Each list is filled up with the particle itself to a multiple of [`LANES`].
 #[derive(Debug, Default)]
@@ -18,6 +22,7 @@ pub struct NeighbourLists {
 struct Block {
     start: Vec<u32>,
     index: Vec<u32>,
+    /// Of the whole block, or of the particle at hand only: see [`Reach::DISTANCES`].
     distance: Vec<f64>,
 }
 
@@ -26,14 +31,57 @@ struct Block {
 pub struct Neighbours<'a> {
     /// Their numbers.
     pub index: &'a [u32],
-    /// Their distances, m: never 0; where the list is filled up, [`FAR_AWAY`].
+    /// Their distances, m, never 0, or the squares of them, m2: see [`Reach::DISTANCES`]. Where the list is filled up, [`FAR_AWAY`], or its square.
     pub distance: &'a [f64],
 }
 
-/// Distance at which nothing is felt, m; its square is still a number.
-pub const FAR_AWAY: f64 = 1e150;
+/// Which particles are neighbours.
+pub trait Reach<const D: usize>: Sync {
+    /// Whether lists keep distances, for later passes. Otherwise sums are given squares, which are not kept.
+    const DISTANCES: bool;
 
-/// Which particles are neighbours of a particle.
+    /// How far to look from particle `i`, which stands at `place`, m.
+    fn farthest(&self, cells: &Cells<D>, i: usize, place: [f64; D]) -> f64;
+
+    /// Squares of the distances within which the particles from `at` on are neighbours of particle `i`, m2.
+    fn squared<S: Simd>(&self, simd: S, i: usize, at: usize) -> Lanes<S>;
+
+    /// Square of the smallest distance that is told, m2: closer particles are told to be as far. Only where distances are kept.
+    fn nearest_squared(&self, i: usize) -> f64;
+}
+
+/// One reach for all particles, m.
+#[derive(Debug, Clone, Copy)]
+pub struct OneReach(pub f64);
+
+impl<const D: usize> Reach<D> for OneReach {
+    const DISTANCES: bool = false;
+
+    #[inline(always)]
+    fn farthest(&self, _: &Cells<D>, _: usize, _: [f64; D]) -> f64 {
+        self.0
+    }
+
+    #[inline(always)]
+    fn squared<S: Simd>(&self, simd: S, _: usize, _: usize) -> Lanes<S> {
+        Lanes::splat(simd, self.0 * self.0)
+    }
+
+    fn nearest_squared(&self, _: usize) -> f64 {
+        0.0
+    }
+}
+
+/// A reach for each particle, in the order of the cells, whose reach is set ([`Cells::set_reach`]).
+#[derive(Debug, Clone, Copy)]
+pub struct EachReach<'a> {
+    /// Their squares, m2.
+    pub squared: &'a [f64],
+    /// Which pairs are neighbours.
+    pub near: Near,
+}
+
+/// Which particles are neighbours of a particle, where they reach differently far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Near {
     /// Those that it reaches.
@@ -42,8 +90,39 @@ pub enum Near {
     Either,
 }
 
+impl Reach<2> for EachReach<'_> {
+    const DISTANCES: bool = true;
+
+    #[inline(always)]
+    fn farthest(&self, cells: &Cells<2>, i: usize, place: [f64; 2]) -> f64 {
+        match self.near {
+            Near::Reached => self.squared[i].sqrt(),
+            Near::Either => cells.reach_at(place),
+        }
+    }
+
+    #[inline(always)]
+    fn squared<S: Simd>(&self, simd: S, i: usize, at: usize) -> Lanes<S> {
+        match self.near {
+            Near::Reached => Lanes::splat(simd, self.squared[i]),
+            Near::Either => load(simd, self.squared, at).max(self.squared[i]),
+        }
+    }
+
+    #[inline(always)]
+    fn nearest_squared(&self, i: usize) -> f64 {
+        1e-24 * self.squared[i]
+    }
+}
+
 /// A sum over the neighbours of a particle.
 pub trait PairSum<T>: Sync {
+    /// Whether this particle's neighbours are wanted; the list of another stays empty.
+    #[inline(always)]
+    fn wants(&self, _particle: usize) -> bool {
+        true
+    }
+
     /// Sums over the neighbours found of `particle`.
     fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> T;
 }
@@ -54,27 +133,24 @@ impl PairSum<()> for () {
 }
 
 impl NeighbourLists {
-    /// Finds the neighbours of all particles. `x`, `y` and `reach_squared` are in the order of `cells`, whose reach is set.
-    /// `sum` is called once for every particle with what was found, and its result goes to `out`.
-    pub fn search<T: Send>(
+    /// Finds the neighbours of all particles, whose `places` are in the order of `cells`. `sum` is called once for every particle that it wants, and
+    /// its result goes to `out`.
+    pub fn search<const D: usize, T: Send>(
         &mut self,
-        near: Near,
-        cells: &Cells,
-        x: &[f64],
-        y: &[f64],
-        reach_squared: &[f64],
+        cells: &Cells<D>,
+        places: [&[f64]; D],
+        reach: &impl Reach<D>,
         out: &mut [T],
         sum: &impl PairSum<T>,
     ) {
-        self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
-        let places = Places { x, y, reach_squared, near };
+        self.blocks.resize_with(places[0].len().div_ceil(BLOCK), Block::default);
         self.blocks.par_iter_mut().zip(out.par_chunks_mut(BLOCK)).enumerate().for_each(|(number, (block, out))| {
             let first = number * BLOCK;
-            dispatch!(Level::new(), simd => search_block(simd, block, cells, places, first, out, sum));
+            dispatch!(Level::new(), simd => search_block(simd, block, cells, places, reach, first, out, sum));
         });
     }
 
-    /// The neighbours of particle `i`.
+    /// The neighbours of particle `i`, after a search that keeps distances ([`Reach::DISTANCES`]).
     #[inline(always)]
     pub fn of(&self, i: usize) -> Neighbours<'_> {
         let block = &self.blocks[i / BLOCK];
@@ -83,27 +159,28 @@ impl NeighbourLists {
         Neighbours { index: &block.index[list.clone()], distance: &block.distance[list] }
     }
 
+    /// Numbers of the neighbours of particle `i`, filled up with `i` to a multiple of [`LANES`].
+    #[inline(always)]
+    pub fn numbers_of(&self, i: usize) -> &[u32] {
+        let block = &self.blocks[i / BLOCK];
+        let k = i % BLOCK;
+        &block.index[block.start[k] as usize..block.start[k + 1] as usize]
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.blocks.iter().map(|block| 4 * block.start.capacity() + 12 * block.index.capacity()).sum()
+        let of = |block: &Block| 4 * (block.start.capacity() + block.index.capacity()) + 8 * block.distance.capacity();
+        self.blocks.iter().map(of).sum()
     }
 }
 
-/// Where the particles are and the squares of how far they reach, in the order of the cells.
-#[derive(Clone, Copy)]
-struct Places<'a> {
-    x: &'a [f64],
-    y: &'a [f64],
-    reach_squared: &'a [f64],
-    near: Near,
-}
-
 #[inline(always)]
-fn search_block<S: Simd, T>(
+fn search_block<S: Simd, const D: usize, T, R: Reach<D>>(
     simd: S,
     block: &mut Block,
-    cells: &Cells,
-    places: Places,
+    cells: &Cells<D>,
+    places: [&[f64]; D],
+    reach: &R,
     first: usize,
     out: &mut [T],
     sum: &impl PairSum<T>,
@@ -111,94 +188,103 @@ fn search_block<S: Simd, T>(
     let Block { start, index, distance } = block;
     start.clear();
     start.push(0);
-    let mut end = 0;
+    let mut begin = 0;
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
-        let begin = end;
-        let (xi, yi) = (places.x[i], places.y[i]);
+        if !sum.wants(i) {
+            start.push(begin as u32);
+            continue;
+        }
+        let place: [f64; D] = std::array::from_fn(|axis| places[axis][i]);
+        // Where the distances of this particle begin.
+        let apart = if R::DISTANCES { begin } else { 0 };
         let mut found = 0;
-        let reach = match places.near {
-            Near::Reached => places.reach_squared[i].sqrt(),
-            Near::Either => cells.reach_at(xi, yi),
-        };
-        for range in cells.ranges(xi, yi, reach) {
+        for range in cells.ranges_within(place, reach.farthest(cells, i, place)) {
             // Room for every candidate and for the lanes written beyond the last.
-            let room = begin + found + range.len() + 2 * LANES;
-            if index.len() < room {
-                index.resize(room, 0);
-                distance.resize(room, 0.0);
+            let room = found + range.len() + 2 * LANES;
+            make_room(index, begin + room);
+            make_room(distance, apart + room);
+            let (index, distance) = (&mut index[begin + found..], &mut distance[apart + found..]);
+            found += keep_near(simd, index, distance, places, reach, i, range);
+        }
+        let filled = found.next_multiple_of(LANES);
+        make_room(index, begin + filled);
+        make_room(distance, apart + filled);
+        let (index, distance) = (&mut index[begin..begin + filled], &mut distance[apart..apart + filled]);
+        index[found..].fill(i as u32);
+        distance[found..].fill(FAR_AWAY * FAR_AWAY);
+        if R::DISTANCES {
+            let nearest_squared = reach.nearest_squared(i);
+            for lanes in distance.chunks_exact_mut(LANES) {
+                Lanes::from_slice(simd, lanes).max(nearest_squared).sqrt().store_slice(lanes);
             }
-            let rest = begin + found;
-            found += keep_near(simd, &mut index[rest..], &mut distance[rest..], places, i, range);
         }
-        end = begin + found.next_multiple_of(LANES);
-        index[begin + found..end].fill(i as u32);
-        distance[begin + found..end].fill(FAR_AWAY * FAR_AWAY);
-        start.push(end as u32);
-        let nearest_squared = 1e-24 * places.reach_squared[i];
-        for lanes in distance[begin..end].chunks_exact_mut(LANES) {
-            Lanes::from_slice(simd, lanes).max(nearest_squared).sqrt().store_slice(lanes);
-        }
-        let found = Neighbours { index: &index[begin..end], distance: &distance[begin..end] };
-        *out = sum.sum(simd, i, found);
+        *out = sum.sum(simd, i, Neighbours { index, distance });
+        begin += filled;
+        start.push(begin as u32);
+    }
+}
+
+#[inline(always)]
+fn make_room<T: Copy + Default>(values: &mut Vec<T>, count: usize) {
+    if values.len() < count {
+        values.resize(count, T::default());
     }
 }
 
 /// Writes those of `range` that are neighbours of `i`, and their squared distances, and says how many they are. What
 /// stands behind them is left undefined.
 #[inline(always)]
-fn keep_near<S: Simd>(
+fn keep_near<S: Simd, const D: usize>(
     simd: S,
     index: &mut [u32],
     distance: &mut [f64],
-    places: Places,
+    places: [&[f64]; D],
+    reach: &impl Reach<D>,
     i: usize,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
 ) -> usize {
-    let (xi, yi, reach) = (places.x[i], places.y[i], places.reach_squared[i]);
+    let place: [f64; D] = std::array::from_fn(|axis| places[axis][i]);
     let counting = u32x8::from_fn(simd, |lane| lane as u32);
     let mut kept = 0;
     let mut at = range.start;
     while at < range.end {
         let lanes = (range.end - at).min(LANES);
-        let load = |values: &[f64]| {
-            if at + LANES <= values.len() {
-                Lanes::from_slice(simd, &values[at..at + LANES])
-            } else {
-                Lanes::from_fn(simd, |lane| values[(at + lane).min(values.len() - 1)])
-            }
-        };
-        let (dx, dy) = (load(places.x) - xi, load(places.y) - yi);
-        let r_squared = dx * dx + dy * dy;
-        let within = match places.near {
-            Near::Reached => Lanes::splat(simd, reach),
-            Near::Either => load(places.reach_squared).max(reach),
-        };
-        let mut near = r_squared.simd_lt(within).to_bitmask() & ((1 << lanes) - 1);
+        let mut squared = Lanes::splat(simd, 0.0);
+        for axis in 0..D {
+            let apart = load(simd, places[axis], at) - place[axis];
+            squared = if axis == 0 { apart * apart } else { squared + apart * apart };
+        }
+        let mut near = squared.simd_lt(reach.squared(simd, i, at)).to_bitmask() & ((1 << lanes) - 1);
         if at <= i && i < at + lanes {
             near &= !(1 << (i - at));
         }
         let numbers = counting + at as u32;
-        let mask = mask32x8::from_bitmask(simd, near);
-        numbers.compress(mask).store_slice(&mut index[kept..kept + LANES]);
-        r_squared
-            .compress(fearless_simd::mask64x8::from_bitmask(simd, near))
-            .store_slice(&mut distance[kept..kept + LANES]);
+        numbers.compress(mask32x8::from_bitmask(simd, near)).store_slice(&mut index[kept..kept + LANES]);
+        squared.compress(mask64x8::from_bitmask(simd, near)).store_slice(&mut distance[kept..kept + LANES]);
         kept += near.count_ones() as usize;
         at += LANES;
     }
     kept
 }
 
-impl Neighbours<'_> {
-    /// [`LANES`] neighbours at a time: their numbers and distances.
+/// [`LANES`] numbers from `at` on; beyond the end the last one.
+#[inline(always)]
+fn load<S: Simd>(simd: S, values: &[f64], at: usize) -> Lanes<S> {
+    if at + LANES <= values.len() {
+        Lanes::from_slice(simd, &values[at..at + LANES])
+    } else {
+        Lanes::from_fn(simd, |lane| values[(at + lane).min(values.len() - 1)])
+    }
+}
+
+impl<'a> Neighbours<'a> {
+    /// [`LANES`] neighbours at a time: their numbers, and their distances or the squares of them.
     #[inline(always)]
-    pub fn lanes<S: Simd>(self, simd: S) -> impl Iterator<Item = ([usize; LANES], Lanes<S>)> {
-        self.index.chunks_exact(LANES).zip(self.distance.chunks_exact(LANES)).map(
+    pub fn lanes<S: Simd>(self, simd: S) -> impl Iterator<Item = (&'a [u32; LANES], Lanes<S>)> {
+        self.index.as_chunks().0.iter().zip(self.distance.chunks_exact(LANES)).map(
             #[inline(always)]
-            move |(index, distance)| {
-                (std::array::from_fn(|lane| index[lane] as usize), Lanes::from_slice(simd, distance))
-            },
+            move |(index, distance)| (index, Lanes::from_slice(simd, distance)),
         )
     }
 }
@@ -208,46 +294,80 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// Counts those found; of a fifth of the particles the neighbours are not wanted.
     struct Count;
 
     impl PairSum<usize> for Count {
+        fn wants(&self, particle: usize) -> bool {
+            particle % 5 != 3
+        }
+
         fn sum<S: Simd>(&self, _: S, _: usize, found: Neighbours) -> usize {
             found.distance.iter().filter(|&&r| r < FAR_AWAY).count()
         }
     }
 
+    /// Places in sorted order, with the reach of each.
+    fn sorted<const D: usize>(cells: &mut Cells<D>, places: &[[f64; 4]], size: f64) -> ([Vec<f64>; D], Vec<f64>) {
+        let column = |axis: usize| places.iter().map(|place| place[axis]).collect::<Vec<f64>>();
+        let columns: [Vec<f64>; D] = std::array::from_fn(column);
+        let order = cells.sort(columns.each_ref().map(|column| &column[..]), [size; D]).to_vec();
+        let pick = |values: &[f64]| order.iter().map(|&p| values[p as usize]).collect::<Vec<_>>();
+        (columns.each_ref().map(|column| pick(column)), pick(&column(3)))
+    }
+
+    /// Compares with what all pairs find: those nearer than `within(i, j)`.
+    fn finds_what_all_pairs_find<const D: usize>(
+        cells: &Cells<D>,
+        columns: &[Vec<f64>; D],
+        reach: &impl Reach<D>,
+        within: impl Fn(usize, usize) -> f64,
+    ) {
+        let count = columns[0].len();
+        let (mut lists, mut counts) = (NeighbourLists::default(), vec![0; count]);
+        lists.search(cells, columns.each_ref().map(|column| &column[..]), reach, &mut counts, &Count);
+        let squared = |i: usize, j: usize| columns.iter().map(|column| (column[i] - column[j]).powi(2)).sum::<f64>();
+        for (i, counted) in counts.into_iter().enumerate() {
+            let is_near = |&j: &usize| Count.wants(i) && j != i && squared(i, j) < within(i, j);
+            let mut expected: Vec<u32> = (0..count).filter(is_near).map(|j| j as u32).collect();
+            assert_eq!(counted, expected.len());
+            let list = lists.numbers_of(i);
+            assert_eq!(list.len() % LANES, 0);
+            assert!(list[expected.len()..].iter().all(|&j| j as usize == i));
+            let mut found = list[..expected.len()].to_vec();
+            found.sort_unstable();
+            expected.sort_unstable();
+            assert_eq!(found, expected);
+        }
+    }
+
     proptest! {
         #[test]
-        fn finds_what_all_pairs_find(
+        fn finds_what_all_pairs_find_where_each_has_its_reach(
             places in prop::collection::vec((0.0..30.0f64, 0.0..30.0f64, 0.5..6.0f64), 0..150),
             near in prop::sample::select(vec![Near::Reached, Near::Either]),
         ) {
-            let x: Vec<f64> = places.iter().map(|p| p.0).collect();
-            let y: Vec<f64> = places.iter().map(|p| p.1).collect();
-            let mut cells = Cells::default();
-            let order = cells.sort(&x, &y, 3.0).to_vec();
-            let pick = |values: &[f64]| order.iter().map(|&p| values[p as usize]).collect::<Vec<_>>();
-            let reach = pick(&places.iter().map(|p| p.2).collect::<Vec<_>>());
-            let (x, y) = (pick(&x), pick(&y));
+            let places: Vec<_> = places.into_iter().map(|(x, y, reach)| [x, y, 0.0, reach]).collect();
+            let mut cells = Cells::<2>::default();
+            let (columns, reach) = sorted(&mut cells, &places, 3.0);
             cells.set_reach(&reach);
             let squared: Vec<f64> = reach.iter().map(|r| r * r).collect();
-            let mut lists = NeighbourLists::default();
-            let mut counts = vec![0; x.len()];
-            lists.search(near, &cells, &x, &y, &squared, &mut counts, &Count);
-            for i in 0..x.len() {
-                let within = |j: usize| if near == Near::Either { squared[i].max(squared[j]) } else { squared[i] };
-                let mut expected: Vec<u32> = (0..x.len())
-                    .filter(|&j| j != i && (x[i] - x[j]).powi(2) + (y[i] - y[j]).powi(2) < within(j))
-                    .map(|j| j as u32)
-                    .collect();
-                prop_assert_eq!(counts[i], expected.len());
-                prop_assert_eq!(lists.of(i).index.len() % LANES, 0);
-                let mut found = lists.of(i).index[..expected.len()].to_vec();
-                prop_assert!(lists.of(i).index[expected.len()..].iter().all(|&j| j as usize == i));
-                found.sort_unstable();
-                expected.sort_unstable();
-                prop_assert_eq!(found, expected);
-            }
+            let within = |i: usize, j: usize| if near == Near::Either { squared[i].max(squared[j]) } else { squared[i] };
+            finds_what_all_pairs_find(&cells, &columns, &EachReach { squared: &squared, near }, within);
+        }
+
+        #[test]
+        fn finds_what_all_pairs_find_where_all_have_one_reach(
+            places in prop::collection::vec(prop::array::uniform3(0.0..6.0f64), 0..400),
+            reach in 0.3..3.0f64,
+        ) {
+            let places: Vec<_> = places.into_iter().map(|[x, y, z]| [x, y, z, 0.0]).collect();
+            let mut plane = Cells::<2>::default();
+            let (columns, _) = sorted(&mut plane, &places, reach);
+            finds_what_all_pairs_find(&plane, &columns, &OneReach(reach), |_, _| reach * reach);
+            let mut space = Cells::<3>::default();
+            let (columns, _) = sorted(&mut space, &places, reach);
+            finds_what_all_pairs_find(&space, &columns, &OneReach(reach), |_, _| reach * reach);
         }
     }
 }

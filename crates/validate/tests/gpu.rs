@@ -65,7 +65,7 @@ const DEW: [(&str, f64); 10] = [
 
 /// Of dew those that are small, with as many measures that have bounds.
 const SMALL_DEW: [(&str, usize); 5] =
-    [("dew/fick", 3), ("dew/film", 2), ("dew/ledger", 7), ("dew/low-utility", 3), ("dew/pane", 6)];
+    [("dew/fick", 5), ("dew/film", 2), ("dew/ledger", 7), ("dew/low-utility", 3), ("dew/pane", 6)];
 
 /// Of dew those in which no air takes a step, and what does.
 const WITHOUT_AIR: [(&str, &str); 3] =

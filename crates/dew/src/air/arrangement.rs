@@ -2,8 +2,7 @@
 
 use super::Particle;
 use crate::room::Room;
-use corpuscle_sph::FEWEST;
-use corpuscle_sph::space::{Cells, NeighbourLists, Places};
+use corpuscle_sph::{Cells, FEWEST, NeighbourLists};
 use rayon::prelude::*;
 
 /// What stands at a place of the arrangement.
@@ -21,7 +20,7 @@ pub struct Entry {
 #[derive(Debug, Default)]
 pub struct Arrangement {
     /// Cells over particles and images.
-    pub cells: Cells,
+    pub cells: Cells<3>,
     /// Neighbour lists of the particles.
     pub lists: NeighbourLists,
     /// What stands at each place.
@@ -49,7 +48,7 @@ impl Arrangement {
         }
         self.add_images(particles, room, reach);
         let [x, y, z] = &self.unsorted;
-        let order = self.cells.sort([x, y, z], reach);
+        let order = self.cells.sort([x, y, z], Cells::<3>::sizes_for(reach));
         for (out, values) in [(&mut self.x, x), (&mut self.y, y), (&mut self.z, z)] {
             order.par_iter().with_min_len(FEWEST).map(|&from| values[from as usize]).collect_into_vec(out);
         }
@@ -86,8 +85,8 @@ impl Arrangement {
     }
 
     /// The places' coordinates.
-    pub fn places(&self) -> Places<'_> {
-        Places { x: &self.x, y: &self.y, z: &self.z }
+    pub fn places(&self) -> [&[f64]; 3] {
+        [&self.x, &self.y, &self.z]
     }
 
     /// Where a place is, m.

@@ -2,8 +2,10 @@
 
 use super::{Arrangement, Entry, Scale};
 use crate::normalisation::{self, Moments, Tensor};
-use corpuscle_sph::space::{Neighbours, PairSum, Places};
-use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch};
+use corpuscle_sph::kernel::SmoothingKernel;
+use corpuscle_sph::{
+    BLOCK, LANES, Lanes, LanesExt, Level, Neighbours, OneReach, PairSum, Simd, SimdBase, SimdFloat, dispatch,
+};
 use rayon::prelude::*;
 
 /// Sums over the neighbours of a place.
@@ -17,7 +19,7 @@ pub struct Sums {
 
 struct Filling<'a> {
     entries: &'a [Entry],
-    places: Places<'a>,
+    places: [&'a [f64]; 3],
     scale: Scale,
 }
 
@@ -26,8 +28,8 @@ impl Arrangement {
     pub fn search(&mut self, scale: &Scale, sums: &mut Vec<Sums>) {
         sums.resize(self.entries.len(), Sums::default());
         let Self { cells, lists, entries, x, y, z, .. } = self;
-        let places = Places { x, y, z };
-        lists.search(cells, places, scale.h(), sums, &Filling { entries, places, scale: *scale });
+        let places: [&[f64]; 3] = [x, y, z];
+        lists.search(cells, places, &OneReach(scale.h()), sums, &Filling { entries, places, scale: *scale });
     }
 
     /// Finds the tensor by which each particle's diffusion is normalised.
@@ -57,28 +59,27 @@ impl PairSum<Sums> for Filling<'_> {
 
     #[inline(always)]
     fn sum<S: Simd>(&self, simd: S, place: usize, found: Neighbours) -> Sums {
-        let Scale { volume, kernels, to_density, moment: of_lattice, .. } = self.scale;
-        let Places { x, y, z } = self.places;
+        let Scale { volume, kernel, to_density, moment: of_lattice, .. } = self.scale;
+        let [x, y, z] = self.places;
         let mut filling = Lanes::splat(simd, 0.0);
         let mut moments = [Lanes::splat(simd, 0.0); 15];
-        for (r_squared, index) in found.lanes(simd).zip(found.index.chunks_exact(LANES)) {
-            filling += kernels.poly6_shape(r_squared);
-            let index: &[u32; LANES] = index.try_into().expect("chunks are of so many");
+        for (index, r_squared) in found.lanes(simd) {
+            filling += kernel.value_shape(r_squared);
             let offset = [
                 gathered(simd, x, index) - x[place],
                 gathered(simd, y, index) - y[place],
                 gathered(simd, z, index) - z[place],
             ];
-            let weight = kernels.inside(r_squared.sqrt()) / r_squared;
+            let weight = kernel.laplacian_shape(r_squared.sqrt()) / r_squared;
             let products = normalisation::products(offset);
             // Closures over lanes would not be inlined here.
             for (sum, product) in moments.iter_mut().zip(products) {
                 *sum += weight * product;
             }
         }
-        let of_moments = 0.5 * volume * kernels.spiky_factor() / of_lattice;
+        let of_moments = 0.5 * volume * kernel.laplacian_factor() / of_lattice;
         let mut sums = Sums {
-            filling: to_density * volume * (filling.sum() * kernels.poly6_factor() + kernels.poly6(0.0)),
+            filling: to_density * volume * (filling.sum() * kernel.value_factor() + kernel.value(0.0)),
             moments: Moments::default(),
         };
         for (moment, lanes) in sums.moments.iter_mut().zip(moments) {

@@ -6,7 +6,7 @@
 
 // Filling and moments by the air, itself included.
 fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
-    var filling = 1.0;
+    var filling = value_shape(0.0);
     let mirrors = mirrors_round(place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k, place);
@@ -25,7 +25,7 @@ fn of_air(i: u32, place: vec3f, moments: ptr<function, Moments>) -> f32 {
                     if q_squared >= 1.0 || (j == i && k == 0u) {
                         continue;
                     }
-                    filling += poly6(q_squared);
+                    filling += value_shape(q_squared);
                     add_moments(&of_row, away, 1.0);
                 }
                 join(moments, of_row);
@@ -54,11 +54,11 @@ fn of_solids(place: vec3f, moments: ptr<function, Moments>) -> f32 {
                 }
                 let flags = sites[k].flags;
                 if (flags & GHOST) != 0u {
-                    filling += sites[k].volume * poly6(q_squared);
+                    filling += sites[k].volume * value_shape(q_squared);
                     continue;
                 }
                 if (flags & JOINS_DENSITY) != 0u {
-                    filling += parameters.kappa * sites[k].volume * poly6(q_squared);
+                    filling += parameters.kappa * sites[k].volume * value_shape(q_squared);
                 }
                 add_moments(&of_row, away, sites[k].volume);
             }

@@ -1,8 +1,9 @@
-// Who is near: cells to look through, images beyond faces, and kernels.
+// Who is near: cells to look through, and images beyond faces.
 //
 // Images are not stored as the CPU's are: who stands near a face looks once more from where it would stand in the mirror, and turns
 // what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are. Twin of `Room::images`.
 #import dew_particles
+#import smoothing_kernel
 
 struct Mirror {
     // The image of a place p stands at sign * p + shift.
@@ -100,10 +101,4 @@ fn columns_round(place: vec3f, y: u32, z: u32) -> vec2u {
 fn cell_at(place: vec3f) -> u32 {
     let cell = cell_index(place);
     return row_of(cell.y, cell.z) + cell.x;
-}
-
-// Kernels of Mueller, Charypar & Gross 2003 without their factors, of q = r/h: poly6 by the square of q.
-fn poly6(q_squared: f32) -> f32 {
-    let inside = max(1.0 - q_squared, 0.0);
-    return inside * inside * inside;
 }

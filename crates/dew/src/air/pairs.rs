@@ -5,6 +5,7 @@
 use super::{Arrangement, Properties, Scale};
 use crate::normalisation::{self, Tensor};
 use bytemuck::{Pod, Zeroable};
+use corpuscle_sph::kernel::SmoothingKernel;
 use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Simd, SimdBase, SimdFloat, dispatch, gather};
 use rayon::prelude::*;
 
@@ -68,7 +69,7 @@ fn sum_block<S: Simd>(
 ) {
     for (k, rates) in rates.iter_mut().enumerate() {
         let place = arrangement.place_of[first + k] as usize;
-        *rates = of_one(simd, columns, arrangement.lists.of(place), place, scale, air);
+        *rates = of_one(simd, columns, arrangement.lists.numbers_of(place), place, scale, air);
     }
 }
 
@@ -77,14 +78,14 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
     let rows: &[[f64; LANES]] = bytemuck::must_cast_slice(columns);
     let own = &columns[place];
     let [a, b, c, d, e, f] = own.tensor;
-    let Scale { volume, kernels, to_gradient, moment, .. } = *scale;
-    // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1, with the spiky kernel).
-    let of_pressure = air.density * volume * to_gradient * kernels.spiky_factor();
-    let of_spread = 2.0 * volume * to_gradient * kernels.spiky_factor();
+    let Scale { volume, kernel, to_gradient, moment, .. } = *scale;
+    // a = sum m (p_i/rho_i^2 + p_j/rho_j^2) |W'| (r_i - r_j)/r (Monaghan 1992, equation 3.1).
+    let of_pressure = air.density * volume * to_gradient * kernel.slope_factor();
+    let of_spread = 2.0 * volume * to_gradient * kernel.slope_factor();
     // Both sides' tensors, halved.
-    let of_laplacian = 0.5 * volume * kernels.spiky_factor() / moment;
+    let of_laplacian = 0.5 * volume * kernel.laplacian_factor() / moment;
     // Distances below this are those of a place to itself.
-    let nothing = Lanes::splat(simd, 1e-18 * kernels.support() * kernels.support());
+    let nothing = Lanes::splat(simd, 1e-18 * kernel.support() * kernel.support());
     let zero = Lanes::splat(simd, 0.0);
     let [limit, sound, per_density] =
         [DAMPING, air.sound_speed, 1.0 / air.density].map(|value| Lanes::splat(simd, value));
@@ -101,9 +102,8 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         let (dx, dy, dz) = (own.position[0] - x, own.position[1] - y, own.position[2] - z);
         let r_squared = dx * dx + dy * dy + dz * dz;
         let r = r_squared.max(nothing).sqrt();
-        let inside = kernels.inside(r);
         let inverse = 1.0 / r;
-        let slope = inside * inside * inverse;
+        let slope = kernel.slope_shape(r) * inverse;
         let closing = (own.velocity[0] - u) * dx + (own.velocity[1] - v) * dy + (own.velocity[2] - w) * dz;
         let approach = ((zero - closing) * inverse).max(zero);
         let damping = (approach * limit).min(sound) * approach * per_density;
@@ -116,7 +116,8 @@ fn of_one<S: Simd>(simd: S, columns: &[Column], list: &[u32], place: usize, scal
         spread_z += slope * dz;
         // Of a place to itself, which fills lists up, it is 0.
         let both = [xx + a, yy + b, zz + c, xy + d, xz + e, yz + f];
-        let weight = inside * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;
+        let weight =
+            kernel.laplacian_shape(r) * (normalisation::along(both, [dx, dy, dz]) * inverse * inverse) * of_laplacian;
         // Both sides' temperature, from the reference.
         let above = temperature * 0.5 + own_above;
         let viscous = weight * (above * viscosity_per_kelvin + 1.0);

@@ -1,6 +1,7 @@
-//! The size of particles, and kernels made exact for them.
+//! The size of particles, and the kernel made exact for them.
 
-use corpuscle_sph::space::Kernels;
+use corpuscle_scene::KernelName;
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 
 /// Smoothing length over the distance of particles: 26 neighbours on a cubic lattice.
 pub const H_OVER_SPACING: f64 = 2.0;
@@ -12,8 +13,8 @@ pub struct Scale {
     pub spacing: f64,
     /// Volume of a particle, m3.
     pub volume: f64,
-    /// The kernels.
-    pub kernels: Kernels,
+    /// The kernel.
+    pub kernel: Kernel<3>,
     /// Over sum V W: 1 for a kernel that sees no lattice.
     pub to_density: f64,
     /// Over sum V r |W'| / 3.
@@ -23,9 +24,9 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Particles a `spacing` apart, m.
-    pub fn new(spacing: f64) -> Self {
-        let kernels = Kernels::new(H_OVER_SPACING * spacing);
+    /// Particles a `spacing` apart, m, with the kernel of that name.
+    pub fn new(spacing: f64, kernel: KernelName) -> Self {
+        let kernel = Kernel::new(kernel, H_OVER_SPACING * spacing);
         let volume = spacing.powi(3);
         let around = -3..=3_i32;
         let squares = around.clone().flat_map(|x| {
@@ -35,16 +36,16 @@ impl Scale {
         let [mut density, mut gradient, mut moment] = [0.0; 3];
         for r_squared in squares.map(|square| square * spacing * spacing) {
             let r = r_squared.sqrt();
-            density += volume * kernels.poly6(r_squared);
-            gradient += volume * r * kernels.spiky_slope(r) / 3.0;
-            moment += volume * r_squared * kernels.viscosity_laplacian(r) / 6.0;
+            density += volume * kernel.value(r_squared);
+            gradient += volume * r * kernel.slope(r) / 3.0;
+            moment += volume * r_squared * kernel.laplacian(r) / 6.0;
         }
-        Self { spacing, volume, kernels, to_density: 1.0 / density, to_gradient: 1.0 / gradient, moment }
+        Self { spacing, volume, kernel, to_density: 1.0 / density, to_gradient: 1.0 / gradient, moment }
     }
 
-    /// Smoothing length, the kernels' support, m.
+    /// Smoothing length, the kernel's support, m.
     pub fn h(&self) -> f64 {
-        self.kernels.support()
+        self.kernel.support()
     }
 }
 
@@ -54,9 +55,11 @@ mod tests {
 
     #[test]
     fn the_lattice_is_not_far_from_a_continuum() {
-        let scale = Scale::new(0.002);
-        for factor in [scale.to_density, scale.to_gradient, scale.moment] {
-            assert!((factor - 1.0).abs() < 0.15, "{scale:?}");
+        for kernel in KernelName::ALL {
+            let scale = Scale::new(0.002, kernel);
+            for factor in [scale.to_density, scale.to_gradient, scale.moment] {
+                assert!((factor - 1.0).abs() < 0.15, "{scale:?}");
+            }
         }
     }
 }

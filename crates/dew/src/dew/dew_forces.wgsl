@@ -44,16 +44,16 @@ fn of_air(i: u32, own: Column) -> Rates {
                     }
                     let near = unpacked_column(columns[j]);
                     let velocity = mirror.sign * near.velocity;
-                    let slope = (1.0 - q) * (1.0 - q) / r;
+                    let slope = slope_shape(q) / r;
                     let approach = max(-dot(own.velocity - velocity, away) / r, 0.0);
                     let damping = min(DAMPING * approach, parameters.sound) * approach / parameters.density;
-                    // Monaghan 1992, equation 3.1, with the spiky kernel.
+                    // Monaghan 1992, equation 3.1.
                     push += (near.pressure + own.pressure + damping) * slope * parameters.of_pressure * away;
                     spread += slope * away;
                     // Both tensors, the neighbour's as the mirror shows it; halved by `of_laplacian`.
                     let doubled = own.doubled + mirror.sign.xxy * mirror.sign.yzz * near.doubled;
                     let even = factor(own.diagonal + near.diagonal, doubled, away);
-                    let weight = (1.0 - q) * even * parameters.of_laplacian;
+                    let weight = laplacian_shape(q) * even * parameters.of_laplacian;
                     let above = from_reference(0.5 * (near.temperature + own.temperature));
                     shear += weight * (1.0 + parameters.viscosity_per_kelvin * above) * (velocity - own.velocity);
                     // Differences of Kirchhoff's transforms, without losing the digits of small ones.
@@ -132,8 +132,7 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
                 if q >= 1.0 {
                     continue;
                 }
-                let inside = 1.0 - q;
-                let slope = parameters.of_spread * site.volume * inside * inside / r;
+                let slope = parameters.of_spread * site.volume * slope_shape(q) / r;
                 if (site.flags & GHOST) != 0u {
                     ghostly += slope * away;
                     continue;
@@ -143,7 +142,7 @@ fn of_solids(own: Column, rates: ptr<function, Rates>) -> Given {
                 } else if (site.flags & REPELS) != 0u {
                     repelled += repulsion(r) / r * away;
                 }
-                stuck += site.volume * inside * factor(own.diagonal, own.doubled, away);
+                stuck += site.volume * laplacian_shape(q) * factor(own.diagonal, own.doubled, away);
                 give(&given, site, own, away, q);
             }
         }

@@ -162,7 +162,7 @@ impl Dew {
                 "how far air is from solids must be known to tell which of it matters".into(),
             ));
         }
-        let scale = Scale::new(settings.spacing);
+        let scale = Scale::new(settings.spacing, settings.kernel);
         let solids = Solids::new(bodies, room, &scale, settings.threshold);
         let conduction = Conduction::new(&solids, room, &scale, settings.mean);
         let conductances = (0..solids.particles.len()).map(|i| conduction.sum(i)).collect();

@@ -32,7 +32,7 @@ fn weights_near(place: vec3f) -> vec2f {
             for (var k = site_start[row + across.x]; k < end; k++) {
                 if (sites[k].flags & (BOUNDARY | IMAGE_BEYOND)) == BOUNDARY {
                     let away = (place - sites[k].place) * parameters.per_h;
-                    let weight = sites[k].volume * poly6(dot(away, away));
+                    let weight = sites[k].volume * value_shape(dot(away, away));
                     sums += vec2f(weight, weight * sites[k].part);
                 }
             }

@@ -21,7 +21,7 @@ fn deposited(site: Site) -> f32 {
                     let deposit = particles[j].acceleration_and_deposit.w;
                     if deposit > 0.0 {
                         let away = (shown(mirror, spots[j].xyz) - site.place) * parameters.per_h;
-                        water += deposit * site.volume * poly6(dot(away, away));
+                        water += deposit * site.volume * value_shape(dot(away, away));
                     }
                 }
             }

@@ -8,6 +8,7 @@ use crate::humid_air::HumidAir;
 use crate::normalisation;
 use crate::settings::{Condensation, Settings};
 use crate::solids::{Site, Solids};
+use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
 /// What air and solids exchange, with everything that it depends on.
@@ -108,7 +109,7 @@ impl Exchange<'_> {
         let air = &self.columns[place];
         let volume = self.contact.volumes[site];
         let factor = normalisation::factor(&air.tensor, self.contact.offset(site, air.position));
-        let weight = volume * self.scale.kernels.viscosity_laplacian(r) * factor / self.scale.moment;
+        let weight = volume * self.scale.kernel.laplacian(r) * factor / self.scale.moment;
         let of_pair = self.scale.volume * weight;
         let solid_temperature = self.temperatures[particle];
         let between = 0.5 * (air.temperature + solid_temperature);
@@ -186,7 +187,7 @@ impl Exchange<'_> {
     pub fn shares(&self, near: &Near, shares: &mut Vec<(u32, f64)>) {
         let part = |pair: &Pair| {
             let Site { particle, beyond, .. } = self.contact.sites[pair.other as usize];
-            let weight = self.contact.volumes[pair.other as usize] * self.scale.kernels.poly6(pair.r * pair.r);
+            let weight = self.contact.volumes[pair.other as usize] * self.scale.kernel.value(pair.r * pair.r);
             let is_boundary = self.solids.particles[particle as usize].normal.is_some();
             (is_boundary && !beyond && weight > 0.0).then_some((particle, weight))
         };

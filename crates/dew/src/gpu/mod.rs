@@ -24,6 +24,7 @@ use crate::solids::upload::GpuSolids;
 use crate::utility::upload::distance_field;
 use bytemuck::Zeroable;
 use corpuscle_gpu::{BATCH_START, Batches, Gpu, GpuError, Halt, from_halves, from_pair, read, to_pair, wgpu};
+use corpuscle_sph::kernel::Kernel;
 use origin::Origin;
 use seen::Seen;
 use shared::{OutsideColumn, Parameters, Status, TURN};
@@ -126,7 +127,19 @@ impl GpuSolver {
         let sources = GpuSources::new(dew, origin, &mut rows);
         let fans = numbers::gpu_fans(dew, origin);
         let (bodies, of_solids) = (solids.bodies.clone(), solids.count);
-        let tasks = Tasks::new(&gpu, room, &parameters, &fans, solids, sources.as_ref(), rows.len(), &outside, &field)?;
+        let kernel = Kernel::<3>::device_piece(dew.settings.kernel);
+        let tasks = Tasks::new(
+            &gpu,
+            &kernel,
+            room,
+            &parameters,
+            &fans,
+            solids,
+            sources.as_ref(),
+            rows.len(),
+            &outside,
+            &field,
+        )?;
         let cells = parameters.cells.iter().product::<u32>() + 1;
         let held_before = vec![0.0; bodies.len()];
         Ok(Self {

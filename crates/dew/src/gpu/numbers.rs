@@ -9,6 +9,7 @@ use crate::fan::Fan;
 use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
 use crate::room::Face;
 use crate::settings::{Condensation, Humidity, Mean};
+use corpuscle_sph::kernel::SmoothingKernel;
 
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
@@ -116,16 +117,17 @@ impl Parameters {
 
     /// The shaders' kernels are of distances over h and without their factors.
     fn set_kernels(&mut self, dew: &Dew) {
-        let crate::air::Scale { volume, kernels, to_density, to_gradient, moment, .. } = dew.scale;
-        let (h, spiky) = (dew.scale.h(), kernels.spiky_factor());
-        let spread = 2.0 * volume * to_gradient * spiky * h.powi(2);
+        let crate::air::Scale { volume, kernel, to_density, to_gradient, moment, .. } = dew.scale;
+        let (h, [value, slope, laplacian]) = (dew.scale.h(), kernel.device_factors());
+        let spread = 2.0 * volume * to_gradient * slope / h.powi(4);
+        let laplacian = laplacian / h.powi(5) / moment;
         *self = Self {
-            of_filling: (to_density * volume * kernels.poly6_factor() * h.powi(6)) as f32,
-            of_moments: (0.5 * volume * spiky * h.powi(3) / moment) as f32,
+            of_filling: (to_density * volume * value / h.powi(3)) as f32,
+            of_moments: (0.5 * volume * laplacian * h.powi(2)) as f32,
             of_pressure: (0.5 * dew.air.density * spread) as f32,
             of_spread: spread as f32,
-            of_laplacian: (0.5 * volume * spiky * h / moment) as f32,
-            of_pair: (volume * volume * spiky * h / moment) as f32,
+            of_laplacian: (0.5 * volume * laplacian) as f32,
+            of_pair: (volume * volume * laplacian) as f32,
             ..*self
         };
     }

@@ -693,8 +693,10 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gpu::tasks::PIECES;
+    use crate::gpu::tasks::pieces;
     use corpuscle_gpu::Buffers;
+    use corpuscle_scene::KernelName;
+    use corpuscle_sph::kernel::Kernel;
 
     /// Each pass with what it imports and the bindings that it uses.
     #[test]
@@ -711,8 +713,11 @@ mod tests {
                 continue;
             }
             let name = path.file_stem().unwrap().to_str().unwrap();
-            let whole = Memory::declaration().complete(name, &text, PIECES).unwrap().0;
-            corpuscle_gpu::check_shader(&whole).unwrap_or_else(|error| panic!("{name}.wgsl: {error}"));
+            for kernel in KernelName::ALL {
+                let kernel = Kernel::<3>::device_piece(kernel);
+                let whole = Memory::declaration().complete(name, &text, &pieces(&kernel)).unwrap().0;
+                corpuscle_gpu::check_shader(&whole).unwrap_or_else(|error| panic!("{name}.wgsl: {error}"));
+            }
             count += 1;
         }
         assert!(count >= 14, "{count}");

@@ -10,8 +10,9 @@ use corpuscle_gpu::{
     Buffers, COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, GpuError, Kernel, Pass, SUMS_BEFORE, SortSlots, THREADS,
     Task, storage, uniform, wgpu,
 };
+use corpuscle_sph::kernel::KERNEL_PIECE;
 
-/// Pieces that the shaders import, but for what they share with the host.
+/// Pieces that the shaders import, but for what they share with the host, and the smoothing kernel.
 pub(super) const PIECES: &[(&str, &str)] = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
@@ -25,6 +26,11 @@ pub(super) const PIECES: &[(&str, &str)] = &[
     ("dew_saturate", include_str!("../exchange/dew_saturate.wgsl")),
     ("dew_utility", include_str!("../utility/dew_utility.wgsl")),
 ];
+
+/// These pieces and the smoothing kernel.
+pub(super) fn pieces(kernel: &str) -> Vec<(&str, &str)> {
+    PIECES.iter().copied().chain([(KERNEL_PIECE, kernel)]).collect()
+}
 
 /// Slots of the numbers of groups: see `dew_finish.wgsl`.
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
@@ -56,9 +62,10 @@ pub(super) struct Tasks {
 }
 
 impl Tasks {
-    /// For so many particles of air at most, with columns outside open sides, and with so many rows of values over time.
+    /// For so many particles of air at most, with the smoothing kernel as a piece, columns outside open sides, and with so many rows of values over time.
     pub fn new(
         gpu: &Gpu,
+        kernel: &str,
         count: usize,
         parameters: &Parameters,
         fans: &[Fan; MOST_FANS as usize],
@@ -108,7 +115,8 @@ impl Tasks {
             seen_at: uniform(gpu, "time shown", &Shown::default()),
             drawn: storage::<[u32; 16]>(gpu, "nothing drawn", 1)?,
         };
-        let task = |name, text| Kernel::<Memory>::new(gpu, name, text, PIECES).on(gpu, &memory);
+        let pieces = pieces(kernel);
+        let task = |name, text| Kernel::<Memory>::new(gpu, name, text, &pieces).on(gpu, &memory);
         macro_rules! shader {
             ($folder:literal, $name:literal) => {
                 task($name, include_str!(concat!("../", $folder, "/", $name, ".wgsl")))

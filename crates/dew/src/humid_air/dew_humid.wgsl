@@ -41,7 +41,7 @@ struct Flux {
 
 // Between a site and air, q their distance over h, `offset` from one to the other as the air's column has axes.
 fn flux(site: Site, surface: Surface, air: Column, offset: vec3f, q: f32) -> Flux {
-    let of_pair = parameters.of_pair * site.volume * (1.0 - q) * factor(air.diagonal, air.doubled, offset);
+    let of_pair = parameters.of_pair * site.volume * laplacian_shape(q) * factor(air.diagonal, air.doubled, offset);
     let difference = air.temperature - surface.temperature;
     // The air conducts as at the mean of both temperatures.
     let warmer = 1.0 + parameters.conductivity_per_kelvin * from_reference(0.5 * (air.temperature + surface.temperature));

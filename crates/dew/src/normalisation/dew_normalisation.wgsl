@@ -1,5 +1,6 @@
 // The tensor by which the Laplacian of diffusion is normalised. Twin of `normalisation/mod.rs`.
 #import dew_particles
+#import smoothing_kernel
 
 // A symmetric matrix: xx, yy, zz; xy, xz, yz.
 struct Symmetric {
@@ -7,7 +8,7 @@ struct Symmetric {
     others: vec3f,
 }
 
-// Sums of (1 - q) q q q q/|q|^2 over neighbours: x4, y4, z4; x2y2, x2z2, y2z2; and xy, xz, yz times x2, y2 and z2.
+// Sums of the Laplacian's weight times q q q q/|q|^2 over neighbours: x4, y4, z4; x2y2, x2z2, y2z2; and xy, xz, yz times x2, y2 and z2.
 struct Moments {
     fourth: vec3f,
     mixed: vec3f,
@@ -22,7 +23,7 @@ fn add_moments(moments: ptr<function, Moments>, offset: vec3f, volume: f32) {
     if q_squared < 1e-18 {
         return;
     }
-    let weight = volume * (1.0 - sqrt(q_squared)) / q_squared;
+    let weight = volume * laplacian_shape(sqrt(q_squared)) / q_squared;
     let squares = offset * offset;
     let across = weight * offset.xxy * offset.yzz;
     (*moments).fourth += weight * squares * squares;

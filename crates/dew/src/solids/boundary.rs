@@ -3,6 +3,7 @@
 use super::{Searched, Solids};
 use crate::air::Scale;
 use crate::room::Room;
+use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
 /// A gradient of the colour larger than this over the spacing is a boundary's; on a plane it is about 0.5.
@@ -18,7 +19,7 @@ impl Solids {
             for (site, r_squared) in all.near(position, h) {
                 if r_squared > 0.0 {
                     let r = r_squared.sqrt();
-                    let slope = self.particles[site.particle as usize].volume * scale.kernels.spiky_slope(r) / r;
+                    let slope = self.particles[site.particle as usize].volume * scale.kernel.slope(r) / r;
                     (0..3).for_each(|axis| gradient[axis] += slope * (site.position[axis] - position[axis]));
                 }
             }
@@ -45,7 +46,7 @@ mod tests {
     fn the_first_layer_of_a_block_is_its_boundary() {
         // 10 x 10 x 6 particles, of which the lowest layer lies on the floor, a wall of the room.
         let room = Room { low: [-20.0, -20.0, 0.0], high: [20.0; 3], faces: [[Face::Wall; 2]; 3] };
-        let scale = Scale::new(1.0);
+        let scale = Scale::new(1.0, corpuscle_scene::KernelName::Mueller);
         let solids = Solids::new(&[block([0.0; 3], [10, 10, 6], 1.0)], &room, &scale, THRESHOLD);
         for particle in &solids.particles {
             let [x, y, z] = particle.position;
@@ -67,7 +68,12 @@ mod tests {
         let mut faces = [[Face::Wall; 2]; 3];
         faces[2][0] = Face::Outlet;
         let room = Room { low: [-20.0, -20.0, 0.0], high: [20.0; 3], faces };
-        let solids = Solids::new(&[block([0.0; 3], [10, 10, 6], 1.0)], &room, &Scale::new(1.0), THRESHOLD);
+        let solids = Solids::new(
+            &[block([0.0; 3], [10, 10, 6], 1.0)],
+            &room,
+            &Scale::new(1.0, corpuscle_scene::KernelName::Mueller),
+            THRESHOLD,
+        );
         for particle in solids.particles.iter().filter(|particle| particle.position[2] < 1.0) {
             let [x, y, _] = particle.position;
             let on_side = [x, 10.0 - x, y, 10.0 - y].iter().any(|&depth| depth < 1.0);

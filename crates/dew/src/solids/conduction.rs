@@ -6,6 +6,7 @@ use crate::normalisation::{self, Moments, Tensor};
 use crate::room::Room;
 use crate::settings::Mean;
 use corpuscle_sph::BLOCK;
+use corpuscle_sph::kernel::SmoothingKernel;
 use rayon::prelude::*;
 
 /// Conductances of all pairs of solid particles within reach of each other, and of the cells of walls behind solids.
@@ -38,7 +39,7 @@ impl Conduction {
                 let offset = [0, 1, 2].map(|axis| site.position[axis] - own.position[axis]);
                 let seen = normalisation::mirrored(tensors[j], site.mirrored);
                 let factor = normalisation::factor(&tensors[i], offset) + normalisation::factor(&seen, offset);
-                let laplacian = 0.5 * factor * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / scale.moment;
+                let laplacian = 0.5 * factor * scale.kernel.laplacian(r_squared.sqrt()) / scale.moment;
                 let volumes = own.volume * solids.particles[j].volume;
                 let (own, other) = (solids.material(i), solids.material(j));
                 let conductivity = mean.conductivity(own.conductor(), other.conductor());
@@ -117,8 +118,7 @@ fn tensor(solids: &Solids, all: &Searched, scale: &Scale, i: usize) -> Tensor {
     for (site, r_squared) in all.near(position, scale.h()).filter(|(_, r_squared)| *r_squared > 0.0) {
         let share = if opposite(site) { 1.0 } else { 2.0 };
         let volume = solids.particles[site.particle as usize].volume;
-        let weight =
-            share * volume * scale.kernels.viscosity_laplacian(r_squared.sqrt()) / (2.0 * scale.moment * r_squared);
+        let weight = share * volume * scale.kernel.laplacian(r_squared.sqrt()) / (2.0 * scale.moment * r_squared);
         let products = normalisation::products([0, 1, 2].map(|axis| site.position[axis] - position[axis]));
         moments.iter_mut().zip(products).for_each(|(sum, product)| *sum += weight * product);
     }

@@ -6,6 +6,7 @@ use crate::contact::Contact;
 use crate::room::Room;
 use crate::settings::WallTreatment;
 use corpuscle_model::ModelError;
+use corpuscle_sph::kernel::SmoothingKernel;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -75,7 +76,7 @@ fn volumes(places: &[[f64; 3]], sites: &[Site], solids: &Solids, particles: &[Si
     let total: f64 = of_bodies.map(|site| solids.particles[site.particle as usize].volume).sum();
     let particles = Searched::new(particles, h);
     let filling = |of: &Searched, place: [f64; 3], volume: &(dyn Fn(&Site) -> f64 + Sync)| {
-        of.near(place, h).map(|(site, r_squared)| volume(site) * scale.kernels.poly6(r_squared)).sum::<f64>()
+        of.near(place, h).map(|(site, r_squared)| volume(site) * scale.kernel.value(r_squared)).sum::<f64>()
     };
     let of_particle = |site: &Site| solids.particles[site.particle as usize].volume;
     let wanted: Vec<f64> = places.par_iter().map(|&place| filling(&particles, place, &of_particle)).collect();

@@ -18,7 +18,7 @@ use crate::room::{Face, Image, Mirrors, Room};
 use crate::settings::{Conductor, WallTreatment};
 use corpuscle_model::ModelError;
 use corpuscle_solids::{Depth, Samples, Solid};
-use corpuscle_sph::space::Cells;
+use corpuscle_sph::Cells;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use wall::WallCell;
@@ -250,14 +250,15 @@ fn mirrors(body: &Body, room: &Room, scale: &Scale) -> Mirrors {
 #[derive(Debug, Default)]
 pub(crate) struct Searched {
     pub sites: Vec<Site>,
-    cells: Cells,
+    cells: Cells<3>,
 }
 
 impl Searched {
     pub fn new(sites: &[Site], reach: f64) -> Self {
         let [x, y, z] = [0, 1, 2].map(|axis| sites.iter().map(|site| site.position[axis]).collect::<Vec<f64>>());
         let mut cells = Cells::default();
-        let sites = cells.sort([&x, &y, &z], reach).iter().map(|&from| sites[from as usize]).collect();
+        let sites =
+            cells.sort([&x, &y, &z], Cells::<3>::sizes_for(reach)).iter().map(|&from| sites[from as usize]).collect();
         Self { sites, cells }
     }
 
@@ -265,10 +266,10 @@ impl Searched {
     pub fn near(&self, place: [f64; 3], reach: f64) -> impl Iterator<Item = (&Site, f64)> {
         let mut near = Vec::new();
         if !self.sites.is_empty() {
-            self.cells.each_range(place, reach, |range| {
+            for range in self.cells.ranges_within(place, reach) {
                 let sites = self.sites[range].iter().map(|site| (site, distance_squared(site.position, place)));
                 near.extend(sites.filter(|(_, r_squared)| *r_squared < reach * reach));
-            });
+            }
         }
         near.into_iter()
     }

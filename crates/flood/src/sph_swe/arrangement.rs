@@ -23,7 +23,7 @@ pub const IMAGE: u32 = u32::MAX;
 #[derive(Debug, Default)]
 pub struct Arrangement {
     /// Cells over particles and images.
-    pub cells: Cells,
+    pub cells: Cells<2>,
     /// Neighbour lists over particles and images.
     pub lists: NeighbourLists,
     /// What stands at each place of the sorted order.
@@ -70,7 +70,7 @@ impl Arrangement {
         let places = before.x.par_iter_mut().zip(&mut before.y).zip(&mut before.reach).zip(particles);
         places.with_min_len(FEWEST).for_each(|(((x, y), reach), particle)| (*x, *y, *reach) = reaching(particle));
         before.add_images(edges);
-        let order = self.cells.sort(&before.x, &before.y, cell_size);
+        let order = self.cells.sort([&before.x, &before.y], [cell_size; 2]);
         gather(&mut self.x, order, &before.x);
         gather(&mut self.y, order, &before.y);
         gather(&mut self.reach, order, &before.reach);

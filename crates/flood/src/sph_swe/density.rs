@@ -1,16 +1,21 @@
 //! Density sums of scheme `sph-swe`, at each particle's own smoothing length.
 
-use corpuscle_sph::kernel::poly6;
+use corpuscle_scene::KernelName;
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use corpuscle_sph::{Lanes, LanesExt, Neighbours, PairSum, Simd, SimdBase};
 
-/// sum_j W_poly6(r_ij, h_i), the particle itself included, 1/m2: times the volume that all particles have, the depth.
+/// sum_j W(r_ij, h_i), the particle itself included, 1/m2: times the volume that all particles have, the depth.
 pub(super) struct NumberDensities<'a> {
+    /// The kernel.
+    pub kernel: KernelName,
     /// Squares of the smoothing lengths, m2.
     pub reach_squared: &'a [f64],
 }
 
-/// sum_j V_j W_poly6(r_ij, h_i), the particle itself included, m: the depth, for particles of unequal volumes.
+/// sum_j V_j W(r_ij, h_i), the particle itself included, m: the depth, for particles of unequal volumes.
 pub(super) struct Depths<'a> {
+    /// The kernel.
+    pub kernel: KernelName,
     /// Squares of the smoothing lengths, m2.
     pub reach_squared: &'a [f64],
     /// Volumes, m3.
@@ -20,30 +25,29 @@ pub(super) struct Depths<'a> {
 impl PairSum<f64> for NumberDensities<'_> {
     #[inline(always)]
     fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> f64 {
-        let h_squared = self.reach_squared[particle];
+        let kernel = Kernel::<2>::new(self.kernel, self.reach_squared[particle].sqrt());
         let mut sum = Lanes::splat(simd, 0.0);
         for (_, r) in found.lanes(simd) {
-            sum += over_the_centre(r, h_squared);
+            sum += kernel.value_shape(r * r);
         }
-        poly6(0.0, h_squared.sqrt()) * (1.0 + sum.sum())
+        kernel.value_factor() * (at_centre(&kernel) + sum.sum())
     }
 }
 
 impl PairSum<f64> for Depths<'_> {
     #[inline(always)]
     fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> f64 {
-        let h_squared = self.reach_squared[particle];
+        let kernel = Kernel::<2>::new(self.kernel, self.reach_squared[particle].sqrt());
         let mut sum = Lanes::splat(simd, 0.0);
         for (index, r) in found.lanes(simd) {
-            sum += over_the_centre(r, h_squared) * Lanes::from_fn(simd, |lane| self.volumes[index[lane]]);
+            sum += kernel.value_shape(r * r) * Lanes::from_fn(simd, |lane| self.volumes[index[lane] as usize]);
         }
-        poly6(0.0, h_squared.sqrt()) * (self.volumes[particle] + sum.sum())
+        kernel.value_factor() * (self.volumes[particle] * at_centre(&kernel) + sum.sum())
     }
 }
 
-/// W_poly6(r, h) over W_poly6(0, h).
+/// The kernel's shape at its centre.
 #[inline(always)]
-fn over_the_centre<S: Simd>(r: Lanes<S>, h_squared: f64) -> Lanes<S> {
-    let inside = (1.0 - r * r * (1.0 / h_squared)).positive();
-    inside * inside * inside
+fn at_centre(kernel: &Kernel<2>) -> f64 {
+    kernel.value(0.0) / kernel.value_factor()
 }

@@ -4,7 +4,7 @@ use super::Sampler;
 use super::particle::Particle;
 use crate::zone::{Source, Zone};
 use corpuscle_model::ExactSum;
-use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_sph::kernel::CubicSpline;
 use corpuscle_terrain::Bounds;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -57,9 +57,8 @@ impl Nursery<'_> {
 
     /// Height of the water's surface by the plain kernel sum: low where particles leave a gap.
     fn surface(&self, x: f64, y: f64) -> f64 {
-        let deep = |particle: &Particle| {
-            particle.volume * cubic_spline::value_of_one((x - particle.x).hypot(y - particle.y), self.h)
-        };
+        let spline = CubicSpline::<2>::new(self.h);
+        let deep = |particle: &Particle| particle.volume * spline.value_at((x - particle.x).hypot(y - particle.y));
         let there: f64 = self.water.near(x, y, 2.0 * self.h).map(deep).sum();
         let born: f64 = self.born.iter().map(deep).sum();
         self.water.terrain.height(x, y) + there + born

@@ -15,6 +15,7 @@ use crate::setup::{self, InitialWater};
 use crate::{fields, limits, obstacles, spacing};
 use corpuscle_model::{Account, ExactSum, ModelError};
 use corpuscle_scene::{Block, Edge, Flood as Settings, Scheme, SmoothingForm};
+use corpuscle_sph::kernel::Kernel;
 use corpuscle_terrain::Terrain;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -98,7 +99,8 @@ impl SphSweFlood {
         let reach = flood.sph_swe.largest_smoothing * h;
         let closest = setup::closest(bodies, &terrain, spacing, volume);
         let outlines = obstacles::open(flood, &terrain, folder, reach)?;
-        let obstacles = Obstacles::new(flood, &terrain, outlines, closest, reach, h);
+        let obstacles =
+            Obstacles::new(flood, &terrain, outlines, closest, reach, &Kernel::new(flood.sph_swe.kernel, h));
         let sources = setup::sources(flood, &terrain, folder, spacing)?;
         let state = State {
             time: 0.0,

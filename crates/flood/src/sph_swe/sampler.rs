@@ -5,7 +5,7 @@ use super::arrangement::{Arrangement, IMAGE};
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use crate::sampling::Sample;
-use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_sph::kernel::CubicSpline;
 use corpuscle_terrain::Terrain;
 
 /// Share of a place's surroundings that water must cover for the place to be wet.
@@ -27,12 +27,12 @@ pub(crate) struct Sampler<'a> {
 impl Sampler<'_> {
     /// False where no particle can reach (x, y): quick to say.
     pub fn may_be_wet(&self, x: f64, y: f64) -> bool {
-        !self.particles.is_empty() && self.arrangement.cells.reach_at(x, y) > 0.0
+        !self.particles.is_empty() && self.arrangement.cells.reach_at([x, y]) > 0.0
     }
 
     /// The particles whose cells come within `reach` of (x, y), and some more.
     pub fn near(&self, x: f64, y: f64, reach: f64) -> impl Iterator<Item = &Particle> {
-        let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges(x, y, reach));
+        let ranges = (!self.particles.is_empty()).then(|| self.arrangement.cells.ranges([x, y], reach));
         let places = ranges.into_iter().flatten().flat_map(|range| &self.arrangement.particle[range]);
         places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
     }
@@ -40,13 +40,13 @@ impl Sampler<'_> {
     /// The share of the surroundings of (x, y) that images beyond walls and periodic sides cover.
     fn covered_by_images(&self, x: f64, y: f64) -> f64 {
         let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
-        let places = cells.ranges(x, y, 1.1 * cells.reach_at(x, y)).flatten();
+        let places = cells.ranges([x, y], 1.1 * cells.reach_at([x, y])).flatten();
         let weight = |place: usize| {
             let image = images.binary_search_by_key(&(place as u32), |(image, _)| *image).ok()?;
             let shown = &self.particles[particle[images[image].1 as usize] as usize];
             let h = SAMPLED * shown.h;
             let distance = (x - at_x[place]).hypot(y - at_y[place]);
-            (distance < 2.0 * h).then(|| shown.area() * cubic_spline::value_of_one(distance, h))
+            (distance < 2.0 * h).then(|| shown.area() * CubicSpline::<2>::new(h).value_at(distance))
         };
         places.filter(|place| particle[*place] == IMAGE).filter_map(weight).sum()
     }
@@ -57,8 +57,8 @@ impl Sampler<'_> {
             return [x, y];
         }
         let (mut total, mut u, mut v) = (0.0, 0.0, 0.0);
-        for particle in self.near(x, y, self.arrangement.cells.reach_at(x, y)) {
-            let weight = cubic_spline::value_of_one((x - particle.x).hypot(y - particle.y), particle.h);
+        for particle in self.near(x, y, self.arrangement.cells.reach_at([x, y])) {
+            let weight = CubicSpline::<2>::new(particle.h).value_at((x - particle.x).hypot(y - particle.y));
             total += weight;
             u += weight * particle.u;
             v += weight * particle.v;
@@ -83,13 +83,13 @@ impl Sampler<'_> {
             return Sample::default();
         }
         let near = |each: &mut dyn FnMut(&Particle, f64)| {
-            for particle in self.near(from_x, from_y, 1.1 * self.arrangement.cells.reach_at(from_x, from_y)) {
+            for particle in self.near(from_x, from_y, 1.1 * self.arrangement.cells.reach_at([from_x, from_y])) {
                 let dx = x - (particle.x + self.since * particle.u);
                 let dy = y - (particle.y + self.since * particle.v);
                 let h = SAMPLED * particle.h;
                 let r_squared = dx * dx + dy * dy;
                 if r_squared < 4.0 * h * h {
-                    let weight = particle.area() * cubic_spline::value_of_one(r_squared.sqrt(), h);
+                    let weight = particle.area() * CubicSpline::<2>::new(h).value_at(r_squared.sqrt());
                     each(particle, weight);
                 }
             }

@@ -3,7 +3,7 @@
 use super::obstacles::Obstacles;
 use super::particle::Particle;
 use super::solver::{Column, SphSwe, h_of_density};
-use corpuscle_sph::kernel::poly6_slope_over_r;
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_2_SQRT_PI;
 
@@ -55,24 +55,25 @@ impl SphSwe {
         SUPPORT * C_2 * (volume / particle.depth).sqrt()
     }
 
-    /// Form (9) over h, (1/h_i) Dh_i/Dt = -1/(2 rho_i) sum_j m_j (v_i - v_j) . grad W_poly6(r_ij, h_i), 1/s: the kernel of the
+    /// Form (9) over h, (1/h_i) Dh_i/Dt = -1/(2 rho_i) sum_j m_j (v_i - v_j) . grad W(r_ij, h_i), 1/s: the kernel of the
     /// density, so that h follows how it changes. Boundary particles count as they do in the density.
     fn rate(&self, particle: &Particle, obstacles: &Obstacles, place: u32) -> f64 {
         let own = &self.columns[place as usize];
         let near = self.arrangement.lists.of(place as usize);
+        let kernel = Kernel::<2>::new(self.parameters.kernel, own.h);
         let mut sum = 0.0;
         for (&other, &r) in near.index.iter().zip(near.distance) {
             // Lists are filled up with numbers of nobody, far away.
             if r < own.h {
                 let other = &self.columns[other as usize];
                 let apart = (own.u - other.u) * (own.x - other.x) + (own.v - other.v) * (own.y - other.y);
-                sum -= other.area * other.density * apart * poly6_slope_over_r(r * r, own.h);
+                sum -= other.area * other.density * apart * kernel.fall_over_r(r * r);
             }
         }
         let rho0 = self.parameters.density_kg_per_m3;
         obstacles.each([particle.x, particle.y], own.h, |site, r, way| {
             let apart = -(own.u * way[0] + own.v * way[1]);
-            sum -= rho0 * site.volume * apart * poly6_slope_over_r(r * r, own.h);
+            sum -= rho0 * site.volume * apart * kernel.fall_over_r(r * r);
         });
         -sum / (2.0 * own.density)
     }

@@ -1,6 +1,6 @@
 //! The published model, formula by formula: depths, smoothing lengths and accelerations of the particles.
 //!
-//! Poly6 for density, spiky for pressure, the viscosity kernel for viscosity, all in two dimensions at
+//! The weights of the smoothing kernel for density, pressure and viscosity, in two dimensions at
 //! the particle's own smoothing length; a fixed time step; the terrain-difference velocity control force.
 //!
 //! Not printed in the paper and taken from where its table points (Mueller, Charypar & Gross 2003): the pressure
@@ -14,8 +14,10 @@ use super::particle::Particle;
 use super::surroundings::{Surroundings, TOGETHER};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::{SmoothingForm, SphSwe as Parameters};
-use corpuscle_sph::kernel::{poly6, spiky_slope, viscosity_laplacian};
-use corpuscle_sph::{BLOCK, LANES, Lanes, LanesExt, Level, Near, Simd, SimdBase, SimdFloat, dispatch, gather};
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
+use corpuscle_sph::{
+    BLOCK, EachReach, LANES, Lanes, LanesExt, Level, Near, Simd, SimdBase, SimdFloat, dispatch, gather,
+};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -118,18 +120,19 @@ impl SphSwe {
         }
     }
 
-    /// rho_i = sum_j m_j W_poly6(r_ij, h_i), the particle itself included; and, where it follows from the density, the smoothing
+    /// rho_i = sum_j m_j W(r_ij, h_i), the particle itself included; and, where it follows from the density, the smoothing
     /// length for the next step.
     fn find_densities(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) {
         self.fill_volumes(particles);
         let Arrangement { cells, lists, x, y, reach_squared, .. } = &mut self.arrangement;
         self.densities.resize(x.len(), 0.0);
         // Kernels at h_i: what a particle does not reach itself adds nothing.
-        let (out, volumes) = (&mut self.densities, &self.volumes);
+        let (kernel, out, volumes) = (self.parameters.kernel, &mut self.densities, &self.volumes);
+        let (places, reach): ([&[f64]; 2], _) = ([x, y], EachReach { squared: reach_squared, near: Near::Reached });
         if volumes.is_empty() {
-            lists.search(Near::Reached, cells, x, y, reach_squared, out, &NumberDensities { reach_squared });
+            lists.search(cells, places, &reach, out, &NumberDensities { kernel, reach_squared });
         } else {
-            lists.search(Near::Reached, cells, x, y, reach_squared, out, &Depths { reach_squared, volumes });
+            lists.search(cells, places, &reach, out, &Depths { kernel, reach_squared, volumes });
         }
         let (this, rho0) = (&*self, self.parameters.density_kg_per_m3);
         let groups = particles.par_chunks_mut(TOGETHER).zip(this.arrangement.real.par_chunks(TOGETHER));
@@ -140,7 +143,7 @@ impl SphSwe {
                 let water = if this.volumes.is_empty() { particle.volume * sum } else { sum };
                 // Whose density was never found has no smoothing length by forms (8) and (9) yet.
                 let is_new = step == 0.0 || particle.depth == 0.0;
-                let density = rho0 * (water + covered(&surroundings.obstacles, particle));
+                let density = rho0 * (water + covered(&this.parameters, &surroundings.obstacles, particle));
                 particle.depth = density / rho0;
                 particle.next_h = match this.parameters.smoothing {
                     SmoothingForm::Density => h_of_density(&this.parameters, this.h0, density),
@@ -222,9 +225,10 @@ pub(crate) fn h_of_density(parameters: &Parameters, h0: f64, density: f64) -> f6
 }
 
 /// What boundary particles add to the density of a particle, over rho0: sum_k V_k W_ik (Akinci et al. 2012, equation 6).
-fn covered(obstacles: &Obstacles, particle: &Particle) -> f64 {
+fn covered(parameters: &Parameters, obstacles: &Obstacles, particle: &Particle) -> f64 {
+    let kernel = Kernel::<2>::new(parameters.kernel, particle.h);
     let mut sum = 0.0;
-    obstacles.each([particle.x, particle.y], particle.h, |site, r, _| sum += site.volume * poly6(r * r, particle.h));
+    obstacles.each([particle.x, particle.y], particle.h, |site, r, _| sum += site.volume * kernel.value(r * r));
     sum
 }
 
@@ -236,9 +240,10 @@ fn push_of_walls(parameters: &Parameters, obstacles: &Obstacles, particle: &Part
     let pressure = gas_constant * (density - rho0);
     let pressure = if clip_negative_pressure { pressure.max(0.0) } else { pressure };
     let strength = rho0 * pressure / (density * density);
+    let kernel = Kernel::<2>::new(parameters.kernel, particle.h);
     let (mut push, mut nearest, mut obstacle) = ([0.0; 2], f64::INFINITY, None);
     obstacles.each([particle.x, particle.y], particle.h, |site, r, way| {
-        let slope = site.volume * spiky_slope(r, particle.h) / r.max(1e-9 * particle.h);
+        let slope = site.volume * kernel.slope(r) / r.max(1e-9 * particle.h);
         (0..2).for_each(|axis| push[axis] -= strength * slope * way[axis]);
         if r < nearest {
             (nearest, obstacle) = (r, Some(site.obstacle));
@@ -322,7 +327,7 @@ fn ways<S: Simd>(
 #[inline(always)]
 fn pair_forces<S: Simd>(
     simd: S,
-    viscosity: f64,
+    parameters: &Parameters,
     arrangement: &Arrangement,
     columns: &[Column],
     first: usize,
@@ -332,17 +337,16 @@ fn pair_forces<S: Simd>(
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
         let own = columns[i];
-        // Kernels at h_i: their constants once, the powers of (h - r) in each pair.
-        let spiky = spiky_slope(0.0, own.h) / (own.h * own.h);
-        let viscous = viscosity_laplacian(0.0, own.h) / own.h;
+        // The kernel at h_i: its factors once, its shapes in each pair.
+        let kernel = Kernel::<2>::new(parameters.kernel, own.h);
+        let (of_slope, of_laplacian) = (0.5 * kernel.slope_factor(), parameters.viscosity * kernel.laplacian_factor());
         let [mut fx, mut fy] = [Lanes::splat(simd, 0.0); 2];
         for (index, r) in arrangement.lists.of(i).lanes(simd) {
-            let [x, y, u, v, area, _, pressure, _] = gather(simd, rows, index);
+            let [x, y, u, v, area, _, pressure, _] = gather(simd, rows, index.map(|index| index as usize));
             let (ex, ey) = (x - own.x, y - own.y);
-            let inside = (own.h - r).positive();
             // f = -sum m_j (p_i + p_j)/(2 rho_j) grad W + mu sum m_j (v_j - v_i)/rho_j lap W
-            let push = area * (pressure + own.pressure) * inside * inside * (0.5 * spiky) / r;
-            let drag = area * inside * (viscosity * viscous);
+            let push = kernel.times_slope_shape(area * (pressure + own.pressure), r) * of_slope / r;
+            let drag = area * kernel.laplacian_shape(r) * of_laplacian;
             fx += drag * (u - own.u) - push * ex;
             fy += drag * (v - own.v) - push * ey;
         }
@@ -367,8 +371,8 @@ impl SphSwe {
         }
         self.accelerations.resize(self.arrangement.len(), [0.0; 2]);
         self.accelerations.par_chunks_mut(BLOCK).enumerate().for_each(|(block, out)| {
-            let (viscosity, first) = (self.parameters.viscosity, block * BLOCK);
-            dispatch!(Level::new(), simd => pair_forces(simd, viscosity, &self.arrangement, &self.columns, first, out));
+            let (parameters, first) = (&self.parameters, block * BLOCK);
+            dispatch!(Level::new(), simd => pair_forces(simd, parameters, &self.arrangement, &self.columns, first, out));
         });
         self.add_walls(particles, &surroundings.obstacles);
         self.take_over(particles, surroundings, step)

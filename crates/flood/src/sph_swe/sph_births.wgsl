@@ -5,7 +5,7 @@
 // A zone takes so many words of `zones`: disc or band; first corner and how many; radius or half width, m; middle; length of a band, m.
 #import sph_common
 #import sph_neighbours
-#import sph_kernels
+#import sph_spline
 #import sph_ground
 
 const THREADS = 64u;

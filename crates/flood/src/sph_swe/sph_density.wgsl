@@ -5,9 +5,9 @@
 #import sph_ground
 
 
-// sum_j V_j W_poly6(r_ij, h_i), the particle itself included, m.
+// sum_j V_j W(r_ij, h_i), the particle itself included, m.
 fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
-    var sum = spots[i].z;
+    var sum = spots[i].z * value_shape(0.0);
     let mirrors = mirrors_round(place);
     for (var k = 0u; k < mirrors; k++) {
         let mirror = mirror(k);
@@ -27,12 +27,11 @@ fn depth_of_water(i: u32, place: vec2f, h: f32) -> f32 {
                 if (j == i && k == 0u) || (k > 0u && !has_image(mirror, there, site.w)) {
                     continue;
                 }
-                let inside = max(1.0 - dot(way, way) / (h * h), 0.0);
-                sum += site.z * inside * inside * inside;
+                sum += site.z * value_shape(dot(way, way) / (h * h));
             }
         }
     }
-    return poly6(0.0, h) * sum;
+    return VALUE_FACTOR / (h * h) * sum;
 }
 
 // What boundary particles add to the density, over that of the water at rest (Akinci et al. 2012, equation 6).
@@ -45,10 +44,15 @@ fn covered(place: vec2f, h: f32) -> f32 {
     for (var row = cells.y; row <= cells.w; row++) {
         let line = row * parameters.walls.columns;
         for (var k = site_start[line + cells.x]; k < site_start[line + cells.z + 1u]; k++) {
-            sum += sites[k].volume * poly6(distance(sites[k].place, place), h);
+            sum += sites[k].volume * kernel_value(distance(sites[k].place, place), h);
         }
     }
     return sum;
+}
+
+fn pressure_of(density: f32) -> f32 {
+    let pressure = parameters.gas_constant * (density - parameters.rest_density);
+    return select(pressure, max(pressure, 0.0), parameters.clips_pressure == 1u);
 }
 
 @compute @workgroup_size(GROUP)

@@ -51,8 +51,8 @@ fn by_pairs(i: u32, own: Column) -> vec2f {
                 if r >= h || (j == i && k == 0u) || (k > 0u && !has_image(mirror, there, near.h)) {
                     continue;
                 }
-                let push = near.area * (near.pressure + own.pressure) * 0.5 * spiky_slope(r, h) / r;
-                let drag = near.area * parameters.viscosity * viscosity_laplacian(r, h);
+                let push = near.area * (near.pressure + own.pressure) * 0.5 * kernel_slope(r, h) / r;
+                let drag = near.area * parameters.viscosity * kernel_laplacian(r, h);
                 force += drag * (mirror.sign * near.velocity - own.velocity) - push * e;
             }
         }

@@ -1,32 +1,19 @@
-// The kernels of the paper in the plane, and the cubic spline by which water is sampled. Twins of those in the crate sph, which names the sources.
+// Weights of the smoothing kernel in the plane. Twin of the trait `SmoothingKernel` of crate `sph`.
 #import declared
+#import smoothing_kernel
 
-fn poly6(r: f32, h: f32) -> f32 {
+// 1/m2.
+fn kernel_value(r: f32, h: f32) -> f32 {
     let q = r / h;
-    let inside = max(1.0 - q * q, 0.0);
-    return 4.0 / (PI * h * h) * inside * inside * inside;
+    return VALUE_FACTOR / (h * h) * value_shape(q * q);
 }
 
-// Magnitude of the gradient of the spiky kernel, 1/m3.
-fn spiky_slope(r: f32, h: f32) -> f32 {
-    let inside = max(1.0 - r / h, 0.0);
-    return 30.0 / (PI * h * h * h) * inside * inside;
+// -dW/dr, 1/m3.
+fn kernel_slope(r: f32, h: f32) -> f32 {
+    return SLOPE_FACTOR / (h * h * h) * slope_shape(r / h);
 }
 
-// Laplacian of the viscosity kernel, 1/m4.
-fn viscosity_laplacian(r: f32, h: f32) -> f32 {
-    return 40.0 / (PI * h * h * h * h) * max(1.0 - r / h, 0.0);
-}
-
-fn pressure_of(density: f32) -> f32 {
-    let pressure = parameters.gas_constant * (density - parameters.rest_density);
-    return select(pressure, max(pressure, 0.0), parameters.clips_pressure == 1u);
-}
-
-// Cubic spline (Monaghan & Lattanzio 1985) as in the crate sph: W(r, h), 1/m2.
-fn spline(r: f32, per_h: f32) -> f32 {
-    let q = r * per_h;
-    let outer = max(2.0 - q, 0.0);
-    let inner = max(1.0 - q, 0.0);
-    return (outer * outer * outer - 4.0 * inner * inner * inner) * (per_h * per_h * SIGMA);
+// 1/m4.
+fn kernel_laplacian(r: f32, h: f32) -> f32 {
+    return LAPLACIAN_FACTOR / (h * h * h * h) * laplacian_shape(r / h);
 }

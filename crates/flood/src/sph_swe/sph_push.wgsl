@@ -25,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 if r >= own.h {
                     continue;
                 }
-                push -= strength * sites[k].volume * spiky_slope(r, own.h) / max(r, 1e-9 * own.h) * way;
+                push -= strength * sites[k].volume * kernel_slope(r, own.h) / max(r, 1e-9 * own.h) * way;
                 if r < nearest {
                     nearest = r;
                     obstacle = sites[k].obstacle + 1u;

@@ -1,7 +1,7 @@
 // The water at any place, from the particles round it. Twin of `sampler.rs`.
 #import sph_common
 #import sph_neighbours
-#import sph_kernels
+#import sph_spline
 #import sph_ground
 
 // The share of the surroundings of a place that images beyond walls and periodic sides cover.

@@ -108,7 +108,7 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     let place = |axis: usize| -> Vec<f64> { columns.iter().map(|column| column.at[axis]).collect() };
     let mean = columns.iter().map(|column| column.spacing).sum::<f64>() / columns.len() as f64;
     let mut cells = Cells::default();
-    let order = cells.sort(&place(0), &place(1), REACH * mean).to_vec();
+    let order = cells.sort([&place(0), &place(1)], [REACH * mean; 2]).to_vec();
     columns = order.iter().map(|&at| column(ground[at as usize])).collect();
     settle(&cells, &mut columns);
     // Particles tremble, more so in scheme sph-swe; what is seen is what they do together.
@@ -124,11 +124,11 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
 
 /// Takes down what stands steeper than water can: where scheme sph-swe piles particles up before a wall, it finds columns of great
 /// height. The ground's slope comes on top.
-fn settle(cells: &Cells, columns: &mut Vec<Column>) {
+fn settle(cells: &Cells<2>, columns: &mut Vec<Column>) {
     let bounded = |own: &Column, all: &[Column]| {
         let reach = REACH * own.spacing;
         let steepest = STEEPEST + own.ground.length();
-        let near = cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &all[range]);
+        let near = cells.ranges_within(own.at.into(), reach).flat_map(|range| &all[range]);
         near.map(|near| (near.state.x, near.at.distance(own.at)))
             .filter(|(_, distance)| *distance < reach)
             .fold(own.state.x, |height, (other, distance)| height.min(other + steepest * distance))
@@ -144,7 +144,7 @@ fn settle(cells: &Cells, columns: &mut Vec<Column>) {
 }
 
 /// The disc of a particle, in the plane that fits best to its neighbours' surfaces.
-fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> Droplet {
+fn disc(set: &ParticleSet, cells: &Cells<2>, columns: &[Column], own: &Column) -> Droplet {
     let planes = Planes::around(own, cells, columns);
     let fit = planes.fit(own);
     let slope = DVec2::new(fit.east.x, fit.north.x).clamp_length_max(STEEPEST);
@@ -167,9 +167,9 @@ fn disc(set: &ParticleSet, cells: &Cells, columns: &[Column], own: &Column) -> D
 }
 
 /// The mean foam within reach of a column: foam spreads, and single particles are not flecked.
-fn foam_around(own: &Column, cells: &Cells, columns: &[Column], droplets: &[Droplet]) -> f64 {
+fn foam_around(own: &Column, cells: &Cells<2>, columns: &[Column], droplets: &[Droplet]) -> f64 {
     let reach = REACH * own.spacing;
-    let near = cells.ranges(own.at.x, own.at.y, reach).flatten();
+    let near = cells.ranges_within(own.at.into(), reach).flatten();
     let weighed = near.map(|near| {
         let out = columns[near].at.distance_squared(own.at) / (reach * reach);
         ((1.0 - out).max(0.0).powi(3), droplets[near].foam)
@@ -206,10 +206,10 @@ struct Fit {
 
 impl Planes {
     /// Of the columns within reach of one.
-    fn around(own: &Column, cells: &Cells, columns: &[Column]) -> Self {
+    fn around(own: &Column, cells: &Cells<2>, columns: &[Column]) -> Self {
         let reach = REACH * own.spacing;
         let mut planes = Self::default();
-        for near in cells.ranges(own.at.x, own.at.y, reach).flat_map(|range| &columns[range]) {
+        for near in cells.ranges_within(own.at.into(), reach).flat_map(|range| &columns[range]) {
             let away = near.at - own.at;
             let out = away.length_squared() / (reach * reach);
             if out < 1.0 {

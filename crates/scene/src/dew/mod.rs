@@ -11,6 +11,7 @@ pub use faces::*;
 pub use fan::*;
 pub use solids::*;
 
+use crate::KernelName;
 use serde::{Deserialize, Serialize};
 
 /// The `[dew]` table.
@@ -24,6 +25,9 @@ pub struct Dew {
     /// Which laws of transport hold where `[dew.transport]` does not say otherwise.
     #[serde(default)]
     pub scheme: Scheme,
+    /// The smoothing kernel of the air.
+    #[serde(default)]
+    pub kernel: KernelName,
     /// Acceleration of gravity, m/s2; a scene is tilted by turning it.
     #[serde(default = "downward")]
     pub gravity_m_per_s2: [f64; 3],

@@ -17,6 +17,7 @@ pub use scene::FloodScene;
 pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};
 
+use crate::KernelName;
 use crate::Series;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -239,6 +240,8 @@ pub struct SphSwe {
     pub smoothing_length_m: Option<f64>,
     /// How the smoothing length follows the water.
     pub smoothing: SmoothingForm,
+    /// The smoothing kernel.
+    pub kernel: KernelName,
     /// Density of water rho0 (also the reference two-dimensional density), kg/m3.
     pub density_kg_per_m3: f64,
     /// Gas constant k.
@@ -266,6 +269,7 @@ impl Default for SphSwe {
             time_step_s: 0.02,
             smoothing_length_m: None,
             smoothing: SmoothingForm::Density,
+            kernel: KernelName::Mueller,
             density_kg_per_m3: 1000.0,
             gas_constant: 10.0,
             viscosity: 0.1,

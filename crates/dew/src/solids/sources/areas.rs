@@ -138,7 +138,7 @@ mod tests {
         let is_inside = |place: &[f64; 3]| (0..3).all(|axis| (0.0..room.high[axis]).contains(&place[axis]));
         let kept: Vec<usize> = (0..body.positions.len()).filter(|&at| is_inside(&body.positions[at])).collect();
         body.positions = kept.iter().map(|&at| body.positions[at]).collect();
-        let solids = Solids::new(&[body], &room, &Scale::new(spacing), 0.15);
+        let solids = Solids::new(&[body], &room, &Scale::new(spacing, corpuscle_scene::KernelName::Mueller), 0.15);
         let measured = AreaSampler::new(&solids, 0, &solid, &room, spacing);
         [measured.in_box(), measured.in_side([2, 0])].map(|areas| areas.iter().sum())
     }

@@ -8,7 +8,7 @@ corpuscle_gpu::declare! {
         /// Circumference of a circle over its width.
         pub const PI: f32 = std::f32::consts::PI;
         /// Normalisation of the cubic spline in two dimensions over h^2.
-        pub const SIGMA: f32 = corpuscle_sph::kernel::cubic_spline::SIGMA as f32;
+        pub const SIGMA: f32 = corpuscle_sph::kernel::CubicSpline::<2>::SIGMA as f32;
         /// Positions drawn for each particle that comes from a source.
         pub const TRIES: u32 = super::super::inflow::TRIES as u32;
         /// The first slot of [`Memory::groups`] for gauges: a thread for each particle and drop, a group for each row, a thread for each position and row.

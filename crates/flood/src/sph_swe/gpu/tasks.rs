@@ -5,11 +5,12 @@ use super::maps::GpuMaps;
 use super::shared::{Memory, Status};
 use super::upload::GpuInputs;
 use corpuscle_gpu::{
-    COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots, THREADS,
-    Task, sort_blocks, wgpu,
+    COMPENSATED_SUMS, CellSort, GROUP_REDUCTION, Gpu, Kernel as GpuKernel, Pass, SUMS_BEFORE, ShaderLibrary, SortSlots,
+    THREADS, Task, sort_blocks, wgpu,
 };
+use corpuscle_sph::kernel::{KERNEL_PIECE, Kernel};
 
-/// Pieces that the shaders import.
+/// Pieces that the shaders import, but for the smoothing kernel.
 const LIBRARY: ShaderLibrary<'_> = &[
     SUMS_BEFORE,
     COMPENSATED_SUMS,
@@ -18,11 +19,17 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("sph_ground", include_str!("sph_ground.wgsl")),
     ("sph_friction", include_str!("sph_friction.wgsl")),
     ("sph_rows", include_str!("sph_rows.wgsl")),
-    ("sph_kernels", include_str!("../sph_kernels.wgsl")),
+    ("sph_spline", include_str!("../sph_spline.wgsl")),
     ("sph_neighbours", include_str!("../sph_neighbours.wgsl")),
     ("sph_outlines", include_str!("../obstacles/sph_outlines.wgsl")),
     ("sph_water", include_str!("../sph_water.wgsl")),
 ];
+
+/// These pieces and the smoothing kernel.
+fn pieces_with(kernel: &str) -> Vec<(&str, &str)> {
+    let kernels = [(KERNEL_PIECE, kernel), ("sph_kernels", include_str!("../sph_kernels.wgsl"))];
+    LIBRARY.iter().copied().chain(kernels).collect()
+}
 
 /// Name and text of a shader.
 pub(super) type Shader = (&'static str, &'static str);
@@ -74,15 +81,17 @@ pub(super) struct Tasks {
     pub maps: Option<GpuMaps>,
 }
 
-/// A shader with what it works on.
+/// A shader that needs no smoothing kernel, with what it works on.
 pub(super) fn task(gpu: &Gpu, (name, text): Shader, memory: &Memory) -> Task {
-    Kernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
+    GpuKernel::new(gpu, name, text, LIBRARY).on(gpu, memory)
 }
 
 impl Tasks {
     /// The passes of a run that work on `memory`.
     pub fn new(gpu: &Gpu, memory: Memory, sort: CellSort, inputs: &GpuInputs<'_>) -> Self {
-        let task = |shader: Shader| task(gpu, shader, &memory);
+        let kernel = Kernel::<2>::device_piece(inputs.scheme.kernel);
+        let pieces = pieces_with(&kernel);
+        let task = |(name, text): Shader| GpuKernel::new(gpu, name, text, &pieces).on(gpu, &memory);
         let obstacles = inputs.surroundings.obstacles.names.len() as u32;
         Self {
             drift: task(DRIFT),
@@ -197,10 +206,13 @@ mod tests {
         let others = gauges::SHADERS.into_iter().chain([maps::SHADER, seen::SHADER]);
         for (name, text) in passes.into_iter().chain(others) {
             let declaration = Memory::declaration();
-            let (text, used) = declaration.complete(name, text, LIBRARY).unwrap();
-            check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
-            let stored = used.iter().filter(|number| !declaration.bindings[**number as usize].is_uniform).count();
-            assert!(stored <= MOST_STORAGE_BUFFERS, "{name} has {stored} storage buffers");
+            for kernel in corpuscle_scene::KernelName::ALL {
+                let kernel = Kernel::<2>::device_piece(kernel);
+                let (text, used) = declaration.complete(name, text, &pieces_with(&kernel)).unwrap();
+                check_shader(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let stored = used.iter().filter(|number| !declaration.bindings[**number as usize].is_uniform).count();
+                assert!(stored <= MOST_STORAGE_BUFFERS, "{name} has {stored} storage buffers");
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::obstacles::Outline;
 use crate::obstacles::OutlineCells;
 use crate::obstacles::Outlines;
 use corpuscle_scene::Flood as Settings;
-use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_sph::kernel::{CubicSpline, Kernel, SmoothingKernel};
 use corpuscle_terrain::Terrain;
 use rayon::prelude::*;
 
@@ -45,11 +45,18 @@ pub(super) const BEFORE_WALL: f64 = 1e-3;
 const PITCH: f64 = 0.5;
 
 impl Obstacles {
-    /// The obstacles of a scene with these outlines for particles `spacing` m apart where they are closest that reach `h0` m at the start and at most
-    /// `reach` m.
-    pub fn new(flood: &Settings, terrain: &Terrain, outlines: Outlines, spacing: f64, reach: f64, h0: f64) -> Self {
+    /// The obstacles of a scene with these outlines for particles `spacing` m apart where they are closest whose `kernel` has the support of the
+    /// start; they reach at most `reach` m.
+    pub fn new(
+        flood: &Settings,
+        terrain: &Terrain,
+        outlines: Outlines,
+        spacing: f64,
+        reach: f64,
+        kernel: &Kernel<2>,
+    ) -> Self {
         let tops = flood.obstacle.iter().map(|obstacle| obstacle.height_m);
-        let mut sites = Sites::new(&outlines, PITCH * spacing, reach, h0);
+        let mut sites = Sites::new(&outlines, PITCH * spacing, reach, kernel);
         sites.set_tops(&tops.collect::<Vec<_>>(), |x, y| terrain.height(x, y));
         Self { names: flood.obstacle.iter().map(|obstacle| obstacle.name.clone()).collect(), outlines, sites }
     }
@@ -97,10 +104,11 @@ impl Obstacles {
 
     /// What obstacles cover at a place of the cubic spline, by which particles are arranged at the start and the water is sampled.
     pub fn coverage(&self, place: [f64; 2], h: f64) -> Coverage {
+        let spline = CubicSpline::<2>::new(h);
         let [mut part, mut r_slope] = [0.0; 2];
         self.each(place, 2.0 * h, |site, r, _| {
-            part += site.area * cubic_spline::value_of_one(r, h);
-            r_slope += site.area * r * cubic_spline::slope_of_one(r, h);
+            part += site.area * spline.value_at(r);
+            r_slope += site.area * r * spline.slope(r);
         });
         if part > MOST_COVERED {
             return Coverage { part: MOST_COVERED, slope_in_h: 0.0 };

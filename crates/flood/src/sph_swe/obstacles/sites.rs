@@ -2,7 +2,7 @@
 
 use crate::obstacles::Outlines;
 use corpuscle_sph::Cells;
-use corpuscle_sph::kernel::poly6;
+use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 
 /// Places across a cell that are looked at to find how much of it is inside.
 const ACROSS: usize = 4;
@@ -30,12 +30,12 @@ pub(crate) struct Site {
 #[derive(Debug, Default)]
 pub(crate) struct Sites {
     all: Vec<Site>,
-    cells: Cells,
+    cells: Cells<2>,
 }
 
 impl Sites {
-    /// Fills obstacles as deep as `depth` m below their walls with sites `pitch` m apart; `h0` is the reach of V_k's kernel.
-    pub fn new(outlines: &Outlines, pitch: f64, depth: f64, h0: f64) -> Self {
+    /// Fills obstacles as deep as `depth` m below their walls with sites `pitch` m apart; `kernel` is that of V_k.
+    pub fn new(outlines: &Outlines, pitch: f64, depth: f64, kernel: &Kernel<2>) -> Self {
         let mut all = Vec::new();
         for (number, outline) in outlines.all.iter().enumerate() {
             let bounds = outline.bounds();
@@ -52,7 +52,7 @@ impl Sites {
         }
         let mut sites = Self { all, cells: Cells::default() };
         sites.sort(0.5 * depth.max(pitch));
-        sites.find_volumes(h0);
+        sites.find_volumes(kernel);
         sites
     }
 
@@ -62,16 +62,16 @@ impl Sites {
         }
         let x: Vec<f64> = self.all.iter().map(|site| site.x).collect();
         let y: Vec<f64> = self.all.iter().map(|site| site.y).collect();
-        self.all = self.cells.sort(&x, &y, size).iter().map(|&from| self.all[from as usize]).collect();
+        self.all = self.cells.sort([&x, &y], [size; 2]).iter().map(|&from| self.all[from as usize]).collect();
     }
 
-    fn find_volumes(&mut self, h0: f64) {
+    fn find_volumes(&mut self, kernel: &Kernel<2>) {
         let volumes: Vec<f64> = self
             .all
             .iter()
             .map(|site| {
                 let mut sum = 0.0;
-                self.each([site.x, site.y], h0, |_, r, _| sum += poly6(r * r, h0));
+                self.each([site.x, site.y], kernel.support(), |_, r, _| sum += kernel.value(r * r));
                 1.0 / sum
             })
             .collect();
@@ -99,7 +99,7 @@ impl Sites {
         if self.all.is_empty() {
             return;
         }
-        for site in self.cells.ranges(x, y, reach).flat_map(|range| &self.all[range]) {
+        for site in self.cells.ranges_within([x, y], reach).flat_map(|range| &self.all[range]) {
             let way = [site.x - x, site.y - y];
             let squared = way[0] * way[0] + way[1] * way[1];
             if squared < reach * reach {
@@ -133,6 +133,7 @@ fn site(outlines: &Outlines, number: usize, corner: [f64; 2], pitch: f64) -> Opt
 mod tests {
     use super::*;
     use crate::obstacles::Outline;
+    use corpuscle_scene::KernelName;
 
     /// An oblique block.
     fn block() -> Outlines {
@@ -145,7 +146,7 @@ mod tests {
     #[test]
     fn sites_cover_the_area_with_normals_outwards() {
         let outlines = block();
-        let sites = Sites::new(&outlines, 0.25, 100.0, 1.0);
+        let sites = Sites::new(&outlines, 0.25, 100.0, &Kernel::new(KernelName::Mueller, 1.0));
         let area: f64 = sites.all.iter().map(|site| site.area).sum();
         assert!((area / 48.0 - 1.0).abs() < 1e-3, "{area} m2");
         for site in &sites.all {
@@ -155,7 +156,7 @@ mod tests {
             let nearest = outlines.nearest_of(0, [site.x, site.y]);
             assert!(nearest.distance > -1.0 || (site.volume / 0.0625 - 1.0).abs() < 0.01, "{site:?}");
         }
-        let band = Sites::new(&outlines, 0.25, 1.0, 1.0);
+        let band = Sites::new(&outlines, 0.25, 1.0, &Kernel::new(KernelName::Mueller, 1.0));
         let area: f64 = band.all.iter().map(|site| site.area).sum();
         // 48 m2 less the 6 x 4 m2 that lie deeper than 1 m.
         assert!((area - 24.0).abs() < 1.0, "{area} m2");

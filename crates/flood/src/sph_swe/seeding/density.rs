@@ -1,7 +1,7 @@
 //! How many particles stand on a square metre.
 
 use crate::sph_swe::obstacles::Coverage;
-use corpuscle_sph::kernel::cubic_spline;
+use corpuscle_sph::kernel::CubicSpline;
 use corpuscle_sph::{Lanes, LanesExt, Neighbours, PairSum, Simd, SimdBase};
 
 /// Number density of particles, and how it changes with the smoothing length.
@@ -30,14 +30,14 @@ impl Density {
     /// Sums over one particle's neighbours.
     #[inline(always)]
     fn sum<S: Simd>(simd: S, found: Neighbours, h: f64) -> Self {
-        let inverse_h = Lanes::splat(simd, 1.0 / h);
+        let spline = CubicSpline::<2>::new(h);
         let mut number = Lanes::splat(simd, 0.0);
         let mut r_slope = Lanes::splat(simd, 0.0);
         for (_, r) in found.lanes(simd) {
-            number += cubic_spline::value(r, inverse_h);
-            r_slope += r * cubic_spline::slope(r, inverse_h);
+            number += spline.values_at(r);
+            r_slope += r * spline.slopes_at(r);
         }
-        let number = number.sum() + cubic_spline::value_of_one(0.0, h);
+        let number = number.sum() + spline.value_at(0.0);
         Density { number, slope_in_h: (r_slope.sum() - 2.0 * number) / h }
     }
 

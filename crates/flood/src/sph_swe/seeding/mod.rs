@@ -9,8 +9,8 @@ use super::arrangement::Arrangement;
 use super::edges::EdgeRules;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
-use corpuscle_sph::kernel::cubic_spline;
-use corpuscle_sph::{Lanes, LanesExt, Level, Near, Neighbours, Simd, SimdBase, dispatch};
+use corpuscle_sph::kernel::CubicSpline;
+use corpuscle_sph::{EachReach, Lanes, LanesExt, Level, Near, Neighbours, Simd, SimdBase, dispatch};
 use corpuscle_terrain::Bounds;
 use density::{Densities, Density};
 use rand::{RngExt, SeedableRng};
@@ -140,7 +140,8 @@ impl Body<'_> {
         arrangement.arrange(particles, |p| (p.x, p.y, 2.0 * p.h), edges, 1.2 * mean_h.max(1e-12));
         arrangement.sort(particles, spare);
         let Arrangement { cells, lists, x, y, reach_squared, .. } = arrangement;
-        lists.search(Near::Either, cells, x, y, reach_squared, &mut vec![(); x.len()], &());
+        let reach = EachReach { squared: reach_squared, near: Near::Either };
+        lists.search(cells, [x, y], &reach, &mut vec![(); x.len()], &());
     }
 
     /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where no depth is wanted.
@@ -183,7 +184,8 @@ impl Body<'_> {
             self.arrange(arrangement, particles, spare, edges);
             let Arrangement { cells, lists, x, y, reach_squared, real, .. } = arrangement;
             densities.resize(x.len(), Density::default());
-            lists.search(Near::Either, cells, x, y, reach_squared, &mut densities, &Densities { reach_squared });
+            let reach = EachReach { squared: reach_squared, near: Near::Either };
+            lists.search(cells, [x, y], &reach, &mut densities, &Densities { reach_squared });
             for (particle, &place) in particles.iter_mut().zip(real.iter()) {
                 let covered = obstacles.coverage([particle.x, particle.y], particle.h);
                 let density = densities[place as usize].beside(covered);
@@ -200,11 +202,11 @@ impl Body<'_> {
 #[inline(always)]
 fn crowding<S: Simd>(simd: S, x: &[f64], y: &[f64], area: &[f64], list: Neighbours, i: usize, h: f64) -> [f64; 2] {
     let [mut push_x, mut push_y] = [Lanes::splat(simd, 0.0); 2];
-    let inverse_h = Lanes::splat(simd, 1.0 / h);
+    let spline = CubicSpline::<2>::new(h);
     for (index, r) in list.lanes(simd) {
-        let of = |values: &[f64]| Lanes::from_fn(simd, |lane| values[index[lane]]);
+        let of = |values: &[f64]| Lanes::from_fn(simd, |lane| values[index[lane] as usize]);
         let (ex, ey) = (of(x) - x[i], of(y) - y[i]);
-        let weight = cubic_spline::slope(r, inverse_h) / r * of(area);
+        let weight = spline.slopes_at(r) / r * of(area);
         push_x += weight * ex;
         push_y += weight * ey;
     }
