@@ -5,6 +5,7 @@ use super::friction::Slowing;
 use super::mesh::{Ground, Layout, Mesh, SOLID};
 use super::solver::{Passed, Solver};
 use super::water::Column;
+use crate::friction::Law;
 use corpuscle_terrain::Bounds;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -47,7 +48,7 @@ fn solver(size: [f64; 2], periodic: [bool; 2], spacing: f64, seed: u64, manning:
     let mut mesh = Mesh::new(Layout::new(bounds, periodic, spacing, seed));
     let tiles: Vec<usize> = (0..mesh.layout.tiles[0] * mesh.layout.tiles[1]).collect();
     mesh.make(&tiles, ground);
-    Solver::new(mesh, G, Slowing::Manning(G * manning * manning), 10.0, [false; 6])
+    Solver::new(mesh, G, Slowing::even(Law::Manning, G * manning * manning), 10.0, [false; 6])
 }
 
 impl Solver {

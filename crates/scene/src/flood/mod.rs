@@ -3,6 +3,7 @@
 
 mod adaptive;
 mod finer;
+mod friction;
 mod obstacle;
 mod rain;
 mod scene;
@@ -11,8 +12,9 @@ mod structures;
 
 pub use adaptive::Adaptive;
 pub use finer::Finer;
+pub use friction::Friction;
 pub use obstacle::{Circle, Obstacle};
-pub use rain::{ConstantInfiltration, Friction, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
+pub use rain::{ConstantInfiltration, GreenAmpt, Horton, Infiltration, LandClass, LandUse, Rain};
 pub use scene::FloodScene;
 pub use start::{Field, StartVelocity, VelocityRasters};
 pub use structures::{Culvert, Link, LinkLaw, Outflow, Stage, Weir};

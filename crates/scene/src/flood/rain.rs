@@ -86,13 +86,3 @@ pub struct LandClass {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infiltration: Option<Infiltration>,
 }
-
-/// Friction after another law than Manning's.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Friction {
-    /// Chezy's coefficient C, m^(1/2)/s: the friction slope is u |u| / (C^2 d).
-    Chezy(f64),
-    /// The friction slope over the velocity, s/m.
-    Linear(f64),
-}

@@ -1,10 +1,9 @@
 //! The ground as the shaders have it: nodes of its height, and its roughness.
 
-use super::shared::{CHEZY, LINEAR, MANNING, MAPPED, Parameters, SMOOTH};
+use super::shared::Parameters;
 use super::upload::Origin;
-use crate::friction::{Coefficient, Roughness};
+use crate::friction::{Coefficient, Law, Roughness};
 use crate::sph_swe::particle::Particle;
-use corpuscle_scene::Friction;
 use corpuscle_terrain::{Bounds, Terrain};
 use rayon::prelude::*;
 
@@ -20,42 +19,39 @@ pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Paramete
     patches.nodes
 }
 
-/// How the ground slows the water, told in `parameters`; Manning's n over the ground where it is not one number.
+/// How the ground slows the water, told in `parameters`; the law's coefficient over gravity in cells where it is not one number.
 pub(super) fn roughness(
     roughness: &Roughness,
     bounds: Bounds,
     origin: Origin,
     parameters: &mut Parameters,
 ) -> Vec<f32> {
-    let (law, number) = match roughness {
-        Roughness::Manning(Coefficient::Even(0.0)) => (SMOOTH, 0.0),
-        Roughness::Manning(Coefficient::Even(n)) => (MANNING, *n),
-        Roughness::Other(Friction::Chezy(c)) => (CHEZY, *c),
-        Roughness::Other(Friction::Linear(slope)) => (LINEAR, *slope),
-        Roughness::Manning(coefficient) => {
-            parameters.friction = MAPPED;
-            return mapped(coefficient, bounds, origin, parameters);
+    let Roughness { law, number } = roughness;
+    parameters.friction_exponent = law.exponent();
+    match number.even() {
+        Some(number) => {
+            parameters.roughness = law.coefficient(1.0, number) as f32;
+            Vec::new()
         }
-    };
-    (parameters.friction, parameters.roughness) = (law, number as f32);
-    Vec::new()
+        None => mapped(*law, number, bounds, origin, parameters),
+    }
 }
 
 /// Cells of the raster itself, over all the ground.
-fn mapped(coefficient: &Coefficient, bounds: Bounds, origin: Origin, parameters: &mut Parameters) -> Vec<f32> {
+fn mapped(law: Law, number: &Coefficient, bounds: Bounds, origin: Origin, parameters: &mut Parameters) -> Vec<f32> {
     let low = [bounds.x_min, bounds.y_min];
     let size = bounds.size();
     let even = size[0].max(size[1]) / CELLS;
-    let lattice = coefficient.raster().and_then(corpuscle_terrain::RasterField::cells_in_model);
+    let lattice = number.raster().and_then(corpuscle_terrain::RasterField::cells_in_model);
     let (corner, cell) = lattice.unwrap_or((low, [even; 2]));
     let first = [0, 1].map(|axis| ((low[axis] - corner[axis]) / cell[axis]).floor());
     let count = [0, 1].map(|axis| ((low[axis] + size[axis] - corner[axis]) / cell[axis]).ceil().max(first[axis] + 1.0));
     let [columns, rows] = [0, 1].map(|axis| (count[axis] - first[axis]) as u32);
     let south_west = [0, 1].map(|axis| corner[axis] + first[axis] * cell[axis]);
-    let value = |number: u32| {
-        let at = [number % columns, number / columns];
+    let value = |k: u32| {
+        let at = [k % columns, k / columns];
         let [x, y] = [0, 1].map(|axis| south_west[axis] + (f64::from(at[axis]) + 0.5) * cell[axis]);
-        coefficient.at(x, y) as f32
+        law.coefficient(1.0, number.at(x, y)) as f32
     };
     parameters.rough_corner = origin.relative(south_west);
     parameters.rough_per_metre = cell.map(|size| (1.0 / size) as f32);

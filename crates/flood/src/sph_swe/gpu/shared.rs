@@ -23,16 +23,6 @@ corpuscle_gpu::declare! {
         pub const WALL: u32 = 1;
         /// The side is joined to the opposite one.
         pub const PERIODIC: u32 = 2;
-        /// Ground without friction.
-        pub const SMOOTH: u32 = 0;
-        /// Friction after Manning 1891, with one n.
-        pub const MANNING: u32 = 1;
-        /// Friction after Chezy 1775.
-        pub const CHEZY: u32 = 2;
-        /// Friction in proportion to the velocity.
-        pub const LINEAR: u32 = 3;
-        /// Friction after Manning, with n from a raster.
-        pub const MAPPED: u32 = 4;
         /// A zone that is a disc.
         pub const DISC: u32 = 0;
         /// A zone that is a band on both sides of a line.
@@ -117,15 +107,15 @@ corpuscle_gpu::declare! {
             pub ground_per_metre: [f32; 2],
             /// Patches between them.
             pub ground_patches: [u32; 2],
-            /// South-west corner of the cells of Manning's n.
+            /// South-west corner of the cells of that coefficient, where it differs.
             pub rough_corner: [f32; 2],
             /// Cells of it per metre.
             pub rough_per_metre: [f32; 2],
-            /// Number of them along each side.
+            /// Number of them along each side; none where it is the same everywhere.
             pub rough_cells: [u32; 2],
-            /// Law of friction: [`SMOOTH`], [`MANNING`], [`CHEZY`], [`LINEAR`], [`MAPPED`].
-            pub friction: u32,
-            /// Manning's n, Chezy's C or the friction slope over the velocity.
+            /// Exponent of the depth in the law of friction; negative where it is linear.
+            pub friction_exponent: f32,
+            /// Coefficient of the law of friction over gravity, where it is the same everywhere: n^2, 1/C^2 or S.
             pub roughness: f32,
             /// Cells of the particles over which the longest reach spreads.
             pub farthest: u32,

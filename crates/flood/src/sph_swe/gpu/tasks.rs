@@ -17,6 +17,7 @@ const LIBRARY: ShaderLibrary<'_> = &[
     GROUP_REDUCTION,
     ("sph_common", include_str!("sph_common.wgsl")),
     ("sph_ground", include_str!("sph_ground.wgsl")),
+    ("friction_rate", include_str!("../../friction/friction_rate.wgsl")),
     ("sph_friction", include_str!("sph_friction.wgsl")),
     ("sph_rows", include_str!("sph_rows.wgsl")),
     ("sph_spline", include_str!("../sph_spline.wgsl")),

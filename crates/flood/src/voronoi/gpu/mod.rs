@@ -49,6 +49,7 @@ const LIBRARY: ShaderLibrary<'_> = &[
     ("voronoi_change", include_str!("voronoi_change.wgsl")),
     ("hydraulics", include_str!("../structures/hydraulics.wgsl")),
     ("voronoi_storage", include_str!("../voronoi_storage.wgsl")),
+    ("friction_rate", include_str!("../../friction/friction_rate.wgsl")),
     ("voronoi_friction", include_str!("../friction/voronoi_friction.wgsl")),
     ("voronoi_differences", include_str!("../reconstruction/voronoi_differences.wgsl")),
     ("voronoi_faces", include_str!("../reconstruction/voronoi_faces.wgsl")),

@@ -72,12 +72,6 @@ corpuscle_gpu::declare! {
         pub const RATING: u32 = 2;
         /// Most of the volume between the levels on both sides of a crest that flows over in a step.
         pub const MOST_OVER_CREST: f32 = super::super::walls::MOST_OVER_CREST as f32;
-        /// Friction after Manning 1891.
-        pub const MANNING: u32 = 0;
-        /// Friction after Chezy 1775.
-        pub const CHEZY: u32 = 1;
-        /// Friction in proportion to the velocity.
-        pub const LINEAR: u32 = 2;
         /// Coefficient of an orifice: see `structures/hydraulics.rs`.
         pub const ORIFICE: f32 = super::super::structures::hydraulics::ORIFICE as f32;
         /// Depth over the height of a culvert from which on it is submerged.
@@ -138,8 +132,8 @@ corpuscle_gpu::declare! {
             pub cells: u32,
             /// Number of faces.
             pub faces: u32,
-            /// Law of friction: [`MANNING`], [`CHEZY`], [`LINEAR`].
-            pub friction_law: u32,
+            /// Exponent of the depth in the law of friction; negative where it is linear.
+            pub friction_exponent: f32,
             /// Always 0; read at run time so that the optimiser keeps compensated sums.
             pub zero: u32,
             /// Number of border faces.

@@ -3,14 +3,13 @@
 use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
-    CHEZY, Column, Face, Flux, Found, Ground, LINEAR, Link, MANNING, Memory, NONE, PLAN_SLOT, Parameters, Passed,
-    Place, Plan, Push, Record, Shown, Slopes, Status, Water,
+    Column, Face, Flux, Found, Ground, Link, Memory, NONE, PLAN_SLOT, Parameters, Passed, Place, Plan, Push, Record,
+    Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
 use crate::voronoi::Inflow;
 use crate::voronoi::boundaries::Boundaries;
-use crate::voronoi::friction::Slowing;
 use crate::voronoi::local::Local;
 use crate::voronoi::maps;
 use crate::voronoi::mesh::{self, Mesh};
@@ -157,11 +156,7 @@ impl Input<'_> {
             cells: mesh.len() as u32,
             faces: mesh.faces.len() as u32,
             borders: self.solver.borders.len() as u32,
-            friction_law: match slowing {
-                Slowing::Manning(_) | Slowing::ManningOfCells(_) => MANNING,
-                Slowing::Chezy(_) => CHEZY,
-                Slowing::Linear(_) => LINEAR,
-            },
+            friction_exponent: slowing.law().exponent(),
             ..Parameters::default()
         }
     }
@@ -190,12 +185,7 @@ impl Input<'_> {
             area: mesh.area[cell] as f32,
             width: mesh.width[cell] as f32,
             bed: mesh.bed[cell] as f32,
-            friction: match slowing {
-                Slowing::Manning(coefficient) | Slowing::Chezy(coefficient) | Slowing::Linear(coefficient) => {
-                    *coefficient as f32
-                }
-                Slowing::ManningOfCells(of_cells) => of_cells[cell],
-            },
+            friction: slowing.coefficient(cell) as f32,
             first_link: mesh.first_link[cell],
             end_link: mesh.first_link[cell + 1],
             rim: u32::from(mesh.rim[cell] != 0),

@@ -1,4 +1,4 @@
-//! Bed friction after Manning, Chezy, or in proportion to the velocity.
+//! Laws of bed friction, for both schemes: after Manning, Chezy, or in proportion to the velocity.
 
 use crate::Particle;
 use crate::setup::setup;
@@ -7,11 +7,60 @@ use corpuscle_scene::{Flood as Settings, Friction, LandUse, Manning};
 use corpuscle_terrain::{RasterField, Terrain};
 use std::path::Path;
 
+/// A law of bed friction: slowing by the rate k times the speed, k = coefficient / depth^power, or by a rate alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Law {
+    /// Manning 1891: k = g n^2 / d^(4/3).
+    Manning,
+    /// Chezy 1775: k = g / (C^2 d).
+    Chezy,
+    /// In proportion to the velocity: the rate is g S.
+    Linear,
+}
+
+impl Law {
+    /// The law's coefficient, from the scene's number: g n^2, g / C^2 or g S.
+    pub fn coefficient(self, gravity: f64, number: f64) -> f64 {
+        match self {
+            Self::Manning => gravity * number * number,
+            Self::Chezy => gravity / (number * number),
+            Self::Linear => gravity * number,
+        }
+    }
+
+    /// Whether the rate does not depend on the speed.
+    #[inline(always)]
+    pub fn is_linear(self) -> bool {
+        self == Self::Linear
+    }
+
+    /// The power of the depth by which the rate is the coefficient.
+    #[inline(always)]
+    pub fn power_of(self, depth: f64) -> f64 {
+        match self {
+            Self::Manning => depth * depth.cbrt(),
+            Self::Chezy => depth,
+            Self::Linear => 1.0,
+        }
+    }
+
+    /// That power's exponent, for shaders; negative where the law is linear.
+    #[cfg(feature = "gpu")]
+    pub fn exponent(self) -> f32 {
+        match self {
+            Self::Manning => 4.0 / 3.0,
+            Self::Chezy => 1.0,
+            Self::Linear => -1.0,
+        }
+    }
+}
+
 /// How the ground slows the water.
-pub(crate) enum Roughness {
-    /// Manning's n over the ground, s/m^(1/3).
-    Manning(Coefficient),
-    Other(Friction),
+pub(crate) struct Roughness {
+    /// The law.
+    pub law: Law,
+    /// Its number over the ground: Manning's n, s/m^(1/3), Chezy's C, m^(1/2)/s, or the friction slope over the velocity, s/m.
+    pub number: Coefficient,
 }
 
 /// A number over the ground.
@@ -24,54 +73,48 @@ pub(crate) enum Coefficient {
 
 impl Roughness {
     pub fn open(scene: &Settings, terrain: &Terrain, folder: &Path) -> Result<Self, ModelError> {
-        if let Some(friction) = scene.friction {
-            return Ok(Self::Other(friction));
+        let even = |law, number| Ok(Self { law, number: Coefficient::Even(number) });
+        match scene.friction {
+            Some(Friction::Chezy(c)) => return even(Law::Chezy, c),
+            Some(Friction::Linear(slope)) => return even(Law::Linear, slope),
+            None => {}
         }
         let open = |path: &Path| RasterField::open(folder.join(path), terrain).map(Box::new).map_err(setup);
         let rest = match &scene.manning {
             Manning::Number(n) => Coefficient::Even(*n),
             Manning::Raster { raster } => Coefficient::Raster(open(raster)?),
         };
-        let Some(LandUse { raster, class }) = &scene.land_use else { return Ok(Self::Manning(rest)) };
+        let manning = |number| Ok(Self { law: Law::Manning, number });
+        let Some(LandUse { raster, class }) = &scene.land_use else { return manning(rest) };
         let classes: Vec<_> = class.iter().filter_map(|class| Some((class.code as f64, class.manning?))).collect();
         if classes.is_empty() {
-            return Ok(Self::Manning(rest));
+            return manning(rest);
         }
-        Ok(Self::Manning(Coefficient::Classes(open(raster)?, classes, Box::new(rest))))
+        manning(Coefficient::Classes(open(raster)?, classes, Box::new(rest)))
     }
 
     /// Manning's n where no kind of ground has its own, to be changed; none where that is a raster, or friction another law's.
     pub fn rest(&mut self) -> Option<&mut f64> {
-        match self {
-            Self::Manning(coefficient) => coefficient.rest(),
-            Self::Other(_) => None,
-        }
+        if self.law == Law::Manning { self.number.rest() } else { None }
     }
 
     /// Whether it slows nothing.
     pub fn is_smooth(&self) -> bool {
-        matches!(self, Self::Manning(Coefficient::Even(0.0)))
+        self.law == Law::Manning && self.number.even() == Some(0.0)
     }
 
-    /// Slows a particle for `step` s by backward Euler steps of dv/dt = -k |v| v or -k v, for the depth as it is. That stops water but
+    /// Slows a particle for `step` s by a backward Euler step of dv/dt = -k |v| v or -k v, for the depth as it is. That stops water but
     /// never turns it round, and keeps water steady where friction balances another force, however long the step.
-    ///
-    /// - Manning 1891: k = g n^2 / d^(4/3).
-    /// - Chezy 1775: k = g / (C^2 d).
-    /// - In proportion to the velocity: k = g S.
     ///
     /// Gives the change of momentum over density, sum of both components, m4/s.
     #[inline]
     pub fn slow(&self, particle: &mut Particle, gravity: f64, step: f64) -> f64 {
-        let depth = particle.depth;
-        let quadratic = |k: f64| 2.0 / (1.0 + (1.0 + 4.0 * k * step * particle.speed()).sqrt());
-        let factor = match self {
-            Self::Manning(coefficient) => {
-                let n = coefficient.at(particle.x, particle.y);
-                quadratic(gravity * n * n / (depth * depth.cbrt()))
-            }
-            Self::Other(Friction::Chezy(c)) => quadratic(gravity / (c * c * depth)),
-            Self::Other(Friction::Linear(slope)) => 1.0 / (1.0 + step * gravity * slope),
+        let coefficient = self.law.coefficient(gravity, self.number.at(particle.x, particle.y));
+        let factor = if self.law.is_linear() {
+            1.0 / (1.0 + step * coefficient)
+        } else {
+            let k = coefficient / self.law.power_of(particle.depth);
+            2.0 / (1.0 + (1.0 + 4.0 * k * step * particle.speed()).sqrt())
         };
         let before = particle.u + particle.v;
         particle.u *= factor;
@@ -132,11 +175,12 @@ mod tests {
         let manning = 9.81 * 0.03 * 0.03 / 0.5_f64.powf(4.0 / 3.0);
         let chezy = 9.81 / (40.0 * 40.0 * 0.5);
         let rough = [
-            (Roughness::Manning(Coefficient::Even(0.03)), manning, true),
-            (Roughness::Other(Friction::Chezy(40.0)), chezy, true),
-            (Roughness::Other(Friction::Linear(0.01)), 9.81 * 0.01, false),
+            (Law::Manning, 0.03, manning, true),
+            (Law::Chezy, 40.0, chezy, true),
+            (Law::Linear, 0.01, 9.81 * 0.01, false),
         ];
-        for (rough, k, quadratic) in rough {
+        for (law, number, k, quadratic) in rough {
+            let rough = Roughness { law, number: Coefficient::Even(number) };
             let (mut once, mut often) = (particle(), particle());
             let impulse = rough.slow(&mut once, 9.81, 2.0);
             assert_eq!(impulse, once.u + once.v - 7.0);
