@@ -9,6 +9,7 @@ mod buffer;
 mod declare;
 mod device;
 mod error;
+mod group_layout;
 mod image;
 mod kernel;
 mod particles;
@@ -26,6 +27,7 @@ pub use declare::{
 };
 pub use device::{Gpu, GpuKind, require_gpu};
 pub use error::{GpuError, ImportError};
+pub use group_layout::GroupLayout;
 pub use image::Image;
 pub use kernel::{Kernel, MOST_GROUPS, THREADS, Task};
 pub use particles::{DeviceParticle, DeviceParticles};

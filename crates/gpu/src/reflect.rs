@@ -20,7 +20,7 @@ pub(crate) enum Use {
 }
 
 /// Reads and validates a shader with no capability: what WebGPU has without any feature.
-fn validated(text: &str) -> Result<(naga::Module, ModuleInfo), String> {
+pub(crate) fn validated(text: &str) -> Result<(naga::Module, ModuleInfo), String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)

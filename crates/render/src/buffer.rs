@@ -1,20 +1,6 @@
-//! Buffers and what they are bound as.
+//! Buffers.
 
 use corpuscle_gpu::{Gpu, wgpu};
-
-/// A uniform buffer, as a group's layout has it.
-pub(crate) const UNIFORM: wgpu::BindingType = wgpu::BindingType::Buffer {
-    ty: wgpu::BufferBindingType::Uniform,
-    has_dynamic_offset: false,
-    min_binding_size: None,
-};
-
-/// A texture of numbers that are loaded, not sampled, as a group's layout has it.
-pub(crate) const TEXTURE: wgpu::BindingType = wgpu::BindingType::Texture {
-    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-    view_dimension: wgpu::TextureViewDimension::D2,
-    multisampled: false,
-};
 
 /// A vertex buffer of instances or vertices.
 pub(crate) fn instances<T: bytemuck::NoUninit>(gpu: &Gpu, label: &str, all: &[T]) -> wgpu::Buffer {

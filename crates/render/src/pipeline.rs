@@ -1,7 +1,7 @@
 //! Pipelines that draw into a frame.
 
 use crate::{COLOUR_FORMAT, DEPTH_FORMAT};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 
 /// What a pipeline is made of. Its shader has entry points `vertex` and, unless another is named, `fragment`.
 pub(crate) struct PipelineDescriptor<'a> {
@@ -10,7 +10,7 @@ pub(crate) struct PipelineDescriptor<'a> {
     /// The shader.
     pub module: &'a wgpu::ShaderModule,
     /// Layouts of its groups; the first is that of the view.
-    pub groups: &'a [&'a wgpu::BindGroupLayout],
+    pub groups: &'a [&'a GroupLayout],
     /// Layouts of its vertex buffers.
     pub buffers: &'a [wgpu::VertexBufferLayout<'a>],
     /// Triangles, one by one or in a strip.
@@ -62,7 +62,7 @@ impl PipelineDescriptor<'_> {
         colour: Option<wgpu::ColorTargetState>,
         depth: Option<wgpu::CompareFunction>,
     ) -> wgpu::RenderPipeline {
-        let groups: Vec<_> = self.groups.iter().map(|group| Some(*group)).collect();
+        let groups: Vec<_> = self.groups.iter().map(|group| Some(group.layout())).collect();
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some(self.label),
             bind_group_layouts: &groups,

@@ -4,14 +4,14 @@ use crate::pipeline::PipelineDescriptor;
 use crate::static_layer::{StaticLayer, StaticUse};
 use crate::tone::Tone;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
-use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, read_rgba8, wgpu};
 use std::sync::PoisonError;
 
 /// Draws pictures. Holds what does not change from one to the next.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    view_layout: wgpu::BindGroupLayout,
+    view_layout: GroupLayout,
     backdrop: wgpu::RenderPipeline,
     tone: Tone,
 }
@@ -37,7 +37,7 @@ impl Renderer {
     }
 
     /// The layout of group 0 of every pipeline of a [`Drawable`].
-    pub fn view_layout(&self) -> &wgpu::BindGroupLayout {
+    pub fn view_layout(&self) -> &GroupLayout {
         &self.view_layout
     }
 

@@ -1,7 +1,7 @@
 //! The pieces that shaders of this crate import.
 
 use crate::shared::declared;
-use corpuscle_gpu::{DECLARED, Gpu, ImportError, join, wgpu};
+use corpuscle_gpu::{DECLARED, Gpu, GroupLayout, ImportError, join, wgpu};
 
 /// Pieces by name: see `#import`.
 const LIBRARY: [(&str, &str); 17] = [
@@ -37,6 +37,14 @@ pub(crate) fn module(gpu: &Gpu, name: &str, text: &str) -> wgpu::ShaderModule {
         label: Some(name),
         source: wgpu::ShaderSource::Wgsl(joined(name, text).expect("a test joins every shader").into()),
     })
+}
+
+/// The layout of a group that shaders of this crate share; their names and texts are as for [`module`].
+pub(crate) fn layout(gpu: &Gpu, label: &'static str, group: u32, shaders: &[(&str, &str)]) -> GroupLayout {
+    let whole = |(name, text): &(&str, &str)| joined(name, text).expect("a test joins every shader");
+    let texts: Vec<String> = shaders.iter().map(whole).collect();
+    let texts: Vec<&str> = texts.iter().map(String::as_str).collect();
+    GroupLayout::new(&gpu.device, label, group, &texts).expect("the shader is valid, as a test says")
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! What every shader knows of the picture: camera, light, and the sun's depth map. Group 0 of every pipeline; in WGSL `#import view`.
 
 use crate::shared::CameraAndLight;
-use crate::{Backdrop, Camera, Lens, Light, Stage};
-use corpuscle_gpu::Gpu;
-use corpuscle_gpu::wgpu;
+use crate::{Backdrop, Camera, Lens, Light, Stage, shaders};
+use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 use glam::camera::rh::{proj::directx, view};
 use glam::{Mat4, Vec3};
 
@@ -26,7 +25,7 @@ impl View {
     /// Camera and light for a target of `size`, pixels. `layout` is [`crate::Renderer::view_layout`], `shadow` the sun's depth map.
     pub fn new(
         gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
+        layout: &GroupLayout,
         stage: &Stage,
         camera: &Camera,
         light: &Light,
@@ -54,25 +53,9 @@ impl View {
         bytemuck::bytes_of(&self.uniform)
     }
 
-    /// The layout of group 0: uniform `View`, the sun's depth map, its comparing sampler.
-    pub(crate) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: stages, ty, count: None };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let depth = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Depth,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let compare = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison);
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("view"),
-            entries: &[entry(0, uniform), entry(1, depth), entry(2, compare)],
-        })
+    /// The layout of group 0: camera and light, the sun's depth map, its comparing sampler.
+    pub(crate) fn layout(gpu: &Gpu) -> GroupLayout {
+        shaders::layout(gpu, "view", 0, &[("view", include_str!("view.wgsl"))])
     }
 }
 
@@ -144,12 +127,7 @@ pub(crate) fn depth_map(gpu: &Gpu, pixels: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-fn group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    uniform: &CameraAndLight,
-    shadow: &wgpu::TextureView,
-) -> wgpu::BindGroup {
+fn group(gpu: &Gpu, layout: &GroupLayout, uniform: &CameraAndLight, shadow: &wgpu::TextureView) -> wgpu::BindGroup {
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("view"),
         size: size_of::<CameraAndLight>() as u64,
@@ -164,14 +142,12 @@ fn group(
         compare: Some(wgpu::CompareFunction::GreaterEqual),
         ..wgpu::SamplerDescriptor::default()
     });
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("view"),
-        layout,
-        entries: &[
-            entry(0, buffer.as_entire_binding()),
-            entry(1, wgpu::BindingResource::TextureView(shadow)),
-            entry(2, wgpu::BindingResource::Sampler(&sampler)),
+    layout.bind(
+        &gpu.device,
+        &[
+            ("view", buffer.as_entire_binding()),
+            ("sun_depth", wgpu::BindingResource::TextureView(shadow)),
+            ("sun_compare", wgpu::BindingResource::Sampler(&sampler)),
         ],
-    })
+    )
 }

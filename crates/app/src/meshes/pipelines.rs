@@ -1,16 +1,18 @@
 //! How the window's triangles are drawn on the device.
 
-use corpuscle::gpu::{Gpu, wgpu};
+use corpuscle::gpu::{Gpu, GroupLayout, wgpu};
 use egui::TextureFilter;
 use egui::epaint::Vertex;
 use std::sync::Arc;
+
+const SHADER: &str = include_str!("meshes.wgsl");
 
 /// The shaders for letters and for images, and what they take.
 pub(super) struct Pipelines {
     pub letters: wgpu::RenderPipeline,
     pub images: wgpu::RenderPipeline,
-    window: wgpu::BindGroupLayout,
-    image: wgpu::BindGroupLayout,
+    window: GroupLayout,
+    image: GroupLayout,
     samplers: [wgpu::Sampler; 2],
 }
 
@@ -24,27 +26,13 @@ impl Pipelines {
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("meshes"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("meshes.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(SHADER.into()),
         });
-        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
+        let layout = |label, group| {
+            GroupLayout::new(device, label, group, &[SHADER]).expect("the shader is valid, as a test says")
         };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("meshes"), entries })
-        };
-        let window = layout(&[entry(0, wgpu::ShaderStages::VERTEX, uniform)]);
-        let seen = wgpu::ShaderStages::FRAGMENT;
-        let image = layout(&[entry(0, seen, texture), entry(1, seen, sampler)]);
-        let pipeline = |entry| pipeline(device, format, &module, entry, [&window, &image]);
+        let (window, image) = (layout("size of the window", 0), layout("image", 1));
+        let pipeline = |entry| pipeline(device, format, &module, entry, [window.layout(), image.layout()]);
         let sampler = |filter| {
             device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("meshes"),
@@ -76,15 +64,11 @@ impl Pipelines {
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let sampler = &self.samplers[usize::from(filter == TextureFilter::Linear)];
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("image"),
-            layout: &self.image,
-            entries: &[
-                entry(0, wgpu::BindingResource::TextureView(&view)),
-                entry(1, wgpu::BindingResource::Sampler(sampler)),
-            ],
-        });
+        let resources = [
+            ("image", wgpu::BindingResource::TextureView(&view)),
+            ("image_sampler", wgpu::BindingResource::Sampler(sampler)),
+        ];
+        let group = self.image.bind(device, &resources);
         Image { texture, group: Arc::new(group) }
     }
 
@@ -98,11 +82,7 @@ impl Pipelines {
             mapped_at_creation: false,
         });
         gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(&size));
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("size of the window"),
-            layout: &self.window,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }],
-        })
+        self.window.bind(&gpu.device, &[("window", buffer.as_entire_binding())])
     }
 }
 

@@ -7,7 +7,7 @@ use crate::buffer::{storage, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shared::{BallInstance, BallUniforms};
 use crate::{Before, Camera, ColourTable, Drawable, Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, Kernel, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Kernel, wgpu};
 pub use device::{BallsOfDevice, ValueOfDevice};
 use seen::{Seen, SeenPainter};
 use std::sync::{Arc, OnceLock};
@@ -54,7 +54,7 @@ impl BallStyle {
 /// Draws balls; holds what all of them share.
 #[derive(Debug)]
 pub struct BallPainter {
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
     opaque: wgpu::RenderPipeline,
     matt: wgpu::RenderPipeline,
     discs: wgpu::RenderPipeline,
@@ -78,14 +78,25 @@ pub struct Balls {
     seen: Option<Seen>,
 }
 
+/// Shaders that share the balls' group: those that draw balls in full, matt, as discs, that find the nearest, and that shade it.
+const SHADERS: [(&str, &str); 5] = [
+    ("balls", include_str!("balls.wgsl")),
+    ("matt", include_str!("matt.wgsl")),
+    ("discs", include_str!("discs.wgsl")),
+    ("balls_numbered", include_str!("balls_numbered.wgsl")),
+    ("balls_seen", include_str!("balls_seen.wgsl")),
+];
+
 impl BallPainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
-        let layout = layout(gpu);
+        let layout = shaders::layout(gpu, "balls", 1, &SHADERS);
+        let module = |(name, text): (&str, &str)| shaders::module(gpu, name, text);
+        let [balls, matt, discs, ..] = SHADERS;
         let descriptor = PipelineDescriptor {
             label: "balls",
-            module: &shaders::module(gpu, "balls", include_str!("balls.wgsl")),
+            module: &module(balls),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -94,13 +105,8 @@ impl BallPainter {
         Self {
             opaque: descriptor.opaque(gpu),
             cast: descriptor.cast(gpu, "throw_shadow"),
-            matt: PipelineDescriptor { module: &shaders::module(gpu, "matt", include_str!("matt.wgsl")), ..descriptor }
-                .opaque(gpu),
-            discs: PipelineDescriptor {
-                module: &shaders::module(gpu, "discs", include_str!("discs.wgsl")),
-                ..descriptor
-            }
-            .opaque(gpu),
+            matt: PipelineDescriptor { module: &module(matt), ..descriptor }.opaque(gpu),
+            discs: PipelineDescriptor { module: &module(discs), ..descriptor }.opaque(gpu),
             layout,
             seen,
             maker: OnceLock::new(),
@@ -139,15 +145,11 @@ impl BallPainter {
         let colours = style.colours.upload(gpu);
         let part = |(buffer, count): (&wgpu::Buffer, u32)| {
             let resources = [
-                settings.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&colours),
-                buffer.as_entire_binding(),
+                ("style", settings.as_entire_binding()),
+                ("colours", wgpu::BindingResource::TextureView(&colours)),
+                ("balls", buffer.as_entire_binding()),
             ];
-            let entries: Vec<_> =
-                (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
-            let layout = &self.layout;
-            let descriptor = wgpu::BindGroupDescriptor { label: Some("balls"), layout, entries: &entries };
-            (gpu.device.create_bind_group(&descriptor), count)
+            (self.layout.bind(&gpu.device, &resources), count)
         };
         let parts = parts.into_iter().map(part).collect();
         let opaque = match style.shading {
@@ -195,22 +197,4 @@ impl Drawable for Balls {
             _ => self.paint(pass, &self.opaque),
         }
     }
-}
-
-fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let list = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Storage { read_only: true },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let entries: Vec<_> = (0..)
-        .zip([crate::buffer::UNIFORM, crate::buffer::TEXTURE, list])
-        .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty,
-            count: None,
-        })
-        .collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("balls"), entries: &entries })
 }

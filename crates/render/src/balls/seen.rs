@@ -2,7 +2,7 @@
 
 use crate::pipeline::PipelineDescriptor;
 use crate::{Before, DEPTH_FORMAT, Renderer, shaders};
-use corpuscle_gpu::{texture_2d, wgpu};
+use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 
 /// Format of the numbers.
 const NUMBERS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
@@ -12,7 +12,7 @@ const NUMBERS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub(super) struct SeenPainter {
     find: wgpu::RenderPipeline,
     shade: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
 }
 
 /// Which balls are seen where in a picture.
@@ -22,24 +22,13 @@ pub(super) struct Seen {
 }
 
 impl SeenPainter {
-    pub(super) fn new(renderer: &Renderer, balls: &wgpu::BindGroupLayout) -> Self {
+    pub(super) fn new(renderer: &Renderer, balls: &GroupLayout) -> Self {
         let gpu = renderer.gpu();
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("balls seen"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Uint,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            }],
-        });
+        let [.., numbered, seen] = super::SHADERS;
+        let layout = shaders::layout(gpu, "balls seen", 2, &[seen]);
         let find = PipelineDescriptor {
             label: "balls numbered",
-            module: &shaders::module(gpu, "balls_numbered", include_str!("balls_numbered.wgsl")),
+            module: &shaders::module(gpu, numbered.0, numbered.1),
             groups: &[renderer.view_layout(), balls],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -47,7 +36,7 @@ impl SeenPainter {
         .nearest(gpu, NUMBERS);
         let shade = PipelineDescriptor {
             label: "balls seen",
-            module: &shaders::module(gpu, "balls_seen", include_str!("balls_seen.wgsl")),
+            module: &shaders::module(gpu, seen.0, seen.1),
             groups: &[renderer.view_layout(), balls, &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -85,11 +74,8 @@ impl SeenPainter {
         pass.set_bind_group(1, balls, &[]);
         pass.set_pipeline(&self.find);
         pass.draw(0..super::CORNERS * count, 0..1);
-        let group = frame.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("balls seen"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&numbers) }],
-        });
+        let numbers = wgpu::BindingResource::TextureView(&numbers);
+        let group = self.layout.bind(&frame.gpu.device, &[("numbers", numbers)]);
         Seen { group }
     }
 

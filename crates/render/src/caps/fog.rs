@@ -1,9 +1,8 @@
 //! Drops too small to be seen one by one: fog on a surface.
 
-use crate::buffer::TEXTURE;
 use crate::pipeline::PipelineDescriptor;
 use crate::{COLOUR_FORMAT, Renderer, Through, shaders};
-use corpuscle_gpu::{Gpu, texture_2d, wgpu};
+use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 
 /// Format of the area that droplets cover.
 const COVERED: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -13,35 +12,19 @@ const COVERED: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 pub(super) struct Fog {
     cover: wgpu::RenderPipeline,
     compose: wgpu::RenderPipeline,
-    depth_layout: wgpu::BindGroupLayout,
-    compose_layout: wgpu::BindGroupLayout,
+    depth_layout: GroupLayout,
+    compose_layout: GroupLayout,
     sampler: wgpu::Sampler,
 }
 
 impl Fog {
-    pub(super) fn new(renderer: &Renderer, caps_layout: &wgpu::BindGroupLayout) -> Self {
+    pub(super) fn new(renderer: &Renderer, caps_layout: &GroupLayout) -> Self {
         let gpu = renderer.gpu();
-        let layout = |label, types: &[wgpu::BindingType]| {
-            let entry = |(binding, ty): (usize, &wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
-                binding: binding as u32,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: *ty,
-                count: None,
-            };
-            let entries: Vec<_> = types.iter().enumerate().map(entry).collect();
-            gpu.device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
-        };
-        let texture = |sample_type| wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let depth_layout = layout("fog's depth", &[texture(wgpu::TextureSampleType::Depth)]);
-        let filtered = texture(wgpu::TextureSampleType::Float { filterable: true });
-        let sampler_type = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let compose_layout = layout("fog", &[TEXTURE, filtered, sampler_type]);
-        let module = shaders::module(gpu, "fog", include_str!("fog.wgsl"));
+        let [_, fog] = super::SHADERS;
+        let composing = ("fog_compose", include_str!("fog_compose.wgsl"));
+        let depth_layout = shaders::layout(gpu, "fog's depth", 2, &[fog]);
+        let compose_layout = shaders::layout(gpu, "fog", 1, &[composing]);
+        let module = shaders::module(gpu, fog.0, fog.1);
         let cover = PipelineDescriptor {
             label: "fog",
             module: &module,
@@ -50,7 +33,7 @@ impl Fog {
             topology: wgpu::PrimitiveTopology::TriangleStrip,
         }
         .added(gpu, COVERED);
-        let module = shaders::module(gpu, "fog_compose", include_str!("fog_compose.wgsl"));
+        let module = shaders::module(gpu, composing.0, composing.1);
         let compose = PipelineDescriptor {
             label: "fog compose",
             module: &module,
@@ -74,7 +57,8 @@ impl Fog {
         let covered =
             texture_2d(frame.gpu, "fog", frame.size, COVERED, usage).expect("as large as the target, which is there");
         let covered = covered.create_view(&wgpu::TextureViewDescriptor::default());
-        let depth = group(frame.gpu, &self.depth_layout, &[wgpu::BindingResource::TextureView(frame.behind_depth)]);
+        let depth = wgpu::BindingResource::TextureView(frame.behind_depth);
+        let depth = self.depth_layout.bind(&frame.gpu.device, &[("behind_depth", depth)]);
         {
             let mut pass = begin(frame, &covered, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
             pass.set_pipeline(&self.cover);
@@ -83,11 +67,11 @@ impl Fog {
             pass.draw(0..4, 0..count);
         }
         let resources = [
-            wgpu::BindingResource::TextureView(&covered),
-            wgpu::BindingResource::TextureView(frame.behind_colour),
-            wgpu::BindingResource::Sampler(&self.sampler),
+            ("covered", wgpu::BindingResource::TextureView(&covered)),
+            ("behind", wgpu::BindingResource::TextureView(frame.behind_colour)),
+            ("behind_sampler", wgpu::BindingResource::Sampler(&self.sampler)),
         ];
-        let compose = group(frame.gpu, &self.compose_layout, &resources);
+        let compose = self.compose_layout.bind(&frame.gpu.device, &resources);
         let colour = frame.colour;
         let mut pass = begin(frame, colour, wgpu::LoadOp::Load);
         pass.set_pipeline(&self.compose);
@@ -114,12 +98,4 @@ fn begin<'a>(
     });
     pass.set_bind_group(0, frame.view, &[]);
     pass
-}
-
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("fog"), layout, entries: &entries })
 }

@@ -3,12 +3,12 @@
 mod fog;
 mod neighbours;
 
-use crate::buffer::{UNIFORM, storage, uniform};
+use crate::buffer::{storage, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shared::{CapInstance, CapUniforms};
 use crate::solids::Behind;
 use crate::{Drawable, Renderer, Stage, Through, shaders};
-use corpuscle_gpu::{Gpu, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 use fog::Fog;
 use glam::Vec3;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub struct CapPainter {
 #[derive(Debug)]
 struct Tools {
     pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
     behind: Behind,
     fog: Fog,
 }
@@ -54,14 +54,18 @@ pub struct Caps {
     count: u32,
 }
 
+/// Shaders that share the drops' group: of drops, and of the fog of the fine ones.
+const SHADERS: [(&str, &str); 2] = [("caps", include_str!("caps.wgsl")), ("fog", include_str!("fog.wgsl"))];
+
 impl CapPainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let gpu = renderer.gpu();
-        let (behind, layout) = (Behind::new(gpu), layout(gpu));
+        let [drops, _] = SHADERS;
+        let (behind, layout) = (Behind::new(gpu, drops), shaders::layout(gpu, "caps", 1, &SHADERS));
         let pipeline = PipelineDescriptor {
             label: "caps",
-            module: &shaders::module(gpu, "caps", include_str!("caps.wgsl")),
+            module: &shaders::module(gpu, drops.0, drops.1),
             groups: &[renderer.view_layout(), &layout, &behind.layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleStrip,
@@ -89,18 +93,15 @@ impl CapPainter {
         let discs: Vec<_> = all.iter().map(|cap| (Vec3::from(cap.place), cap.radius)).collect();
         let (spans, list) = neighbours::neighbours(&discs, GAP * neck);
         all.iter_mut().zip(spans).for_each(|(cap, span)| cap.neighbours = span);
-        let buffers = [
-            storage(gpu, "caps", &all),
-            storage(gpu, "caps' neighbours", &list),
-            uniform(gpu, "caps", &CapUniforms { neck: neck.max(1e-9), finest: FINEST, ..CapUniforms::default() }),
+        let (drops, list) = (storage(gpu, "caps", &all), storage(gpu, "caps' neighbours", &list));
+        let settings = CapUniforms { neck: neck.max(1e-9), finest: FINEST, ..CapUniforms::default() };
+        let settings = uniform(gpu, "caps", &settings);
+        let resources = [
+            ("caps", drops.as_entire_binding()),
+            ("neighbours", list.as_entire_binding()),
+            ("settings", settings.as_entire_binding()),
         ];
-        let entries: Vec<_> = (0..)
-            .zip(&buffers)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let layout = &self.tools.layout;
-        let group =
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("caps"), layout, entries: &entries });
+        let group = self.tools.layout.bind(&gpu.device, &resources);
         Caps { tools: self.tools.clone(), group, count: all.len() as u32 }
     }
 }
@@ -119,21 +120,4 @@ impl Drawable for Caps {
         pass.set_bind_group(2, &behind, &[]);
         pass.draw(0..4, 0..self.count);
     }
-}
-
-/// Layout of the drops' group: caps, neighbours, settings.
-fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let list = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Storage { read_only: true },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let entry = |(binding, ty): (usize, wgpu::BindingType)| wgpu::BindGroupLayoutEntry {
-        binding: binding as u32,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty,
-        count: None,
-    };
-    let entries: Vec<_> = [list, list, UNIFORM].into_iter().enumerate().map(entry).collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("caps"), entries: &entries })
 }

@@ -1,6 +1,6 @@
 //! A floor that only its shadows show.
 
-use crate::buffer::{UNIFORM, uniform};
+use crate::buffer::uniform;
 use crate::pipeline::PipelineDescriptor;
 use crate::{Camera, Drawable, Renderer, Stage, shaders, shared, static_layer};
 use corpuscle_gpu::{Gpu, wgpu};
@@ -23,28 +23,17 @@ impl Floor {
     /// A floor at a height, m.
     pub fn new(renderer: &Renderer, height: f64) -> Self {
         let gpu = renderer.gpu();
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("floor"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: UNIFORM,
-                count: None,
-            }],
-        });
+        let shader = ("floor", include_str!("floor.wgsl"));
+        let layout = shaders::layout(gpu, "floor", 1, &[shader]);
         let descriptor = PipelineDescriptor {
             label: "floor",
-            module: &shaders::module(gpu, "floor", include_str!("floor.wgsl")),
+            module: &shaders::module(gpu, shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
         };
         let place = uniform(gpu, "floor", &shared::Floor { darkness: DARKNESS, ..shared::Floor::default() });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("floor"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: place.as_entire_binding() }],
-        });
+        let group = layout.bind(&gpu.device, &[("plane", place.as_entire_binding())]);
         Self { pipeline: descriptor.opaque(gpu), group, place, height, state: static_layer::new_state() }
     }
 

@@ -14,7 +14,6 @@
 //! raster units for small sprites, compute shaders draw the particles as well, as splats: splat_depth.wgsl and splat_nearest.wgsl,
 //! splat_thickness.wgsl and splat_added.wgsl.
 
-mod bindings;
 mod device;
 mod droplet;
 mod layers;

@@ -1,13 +1,11 @@
 //! What all fluids share: pipelines, layouts.
 
-use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOLE, layout, written};
-use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
+use super::layers::{DISTANCE, THICKNESS};
 use super::{Fluid, FluidStyle};
 use crate::pipeline::PipelineDescriptor;
 use crate::shared::{DropletInstance, buffer_layout};
 use crate::{Renderer, Stage, shaders};
-use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
-use wgpu::ShaderStages;
+use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 
 /// Draws fluids; holds what all of them share.
 #[derive(Debug, Clone)]
@@ -24,9 +22,9 @@ pub struct FluidPainter {
     pub(super) normals: Filter,
     pub(super) shading: Filter,
     pub(super) composing: wgpu::RenderPipeline,
-    pub(super) composed: wgpu::BindGroupLayout,
+    pub(super) composed: GroupLayout,
     /// Of the style alone.
-    pub(super) settings: wgpu::BindGroupLayout,
+    pub(super) settings: GroupLayout,
     pub(super) sampler: wgpu::Sampler,
 }
 
@@ -34,42 +32,34 @@ pub struct FluidPainter {
 #[derive(Debug, Clone)]
 pub(super) struct Filter {
     pub pipeline: wgpu::ComputePipeline,
-    pub layout: wgpu::BindGroupLayout,
+    pub layout: GroupLayout,
 }
 
 impl FluidPainter {
     /// A painter for a renderer.
     pub fn new(renderer: &Renderer) -> Self {
         let (gpu, view) = (renderer.gpu(), renderer.view_layout());
-        let settings = layout(gpu, "fluid", ShaderStages::FRAGMENT, &[UNIFORM]);
+        let settings = shaders::layout(gpu, "fluid", 1, &SPRITES);
         let [depth, thickness] = sprites(gpu, view, &settings);
-        let splat_depth = shaders::module(gpu, "splat_depth", include_str!("splat_depth.wgsl"));
-        let splat_nearest = shaders::module(gpu, "splat_nearest", include_str!("splat_nearest.wgsl"));
-        let splat_thickness = shaders::module(gpu, "splat_thickness", include_str!("splat_thickness.wgsl"));
-        let splat_added = shaders::module(gpu, "splat_added", include_str!("splat_added.wgsl"));
-        let splatted = [UNIFORM, READ, READ, CHANGED];
-        let bilateral = shaders::module(gpu, "bilateral", include_str!("bilateral.wgsl"));
-        let narrow = shaders::module(gpu, "narrow_range", include_str!("narrow_range.wgsl"));
-        let normals = shaders::module(gpu, "fluid_normals", include_str!("fluid_normals.wgsl"));
-        let shading = shaders::module(gpu, "fluid_shade", include_str!("fluid_shade.wgsl"));
-        let smoothing = [UNIFORM, PLAIN, written(DISTANCE), UNIFORM];
-        let shaded = [UNIFORM, PLAIN, WHOLE, MIXED, MIXED, DEPTH, SAMPLER, written(SHADED)];
-        let composed = layout(gpu, "composing", ShaderStages::VERTEX_FRAGMENT, &[UNIFORM, PLAIN, PLAIN]);
+        let narrow = ("narrow_range", include_str!("narrow_range.wgsl"));
+        let filter = |shader, entry| Filter::new(gpu, view, shader, entry);
+        let composing = ("fluid_compose", include_str!("fluid_compose.wgsl"));
+        let composed = shaders::layout(gpu, "composing", 1, &[composing]);
         Self {
             depth,
             thickness,
-            splat_depth: Filter::new(gpu, view, &splat_depth, "main", &splatted),
-            splat_nearest: Filter::new(gpu, view, &splat_nearest, "main", &[READ, written(DISTANCE)]),
-            splat_thickness: Filter::new(gpu, view, &splat_thickness, "main", &splatted),
-            splat_added: Filter::new(gpu, view, &splat_added, "main", &[READ, written(THICKNESS)]),
-            bilateral: Filter::new(gpu, view, &bilateral, "along", &smoothing),
-            narrow_range: Filter::new(gpu, view, &narrow, "along", &smoothing),
-            square: Filter::new(gpu, view, &narrow, "square", &smoothing),
-            normals: Filter::new(gpu, view, &normals, "main", &[UNIFORM, PLAIN, written(NORMAL)]),
-            shading: Filter::new(gpu, view, &shading, "main", &shaded),
+            splat_depth: filter(("splat_depth", include_str!("splat_depth.wgsl")), "main"),
+            splat_nearest: filter(("splat_nearest", include_str!("splat_nearest.wgsl")), "main"),
+            splat_thickness: filter(("splat_thickness", include_str!("splat_thickness.wgsl")), "main"),
+            splat_added: filter(("splat_added", include_str!("splat_added.wgsl")), "main"),
+            bilateral: filter(("bilateral", include_str!("bilateral.wgsl")), "along"),
+            narrow_range: filter(narrow, "along"),
+            square: filter(narrow, "square"),
+            normals: filter(("fluid_normals", include_str!("fluid_normals.wgsl")), "main"),
+            shading: filter(("fluid_shade", include_str!("fluid_shade.wgsl")), "main"),
             composing: PipelineDescriptor {
                 label: "composing",
-                module: &shaders::module(gpu, "fluid_compose", include_str!("fluid_compose.wgsl")),
+                module: &shaders::module(gpu, composing.0, composing.1),
                 groups: &[view, &composed],
                 buffers: &[],
                 topology: wgpu::PrimitiveTopology::TriangleList,
@@ -93,23 +83,17 @@ impl FluidPainter {
 }
 
 impl Filter {
-    fn new(
-        gpu: &Gpu,
-        view: &wgpu::BindGroupLayout,
-        module: &wgpu::ShaderModule,
-        entry: &str,
-        bindings: &[wgpu::BindingType],
-    ) -> Self {
-        let layout = layout(gpu, entry, ShaderStages::COMPUTE, bindings);
+    fn new(gpu: &Gpu, view: &GroupLayout, shader: (&'static str, &str), entry: &str) -> Self {
+        let layout = shaders::layout(gpu, shader.0, 1, &[shader]);
         let both = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(entry),
-            bind_group_layouts: &[Some(view), Some(&layout)],
+            label: Some(shader.0),
+            bind_group_layouts: &[Some(view.layout()), Some(layout.layout())],
             immediate_size: 0,
         });
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry),
+            label: Some(shader.0),
             layout: Some(&both),
-            module,
+            module: &shaders::module(gpu, shader.0, shader.1),
             entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
@@ -118,8 +102,12 @@ impl Filter {
     }
 }
 
+/// Shaders that draw particles: the nearest distance, and thickness.
+const SPRITES: [(&str, &str); 2] =
+    [("fluid_depth", include_str!("fluid_depth.wgsl")), ("fluid_thickness", include_str!("fluid_thickness.wgsl"))];
+
 /// The pipelines that draw particles: nearest depth, and thickness.
-fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLayout) -> [wgpu::RenderPipeline; 2] {
+fn sprites(gpu: &Gpu, view: &GroupLayout, settings: &GroupLayout) -> [wgpu::RenderPipeline; 2] {
     let layout = DropletInstance::layout();
     let attributes = layout.vertex_attributes();
     let buffers = [buffer_layout(&layout, wgpu::VertexStepMode::Instance, &attributes)];
@@ -131,7 +119,6 @@ fn sprites(gpu: &Gpu, view: &wgpu::BindGroupLayout, settings: &wgpu::BindGroupLa
         buffers: &buffers,
         topology: wgpu::PrimitiveTopology::TriangleStrip,
     };
-    let nearest = shaders::module(gpu, "fluid_depth", include_str!("fluid_depth.wgsl"));
-    let added = shaders::module(gpu, "fluid_thickness", include_str!("fluid_thickness.wgsl"));
+    let [nearest, added] = SPRITES.map(|(name, text)| shaders::module(gpu, name, text));
     [descriptor("depth", &nearest).nearest(gpu, DISTANCE), descriptor("thickness", &added).added(gpu, THICKNESS)]
 }

@@ -1,6 +1,5 @@
 //! The passes, one by one.
 
-use super::bindings::group;
 use super::layers::{Layers, whole};
 use super::painter::Filter;
 use super::{Fluid, Smoothing};
@@ -48,8 +47,13 @@ impl Fluid {
     fn draw_depth(&self, layers: &Layers, frame: &mut Through<'_>) {
         let painter = &self.painter;
         if let Some(splats) = self.splats(layers) {
-            self.splat_into(&splats.nearest, &painter.splat_depth, frame);
-            return finish(&painter.splat_nearest, &splats.nearest, &layers.distances[0], frame);
+            self.splat_into(("nearest", &splats.nearest), &painter.splat_depth, frame);
+            return finish(
+                &painter.splat_nearest,
+                ("nearest", &splats.nearest),
+                ("distances", &layers.distances[0]),
+                frame,
+            );
         }
         let depth = whole(&layers.nearest);
         let far = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard };
@@ -60,22 +64,27 @@ impl Fluid {
     fn draw_thickness(&self, layers: &Layers, frame: &mut Through<'_>) {
         let painter = &self.painter;
         if let Some(splats) = self.splats(layers) {
-            self.splat_into(&splats.sums, &painter.splat_thickness, frame);
-            return finish(&painter.splat_added, &splats.sums, &layers.thickness, frame);
+            self.splat_into(("sums", &splats.sums), &painter.splat_thickness, frame);
+            return finish(&painter.splat_added, ("sums", &splats.sums), ("thickness", &layers.thickness), frame);
         }
         self.draw_sprites(frame, &layers.thickness, None, &self.painter.thickness);
     }
 
     /// Draws particles by a compute shader into numbers that are cleared before.
-    fn splat_into(&self, numbers: &wgpu::Buffer, splat: &Filter, frame: &mut Through<'_>) {
+    fn splat_into(&self, (name, numbers): (&str, &wgpu::Buffer), splat: &Filter, frame: &mut Through<'_>) {
         frame.encoder.clear_buffer(numbers, 0, None);
         let groups: Vec<_> = self
             .droplets
             .iter()
             .map(|batch| {
                 let [instances, told] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
-                let bound = [self.settings.as_entire_binding(), instances, told, numbers.as_entire_binding()];
-                group(frame.gpu, "splats", &splat.layout, &bound)
+                let bound = [
+                    ("fluid", self.settings.as_entire_binding()),
+                    ("droplets", instances),
+                    ("told", told),
+                    (name, numbers.as_entire_binding()),
+                ];
+                splat.layout.bind(&frame.gpu.device, &bound)
             })
             .collect();
         let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -94,7 +103,8 @@ impl Fluid {
         depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
         pipeline: &wgpu::RenderPipeline,
     ) {
-        let settings = group(frame.gpu, "fluid", &self.painter.settings, &[self.settings.as_entire_binding()]);
+        let settings = self.settings.as_entire_binding();
+        let settings = self.painter.settings.bind(&frame.gpu.device, &[("fluid", settings)]);
         let nothing =
             wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
         let mut pass = frame.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -146,14 +156,22 @@ impl Fluid {
         frame: &mut Through<'_>,
     ) {
         let [from, to] = [from, to].map(|index| whole(&layers.distances[index]));
-        let settings = self.settings.as_entire_binding();
-        let bound = [settings, TextureView(&from), TextureView(&to), direction.as_entire_binding()];
+        let bound = [
+            ("fluid", self.settings.as_entire_binding()),
+            ("distances", TextureView(&from)),
+            ("smoothed", TextureView(&to)),
+            ("direction", direction.as_entire_binding()),
+        ];
         run(filter, &bound, layers.size, frame);
     }
 
     fn find_normals(&self, layers: &Layers, frame: &mut Through<'_>) {
         let [from, to] = [self.surface(layers), &layers.normals].map(whole);
-        let bound = [self.settings.as_entire_binding(), TextureView(&from), TextureView(&to)];
+        let bound = [
+            ("fluid", self.settings.as_entire_binding()),
+            ("distances", TextureView(&from)),
+            ("normals", TextureView(&to)),
+        ];
         run(&self.painter.normals, &bound, layers.size, frame);
     }
 
@@ -162,22 +180,26 @@ impl Fluid {
         let [distances, normals, thickness] = read.each_ref().map(TextureView);
         let shaded = whole(&layers.shaded);
         let bound = [
-            self.settings.as_entire_binding(),
-            distances,
-            normals,
-            thickness,
-            TextureView(frame.behind_colour),
-            TextureView(frame.behind_depth),
-            Sampler(&self.painter.sampler),
-            TextureView(&shaded),
+            ("fluid", self.settings.as_entire_binding()),
+            ("distances", distances),
+            ("normals", normals),
+            ("thickness", thickness),
+            ("behind_colour", TextureView(frame.behind_colour)),
+            ("behind_depth", TextureView(frame.behind_depth)),
+            ("linear", Sampler(&self.painter.sampler)),
+            ("shaded", TextureView(&shaded)),
         ];
         run(&self.painter.shading, &bound, layers.size, frame);
     }
 
     fn compose(&self, layers: &Layers, frame: &mut Through<'_>) {
         let [distances, shaded] = [self.surface(layers), &layers.shaded].map(whole);
-        let bound = [self.settings.as_entire_binding(), TextureView(&distances), TextureView(&shaded)];
-        let group = group(frame.gpu, "composing", &self.painter.composed, &bound);
+        let bound = [
+            ("fluid", self.settings.as_entire_binding()),
+            ("distances", TextureView(&distances)),
+            ("shaded", TextureView(&shaded)),
+        ];
+        let group = self.painter.composed.bind(&frame.gpu.device, &bound);
         let mut pass = frame.begin("composing");
         pass.set_pipeline(&self.painter.composing);
         pass.set_bind_group(1, &group, &[]);
@@ -186,15 +208,20 @@ impl Fluid {
 }
 
 /// Makes a texture of what was splatted.
-fn finish(filter: &Filter, numbers: &wgpu::Buffer, texture: &wgpu::Texture, frame: &mut Through<'_>) {
+fn finish(
+    filter: &Filter,
+    (name, numbers): (&str, &wgpu::Buffer),
+    (into, texture): (&str, &wgpu::Texture),
+    frame: &mut Through<'_>,
+) {
     let view = whole(texture);
-    let bound = [numbers.as_entire_binding(), TextureView(&view)];
+    let bound = [(name, numbers.as_entire_binding()), (into, TextureView(&view))];
     run(filter, &bound, [texture.width(), texture.height()], frame);
 }
 
 /// Runs a filter over all pixels.
-fn run(filter: &Filter, bound: &[wgpu::BindingResource<'_>], size: [u32; 2], frame: &mut Through<'_>) {
-    let group = group(frame.gpu, "filter", &filter.layout, bound);
+fn run(filter: &Filter, bound: &[(&str, wgpu::BindingResource<'_>)], size: [u32; 2], frame: &mut Through<'_>) {
+    let group = filter.layout.bind(&frame.gpu.device, bound);
     let mut pass = frame.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&filter.pipeline);
     pass.set_bind_group(0, frame.view, &[]);

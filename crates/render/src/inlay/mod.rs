@@ -4,7 +4,7 @@
 //! times as long. A picture that was drawn quickly comes from its linear light without a finished picture in between.
 
 use crate::{Target, shaders};
-use corpuscle_gpu::{Gpu, GpuError, Image, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GpuError, GroupLayout, Image, texture_2d, wgpu};
 
 /// Lays pictures into passes that draw into one format; holds what all pictures share.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub struct InlayPainter {
     finished: wgpu::RenderPipeline,
     light: wgpu::RenderPipeline,
     pressed: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
 }
 
 /// A picture on the device, ready to be laid into a pass.
@@ -25,20 +25,9 @@ pub struct Inlay {
 impl InlayPainter {
     /// A painter for passes of a format.
     pub fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Self {
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("inlay"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-                count: None,
-            }],
-        });
-        let module = shaders::module(gpu, "inlay", include_str!("inlay.wgsl"));
+        let shader = ("inlay", include_str!("inlay.wgsl"));
+        let layout = shaders::layout(gpu, "inlay", 0, &[shader]);
+        let module = shaders::module(gpu, shader.0, shader.1);
         let build = |entry, pressed| pipeline(gpu, &module, &layout, format, entry, pressed);
         Self {
             finished: build("fragment_finished", false),
@@ -75,11 +64,7 @@ impl InlayPainter {
 
     fn inlay(&self, gpu: &Gpu, pipeline: &wgpu::RenderPipeline, texture: &wgpu::Texture) -> Inlay {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("inlay"),
-            layout: &self.layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
-        });
+        let group = self.layout.bind(&gpu.device, &[("picture", wgpu::BindingResource::TextureView(&view))]);
         Inlay { pipeline: pipeline.clone(), group }
     }
 }
@@ -96,7 +81,7 @@ impl Inlay {
 fn pipeline(
     gpu: &Gpu,
     module: &wgpu::ShaderModule,
-    layout: &wgpu::BindGroupLayout,
+    layout: &GroupLayout,
     format: wgpu::TextureFormat,
     entry: &str,
     pressed: bool,
@@ -104,7 +89,7 @@ fn pipeline(
     let constants = [("pressed", f64::from(u8::from(pressed))), ("linear", f64::from(u8::from(format.is_srgb())))];
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("inlay"),
-        bind_group_layouts: &[Some(layout)],
+        bind_group_layouts: &[Some(layout.layout())],
         immediate_size: 0,
     });
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

@@ -2,12 +2,12 @@
 
 mod mesh;
 
-use crate::buffer::{UNIFORM, instances, uniform};
+use crate::buffer::{instances, uniform};
 use crate::colour::linear;
 use crate::pipeline::PipelineDescriptor;
 use crate::shared::{SolidUniforms, Vertex, buffer_layout};
 use crate::{Drawable, Renderer, Stage, Through, shaders, static_layer};
-use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 use corpuscle_model::SolidShape;
 
 /// What a solid looks like.
@@ -35,27 +35,14 @@ pub struct Solid {
 /// What is behind a thing that lets light through, as a group.
 #[derive(Debug)]
 pub(crate) struct Behind {
-    pub(crate) layout: wgpu::BindGroupLayout,
+    pub(crate) layout: GroupLayout,
     sampler: wgpu::Sampler,
 }
 
 impl Behind {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let colour = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("behind"),
-            entries: &[entry(0, colour), entry(1, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering))],
-        });
+    /// For group 2 of a shader, by its name and text.
+    pub(crate) fn new(gpu: &Gpu, shader: (&str, &str)) -> Self {
+        let layout = shaders::layout(gpu, "behind", 2, &[shader]);
         let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("behind"),
             mag_filter: wgpu::FilterMode::Linear,
@@ -66,14 +53,11 @@ impl Behind {
     }
 
     pub(crate) fn group(&self, frame: &Through<'_>) -> wgpu::BindGroup {
-        frame.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("behind"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(frame.behind_colour) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-            ],
-        })
+        let resources = [
+            ("behind", wgpu::BindingResource::TextureView(frame.behind_colour)),
+            ("behind_sampler", wgpu::BindingResource::Sampler(&self.sampler)),
+        ];
+        self.layout.bind(&frame.gpu.device, &resources)
     }
 }
 
@@ -92,39 +76,25 @@ impl Solid {
             Vertex { place: [x, y, z, 1.0], normal: [nx, ny, nz, 0.0] }
         };
         let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("solid"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: UNIFORM,
-                count: None,
-            }],
-        });
         let (colour, gloss, is_glass) = match style {
             SolidStyle::Opaque(colour, gloss) => (colour, gloss, false),
             SolidStyle::Glass(colour) => (colour, 1.0, true),
         };
         let [r, g, b] = linear(colour);
         let settings = uniform(gpu, "solid", &SolidUniforms { colour: [r, g, b, 1.0], gloss: [gloss, 0.0, 0.0, 0.0] });
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("solid"),
-            layout: &layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: settings.as_entire_binding() }],
-        });
+        let glass = ("glass", include_str!("glass.wgsl"));
+        let shader = if is_glass { glass } else { ("solids", include_str!("solids.wgsl")) };
+        let layout = shaders::layout(gpu, "solid", 1, &[shader]);
+        let group = layout.bind(&gpu.device, &[("style", settings.as_entire_binding())]);
         let of_vertices = Vertex::layout();
         let attributes = of_vertices.vertex_attributes();
         let buffers = [buffer_layout(&of_vertices, wgpu::VertexStepMode::Vertex, &attributes)];
-        let behind = Behind::new(gpu);
-        let (name, text) = match is_glass {
-            true => ("glass", include_str!("glass.wgsl")),
-            false => ("solids", include_str!("solids.wgsl")),
-        };
-        let (opaque, glass) = ([renderer.view_layout(), &layout], [renderer.view_layout(), &layout, &behind.layout]);
+        let behind = Behind::new(gpu, glass);
+        let groups = [renderer.view_layout(), &layout, &behind.layout];
         let descriptor = PipelineDescriptor {
-            label: name,
-            module: &shaders::module(gpu, name, text),
-            groups: if is_glass { &glass } else { &opaque },
+            label: shader.0,
+            module: &shaders::module(gpu, shader.0, shader.1),
+            groups: if is_glass { &groups } else { &groups[..2] },
             buffers: &buffers,
             topology: wgpu::PrimitiveTopology::TriangleList,
         };

@@ -9,11 +9,11 @@ pub use field::HeightField;
 pub use natural::natural_colours;
 pub(crate) use tiles::QUADS as QUADS_OF_TILE;
 
-use crate::buffer::{TEXTURE, UNIFORM, indices, instances, uniform};
+use crate::buffer::{indices, instances, uniform};
 use crate::pipeline::PipelineDescriptor;
 use crate::shared::Ground;
 use crate::{Camera, Drawable, RenderError, Renderer, Stage, shaders, static_layer};
-use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
 use half::f16;
 use walls::Walls;
 
@@ -30,7 +30,7 @@ pub struct Terrain {
     /// What it looks like: another number after each change, and for each ground.
     state: u64,
     cast: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
     settings: Ground,
     /// Heights and slopes.
     shape: [wgpu::TextureView; 2],
@@ -56,11 +56,12 @@ impl Terrain {
         base: f64,
     ) -> Result<Self, RenderError> {
         let gpu = renderer.gpu();
-        let layout = layout(gpu);
+        let shader = ("terrain", include_str!("terrain.wgsl"));
+        let layout = shaders::layout(gpu, "terrain", 1, &[shader]);
         let attributes = wgpu::vertex_attr_array![0 => Uint32x4];
         let descriptor = PipelineDescriptor {
             label: "terrain",
-            module: &shaders::module(gpu, "terrain", include_str!("terrain.wgsl")),
+            module: &shaders::module(gpu, shader.0, shader.1),
             groups: &[renderer.view_layout(), &layout],
             buffers: &[wgpu::VertexBufferLayout {
                 array_stride: 16,
@@ -146,30 +147,9 @@ impl Drawable for Terrain {
     }
 }
 
-fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
-    let smooth = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let (vertex, fragment) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::FRAGMENT);
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("terrain"),
-        entries: &[
-            entry(0, vertex | fragment, UNIFORM),
-            entry(1, vertex, TEXTURE),
-            entry(2, fragment, smooth),
-            entry(3, fragment, smooth),
-            entry(4, fragment, sampler),
-        ],
-    })
-}
-
 fn group(
     gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
+    layout: &GroupLayout,
     settings: &Ground,
     [heights, slopes]: &[wgpu::TextureView; 2],
     colours: &wgpu::TextureView,
@@ -181,18 +161,16 @@ fn group(
         ..wgpu::SamplerDescriptor::default()
     });
     let settings = uniform(gpu, "terrain", settings);
-    let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("terrain"),
-        layout,
-        entries: &[
-            entry(0, settings.as_entire_binding()),
-            entry(1, wgpu::BindingResource::TextureView(heights)),
-            entry(2, wgpu::BindingResource::TextureView(slopes)),
-            entry(3, wgpu::BindingResource::TextureView(colours)),
-            entry(4, wgpu::BindingResource::Sampler(&sampler)),
+    layout.bind(
+        &gpu.device,
+        &[
+            ("ground", settings.as_entire_binding()),
+            ("heights", wgpu::BindingResource::TextureView(heights)),
+            ("slopes", wgpu::BindingResource::TextureView(slopes)),
+            ("colours", wgpu::BindingResource::TextureView(colours)),
+            ("smooth_sampler", wgpu::BindingResource::Sampler(&sampler)),
         ],
-    })
+    )
 }
 
 fn upload(

@@ -5,36 +5,22 @@ use crate::pipeline::PipelineDescriptor;
 use crate::shared::Tone as Settings;
 use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
-use corpuscle_gpu::{Gpu, Image, texture_2d, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
 
 /// Averages samples, presses highlights, lays the overlay over.
 #[derive(Debug)]
 pub(crate) struct Tone {
     pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
+    layout: GroupLayout,
 }
 
 impl Tone {
     pub(crate) fn new(gpu: &Gpu) -> Self {
-        let stages = wgpu::ShaderStages::FRAGMENT;
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: stages, ty, count: None };
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let uniform = wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        };
-        let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("tone"),
-            entries: &[entry(0, uniform), entry(1, texture), entry(2, texture)],
-        });
+        let shader = ("tone", include_str!("tone.wgsl"));
+        let layout = shaders::layout(gpu, "tone", 0, &[shader]);
         let descriptor = PipelineDescriptor {
             label: "tone",
-            module: &shaders::module(gpu, "tone", include_str!("tone.wgsl")),
+            module: &shaders::module(gpu, shader.0, shader.1),
             groups: &[&layout],
             buffers: &[],
             topology: wgpu::PrimitiveTopology::TriangleList,
@@ -81,16 +67,12 @@ impl Tone {
         let nothing = Image { width: 1, height: 1, rgba: vec![0; 4] };
         let colour = target.colour.create_view(&wgpu::TextureViewDescriptor::default());
         let overlay = upload(gpu, overlay.unwrap_or(&nothing));
-        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("tone"),
-            layout: &self.layout,
-            entries: &[
-                entry(0, buffer.as_entire_binding()),
-                entry(1, wgpu::BindingResource::TextureView(&colour)),
-                entry(2, wgpu::BindingResource::TextureView(&overlay)),
-            ],
-        })
+        let resources = [
+            ("tone", buffer.as_entire_binding()),
+            ("light", wgpu::BindingResource::TextureView(&colour)),
+            ("overlay", wgpu::BindingResource::TextureView(&overlay)),
+        ];
+        self.layout.bind(&gpu.device, &resources)
     }
 }
 
