@@ -54,8 +54,8 @@ impl Dew {
         }
     }
 
-    /// Water, kg, and energy, J, that the air is still to gain: less than 0 where it is to lose them.
-    pub(super) fn owed(&self) -> [f64; 2] {
+    /// Water, kg, and energy, J, of the drift that is not yet applied to the air; negative where the air is to lose them.
+    pub(super) fn residual(&self) -> [f64; 2] {
         let mass = self.particle_mass() * self.state.air.len() as f64;
         let [temperature, vapour] = self.state.drift;
         [mass * vapour, mass * (self.air.heat_capacity * temperature + self.latent_heat * vapour)]

@@ -344,7 +344,7 @@ impl Dew {
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
         let on_solids = self.water_on_all();
-        in_air.chain([on_solids, self.owed()[0]]).collect::<ExactSum>().value()
+        in_air.chain([on_solids, self.residual()[0]]).collect::<ExactSum>().value()
     }
 
     /// Water on the solids, kg.
@@ -367,7 +367,7 @@ impl Dew {
         self.inside()
             .map(|particle| self.energy_of(particle))
             .chain(solids)
-            .chain([self.owed()[1]])
+            .chain([self.residual()[1]])
             .collect::<ExactSum>()
             .value()
     }

@@ -1,4 +1,4 @@
-// What crosses the edges is put back or booked, and each particle counts itself in its cell. Twin of `lose` in `exchange.rs`.
+// Reflects or books particles that cross the edges, and counts the particles of each cell. Twin of `remove_outflow` in `exchange.rs`.
 #import sph_common
 #import group_reduction
 

@@ -29,7 +29,11 @@ impl Dew {
                 }
                 let particles =
                     dew.gpu_solver.as_ref().map_or(0, |solver| solver.filling()[0]) + dew.solids().particles.len();
-                if !observer.passed(ModelProgress { time: next, particles, particle_steps: dew.state.particle_steps }) {
+                if !observer.progressed(ModelProgress {
+                    time: next,
+                    particles,
+                    particle_steps: dew.state.particle_steps,
+                }) {
                     break;
                 }
             }

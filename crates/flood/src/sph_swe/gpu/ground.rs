@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Roughness whose raster does not lie along the model's coordinates is met in so many cells along the longer side.
 const CELLS: f64 = 2048.0;
 
-/// The nodes of the ground's patches, heights above the origin's; where they lie is told in `parameters`.
+/// The nodes of the ground's patches, heights above the origin's; their grid is in `parameters`.
 pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Parameters) -> Vec<[f32; 4]> {
     let patches = terrain.patches_above(origin.level);
     parameters.ground_corner = origin.relative(patches.corner);
@@ -19,7 +19,7 @@ pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Paramete
     patches.nodes
 }
 
-/// How the ground slows the water, told in `parameters`; the law's coefficient over gravity in cells where it is not one number.
+/// Friction of the ground, whose law is in `parameters`; the law's coefficient over gravity in cells where it is not one number.
 pub(super) fn roughness(
     roughness: &Roughness,
     bounds: Bounds,

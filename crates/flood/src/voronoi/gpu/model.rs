@@ -99,7 +99,7 @@ impl GpuModel for VoronoiFlood {
                 return self.with_gpu(Self::download);
             }
             next = show(self.glance()?);
-            if !observer.passed(self.passed()) {
+            if !observer.progressed(self.progress()) {
                 return self.with_gpu(Self::download);
             }
         }
@@ -229,7 +229,7 @@ impl VoronoiFlood {
     }
 
     /// How far it is, by what the GPU tells without what stays there.
-    fn passed(&self) -> ModelProgress {
+    fn progress(&self) -> ModelProgress {
         let here = (self.particles(), self.particle_steps());
         let ahead = self.on_gpu.as_ref().filter(|on_gpu| on_gpu.is_ahead);
         let (particles, particle_steps) = ahead.map_or(here, |on_gpu| {
