@@ -64,7 +64,7 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut WholeFile) -> io::Result
 /// How the names of temporary files begin.
 const IN_THE_MAKING: &str = ".writing-";
 
-/// Removes what a program that was killed left in the making in a folder, where nobody else writes. A folder that is not there is clean.
+/// Removes temporary files that a killed program left in a folder, to which no other process writes. A missing folder is clean.
 ///
 /// # Errors
 /// What the system says where something cannot be removed.

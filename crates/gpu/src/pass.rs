@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Times that one set of queries holds (WebGPU's own limit).
 const MOST_MARKS: u32 = wgpu::QUERY_SET_MAX_QUERIES;
 
-/// A compute pass in which tasks are done one after the other, timed where that is asked for.
+/// A compute pass in which tasks run one after the other, timed on request.
 #[derive(Debug)]
 pub struct Pass<'a> {
     pub(crate) pass: wgpu::ComputePass<'a>,

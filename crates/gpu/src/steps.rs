@@ -14,7 +14,7 @@ crate::declare! {
         pub const GOING: u32 = 0;
         /// The host has just started a batch.
         pub const BATCH_START: u32 = 1;
-        /// The time asked for is reached.
+        /// The requested time is reached.
         pub const ARRIVED: u32 = 2;
         /// The host is to do something first: make cells, or room.
         pub const NEEDS_HOST: u32 = 3;
@@ -22,7 +22,7 @@ crate::declare! {
         pub const BROKEN: u32 = 4;
         /// Larger than any value: where the search for a minimum starts.
         pub const FAR: f32 = 3.0e38;
-        /// Cells of a search are taken to be this part thicker than they are: who lies on their border may be in either.
+        /// Cells of a search are taken to be this part thicker than they are: a particle on their border may be in either.
         pub const CELL_BORDER: f32 = 0.01;
         /// Threads of a group.
         pub const GROUP: u32 = crate::THREADS;
@@ -38,7 +38,7 @@ crate::declare! {
 /// Steps of a batch at most.
 pub const MOST_STEPS: u32 = 64;
 
-/// A batch takes about so long at most, s: then the host looks whether it is to stop.
+/// Longest wall time of a batch, about, s: after it the host checks whether to stop.
 const LONGEST: f64 = 0.2;
 
 /// Why a batch ended.
@@ -46,7 +46,7 @@ const LONGEST: f64 = 0.2;
 pub enum Halt {
     /// All its steps are done.
     Full,
-    /// The time asked for is reached.
+    /// The requested time is reached.
     Arrived,
     /// The host is to do something first.
     NeedsHost,

@@ -21,7 +21,7 @@ const ABSURD: f64 = 1e6;
 /// A local projection is stretched by more than a thousandth beyond this distance from its middle line, m.
 const FAR_FROM_CENTRE: f64 = 285e3;
 
-/// A projection is told of when its scale is wrong by more than this (UTM and national grids keep within 0.002).
+/// Error of a projection's scale above which there is a warning (UTM and national grids keep within 0.002).
 const DISTORTED: f64 = 0.005;
 
 /// The ground from a raster; `path` is for messages.
@@ -57,7 +57,7 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
 }
 
-/// Refuses heights that are none, and tells of doubtful ones.
+/// Refuses invalid heights, and warns of doubtful ones.
 fn check_heights(raster: &Raster, path: &Path, warnings: &mut Vec<String>) -> Result<(), TerrainError> {
     let lowest = raster.values.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = raster.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -116,7 +116,7 @@ impl ReferenceSystem {
         Proj::from_proj_string(definition).ok()
     }
 
-    /// What a user should know about results in this system.
+    /// A warning about results in this system.
     pub(crate) fn warning(&self) -> Option<String> {
         let name = &self.name;
         match (&self.definition, self.geographic) {

@@ -26,7 +26,7 @@ impl GpuSolver {
     /// The air as it is seen so long after the last step, s, on the device.
     pub fn seen(&self, spacing: f64, since: f64) -> Result<DeviceParticles, GpuError> {
         if self.seen.get().is_none() {
-            // Nobody else can have been faster and done otherwise.
+            // Another thread that was faster has set the same value.
             let _ = self.seen.set(Seen::new(self, spacing)?);
         }
         let gpu = self.batches.gpu();

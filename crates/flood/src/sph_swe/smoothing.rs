@@ -63,7 +63,7 @@ impl SphSwe {
         let kernel = Kernel::<2>::new(self.parameters.kernel, own.h);
         let mut sum = 0.0;
         for (&other, &r) in near.index.iter().zip(near.distance) {
-            // Lists are filled up with numbers of nobody, far away.
+            // Lists are padded with indices of no particle, far away.
             if r < own.h {
                 let other = &self.columns[other as usize];
                 let apart = (own.u - other.u) * (own.x - other.x) + (own.v - other.v) * (own.y - other.y);

@@ -190,8 +190,8 @@ impl SphSwe {
         }
     }
 
-    /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
-    fn take_over(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
+    /// Adds slope of the ground and control force to the pair forces; returns the sum of both over all the water.
+    fn add_external_forces(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
         let controlled = self.parameters.control_force && step > 0.0;
         let Self { parameters, h0, gravity, accelerations, of_groups, .. } = self;
         let groups = particles.par_chunks_mut(CONTROLLED).zip(self.arrangement.real.par_chunks(CONTROLLED));
@@ -375,7 +375,7 @@ impl SphSwe {
             dispatch!(Level::new(), simd => pair_forces(simd, parameters, &self.arrangement, &self.columns, first, out));
         });
         self.add_walls(particles, &surroundings.obstacles);
-        self.take_over(particles, surroundings, step)
+        self.add_external_forces(particles, surroundings, step)
     }
 
     /// The particles in their cells, as last arranged.

@@ -17,7 +17,7 @@ pub(crate) struct Surroundings {
 pub(crate) const GROUND_BLOCK: usize = 64;
 
 impl Surroundings {
-    /// Looks up the ground under [`GROUND_BLOCK`] particles, or fewer. Beyond an edge it goes on as it falls towards it, and never
+    /// Evaluates the ground under [`GROUND_BLOCK`] particles, or fewer. Beyond an edge it goes on as it falls towards it, and never
     /// rises.
     pub fn find_ground(&self, particles: &mut [Particle]) {
         let last = particles.len() - 1;

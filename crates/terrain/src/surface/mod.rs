@@ -32,7 +32,7 @@ struct Node {
 /// A smooth surface as the nodes of its bicubic Hermite patches, in single precision.
 #[derive(Debug, Clone)]
 pub struct GroundPatches {
-    /// Height above the level asked for, m, and its derivatives along y, along x and along both, m per cell; row by row from the
+    /// Height above the requested level, m, and its derivatives along y, along x and along both, m per cell; row by row from the
     /// south-west.
     pub nodes: Vec<[f32; 4]>,
     /// Nodes in a row, and rows.

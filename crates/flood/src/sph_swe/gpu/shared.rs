@@ -49,7 +49,7 @@ corpuscle_gpu::declare! {
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
         pub const COVERED: f32 = super::super::sampler::COVERED as f32;
-        /// A position is at most this much deeper than the deepest particle near it.
+        /// Largest depth at a position over that of the deepest particle near it.
         pub const DEEPER: f32 = super::super::sampler::DEEPER as f32;
         /// The word of `rows` with the first word of the first row.
         pub const ROWS: u32 = 0;

@@ -117,7 +117,7 @@ impl Obstacles {
     }
 
     /// Puts particles that have come inside back to the wall; what of their velocity led in is taken off. Gives what that adds to
-    /// each obstacle's impulse, m4/s, in `impulses`, and tells how many.
+    /// each obstacle's impulse, m4/s, in `impulses`, and returns their number.
     pub fn resolve_penetration(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) -> usize {
         let put_back = |particle: &mut Particle| {
             let place = [particle.x, particle.y];

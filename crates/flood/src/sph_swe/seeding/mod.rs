@@ -28,7 +28,7 @@ const LARGEST: f64 = 6.0;
 /// Longest way in one round, in particle distances.
 const LONGEST_SHIFT: f64 = 0.1;
 
-/// Largest volume of a particle over the wanted one. In a pocket with too few neighbours the exact depth would take more,
+/// Largest volume of a particle over the required one. In a pocket with too few neighbours the exact depth would take more,
 /// and such a particle would stand out wherever it goes.
 const LARGEST_VOLUME: f64 = 2.0;
 
@@ -144,7 +144,7 @@ impl Body<'_> {
         lists.search(cells, [x, y], &reach, &mut vec![(); x.len()], &());
     }
 
-    /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where no depth is wanted.
+    /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where the required depth is 0.
     fn relax(&self, arrangement: &Arrangement, particles: &mut [Particle], edges: &EdgeRules) {
         let Arrangement { x, y, reach_squared, real, lists, .. } = arrangement;
         // The area that stands at each place, by the depth wanted there: equal in an even arrangement.

@@ -155,8 +155,8 @@ impl Boundaries {
         }
     }
 
-    /// Takes over what a GPU came to know of the water beyond held levels.
-    pub fn take_over(&self, beyond: &[f32], known: &mut [f64]) {
+    /// Sets the state of the water beyond prescribed levels from a GPU's.
+    pub fn set_beyond(&self, beyond: &[f32], known: &mut [f64]) {
         for (border, (known, beyond)) in known.iter_mut().zip(beyond).enumerate() {
             let rule = self.rule_of(border).map(|rule| &self.rules[usize::from(rule)]);
             if let Some(Boundary::Level(_)) = rule {

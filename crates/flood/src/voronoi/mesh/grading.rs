@@ -1,7 +1,7 @@
 //! Where cells are finer, and the points there.
 //!
 //! The spacing is halved a whole number of times, its level. Round a part with finer cells it grows again by a level at a time, so that neighbours
-//! differ by a factor of two at most. The points of a level are the pattern of a tile made smaller; each is there where its level is asked for.
+//! differ by a factor of two at most. The points of a level are the pattern of a tile made smaller; each is present where its level is required.
 
 use super::blocks::{Blocks, lowered};
 use super::layout::Points;
@@ -40,7 +40,7 @@ struct Part {
 #[derive(Debug, Default)]
 pub(crate) struct Grading {
     parts: Arc<Vec<Part>>,
-    /// What the water asks for beside the parts.
+    /// Levels that the water requires beside the parts.
     blocks: Blocks,
     spacing: f64,
 }

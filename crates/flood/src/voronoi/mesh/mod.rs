@@ -90,7 +90,7 @@ impl Link {
     }
 }
 
-/// What a mesh needs to know of the ground.
+/// Properties of the ground that a mesh needs.
 pub(crate) trait Ground: Sync {
     /// Mean height of the ground over a polygon, m.
     fn mean(&self, polygon: &[[f64; 2]]) -> f64;
@@ -494,7 +494,7 @@ impl Mesh {
         Water::of(column, self.area[cell], |depth| self.level(cell, depth))
     }
 
-    /// The same of a column whose momentum was looked at before: see [`Water::as_it_is`].
+    /// The same of a column whose momentum was bounded before: see [`Water::as_it_is`].
     pub fn water_as_it_is(&self, cell: usize, column: &Column) -> Water {
         Water::as_it_is(column, self.area[cell], |depth| self.level(cell, depth))
     }

@@ -127,7 +127,7 @@ impl Weather {
         }
     }
 
-    /// Looks up rain and soils of cells that were added.
+    /// Sets rain and soils of cells that were added.
     ///
     /// # Errors
     /// Where the raster of factors is negative.
@@ -154,7 +154,7 @@ impl Weather {
         Ok(())
     }
 
-    /// Clears what was looked up for each cell.
+    /// Clears the values cached for each cell.
     pub fn forget_cells(&mut self) {
         self.factors.clear();
         self.law.clear();
