@@ -260,7 +260,7 @@ fn refuse_away_from_side(dew: &Dew, row: usize, written: &dew::Solid, solid: &So
     Ok(())
 }
 
-/// What to know of a solid many of whose particles fill less than half a cell.
+/// The warning about a solid many of whose particles fill less than half a cell.
 fn thin(name: &str, samples: &Samples, spacing: f64) -> Option<String> {
     let small = samples.volumes.iter().filter(|&&volume| volume < 0.5 * spacing.powi(3)).count();
     let is_thin = 10 * small > samples.volumes.len();

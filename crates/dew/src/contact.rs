@@ -62,7 +62,7 @@ impl Contact {
         Self { sites, volumes, walls, ..Self::default() }
     }
 
-    /// Finds who is near whom.
+    /// Finds the pairs of neighbours.
     pub fn update(&mut self, arrangement: &Arrangement, scale: &Scale) {
         self.near.clear();
         if self.sites.is_empty() {

@@ -24,7 +24,7 @@ impl Fan {
     pub fn new(middle: [f64; 3], size: [f64; 3], velocity: [f64; 3]) -> Self {
         let speed = velocity.iter().map(|along| along * along).sum::<f64>().sqrt();
         let direction = velocity.map(|along| if speed > 0.0 { along / speed } else { 0.0 });
-        // The longest way through the box along the velocity.
+        // The longest distance through the box along the velocity.
         let depth = (0..3).map(|axis| size[axis] / direction[axis].abs().max(1e-9)).fold(f64::INFINITY, f64::min);
         Self {
             low: [0, 1, 2].map(|axis| middle[axis] - 0.5 * size[axis]),

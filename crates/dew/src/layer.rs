@@ -4,7 +4,7 @@ use crate::contact::Contact;
 use crate::dew::Dew;
 use crate::solids::{Body, Surface};
 
-/// Width of the layer of air before a surface that is looked at, in spacings; that behind it is as wide.
+/// Width of the sampled layer of air before a surface, in spacings; that behind it is as wide.
 const WIDTH: f64 = 2.0;
 
 /// Places in a spacing at which the room that the layer has is found.

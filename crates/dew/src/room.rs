@@ -57,7 +57,7 @@ pub struct Image {
     pub beyond: bool,
 }
 
-/// How far beyond each face, by axis and end, mirror images are wanted, m, where they are.
+/// Distance beyond each face, by axis and end, up to which ghost particles are required, m, where they are.
 pub type Mirrors = [[Option<f64>; 2]; 3];
 
 impl Room {

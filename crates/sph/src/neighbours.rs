@@ -119,7 +119,7 @@ impl Reach<2> for EachReach<'_> {
 pub trait PairSum<T>: Sync {
     /// Whether this particle's neighbours are required; the list of another stays empty.
     #[inline(always)]
-    fn wants(&self, _particle: usize) -> bool {
+    fn requires(&self, _particle: usize) -> bool {
         true
     }
 
@@ -191,7 +191,7 @@ fn search_block<S: Simd, const D: usize, T, R: Reach<D>>(
     let mut begin = 0;
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
-        if !sum.wants(i) {
+        if !sum.requires(i) {
             start.push(begin as u32);
             continue;
         }
@@ -298,7 +298,7 @@ mod tests {
     struct Count;
 
     impl PairSum<usize> for Count {
-        fn wants(&self, particle: usize) -> bool {
+        fn requires(&self, particle: usize) -> bool {
             particle % 5 != 3
         }
 
@@ -328,7 +328,7 @@ mod tests {
         lists.search(cells, columns.each_ref().map(|column| &column[..]), reach, &mut counts, &Count);
         let squared = |i: usize, j: usize| columns.iter().map(|column| (column[i] - column[j]).powi(2)).sum::<f64>();
         for (i, counted) in counts.into_iter().enumerate() {
-            let is_near = |&j: &usize| Count.wants(i) && j != i && squared(i, j) < within(i, j);
+            let is_near = |&j: &usize| Count.requires(i) && j != i && squared(i, j) < within(i, j);
             let mut expected: Vec<u32> = (0..count).filter(is_near).map(|j| j as u32).collect();
             assert_eq!(counted, expected.len());
             let list = lists.numbers_of(i);

@@ -22,7 +22,7 @@ pub struct Scatter {
 const TRIES: u32 = 30;
 
 impl Dew {
-    /// Moves the air in the room to random places outside of solids, as there from the start; `start` tells temperature, K, and
+    /// Moves the air in the room to random places outside of solids, as there from the start; `start` gives temperature, K, and
     /// vapour, part of the mass, at a place.
     pub fn scatter(&mut self, scatter: Scatter, start: impl Fn([f64; 3]) -> [f64; 2]) {
         let (room, reach) = (self.room, scatter.reach * self.scale.spacing);

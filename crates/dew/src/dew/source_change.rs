@@ -24,7 +24,7 @@ pub enum SourceChange {
         /// By what it is multiplied.
         times: f64,
     },
-    /// Temperature of the air outside, °C; surroundings of which the scene tells none have it too.
+    /// Temperature of the air outside, °C; surroundings without a temperature in the scene have it too.
     OutsideTemperature {
         /// The solid.
         solid: usize,

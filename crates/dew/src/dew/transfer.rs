@@ -121,7 +121,7 @@ impl Dew {
         }
     }
 
-    /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
+    /// What is beyond saturation condenses: at a surface onto it where that is required, else as fog, which evaporates
     /// again in drier air.
     pub(super) fn saturate(&mut self, step: f64) {
         if !self.settings.fog && self.settings.condensation != Condensation::Particle {

@@ -92,7 +92,7 @@ impl Drops {
     }
 
     /// Water evaporates where `gained` (kg, one for each patch) is below 0: from all drops there, in proportion to what each has of the patch.
-    /// `portions` and `shares` tell that; nothing must have happened to the drops since.
+    /// `portions` and `shares` give that; nothing must have happened to the drops since.
     pub fn evaporate(&mut self, portions: &[Portion], shares: &[Share], gained: &[f64]) {
         if gained.iter().all(|&gained| gained >= 0.0) {
             return;

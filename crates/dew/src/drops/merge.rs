@@ -84,7 +84,7 @@ impl Drops {
     }
 }
 
-/// The head of a cluster, with the way to it made shorter for the next time.
+/// The head of a cluster, with path compression for the next search.
 fn head(heads: &mut [usize], mut at: usize) -> usize {
     while heads[at] != at {
         heads[at] = heads[heads[at]];

@@ -60,7 +60,7 @@ pub struct Patch {
     pub solid: u32,
     /// Middle of the patch, on the surface, m.
     pub position: [f64; 3],
-    /// The way out of the solid.
+    /// Outward normal of the solid.
     pub normal: [f64; 3],
     /// Half the side of the patch, m.
     pub half_width: f64,
@@ -87,7 +87,7 @@ pub struct Drop {
     pub solid: u32,
     /// Middle of the covered disk, on the surface, m.
     pub position: [f64; 3],
-    /// The way out of the solid there.
+    /// Outward normal of the solid there.
     pub normal: [f64; 3],
     /// Velocity, m/s, along the surface.
     pub velocity: [f64; 3],
@@ -220,7 +220,7 @@ impl Drops {
         self.state.drops.push(Drop { id, solid, position, normal, velocity, mass, radius });
     }
 
-    /// The point of a solid's surface nearest to a place, and the way out there.
+    /// The point of a solid's surface nearest to a position, and the outward normal there.
     fn foot(&self, solid: u32, place: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let nearest = self.solids[solid as usize].nearest(place);
         let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
@@ -288,7 +288,7 @@ impl Drops {
     }
 
     /// Water condenses where `gained` (kg, one for each patch) is above 0: each site gathers that of its area, for the drop that covers it or
-    /// for one of its own. Tells the drops that are seen from now on.
+    /// for one of its own. Returns the drops that are resolved from now on.
     pub fn condense(&mut self, gained: &[f64]) -> Vec<Begun> {
         self.gains.fill(0.0);
         for piece in &self.sites.pieces {

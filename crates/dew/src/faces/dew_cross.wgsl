@@ -1,5 +1,5 @@
 // Each particle gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell and before open sides.
-// Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::look` in `faces/open.rs`.
+// Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::sample_velocities` in `faces/open.rs`.
 #import dew_neighbours
 #import dew_columns
 #import dew_utility
@@ -134,7 +134,7 @@ fn mark_columns(particle: Particle) {
     }
 }
 
-// Whether a particle is taken out that has been of no use for long. Twin of `tend_utility`.
+// Whether a particle is taken out that has been of no use for long. Twin of `update_utility`.
 fn tend(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role;
     if role != INSIDE && role != IDLE {

@@ -150,7 +150,7 @@ impl Dew {
         }
     }
 
-    /// Least speed of air beyond an outlet, m/s: it does not stand in the way.
+    /// Least speed of air beyond an outlet, m/s: it must not block the outflow.
     pub(crate) fn slowest(&self) -> f64 {
         SLOWEST * self.air.sound_speed
     }
@@ -203,7 +203,7 @@ impl Dew {
     }
 }
 
-/// Thickness of the layer before an outlet whose mean particle shift the air beyond takes over, in smoothing lengths: less than one layer of particles,
+/// Thickness of the layer before an outlet whose mean particle shift is applied to the air beyond, in smoothing lengths: less than one layer of particles,
 /// so that a layer keeps the shift that moves it as a whole; without it sound between an inlet and the outlet grows.
 pub(crate) const OUTLET_LAYER: f64 = 0.2;
 

@@ -1,4 +1,4 @@
-//! The numbers of a run, as the shaders want them.
+//! The parameters of a run in the format of the shaders.
 
 use super::origin::Origin;
 use super::shared::{self, Inlet, MOST_FANS, Parameters};

@@ -15,13 +15,13 @@ corpuscle_gpu::declare! {
         pub const DIFFUSES: u32 = 2;
         /// Vapour beyond saturation becomes fog.
         pub const FOGS: u32 = 4;
-        /// Vapour beyond saturation is looked for.
+        /// There is a search for supersaturated vapour.
         pub const SATURATES: u32 = 8;
         /// Air faster than sound is refused.
         pub const REFUSES_FAST: u32 = 16;
         /// What diffuses is relative humidity.
         pub const RELATIVE: u32 = 32;
-        /// Air of low utility is looked for.
+        /// There is a search for air of low utility.
         pub const TENDS: u32 = 64;
         /// No air comes or goes.
         pub const IS_CLOSED: u32 = 128;
@@ -67,7 +67,7 @@ corpuscle_gpu::declare! {
         pub const HELD: u32 = 32;
         /// An image beyond a side that air passes.
         pub const IMAGE_BEYOND: u32 = 64;
-        /// It is looked for air of low utility once in so many steps.
+        /// Steps between two searches for air of low utility.
         pub const TURN: u32 = crate::utility::STEPS as u32;
         /// Groups that share the particles when they are summed up for gauges.
         pub const MEASURING_GROUPS: u32 = 64;
@@ -89,8 +89,8 @@ corpuscle_gpu::declare! {
         pub const RANGE: f32 = crate::walls::RANGE as f32;
         /// Largest eigenvalue of a tensor of normalisation.
         pub const MAX_EIGENVALUE: f32 = crate::normalisation::MAX_EIGENVALUE as f32;
-        /// How far ahead air of low utility is looked for, in smoothing lengths.
-        pub const WAY: f32 = crate::utility::WAY as f32;
+        /// Displacement after which distances from solids are compared, in smoothing lengths.
+        pub const PROBE_STEP: f32 = crate::utility::PROBE_STEP as f32;
         /// Iterations of Newton's method for the temperature of a surface.
         pub const ITERATIONS: u32 = crate::solids::sources::ITERATIONS as u32;
         /// Constants of the formula of saturation, Bolton 1980: its factor, and °C.
@@ -309,7 +309,7 @@ corpuscle_gpu::declare! {
             pub role_and_idle: [u32; 4],
         }
 
-        /// What neighbours read of a particle, as it lies in memory: who looks for neighbours needs the first part of those out of reach.
+        /// Values of a particle that its neighbours read: a search reads only the first part of those out of reach.
         pub struct PackedColumn {
             /// m; pressure over the square of the density, Pa m6/kg2.
             pub place_and_pressure: [f32; 4],
@@ -417,7 +417,7 @@ corpuscle_gpu::declare! {
             pub temperature: f32,
             /// kg.
             pub water: f32,
-            /// Part of the evaporation asked for that there is water for.
+            /// Part of the required evaporation for which there is water.
             pub share: f32,
             /// Heat from the air, W.
             pub heat: f32,
@@ -569,7 +569,7 @@ corpuscle_gpu::declare! {
             pub time: [f32; 2],
             /// Time at which to halt, s since the state was sent.
             pub until: [f32; 2],
-            /// When it was last looked for air of low utility, s since the state was sent.
+            /// Time of the last search for air of low utility, s since the upload.
             pub seen: [f32; 2],
             /// Vapour that became fog, part of a particle's mass.
             pub fogged: [f32; 2],

@@ -18,7 +18,7 @@ const TRIES: u32 = 30;
 /// Least distance of samples over the spacing of the air: denser than the air.
 const NEAREST: f64 = 0.5;
 
-/// Times that every sample looks for a better place.
+/// Times that a better position of every sample is searched.
 const SWEEPS: u32 = 5;
 
 /// Times that the volumes of samples are corrected.
@@ -27,7 +27,7 @@ const CORRECTIONS: u32 = 8;
 /// Ghost samples of the bodies that keep air out by them, to be in contact with air.
 ///
 /// # Errors
-/// Where such a body does not tell its surface.
+/// Where such a body has no surface.
 pub(crate) fn ghost_contact(
     bodies: &[Body],
     walls: &[WallTreatment],

@@ -10,7 +10,7 @@ use crate::solids::Site;
 use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
 use corpuscle_scene::Table;
 
-/// What is told once of the solids.
+/// Parameters of the solids that are uploaded once.
 #[derive(Debug)]
 pub(crate) struct GpuSolids {
     /// First site of each cell of the air.

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 /// Momentum that is not there for, over all that there is, is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// More balls than this, and overlaps are not looked for at every row of gauges.
+/// Number of balls above which overlaps are not searched at every row of gauges.
 const AUDITED: usize = 20_000;
 
 fn padded<const D: usize>(vector: [f64; D]) -> [f64; 3] {

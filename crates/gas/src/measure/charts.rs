@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Fewer balls than this have no profile.
 const FEW: usize = 20;
 
-/// What charts need to know of the gas besides what was measured.
+/// Properties of the gas that charts need besides the measures.
 pub(crate) struct Context<'a, const D: usize> {
     pub sets: &'a [Set],
     /// Balls of each set.
@@ -57,7 +57,7 @@ impl Measures {
     /// All charts that there is something to show in.
     pub fn charts<const D: usize>(&self, context: &Context<D>) -> Vec<Chart> {
         let mut charts = self.laws(context);
-        if self.looks > 0 {
+        if self.averaged > 0 {
             for set in 0..context.sets.len() {
                 charts.push(self.speeds::<D>(context, set));
                 charts.push(self.velocities(context, set));
@@ -195,8 +195,8 @@ impl Measures {
 
     fn displacement_chart<const D: usize>(&self, context: &Context<D>) -> Chart {
         let points = |set: usize| {
-            let told = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
-            told.map(|sample| [sample.time - self.started, sample.displacement[set]]).collect()
+            let moving = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
+            moving.map(|sample| [sample.time - self.started, sample.displacement[set]]).collect()
         };
         // Of several sets one may be much slower than the others.
         let scaled = |axis: ChartAxis| if context.sets.len() > 1 { logarithmic(axis) } else { axis };

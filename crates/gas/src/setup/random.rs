@@ -46,7 +46,7 @@ const HOPELESS: f64 = 5.0;
 const REACHED: [f64; 2] = [0.875, 0.66];
 const MANY: usize = 1000;
 
-/// Events between two looks at how far balls have settled.
+/// Events between two checks of how far balls have settled.
 const AT_A_TIME: u64 = 20_000;
 
 /// Tries in vain, one after the other, at which dropping is given up.

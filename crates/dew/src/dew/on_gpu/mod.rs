@@ -189,7 +189,7 @@ impl Dew {
         Ok(None)
     }
 
-    /// Steps until it may be the drops' turn. They are asked at the same steps however often something looks.
+    /// Steps until the next update of the drops. They are updated at the same steps however often the state is read.
     fn steps_to_drops(&self) -> u64 {
         match &self.wetting {
             Some(wetting) => wetting.steps() - wetting.steps_since(self.state.steps) % wetting.steps(),
@@ -206,7 +206,7 @@ impl Dew {
         }
     }
 
-    /// Drops take over what condensed, where it is their turn, and the water is uploaded.
+    /// Transfers condensed water to the drops, where their update is due, and uploads the water.
     fn update_drops_beside_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         let [air, _] = solver.filling();
@@ -230,7 +230,7 @@ impl Dew {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         solver.download(&mut self.state)?;
         if self.layers.iter().any(Option::is_some) {
-            // Gauges of layers tell pairs of air and wall.
+            // Gauges of layers need pairs of air and wall.
             self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());
             self.contact.update(&self.arrangement, &self.scale);
             self.ghosts.update(&self.arrangement, &self.scale);

@@ -209,7 +209,7 @@ impl<const D: usize> Gas<D> {
         let speed = wall.speed_at(now);
         wall.bend(now, speed);
         wall.acceleration = inward * pressure * area / wall.mass.unwrap_or(f64::INFINITY);
-        self.mover.wall_bent(number);
+        self.mover.wall_changed(number);
     }
 
     /// Counts of speeds, profile and pairs are of what comes now.
