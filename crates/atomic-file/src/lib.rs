@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 //!
 //! What is written goes to a temporary file in the same folder, which takes the place of the old one only when all of
-//! it is on the disk: whoever reads sees the old content or the new, never a part.
+//! it is on the disk: a reader gets the old content or the new, never a part.
 
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How strongly a fan drives: air that crosses it at its speed loses all but exp(-this) of what it was slower by. Our choice: enough
 /// that little is left, few enough that it is spread over the fan and sets no sound off.
-const DRIVE: f64 = 4.0;
+const DRIVE_EXPONENT: f64 = 4.0;
 
 /// A box in which air is driven to a velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ impl Fan {
             high: [0, 1, 2].map(|axis| middle[axis] + 0.5 * size[axis]),
             direction,
             speed,
-            rate: DRIVE * speed / depth,
+            rate: DRIVE_EXPONENT * speed / depth,
         }
     }
 

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Steps between two transfers of condensed water to drops: they hardly grow in one, and finding them costs.
-const STEPS: u64 = 10;
+const DROP_UPDATE_STEPS: u64 = 10;
 
-/// Times as many steps for each time that there are so many drops as air particles: drops must not cost more than the air.
-const DROPS_TOGETHER: usize = 2;
+/// Extra multiples of [`DROP_UPDATE_STEPS`] for each drop per air particle: drops must not cost more than the air.
+const STEPS_PER_DROP_RATIO: usize = 2;
 
 /// Drops, and where the boundary particles have their water from.
 pub(crate) struct Wetting {
@@ -29,7 +29,7 @@ pub(crate) struct Wetting {
     /// When they last moved, s, and in which step.
     since: f64,
     step: u64,
-    /// What was seen so far.
+    /// Records so far.
     fogging: Fogging,
     /// Area of each solid on which water can condense, m2.
     open_areas: Vec<f64>,
@@ -69,7 +69,7 @@ impl Wetting {
         self.shares = self.drops.shares_of(&self.portions);
     }
 
-    /// Gravity as drops feel it, m/s2, to be changed.
+    /// Gravity on drops, m/s2, to be changed.
     pub fn gravity_mut(&mut self) -> &mut [f64; 3] {
         self.drops.gravity_mut()
     }
@@ -78,10 +78,10 @@ impl Wetting {
         &self.drops
     }
 
-    /// It may be their turn once in so many steps.
+    /// Least number of steps between two transfers.
     #[cfg(feature = "gpu")]
     pub fn steps(&self) -> u64 {
-        STEPS
+        DROP_UPDATE_STEPS
     }
 
     /// Steps since they last moved, in a step.
@@ -90,13 +90,13 @@ impl Wetting {
         step - self.step
     }
 
-    /// Whether it is their turn in a step, with so many particles of air.
+    /// Whether a transfer is due in a step, with `air` particles of air.
     pub fn is_due(&self, step: u64, air: usize) -> bool {
-        let many = DROPS_TOGETHER * self.drops.drops().len() / air.max(1);
-        step - self.step >= STEPS * (1 + many as u64)
+        let many = STEPS_PER_DROP_RATIO * self.drops.drops().len() / air.max(1);
+        step - self.step >= DROP_UPDATE_STEPS * (1 + many as u64)
     }
 
-    /// What was seen of each solid.
+    /// Records of each solid.
     pub fn stories(&self) -> &[Story] {
         &self.fogging.stories
     }
@@ -122,7 +122,7 @@ impl Wetting {
         is_any
     }
 
-    /// Faces of a solid, and what was seen of each.
+    /// Faces of a solid, and the record of each.
     pub fn faces_of(&self, solid: usize) -> impl Iterator<Item = (&SurfaceFace, &Cover)> {
         self.faces.iter().zip(&self.fogging.faces).filter(move |(face, _)| face.solid == solid)
     }

@@ -206,7 +206,7 @@ pub trait SharedPiece {
     }
 }
 
-/// A buffer that shaders see.
+/// A buffer of shaders.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Binding {
     /// Its name.

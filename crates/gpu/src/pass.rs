@@ -83,7 +83,7 @@ impl Stopwatch {
         Some(Self { queries, resolved, marks: Vec::new(), taken: BTreeMap::new() })
     }
 
-    /// To be called after a pass, before what it was recorded with is handed to the device.
+    /// To be called after a pass, before its encoder is submitted to the device.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..self.marks.len() as u32, &self.resolved, 0);
     }

@@ -18,7 +18,7 @@ crate::declare! {
         pub const ARRIVED: u32 = 2;
         /// The host is to do something first: make cells, or room.
         pub const NEEDS_HOST: u32 = 3;
-        /// Something is no number, or the step is too short to go on.
+        /// A value is not finite, or the step is too short to go on.
         pub const BROKEN: u32 = 4;
         /// Larger than any value: where the search for a minimum starts.
         pub const FAR: f32 = 3.0e38;
@@ -39,7 +39,7 @@ crate::declare! {
 pub const MOST_STEPS: u32 = 64;
 
 /// Longest wall time of a batch, about, s: after it the host checks whether to stop.
-const LONGEST: f64 = 0.2;
+const MAX_BATCH_SECONDS: f64 = 0.2;
 
 /// Why a batch ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,7 +144,7 @@ impl Batches {
 
     /// Finds the size of the next batch after one of `count` steps that took so long, s.
     fn adapt_size(&mut self, count: u32, took: f64) {
-        let next = if took < 0.5 * LONGEST { 2 * count.max(self.size / 2) } else { count / 2 };
+        let next = if took < 0.5 * MAX_BATCH_SECONDS { 2 * count.max(self.size / 2) } else { count / 2 };
         self.size = next.clamp(1, MOST_STEPS);
     }
 }

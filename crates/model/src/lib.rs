@@ -39,7 +39,7 @@ pub enum ModelError {
         time: f64,
         /// Number of the step.
         step: u64,
-        /// What was seen and what to try.
+        /// The cause, and what to try.
         what: String,
     },
     /// The scene requires something that cannot be set up.

@@ -41,7 +41,7 @@ use serde::{Deserialize, Serialize};
 /// A scene: everything that a run depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// One line: what is seen here.
+    /// Title, one line.
     pub title: String,
     /// A few sentences for the gallery and the report.
     pub description: String,

@@ -37,7 +37,7 @@ pub trait ModelScene: fmt::Debug + Clone + PartialEq + Serialize + DeserializeOw
     /// Checks its values beyond their types.
     ///
     /// # Errors
-    /// The key and value of the first thing that is not as it must be: see [`Check`].
+    /// The key and value of the first error: see [`Check`].
     fn check(&self, _check: &Check) -> Checked {
         Ok(())
     }

@@ -7,7 +7,7 @@ use crate::system::ReferenceSystem;
 use crate::{Georeference, MapBox, Raster, TerrainError, read_raster, read_raster_part, survey};
 use std::path::{Path, PathBuf};
 
-/// Cells beyond a part that are read too, so that what is interpolated at its sides sees what is there.
+/// Cells beyond a part that are read too, so that values interpolated at its sides use the cells beyond.
 const MARGIN: f64 = 2.0;
 
 /// Reads raster files as one raster, as [`merge`] says: all of them, or the cells that share area with `part`, given in

@@ -1,4 +1,4 @@
-//! The ground as a model sees it.
+//! The ground of a model.
 
 use crate::frame::Frame;
 use crate::surface::{GroundPatches, Surface};

@@ -59,7 +59,7 @@ fn mirror(number: u32, place: vec3f) -> Mirror {
     return Mirror(vec3f(x.x, y.x, z.x), vec3f(x.y, y.y, z.y));
 }
 
-// Where what the mirror shows at `place` stands in truth.
+// The original position of a ghost particle at `place`.
 fn behind(mirror: Mirror, place: vec3f) -> vec3f {
     return mirror.sign * (place - mirror.shift);
 }
@@ -85,7 +85,7 @@ fn columns_round(place: vec3f, y: u32, z: u32) -> vec2u {
     let border = CELL_BORDER * size;
     let row = vec2u(y, z);
     let low = parameters.corner.yz + size * vec2f(row);
-    // What is beyond the first and the last row stands in these.
+    // Particles beyond the first and the last row are stored in these.
     let below = select(low - place.yz, vec2f(0.0), row == vec2u(0u));
     let above = select(place.yz - low - size, vec2f(0.0), row + 1u == parameters.cells.yz);
     let apart = max(max(below, above) - border, vec2f(0.0));

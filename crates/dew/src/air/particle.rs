@@ -44,7 +44,7 @@ pub enum Role {
     Still,
     /// Has left by such an edge, and is about to be taken out.
     Gone,
-    /// In the room, but of low utility: it only moves on. The ledger has it as gone.
+    /// In the room, but of low utility: it only moves. The ledger has booked it as outflow.
     Idle,
 }
 

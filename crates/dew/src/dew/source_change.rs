@@ -17,7 +17,7 @@ pub enum SourceChange {
         /// Its power.
         power: f64,
     },
-    /// A heater has so many times the power that the scene says, now and later.
+    /// Multiplies a heater's power in the scene by a factor, now and later.
     HeaterTimes {
         /// The solid.
         solid: usize,

@@ -28,7 +28,7 @@ impl Drops {
         }
     }
 
-    /// For each drop the first of those that it touches, directly or by others.
+    /// For each drop the first of its cluster.
     fn clusters(&self) -> Vec<usize> {
         let drops = &self.state.drops;
         let mut heads: Vec<usize> = (0..drops.len()).collect();

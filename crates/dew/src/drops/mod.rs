@@ -1,7 +1,7 @@
 //! Drops on solids: how they grow, merge, stay, slide and leave.
 //!
 //! A drop is a cap of a sphere on the surface of a solid. Water that condenses on a [`Patch`] goes to the nucleation [`Site`]s whose areas
-//! are there: to the drop that covers a site, or else to a drop at the site that is seen once it is of the smallest size. Drops that touch
+//! are there: to the drop that covers a site, or else to a drop at the site that is resolved once it is of the smallest size. Drops that touch
 //! become one, of their mass and momentum. A drop is held up to a bound, by the hysteresis of its contact angle or by friction; beyond that it slides,
 //! braked by viscosity, and sweeps up what it rolls over. One thread does all of it, in a fixed order.
 
@@ -102,7 +102,7 @@ pub struct Drop {
 pub struct DropState {
     /// The drops.
     pub drops: Vec<Drop>,
-    /// Mass of the drop at each site that is not seen yet, kg.
+    /// Mass of the drop at each site that is not resolved yet, kg.
     pub unseen: Vec<f64>,
     /// Mass that left the solids as drops, kg.
     pub dripped: ExactSum,
@@ -114,7 +114,7 @@ pub struct DropState {
     next_id: u64,
 }
 
-/// A drop that was first seen when water condensed.
+/// A drop that became resolved when water condensed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Begun {
     /// Its site.
@@ -259,7 +259,7 @@ impl Drops {
         self.state.drops.iter().map(|drop| std::f64::consts::PI * drop.radius.powi(2)).sum()
     }
 
-    /// Water on the solids now, in drops that are seen or not, kg.
+    /// Water on the solids now, in drops that are resolved or not, kg.
     pub fn water(&self) -> f64 {
         let drops = self.state.drops.iter().map(|drop| drop.mass);
         drops.chain(self.state.unseen.iter().copied()).collect::<ExactSum>().value()
@@ -368,12 +368,12 @@ impl Drops {
     }
 }
 
-/// Mass of the smallest drop that is seen, kg.
+/// Mass of the smallest resolved drop, kg.
 fn smallest_mass(laws: &DropLaws) -> f64 {
     laws.density * Cap::new(laws.contact_angle).volume(laws.smallest_radius)
 }
 
-/// How far the smallest drop that is seen reaches sideways, m.
+/// Radius of the base of the smallest resolved drop, m.
 pub fn smallest_reach(laws: &DropLaws) -> f64 {
     let cap = Cap::new(laws.contact_angle);
     reach(laws.smallest_radius, cap.volume(laws.smallest_radius))

@@ -27,7 +27,7 @@ impl Drops {
         }
     }
 
-    /// Drops that slide take up the drops below them that are not seen.
+    /// Merges unresolved drops into the sliding drops above them.
     fn sweep(&mut self) {
         let mut drops = std::mem::take(&mut self.state.drops);
         let mut unseen = std::mem::take(&mut self.state.unseen);
@@ -90,7 +90,7 @@ impl Drops {
         }
         let displacement = MAX_DISPLACEMENT * drop.radius;
         let unbraked = 2.0 * displacement / (speed + (speed * speed + 2.0 * faster * displacement).sqrt());
-        // It comes to no more than its final speed.
+        // It does not exceed its final speed.
         let fastest = speed.max(faster / self.braking(drop));
         if fastest.is_finite() { unbraked.max(displacement / fastest) } else { unbraked }
     }

@@ -77,7 +77,7 @@ impl Place {
     }
 }
 
-/// Density of the sites that are kept at most, 1/m2, where drops reach so far when they are seen, m.
+/// Largest density of kept sites, 1/m2, for the radius `reach` of drops when they become resolved, m.
 pub fn most_per_area(reach: f64) -> f64 {
     JAMMING_COVERAGE / (PI * reach * reach)
 }

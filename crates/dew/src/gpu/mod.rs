@@ -14,7 +14,7 @@ pub(crate) mod shared;
 mod tasks;
 
 #[cfg(test)]
-pub(crate) use numbers::MANY;
+pub(crate) use numbers::FINE_CELLS_MIN_PARTICLES;
 pub(crate) use shared::MOST_FANS;
 
 use crate::dew::{Dew, State};

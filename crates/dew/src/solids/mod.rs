@@ -1,4 +1,4 @@
-//! Solids as particles that stay where they are: what they are made of, where their surface is, how heat goes through them.
+//! Solids as particles that stay where they are: what they are made of, where their surface is, how they conduct heat.
 
 mod boundary;
 mod conduction;

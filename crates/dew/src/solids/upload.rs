@@ -1,4 +1,4 @@
-//! Solids as the shaders see them: their particles, what air is near, and how heat goes through them.
+//! Upload of solids: their particles, the air near them, and heat conduction.
 
 use crate::contact::Contact;
 use crate::dew::Dew;
@@ -19,7 +19,7 @@ pub(crate) struct GpuSolids {
     pub sites: wgpu::Buffer,
     /// The particles themselves, in order, then the cells of the walls behind solids.
     pub own: wgpu::Buffer,
-    /// Pairs between which heat goes.
+    /// Pairs between which heat flows.
     pub pairs: wgpu::Buffer,
     /// Particles and cells.
     pub count: usize,

@@ -13,7 +13,7 @@ use crate::solids::Surface;
 use rayon::prelude::*;
 
 /// Steps between two searches for air of low utility.
-pub(crate) const STEPS: u64 = 10;
+pub(crate) const UTILITY_STEPS: u64 = 10;
 
 /// Distance beyond that of low utility from which air is removed, in smoothing lengths: air that matters has no neighbours in the gap.
 pub(crate) const CULL_MARGIN: f64 = 2.0;
@@ -32,7 +32,9 @@ enum Utility {
 impl Dew {
     /// Finds the air of low utility, where a search is due, and removes what has been so for long.
     pub(crate) fn update_utility(&mut self) {
-        let Some(low) = self.settings.low_utility.filter(|_| self.state.steps.is_multiple_of(STEPS)) else { return };
+        let Some(low) = self.settings.low_utility.filter(|_| self.state.steps.is_multiple_of(UTILITY_STEPS)) else {
+            return;
+        };
         let elapsed = self.state.time - self.state.utility_seen;
         self.state.utility_seen = self.state.time;
         let zone = Zone { surfaces: &self.surfaces, h: self.scale.h(), sound_speed: self.air.sound_speed, low };

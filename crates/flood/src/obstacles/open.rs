@@ -62,7 +62,7 @@ fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
     (0..ROUND).map(corner).collect()
 }
 
-/// A ring with a side along an edge of the terrain goes on beyond it: that side is no wall to the water.
+/// Extends a ring with a side along an edge of the terrain beyond it, so that this side is no wall to the water.
 fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[f64; 2]> {
     let near = 1e-6 * reach;
     let edges =

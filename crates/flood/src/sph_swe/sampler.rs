@@ -119,7 +119,7 @@ impl Sampler<'_> {
             deepest = deepest.max(particle.depth);
         });
         let from_surface = (surface - self.terrain.height(x, y)).min(DEEPER * deepest);
-        // Variances squared, so that the smoother field decides alone but where the two are much alike.
+        // Variances squared, so that the smoother field decides alone unless the two are similar.
         let [surface_spread, depth_spread] = [surface_spread, depth_spread].map(|spread| spread * spread);
         let spread = surface_spread + depth_spread;
         let share = if spread > 0.0 { depth_spread / spread } else { 1.0 };

@@ -136,7 +136,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
         }
     }
     let from_surface = min(sums.x - ground_at(place).x, DEEPER * deepest);
-    // Variances squared, so that the smoother field decides alone but where the two are much alike; over the depth, as single
+    // Variances squared, so that the smoother field decides alone unless the two are similar; over the depth, as single
     // precision holds no squares of what is very small.
     let scale = 1.0 / max(deepest * deepest, 1e-30);
     let spreads = vec2f(surface_spread, depth_spread) * scale;

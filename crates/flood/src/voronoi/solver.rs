@@ -1,7 +1,7 @@
 //! A step of the water: two identical stages, averaged (Heun's method). Each stage is three passes: slopes of cells, fluxes through faces, and the
 //! new columns. Where a face takes much of a cell's water two more come between: how much each cell can give, and the fluxes once more.
 //!
-//! Cells and faces are gone through in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
+//! Cells and faces are processed in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
 //! faces bring in the order of its links, so that the result does not depend on the number of threads.
 
 use super::boundaries::Now;
@@ -44,7 +44,7 @@ pub(crate) struct Solver {
     pub borders: Vec<u32>,
     /// Over which borders water may come onto dry ground.
     brings: [bool; 6],
-    /// Whether something came to no number in the last stage: the step ends there.
+    /// Whether a value became not finite in the last stage: the step ends there.
     broken: bool,
     chunks: Chunks,
     /// Cells take steps of their own where that pays; none where all are to take the same.
@@ -84,7 +84,7 @@ struct Found {
     rim: bool,
     /// Number of wet cells.
     count: u32,
-    /// Whether something came to no number.
+    /// Whether a value is not finite.
     broken: bool,
 }
 
@@ -221,7 +221,7 @@ impl Solver {
         missing
     }
 
-    /// Whether something came to no number in the last step.
+    /// Whether a value became not finite in the last step.
     pub fn is_broken(&self) -> bool {
         self.broken
     }
@@ -431,7 +431,7 @@ impl Solver {
             }
             let depth = self.water[cell].depth;
             let half = 0.5 * step * local.map_or(1.0, |local| local.times(cell));
-            // The cell's own thrust is left out: round the cell it comes to nothing.
+            // The cell's own thrust is left out: its sum round the cell is 0.
             let own = 0.5 * self.gravity * depth * depth;
             let momentum = [0, 1].map(|axis| half * (own * face.normal[axis] - flux.momentum[0][axis]));
             let volume = half * flux.volume;
@@ -482,7 +482,7 @@ impl Solver {
         sum(chunks.found.iter().map(|found| &found.slowed))
     }
 
-    /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell goes on by.
+    /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell advances.
     fn update_local(&mut self, second: bool) -> [f64; 2] {
         let Self { mesh, columns, water, fluxes, chunks, slowing, gravity, local, .. } = self;
         let Some(local) = local else { return [0.0; 2] };
@@ -604,7 +604,7 @@ fn kept_of_cell(mesh: &Mesh, fluxes: &[Flux], volume: f64, cell: usize, step: f6
     if outflow > volume { ((volume / outflow) as f32).next_down().max(0.0) } else { 1.0 }
 }
 
-/// Columns of a chunk, what they come to at the end of their own steps, and their water.
+/// Columns of a chunk, those at the end of their own steps, and their water.
 type LocalCells<'a> = ((&'a mut [Column], &'a mut [Column]), &'a mut [Water]);
 
 /// Columns of a chunk, the same before the step, and their water.

@@ -85,7 +85,7 @@ impl VoronoiFlood {
         let now = |stage: usize, border: usize| boundaries.now(stage, border);
         let wet_depth = self.settings.wet_depth_m;
         let State { water, momentum, energy, forces, records, .. } = &mut self.state;
-        // Thrusts of ground and walls are far larger than what they come to together: only that is booked.
+        // Thrusts of ground and walls are far larger than their sum: only that is booked.
         let mut gained = ExactSum::default();
         let obstacle_of = &self.obstacle_of;
         forces.fill([0.0; 2]);
@@ -175,7 +175,7 @@ impl VoronoiFlood {
         }
     }
 
-    /// Says where the computation came to no number, and goes back to the state before.
+    /// The error that says where a value is not finite; goes back to the state before.
     fn breakdown(&mut self, time: f64) -> ModelError {
         let cell = self.solver.broken_cell();
         let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));

@@ -11,13 +11,13 @@ use crate::memory::prefetch;
 use crate::world::{Ball, NONE};
 
 /// Number of balls from which prefetching pays: fewer are found in a CPU's own cache (2 MiB is usual) often enough.
-pub(super) const MANY: usize = 50_000;
+pub(super) const PREFETCH_MIN_BALLS: usize = 50_000;
 
 /// Buckets behind the front that are prefetched. With too many, memory is evicted again before it is used.
-const BUCKETS: u64 = 6;
+const PREFETCHED_BUCKETS: u64 = 6;
 
 /// Buckets from the one that is read to the one that is prefetched.
-const CHUNKS: u64 = 8;
+const PREFETCHED_CHUNKS: u64 = 8;
 
 /// How many events later each stage follows on the one before it: memory needs that long.
 const LAG: usize = 3;
@@ -69,9 +69,9 @@ impl<const D: usize> Engine<D> {
         let Engine { queue, events, world, ahead, grid, .. } = self;
         let front = queue.front_bucket();
         ahead.bucket = ahead.bucket.max(front);
-        while ahead.bucket < front + BUCKETS {
+        while ahead.bucket < front + PREFETCHED_BUCKETS {
             ahead.bucket += 1;
-            queue.ask_for_chunk(ahead.bucket + CHUNKS);
+            queue.ask_for_chunk(ahead.bucket + PREFETCHED_CHUNKS);
             queue.each_in(ahead.bucket, |ball, stamp| {
                 let coming = &mut ahead.coming[ahead.found & (ROOM - 1)];
                 (coming.ball, coming.stamp) = (ball, stamp);

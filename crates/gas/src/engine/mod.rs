@@ -57,7 +57,7 @@ impl<const D: usize> Engine<D> {
         let grid = Grid::new([0.0; D], [1.0; D], [false; D], 1.0, 1.0, 1).expect("one cell without periodic sides");
         let mut engine = Engine {
             events: crate::memory::reserved(world.balls.len()),
-            prefetches: world.balls.len() >= ahead::MANY,
+            prefetches: world.balls.len() >= ahead::PREFETCH_MIN_BALLS,
             alike: world.kinds.windows(2).all(|pair| pair[0].radius == pair[1].radius),
             walls_roam: world.walls.iter().any(|wall| wall.facing == Facing::Both || wall.moves),
             world,

@@ -84,7 +84,7 @@ impl<const D: usize> Engine<D> {
         ([ball, ball], 1)
     }
 
-    /// A ball goes over into the next cell.
+    /// Moves a ball into the next cell.
     #[inline(always)]
     fn cross(&mut self, ball: usize, axis: usize, up: bool) {
         self.crossings += 1;

@@ -16,7 +16,7 @@ struct State {
     dimensions: usize,
     world: SavedWorld,
     method: SavedMethod,
-    /// Knots that each wall's plan has come to.
+    /// Knots of each wall's schedule that are done.
     knots: Vec<usize>,
     lifted: bool,
     reversed: bool,

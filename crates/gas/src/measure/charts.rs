@@ -7,8 +7,8 @@ use crate::theory;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use std::f64::consts::PI;
 
-/// Fewer balls than this have no profile.
-const FEW: usize = 20;
+/// Least number of balls with a profile.
+const PROFILE_MIN_BALLS: usize = 20;
 
 /// Properties of the gas that charts need besides the measures.
 pub(crate) struct Context<'a, const D: usize> {
@@ -139,8 +139,8 @@ impl Measures {
             };
             counts.iter().enumerate().map(point).collect::<Vec<[f64; 2]>>()
         };
-        let many = context.counts.iter().any(|&count| count >= FEW);
-        let sets = (0..context.sets.len()).filter(|&set| !many || context.counts[set] >= FEW);
+        let many = context.counts.iter().any(|&count| count >= PROFILE_MIN_BALLS);
+        let sets = (0..context.sets.len()).filter(|&set| !many || context.counts[set] >= PROFILE_MIN_BALLS);
         let mut series: Vec<ChartSeries> =
             sets.map(|set| context.series(set, ChartStyle::Line, relative(&self.profile[set]))).collect();
         let laws = self.atmosphere(context);

@@ -63,7 +63,7 @@ impl Measures {
         }
     }
 
-    /// Averages begin anew, with histograms up to other speeds; samples over time stay.
+    /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
         let samples = std::mem::take(&mut self.samples);
         *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };

@@ -15,7 +15,7 @@ const MOST_BALLS: f64 = 1e9;
 /// Depth over the radius at which balls overlap and not just touch.
 const TOUCH: f64 = 1e-12;
 
-/// True for balls that do more than touch, or are nowhere.
+/// True for balls that do more than touch, or whose depth of overlap is not a number.
 fn overlaps(depth: f64, radius: f64) -> bool {
     depth.is_nan() || depth > TOUCH * radius
 }

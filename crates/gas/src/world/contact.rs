@@ -38,7 +38,7 @@ impl Mode for Growing {
     const GROWS: bool = true;
 }
 
-/// What acts on all balls alike.
+/// Fields that act on all balls equally.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Field<const D: usize> {
     pub gravity: [f64; D],

@@ -45,7 +45,7 @@ crate::declare! {
     }
 }
 
-/// Memory and kernels for sorting at most so many particles into at most so many cells.
+/// Buffers and kernels that sort particles into cells, up to a number of each.
 #[derive(Debug)]
 pub struct CellSort {
     /// Particles of each cell: `u32`, atomic. Zero before the counting and after the sort.

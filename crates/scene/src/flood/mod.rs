@@ -78,13 +78,13 @@ pub struct Flood {
     pub edges: Edges,
     /// What happens at parts of the sides.
     pub edge_part: Vec<EdgePart>,
-    /// Lines inside the terrain at which water comes or goes as at a side.
+    /// Lines inside the terrain at which water enters or leaves as at a side.
     pub edge_line: Vec<EdgeLine>,
     /// Water that is there at the start.
     pub water: Vec<Water>,
     /// Water that comes in.
     pub inflow: Vec<Inflow>,
-    /// Water that goes out by a rating.
+    /// Outflows by a rating curve.
     pub outflow: Vec<Outflow>,
     /// Water that is held at a level.
     pub stage: Vec<Stage>,

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Something rigid that water goes round. Give exactly one of `polygon`, `circle`, `line` and `file`.
+/// A rigid obstacle that water flows around. Give exactly one of `polygon`, `circle`, `line` and `file`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {

@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 const STEEPEST: f64 = 1.5;
 
 /// What is known of the ground at one node, in units of cells: derivatives are differences per cell.
-/// In this order two neighbouring numbers are treated alike, which the compiler turns into vector instructions.
+/// In this order two neighbouring numbers are treated equally, which the compiler turns into vector instructions.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 struct Node {

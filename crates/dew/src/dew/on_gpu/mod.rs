@@ -13,7 +13,7 @@ use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Room for particles that come beside those that there are.
+/// Spare room for particles that enter.
 const SPARE_ROOM: usize = 1024;
 
 fn failed(error: &GpuError) -> ModelError {
@@ -81,7 +81,7 @@ impl Dew {
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
-    /// Makes room on a GPU for the air that there is, and for more where air comes in, and hands the state over.
+    /// Allocates buffers on a GPU for the air, and for more where there are inlets, and uploads the state.
     fn open_gpu(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let (count, come) = (self.state.air.len(), self.most_in_a_step());
         self.open_gpu_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
@@ -95,7 +95,7 @@ impl Dew {
         Ok(())
     }
 
-    /// Hands the state to the GPU, where there is one. It is set up anew, its shaders compiled again, where settings have changed or there is
+    /// Uploads the state to the GPU, where there is one. It is set up again, its shaders compiled again, where settings have changed or there is
     /// too little room.
     pub(crate) fn upload_to_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
         let needed = self.state.air.len() + self.most_in_a_step();

@@ -8,7 +8,7 @@ use crate::sph_swe::particle::Particle;
 use corpuscle_gpu::{GpuError, from_pair, read};
 use corpuscle_terrain::Terrain;
 
-/// Water to be handed over.
+/// Water to be uploaded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Water<'a> {
     pub particles: &'a [Particle],
@@ -98,7 +98,7 @@ impl OnGpu {
         Ok(())
     }
 
-    /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the water was handed over, m4/s.
+    /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the upload of the water, m4/s.
     pub(super) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
         let knock = f64::from(KNOCK) * f64::from(self.parameters.new_volume);
         self.totals_before.impulses[number][axis] + sum + knock * f64::from(knocks)

@@ -71,7 +71,7 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
             if !by_gpu {
                 on_gpu.forget_maps();
             }
-            // Some steps first, so that what maps hold is handed over.
+            // Some steps first, so that the maps are not empty when they are uploaded.
             for time in [1.3, 4.003] {
                 pool.advance_to(time, &AtomicBool::new(false)).unwrap();
                 let state = pool.save();
@@ -94,7 +94,7 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
     }
 }
 
-/// What the GPU has of a particle is no number: the water here stays that of before, and the error names the place.
+/// A value of a particle on the GPU is not finite: the host's water stays unchanged, and the error names the position.
 #[test]
 fn a_value_that_is_no_number_does_not_come_back() {
     let Some(gpu) = require_gpu("a value that is no number on the GPU") else { return };

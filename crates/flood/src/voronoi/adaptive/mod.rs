@@ -32,11 +32,11 @@ pub(super) struct Adaptive {
     required: Vec<refinement::LevelRange>,
 }
 
-/// Cells as they were, with the water and what is known of them.
+/// Cells before a remake, with their water, records and infiltration.
 pub(super) struct Old {
     solver: Solver,
     records: Vec<Record>,
-    /// What has soaked into each cell, m; empty where nothing does.
+    /// Infiltrated depth of each cell, m; empty where there is no infiltration.
     soaked: Vec<f32>,
     borders: Vec<Border>,
 }
@@ -56,7 +56,7 @@ impl Adaptive {
 }
 
 impl VoronoiFlood {
-    /// Makes the cells anew, finer where a function says how often the spacing is halved at a position in model coordinates, and carries the water
+    /// Remakes the cells, with the spacing halved as often as a function gives at a position in model coordinates, and carries the water
     /// over. As often as `flood.adaptive.finest_m` allows at most, and until the refinement criteria require other cells. A scene without `[flood.adaptive]` keeps
     /// its cells.
     ///
@@ -72,7 +72,7 @@ impl VoronoiFlood {
         self.regrade(blocks)
     }
 
-    /// How often the cells were made anew since the start.
+    /// How often the cells were remade since the start.
     pub fn remakes(&self) -> u64 {
         self.state.remakes
     }
@@ -107,7 +107,7 @@ impl VoronoiFlood {
         self.adaptive.as_ref().map_or(0, |adaptive| adaptive.finest + 1)
     }
 
-    /// Makes all cells anew and carries over what is known of the old ones.
+    /// Remakes all cells and carries the state of the old ones over.
     fn regrade(&mut self, blocks: Blocks) -> Result<(), ModelError> {
         let old = self.remake(blocks)?;
         let carried = carry::carry(&old, &self.solver, &self.bed, &self.terrain);
@@ -134,7 +134,7 @@ impl VoronoiFlood {
         Ok(())
     }
 
-    /// Makes the cells anew, dry, with the blocks of a state; whether there can be such.
+    /// Remakes the cells, dry, with the blocks of a state; returns whether they are valid.
     pub(super) fn restore_blocks(&mut self, levels: &[(u32, u8)]) -> Result<bool, ModelError> {
         let present = self.solver.mesh.layout.blocks();
         if present.finer() == levels {
@@ -146,7 +146,7 @@ impl VoronoiFlood {
         Ok(true)
     }
 
-    /// Makes the cells of all tiles that are made anew, with other blocks, dry; what the old ones were.
+    /// Remakes the cells of all tiles, with other blocks, dry; returns the old ones.
     pub(super) fn remake(&mut self, blocks: Blocks) -> Result<Old, ModelError> {
         let tiles: Vec<usize> = self.solver.mesh.made.iter().map(|tile| *tile as usize).collect();
         let layout = self.solver.mesh.layout.with(blocks);

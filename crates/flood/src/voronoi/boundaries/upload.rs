@@ -47,7 +47,7 @@ fn velocity(motion: &Table) -> Vec<[f64; 2]> {
 }
 
 impl Boundaries {
-    /// What a GPU needs of them; `known` is what is known of the water beyond each border face (see [`Boundaries::beyond_at_start`]).
+    /// Packs them for a GPU; `known` is the state of the water beyond each border face (see [`Boundaries::beyond_at_start`]).
     pub fn upload(&self, solver: &Solver, known: &[f64], obstacle_of: &[u32], tables: &mut Tables) -> Uploaded {
         let mut uploaded =
             Uploaded { borders: Vec::new(), beyond: Vec::new(), discharges: Vec::new(), parts: Vec::new() };

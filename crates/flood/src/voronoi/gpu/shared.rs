@@ -32,7 +32,7 @@ corpuscle_gpu::declare! {
         pub const PLAN_FACE_SLOT: u32 = 11;
         /// Slot with one group where steps of cells are planned.
         pub const PLAN_SLOT: u32 = 12;
-        /// Cells with the shortest step are so many neighbours away at most from those that need it.
+        /// Largest distance, in neighbours, of cells with the shortest step from those that need it.
         pub const WIDENED_SHORTEST: u32 = local::WIDENED[0];
         /// The same of twice the shortest step.
         pub const WIDENED_TWICE: u32 = local::WIDENED[1];
@@ -71,7 +71,7 @@ corpuscle_gpu::declare! {
         /// A link that leads by a table over the difference of levels.
         pub const RATING: u32 = 2;
         /// Most of the volume between the levels on both sides of a crest that flows over in a step.
-        pub const MOST_OVER_CREST: f32 = super::super::walls::MOST_OVER_CREST as f32;
+        pub const MAX_CREST_SHARE: f32 = super::super::walls::MAX_CREST_SHARE as f32;
         /// Coefficient of an orifice: see `structures/hydraulics.rs`.
         pub const ORIFICE: f32 = super::super::structures::hydraulics::ORIFICE as f32;
         /// Depth over the height of a culvert from which on it is submerged.
@@ -96,9 +96,9 @@ corpuscle_gpu::declare! {
         pub const STILL_ON_BED: f32 = friction::STILL as f32;
         /// The part of the outflow that a cell without enough water for it keeps back, for rounding.
         pub const OUTFLOW_MARGIN: f32 = 1e-6;
-        /// The ground drinks once in so many steps.
+        /// Steps between two evaluations of infiltration.
         pub const STEPS_A_DRAUGHT: u32 = super::super::rain::STEPS_A_DRAUGHT as u32;
-        /// Words of `tables` that each table has at their beginning: first row, number of rows, then what it comes to in the step.
+        /// Words of `tables` that each table has at their beginning: first row, number of rows, then its value in the step.
         pub const TABLE: u32 = 6;
         /// The word with the integral over the step.
         pub const INTEGRAL: u32 = 2;
@@ -198,7 +198,7 @@ corpuscle_gpu::declare! {
             pub since_draught: f32,
             /// Steps since the start of the run.
             pub all_steps: u32,
-            /// The part of the step that is gone through, where cells take steps of their own.
+            /// The current part of the step, where cells take steps of their own.
             pub part: u32,
             /// Number of the shortest steps in a step: 1 where all cells take the same; 0 where that is still to be planned.
             pub parts: u32,
@@ -230,7 +230,7 @@ corpuscle_gpu::declare! {
             pub paces: u32,
         }
 
-        /// A face as one of its cells sees it.
+        /// A face from the side of one of its cells.
         pub struct Link {
             /// What the difference to the neighbour is multiplied by in the least-squares gradient, 1/m.
             pub gradient: [f32; 2],
@@ -545,7 +545,7 @@ corpuscle_gpu::declare! {
         storage discharges: [SharedDischarge],
         /// The parts of border faces in them.
         storage parts: [Part],
-        /// Columns now, then columns before the step; where cells take steps of their own then those at the start of these, and the sums of what they come to.
+        /// Columns now, then columns before the step; where cells take steps of their own then those at the start of these, and the sums of their results.
         storage columns: [Column],
         /// Water of each cell; where cells take steps of their own then that in their second stages.
         storage water: [Water],

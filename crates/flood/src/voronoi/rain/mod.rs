@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// The ground drinks once in so many steps: the laws of infiltration hold for any step of time.
+/// Steps between two evaluations of infiltration: its laws hold for any step of time.
 pub(crate) const STEPS_A_DRAUGHT: u64 = 8;
 
 /// Where and when it rains: intensity, m/s, over x, y, and time.
