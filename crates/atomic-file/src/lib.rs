@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 //!
 //! What is written goes to a temporary file in the same folder, which takes the place of the old one only when all of
-//! it is on the disk: whoever reads sees the old content or the new, never a part.
+//! it is on the disk: a reader gets the old content or the new, never a part.
 
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut WholeFile) -> io::Result
 /// How the names of temporary files begin.
 const IN_THE_MAKING: &str = ".writing-";
 
-/// Removes what a program that was killed left in the making in a folder, where nobody else writes. A folder that is not there is clean.
+/// Removes temporary files that a killed program left in a folder, to which no other process writes. A missing folder is clean.
 ///
 /// # Errors
 /// What the system says where something cannot be removed.

@@ -18,8 +18,8 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    fn progress(&self, passed: ModelProgress, until: f64) -> Progress {
-        let ModelProgress { time, particles, particle_steps } = passed;
+    fn progress(&self, progress: ModelProgress, until: f64) -> Progress {
+        let ModelProgress { time, particles, particle_steps } = progress;
         let wall = self.start.elapsed().as_secs_f64();
         let done = time - self.time;
         Progress {
@@ -111,9 +111,9 @@ impl AdvanceObserver for SharedRunObserver<'_, '_, '_> {
         }
     }
 
-    fn passed(&mut self, passed: ModelProgress) -> bool {
+    fn progressed(&mut self, progress: ModelProgress) -> bool {
         let observer = &mut *self.0.borrow_mut();
-        (observer.on_progress)(&observer.meter.progress(passed, observer.until));
+        (observer.on_progress)(&observer.meter.progress(progress, observer.until));
         observer.failed.is_none() && !observer.checkpoints.is_due()
     }
 }

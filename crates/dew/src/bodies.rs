@@ -260,7 +260,7 @@ fn refuse_away_from_side(dew: &Dew, row: usize, written: &dew::Solid, solid: &So
     Ok(())
 }
 
-/// What to know of a solid many of whose particles fill less than half a cell.
+/// The warning about a solid many of whose particles fill less than half a cell.
 fn thin(name: &str, samples: &Samples, spacing: f64) -> Option<String> {
     let small = samples.volumes.iter().filter(|&&volume| volume < 0.5 * spacing.powi(3)).count();
     let is_thin = 10 * small > samples.volumes.len();
@@ -334,12 +334,12 @@ fn refuse_overlap(bodies: &[Body], spacing: f64) -> Result<(), BodyError> {
     Ok(())
 }
 
-/// Places along each side of the box that are tried for air.
-const TRIED: f64 = 64.0;
+/// Samples along each side of the box that are tested for air.
+const FREE_SAMPLES_PER_SIDE: f64 = 64.0;
 
-/// Somewhere there is a place half a spacing from all solids.
+/// Refuses a box without a position half a spacing from all solids.
 fn refuse_a_full_box(bodies: &[Body], dew: &Dew) -> Result<(), BodyError> {
-    let counts = dew.size_m.map(|length| (length / dew.spacing_m).clamp(1.0, TRIED) as u32);
+    let counts = dew.size_m.map(|length| (length / dew.spacing_m).clamp(1.0, FREE_SAMPLES_PER_SIDE) as u32);
     let place = |axis: usize, at: u32| dew.size_m[axis] * (f64::from(at) + 0.5) / f64::from(counts[axis]);
     let is_free = |point: [f64; 3]| bodies.iter().all(|body| body.solid.signed_distance(point) >= 0.5 * dew.spacing_m);
     let mut places = (0..counts[2])

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Sites of one work unit; results never depend on the number of threads.
-const TOGETHER: usize = 128;
+const SITES_PER_BLOCK: usize = 128;
 
 /// Sites, and the air near each, from both sides.
 #[derive(Debug, Default)]
@@ -62,15 +62,15 @@ impl Contact {
         Self { sites, volumes, walls, ..Self::default() }
     }
 
-    /// Finds who is near whom.
+    /// Finds the pairs of neighbours.
     pub fn update(&mut self, arrangement: &Arrangement, scale: &Scale) {
         self.near.clear();
         if self.sites.is_empty() {
             return;
         }
         let h = scale.h();
-        self.blocks.resize_with(self.sites.len().div_ceil(TOGETHER), Block::default);
-        let blocks = self.blocks.par_iter_mut().zip(self.sites.par_chunks(TOGETHER));
+        self.blocks.resize_with(self.sites.len().div_ceil(SITES_PER_BLOCK), Block::default);
+        let blocks = self.blocks.par_iter_mut().zip(self.sites.par_chunks(SITES_PER_BLOCK));
         blocks.for_each(|(block, sites)| block.find(sites, arrangement, h));
         self.turn(arrangement);
     }
@@ -101,7 +101,7 @@ impl Contact {
         }
         self.pairs.resize(sum, Pair::default());
         for site in 0..self.sites.len() {
-            for pair in self.blocks[site / TOGETHER].of(site % TOGETHER) {
+            for pair in self.blocks[site / SITES_PER_BLOCK].of(site % SITES_PER_BLOCK) {
                 if let Some(particle) = particle(pair) {
                     self.pairs[self.count[particle] as usize] = Pair { other: site as u32, r: pair.r };
                     self.count[particle] += 1;
@@ -117,7 +117,7 @@ impl Contact {
 
     /// The air near a site.
     pub fn of_site(&self, site: usize) -> &[Pair] {
-        self.blocks.get(site / TOGETHER).map_or(&[], |block| block.of(site % TOGETHER))
+        self.blocks.get(site / SITES_PER_BLOCK).map_or(&[], |block| block.of(site % SITES_PER_BLOCK))
     }
 
     /// From a place to a site, m.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How strongly a fan drives: air that crosses it at its speed loses all but exp(-this) of what it was slower by. Our choice: enough
 /// that little is left, few enough that it is spread over the fan and sets no sound off.
-const DRIVE: f64 = 4.0;
+const DRIVE_EXPONENT: f64 = 4.0;
 
 /// A box in which air is driven to a velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -24,14 +24,14 @@ impl Fan {
     pub fn new(middle: [f64; 3], size: [f64; 3], velocity: [f64; 3]) -> Self {
         let speed = velocity.iter().map(|along| along * along).sum::<f64>().sqrt();
         let direction = velocity.map(|along| if speed > 0.0 { along / speed } else { 0.0 });
-        // The longest way through the box along the velocity.
+        // The longest distance through the box along the velocity.
         let depth = (0..3).map(|axis| size[axis] / direction[axis].abs().max(1e-9)).fold(f64::INFINITY, f64::min);
         Self {
             low: [0, 1, 2].map(|axis| middle[axis] - 0.5 * size[axis]),
             high: [0, 1, 2].map(|axis| middle[axis] + 0.5 * size[axis]),
             direction,
             speed,
-            rate: DRIVE * speed / depth,
+            rate: DRIVE_EXPONENT * speed / depth,
         }
     }
 

@@ -116,7 +116,7 @@ impl Fogging {
         }
     }
 
-    /// Sees what is there at `time`, `step` s after the look before. `areas` are those of the solids on which water can condense, m2.
+    /// Updates the records at `time`, `step` s after the last update. `areas` are those of the solids on which water can condense, m2.
     pub fn see(&mut self, drops: &Drops, shares: &[Share], faces: &[SurfaceFace], areas: &[f64], time: f64, step: f64) {
         for story in &mut self.stories {
             (story.covered, story.drops, story.mean_radius, story.polydispersity) = (0.0, 0, 0.0, 0.0);

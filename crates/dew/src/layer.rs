@@ -1,14 +1,14 @@
-//! How near the air comes to a solid, and what keeping it out costs: to compare ways of doing so.
+//! Distance of the air from a solid, and the energy that keeping it out costs: to compare wall models.
 
 use crate::contact::Contact;
 use crate::dew::Dew;
 use crate::solids::{Body, Surface};
 
-/// Width of the layer of air before a surface that is looked at, in spacings; that behind it is as wide.
-const WIDTH: f64 = 2.0;
+/// Width of the sampled layer of air before a surface, in spacings; that behind it is as wide.
+const LAYER_WIDTH: f64 = 2.0;
 
-/// Places in a spacing at which the room that the layer has is found.
-const PLACES: f64 = 5.0;
+/// Samples per spacing by which the volume of the layer is found.
+const SAMPLES_PER_SPACING: f64 = 5.0;
 
 /// The air before the surface of a solid.
 pub(crate) struct Layer {
@@ -37,7 +37,7 @@ impl Layer {
     pub fn new(body: &Body, dew: &Dew) -> Option<Self> {
         let (room, spacing) = (&dew.room, dew.scale.spacing);
         let surface = body.surface.clone()?;
-        let width = WIDTH * spacing;
+        let width = LAYER_WIDTH * spacing;
         let along = |axis: usize| body.positions.iter().map(move |place| place[axis]);
         let reach = 2.0 * width + spacing;
         let low = [0, 1, 2].map(|axis| (along(axis).fold(f64::INFINITY, f64::min) - reach).max(room.low[axis]));
@@ -48,7 +48,7 @@ impl Layer {
             let inside = sites.filter(|(_, site)| layer.is_near(site.position) && (layer.surface)(site.position) < 0.0);
             inside.map(|(number, _)| number).collect()
         });
-        let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) * PLACES / spacing).ceil().max(1.0));
+        let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) * SAMPLES_PER_SPACING / spacing).ceil().max(1.0));
         let apart = [0, 1, 2].map(|axis| (high[axis] - low[axis]) / counts[axis]);
         let places = (0..counts.iter().product::<f64>() as u64).map(|number| {
             let [x, y] = [counts[0] as u64, counts[1] as u64];

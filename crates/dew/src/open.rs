@@ -27,7 +27,7 @@ pub(crate) const LEAST_SOUND: f64 = 0.1;
 /// Makes the model of a scene; `seed` is that of everything random, relative paths are taken from `folder`.
 ///
 /// # Errors
-/// [`ModelError::Setup`] where a solid cannot be made, or the scene asks for what this version cannot do.
+/// [`ModelError::Setup`] where a solid cannot be made, or the scene requires what this version cannot do.
 pub fn open(scene: &written::Dew, seed: u64, folder: &Path) -> Result<Dew, ModelError> {
     refuse_what_cannot_be(scene)?;
     let bodies = bodies::open(scene, folder)?;
@@ -234,18 +234,18 @@ fn properties(scene: &written::Dew, start: &HumidAir, room: &Room, bodies: &[bod
         air.coefficients = TemperatureCoefficients::default();
     }
     // What the scene gives is the same at all temperatures.
-    let tell = |property: &mut f64, coefficient: &mut f64, told: Option<f64>| {
-        if let Some(told) = told {
-            (*property, *coefficient) = (told, 0.0);
+    let set = |property: &mut f64, coefficient: &mut f64, value: Option<f64>| {
+        if let Some(value) = value {
+            (*property, *coefficient) = (value, 0.0);
         }
     };
-    tell(
+    set(
         &mut air.viscosity,
         &mut air.coefficients.viscosity,
-        transport.air_viscosity_pa_s.map(|told| told / air.density),
+        transport.air_viscosity_pa_s.map(|value| value / air.density),
     );
-    tell(&mut air.conductivity, &mut air.coefficients.conductivity, transport.air_conductivity_w_per_m_k);
-    tell(&mut air.vapour_diffusivity, &mut air.coefficients.vapour_diffusivity, transport.vapour_diffusivity_m2_per_s);
+    set(&mut air.conductivity, &mut air.coefficients.conductivity, transport.air_conductivity_w_per_m_k);
+    set(&mut air.vapour_diffusivity, &mut air.coefficients.vapour_diffusivity, transport.vapour_diffusivity_m2_per_s);
     air.heat_capacity = transport.air_heat_capacity_j_per_kg_k.unwrap_or(air.heat_capacity);
     air
 }

@@ -11,9 +11,9 @@ pub enum Face {
     Wall,
     /// Air comes in.
     Inlet(Inflow),
-    /// Air goes out.
+    /// Air leaves.
     Outlet,
-    /// Air goes out, and ambient air comes in.
+    /// Air leaves, and ambient air enters.
     Open,
 }
 
@@ -57,7 +57,7 @@ pub struct Image {
     pub beyond: bool,
 }
 
-/// How far beyond each face, by axis and end, mirror images are wanted, m, where they are.
+/// Distance beyond each face, by axis and end, up to which ghost particles are required, m, where they are.
 pub type Mirrors = [[Option<f64>; 2]; 3];
 
 impl Room {
@@ -71,7 +71,7 @@ impl Room {
         self.size().map(|side| (side / spacing).round().max(1.0) as usize)
     }
 
-    /// How far apart so many particles stand along each side, m.
+    /// Distance of neighbouring particles along each side, m, nearest to `spacing`.
     pub fn apart(&self, spacing: f64) -> [f64; 3] {
         let (size, counts) = (self.size(), self.counts(spacing));
         [0, 1, 2].map(|axis| size[axis] / counts[axis] as f64)
@@ -208,7 +208,7 @@ impl Room {
         (2.0 * [low, high][side] - at).clamp(low, high.next_down())
     }
 
-    /// Brings what has gone beyond the rim of a face back at the opposite rim: air before an inlet is the same everywhere.
+    /// Moves a particle that crossed the rim of a face to the opposite rim: air before an inlet is the same everywhere.
     pub fn wrap_along(&self, face: usize, place: &mut [f64; 3]) {
         for axis in (0..3).filter(|&axis| axis != face) {
             let (low, high) = (self.low[axis], self.high[axis]);

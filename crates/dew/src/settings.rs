@@ -58,7 +58,7 @@ pub enum Condensation {
     /// Vapour diffuses to the surface, where air is saturated at the surface's temperature; and back from water there.
     #[default]
     Diffusion,
-    /// As published: a particle of air at the surface that is colder than its dew point gives up what it has too much.
+    /// As published: a particle of air at the surface that is colder than its dew point deposits its excess.
     Particle,
 }
 

@@ -12,11 +12,11 @@ use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Drops take over what condensed once in so many steps: they hardly grow in one, and finding them costs.
-const STEPS: u64 = 10;
+/// Steps between two transfers of condensed water to drops: they hardly grow in one, and finding them costs.
+const DROP_UPDATE_STEPS: u64 = 10;
 
-/// Times as many steps for each time that there are so many drops as air particles: drops must not cost more than the air.
-const DROPS_TOGETHER: usize = 2;
+/// Extra multiples of [`DROP_UPDATE_STEPS`] for each drop per air particle: drops must not cost more than the air.
+const STEPS_PER_DROP_RATIO: usize = 2;
 
 /// Drops, and where the boundary particles have their water from.
 pub(crate) struct Wetting {
@@ -29,7 +29,7 @@ pub(crate) struct Wetting {
     /// When they last moved, s, and in which step.
     since: f64,
     step: u64,
-    /// What was seen so far.
+    /// Records so far.
     fogging: Fogging,
     /// Area of each solid on which water can condense, m2.
     open_areas: Vec<f64>,
@@ -69,7 +69,7 @@ impl Wetting {
         self.shares = self.drops.shares_of(&self.portions);
     }
 
-    /// Gravity as drops feel it, m/s2, to be changed.
+    /// Gravity on drops, m/s2, to be changed.
     pub fn gravity_mut(&mut self) -> &mut [f64; 3] {
         self.drops.gravity_mut()
     }
@@ -78,10 +78,10 @@ impl Wetting {
         &self.drops
     }
 
-    /// It may be their turn once in so many steps.
+    /// Least number of steps between two transfers.
     #[cfg(feature = "gpu")]
     pub fn steps(&self) -> u64 {
-        STEPS
+        DROP_UPDATE_STEPS
     }
 
     /// Steps since they last moved, in a step.
@@ -90,13 +90,13 @@ impl Wetting {
         step - self.step
     }
 
-    /// Whether it is their turn in a step, with so many particles of air.
+    /// Whether a transfer is due in a step, with `air` particles of air.
     pub fn is_due(&self, step: u64, air: usize) -> bool {
-        let many = DROPS_TOGETHER * self.drops.drops().len() / air.max(1);
-        step - self.step >= STEPS * (1 + many as u64)
+        let many = STEPS_PER_DROP_RATIO * self.drops.drops().len() / air.max(1);
+        step - self.step >= DROP_UPDATE_STEPS * (1 + many as u64)
     }
 
-    /// What was seen of each solid.
+    /// Records of each solid.
     pub fn stories(&self) -> &[Story] {
         &self.fogging.stories
     }
@@ -122,7 +122,7 @@ impl Wetting {
         is_any
     }
 
-    /// Faces of a solid, and what was seen of each.
+    /// Faces of a solid, and the record of each.
     pub fn faces_of(&self, solid: usize) -> impl Iterator<Item = (&SurfaceFace, &Cover)> {
         self.faces.iter().zip(&self.fogging.faces).filter(move |(face, _)| face.solid == solid)
     }
@@ -137,9 +137,9 @@ impl Wetting {
         [water / face.area, heat / face.area]
     }
 
-    /// The drops take over what condensed on and evaporated from the boundary particles, and move up to `time`. Gives the water
+    /// Transfers what condensed on and evaporated from the boundary particles to the drops, which move up to `time`. Returns the water
     /// that left the solids as drops, kg.
-    fn take_over(&mut self, water_on: &mut [f64], time: f64) -> f64 {
+    fn transfer_to_drops(&mut self, water_on: &mut [f64], time: f64) -> f64 {
         let patches = || self.particles.iter().zip(&self.shares);
         let gained: Vec<f64> = patches().map(|(&particle, share)| water_on[particle as usize] - share.water).collect();
         self.drops.evaporate(&self.portions, &self.shares, &gained);
@@ -157,7 +157,7 @@ impl Wetting {
         self.drops.dripped() - before
     }
 
-    /// Tells each boundary particle's part of the evaporation of a wet surface: the drops' resistance is in a row with that of air half a `spacing` thick, m.
+    /// Sets each boundary particle's part of the evaporation of a wet surface: the drops' resistance is in series with that of air half a `spacing` thick, m.
     fn set_evaporation(&self, spacing: f64, evaporation: &mut [f64]) {
         let of_air = 2.0 / spacing;
         for (patch, (&particle, share)) in self.particles.iter().zip(&self.shares).enumerate() {
@@ -166,7 +166,7 @@ impl Wetting {
         }
     }
 
-    /// Water on the solids, kg: the drops, and what they have not taken over yet.
+    /// Water on the solids, kg: the drops, and what is not transferred to them yet.
     pub fn water(&self, water_on: &[f64]) -> f64 {
         let new = self.particles.iter().zip(&self.shares).map(|(&at, share)| water_on[at as usize] - share.water);
         new.chain([self.drops.water()]).collect::<ExactSum>().value()
@@ -260,7 +260,7 @@ impl Wetting {
     }
 }
 
-/// Area of a plane for each particle of the layer below it, m2. The samples' own areas know nothing of where the room cuts a solid.
+/// Area of a plane for each particle of the layer below it, m2. The samples' own areas ignore where the room cuts a solid.
 fn area_in_cell(normal: [f64; 3], spacing: f64) -> f64 {
     spacing * spacing / normal.iter().fold(0.0_f64, |most, along| most.max(along.abs()))
 }
@@ -281,7 +281,7 @@ impl Dew {
 
     /// The surface at a boundary particle with an outward normal.
     fn patch_of(&self, particle: &SolidParticle, normal: [f64; 3], solid: &Solid) -> Patch {
-        // The surface is looked for from outside: next to a side of the box where the solid goes on, the nearest is the cut.
+        // The surface is searched from outside: next to a side of the box where the solid goes on, the nearest is the cut.
         let outside = [0, 1, 2].map(|axis| particle.position[axis] + self.scale.spacing * normal[axis]);
         let nearest = solid.nearest(outside);
         let foot = |axis: usize| outside[axis] - nearest.distance * nearest.normal[axis];
@@ -293,23 +293,23 @@ impl Dew {
         }
     }
 
-    /// Drops take over what condensed or was laid on the solids, and move up to now.
-    pub fn take_over_water(&mut self) {
+    /// Transfers what condensed or was laid on the solids to the drops, which move up to now.
+    pub fn transfer_water_to_drops(&mut self) {
         let Some(wetting) = self.wetting.as_mut() else { return };
-        let left = wetting.take_over(&mut self.state.water_on, self.state.time);
+        let left = wetting.transfer_to_drops(&mut self.state.water_on, self.state.time);
         self.state.water.book(-left);
         self.set_evaporation();
     }
 
-    /// Drops take over what condensed, where it is their turn; there are so many particles of air.
+    /// Transfers condensed water to the drops, where that is due for `air` particles of air.
     pub(crate) fn update_drops(&mut self, air: usize) {
         let step = self.state.steps;
         let Some(wetting) = self.wetting.as_mut().filter(|wetting| wetting.is_due(step, air)) else { return };
         wetting.step = step;
-        self.take_over_water();
+        self.transfer_water_to_drops();
     }
 
-    /// What the drops let evaporate, told to the solids' particles.
+    /// Sets the evaporation that the drops allow at the solids' particles.
     pub(crate) fn set_evaporation(&mut self) {
         if let Some(wetting) = &self.wetting {
             wetting.set_evaporation(self.scale.spacing, &mut self.evaporation);

@@ -32,8 +32,8 @@ impl AdvanceObserver for Notes {
         self.rows.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: ModelProgress) -> bool {
-        assert!(passed.particles > 0 && passed.time > 0.0);
+    fn progressed(&mut self, progress: ModelProgress) -> bool {
+        assert!(progress.particles > 0 && progress.time > 0.0);
         self.rows.len() != self.call_back_at
     }
 }

@@ -57,7 +57,7 @@ fn air_on_the_gpu_is_that_of_the_frame() {
 #[derive(Default)]
 struct Told {
     rows: usize,
-    passed: usize,
+    reports: usize,
 }
 
 impl AdvanceObserver for Told {
@@ -69,8 +69,8 @@ impl AdvanceObserver for Told {
         self.rows += 1;
     }
 
-    fn passed(&mut self, _passed: ModelProgress) -> bool {
-        self.passed += 1;
+    fn progressed(&mut self, _progress: ModelProgress) -> bool {
+        self.reports += 1;
         true
     }
 }
@@ -89,7 +89,7 @@ fn who_watches_sees_the_drops_and_the_air_and_changes_neither() {
         next
     };
     watched.advance_shown(f64::INFINITY, &stop, &mut told, (0.0, true), &mut show).unwrap();
-    assert!(looks.len() == 12 && told.rows == 8 && told.rows < told.passed, "{} {}", looks.len(), told.rows);
+    assert!(looks.len() == 12 && told.rows == 8 && told.rows < told.reports, "{} {}", looks.len(), told.rows);
     let by_ids = |mut air: Vec<corpuscle_gpu::DeviceParticle>| {
         air.sort_unstable_by_key(|particle| particle.id);
         air

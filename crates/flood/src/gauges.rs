@@ -54,7 +54,7 @@ impl LineGauge {
         GaugeColumn { gauge: self.name.clone(), quantity: "discharge", unit: "m3_per_s" }
     }
 
-    /// The places that it looks at.
+    /// The positions that it samples.
     pub fn places(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.pieces.iter().map(|(at, _)| *at)
     }

@@ -1,4 +1,4 @@
-//! What a scene may ask for: places on the terrain, and no more particles than a machine holds.
+//! Limits of scenes: positions on the terrain, and no more particles than fit in memory.
 
 use crate::setup::{InitialWater, initial_water, lattice, setup};
 use corpuscle_model::ModelError;
@@ -15,8 +15,8 @@ const MOST_CELLS_OF_TERRAIN: f64 = 1e11;
 /// Water is not deeper than this on average, m: nine times the deepest sea.
 const MOST_DEPTH: f64 = 1e5;
 
-/// A body of water is looked at in so many places along each side to see how much it holds.
-const LOOKS: usize = 200;
+/// Samples of the depth along each side of a body of water, from which its volume is computed.
+const DEPTH_SAMPLES_PER_SIDE: usize = 200;
 
 /// Refuses bodies of water and blocks that would take too many particles of `volume` m3, `spacing` m apart in blocks.
 pub(crate) fn check_count(
@@ -91,9 +91,10 @@ impl InitialWater<'_> {
     fn volume(&self, bounds: Bounds) -> f64 {
         let low = [self.within.x_min.max(bounds.x_min), self.within.y_min.max(bounds.y_min)];
         let high = [self.within.x_max.min(bounds.x_max), self.within.y_max.min(bounds.y_max)];
-        let part = [0, 1].map(|axis| (high[axis] - low[axis]) / LOOKS as f64);
-        let at = |axis: usize, look: usize| low[axis] + (look as f64 + 0.5) * part[axis];
-        let places = (0..LOOKS * LOOKS).map(|look| [at(0, look % LOOKS), at(1, look / LOOKS)]);
+        let part = [0, 1].map(|axis| (high[axis] - low[axis]) / DEPTH_SAMPLES_PER_SIDE as f64);
+        let at = |axis: usize, sample: usize| low[axis] + (sample as f64 + 0.5) * part[axis];
+        let places = (0..DEPTH_SAMPLES_PER_SIDE * DEPTH_SAMPLES_PER_SIDE)
+            .map(|sample| [at(0, sample % DEPTH_SAMPLES_PER_SIDE), at(1, sample / DEPTH_SAMPLES_PER_SIDE)]);
         let depths = places.filter(|[x, y]| (self.inside)(*x, *y)).map(|[x, y]| (self.depth)(x, y).max(0.0));
         depths.sum::<f64>() * part[0] * part[1]
     }

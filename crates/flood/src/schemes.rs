@@ -9,7 +9,7 @@ use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a flood of any scheme can be asked.
+/// A flood of any scheme.
 pub trait FloodModel: Model {
     /// The `[flood]` of the scene with every default that depends on ground and water filled in.
     fn settings(&self) -> &Settings;

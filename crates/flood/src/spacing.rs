@@ -7,13 +7,13 @@ use corpuscle_scene::{Edge, Flood as Settings, Series};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 
-/// Particles of a first run at most: a coffee's time on a few cores.
+/// Most particles of a first run: some minutes on a few cores.
 const MOST_PARTICLES: f64 = 2e5;
 
-/// The ground is looked at in so many positions at most.
+/// Most samples of the ground.
 const MOST_SAMPLES: usize = 1_000_000;
 
-/// Water that comes in is thought of as this deep, m.
+/// Assumed depth of inflowing water, m.
 pub(crate) const DEPTH_OF_INFLOW: f64 = 1.0;
 
 /// A spacing for a scene that gives none.
@@ -27,7 +27,7 @@ pub struct DefaultSpacing {
     pub wet_area: f64,
 }
 
-/// A spacing for a scene that gives none and runs until `until` s: not below the terrain's cells, in which there is nothing finer to see, and so that
+/// A spacing for a scene that gives none and runs until `until` s: not below the terrain's cells, which resolve nothing finer, and so that
 /// not more than about 200,000 particles are wet. Wet is the ground with water at the start, all ground below the highest level that
 /// is held somewhere, all ground where it rains, and the area on which what flows in stands a metre deep. `folder` is what relative paths refer to.
 ///
@@ -204,8 +204,8 @@ mod tests {
     fn a_little_water_is_as_fine_as_the_terrain() {
         let pond = chosen("water = [{ depth_m = 1, polygon = [[100, 100], [300, 100], [300, 300], [100, 300]] }]");
         assert!(pond.spacing == 5.0 && (pond.wet_area - 40_000.0).abs() < 2000.0, "{pond:?}");
-        let told = pond.to_string();
-        assert!(told.contains("5 m apart") && told.contains("1600 particles"), "{told}");
+        let text = pond.to_string();
+        assert!(text.contains("5 m apart") && text.contains("1600 particles"), "{text}");
         let dry = chosen("");
         assert!(dry.spacing == 5.0 && dry.wet_area == 0.0, "{dry:?}");
     }

@@ -75,7 +75,7 @@ fn twice_the_discharge_brings_twice_the_water() {
     LiveChange::Discharge { inflow: 0, discharge: 0.0 }.change(&mut flood).unwrap();
     let until_now = came(&flood);
     go(&mut flood, 60.0);
-    // What was owed, less than a particle of 36 m3, is owed still.
+    // The residual volume, less than a particle of 36 m3, stays.
     assert_eq!(came(&flood), until_now);
 }
 

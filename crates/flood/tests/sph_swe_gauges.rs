@@ -98,13 +98,13 @@ struct Notes {
     period: f64,
     call_back_after: usize,
     rows: Vec<(f64, Vec<f64>)>,
-    /// Rows that had been taken each time the model told how far it was.
-    passed: Vec<usize>,
+    /// Rows recorded at each report of progress.
+    rows_at_progress: Vec<usize>,
 }
 
 impl Notes {
     fn new(period: f64, call_back_after: usize) -> Self {
-        Self { period, call_back_after, rows: Vec::new(), passed: Vec::new() }
+        Self { period, call_back_after, rows: Vec::new(), rows_at_progress: Vec::new() }
     }
 }
 
@@ -121,10 +121,10 @@ impl AdvanceObserver for Notes {
         self.rows.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: ModelProgress) -> bool {
-        assert!(passed.particles > 0 && passed.particle_steps > 0 && passed.time > 0.0);
-        let before = self.passed.last().map_or(0, |rows| rows / self.call_back_after);
-        self.passed.push(self.rows.len());
+    fn progressed(&mut self, progress: ModelProgress) -> bool {
+        assert!(progress.particles > 0 && progress.particle_steps > 0 && progress.time > 0.0);
+        let before = self.rows_at_progress.last().map_or(0, |rows| rows / self.call_back_after);
+        self.rows_at_progress.push(self.rows.len());
         self.rows.len() / self.call_back_after == before
     }
 }
@@ -165,7 +165,12 @@ fn compare(text: &str, gpu: &Gpu, period: f64, until: f64) {
     let count = (until / period * (1.0 + 1e-12)).floor() as usize;
     assert_eq!(notes.rows.len(), count);
     // Most are taken while the host knows of nothing.
-    assert!(2 * notes.passed.len() < notes.rows.len(), "{} rows, {:?}", notes.rows.len(), notes.passed);
+    assert!(
+        2 * notes.rows_at_progress.len() < notes.rows.len(),
+        "{} rows, {:?}",
+        notes.rows.len(),
+        notes.rows_at_progress
+    );
     for (at, column) in measured.gauge_columns().iter().enumerate() {
         let largest = expected.iter().map(|row| row[at].abs()).fold(1.0, f64::max);
         let off = notes.rows.iter().zip(&expected).map(|((time, row), other)| ((row[at] - other[at]).abs(), *time));

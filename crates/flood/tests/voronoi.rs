@@ -246,7 +246,7 @@ fn a_lake_at_rest_stays_at_rest_at_every_kind_of_side() {
         assert!(rms(&flood) < 1e-13, "{east}: {}", rms(&flood));
         assert!(flood.wet_cells().all(|cell| (cell.level - 1.0).abs() < 1e-9));
         assert!(before != flood.save());
-        // What rounding leaves of the thrusts is told as next to nothing.
+        // The rounding error of the thrusts is next to nothing.
         let momentum = flood.ledger().balances[1].relative_error();
         assert!(momentum.abs() < 1e-4, "{momentum}");
     }
@@ -508,7 +508,7 @@ fn a_falling_block_holds_what_it_says() {
     }
 }
 
-/// Films so thin that momentum is taken off them: looked at once more by a resumed run, they would lose some again.
+/// Films so thin that momentum is taken off them: checked once more by a resumed run, they would lose some again.
 #[test]
 fn a_restored_run_has_the_same_films() {
     let keys = format!(

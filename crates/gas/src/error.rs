@@ -8,7 +8,7 @@ pub enum SetupError {
     /// A number that cannot be.
     #[error("gas: {what} is {value}: it must be {must}")]
     Value {
-        /// What it tells.
+        /// The cause.
         what: String,
         /// The number.
         value: f64,
@@ -29,7 +29,7 @@ pub enum SetupError {
         shape: &'static str,
         /// Largest part that equal balls can fill.
         limit: f64,
-        /// Who showed that.
+        /// The reference.
         shown_by: &'static str,
         /// How many balls.
         count: usize,

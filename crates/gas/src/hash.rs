@@ -37,7 +37,7 @@ impl<const D: usize> Hash<D> {
         (0..D).rev().fold(0, |number, axis| number * self.count[axis] + cell[axis])
     }
 
-    /// Numbers of places, those in one cell together and in the cells' order: so that what is looked at in a row is near in memory.
+    /// Numbers of places, those in one cell together and in the cells' order: so that what is read in a row is near in memory.
     pub fn in_order(&self, places: impl Iterator<Item = [f64; D]>) -> Vec<usize> {
         let mut order: Vec<(usize, usize)> =
             places.enumerate().map(|(place, position)| (self.number(self.cell(&position)), place)).collect();
@@ -75,11 +75,11 @@ impl<const D: usize> Hash<D> {
         })
     }
 
-    /// Tells of each filed ball in the cells around a place, with its distance.
-    pub fn near(&self, position: &[f64; D], mut tell: impl FnMut(usize, f64)) {
+    /// Calls `visit` with each filed ball in the cells around a position, and its distance.
+    pub fn near(&self, position: &[f64; D], mut visit: impl FnMut(usize, f64)) {
         for cell in self.cells_around(position) {
             for ball in self.chain(cell) {
-                tell(ball, self.distance2(position, &self.balls[ball].0).sqrt());
+                visit(ball, self.distance2(position, &self.balls[ball].0).sqrt());
             }
         }
     }

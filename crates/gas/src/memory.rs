@@ -1,8 +1,8 @@
 //! Memory for large tables.
 //!
 //! Events come from all over the gas, one after the other: in pages of 4 KiB nearly every one of them misses in the CPU's table of
-//! pages. Large pages are asked for where the system gives them.
-//! And what will be needed soon can be asked for ahead.
+//! pages. Large pages are requested where the system gives them.
+//! And what will be needed soon can be prefetched.
 
 /// Size of a large page.
 const LARGE_PAGE: usize = 1 << 21;
@@ -41,7 +41,7 @@ pub(crate) fn filled<T: Clone>(len: usize, value: T) -> Vec<T> {
     table
 }
 
-/// Asks for the cache line of something that will be read some hundreds of nanoseconds later: into the second cache, which takes
+/// Prefetches the cache line of something that will be read some hundreds of nanoseconds later: into the second cache, which takes
 /// up twice as many such requests at a time as the first.
 #[inline(always)]
 #[allow(unsafe_code, reason = "no safe call prefetches on stable Rust; a measured gain")]

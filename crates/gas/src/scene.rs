@@ -1,4 +1,4 @@
-//! A gas as a scene asks for it.
+//! The gas of a scene.
 
 use crate::setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, file};
 use crate::{Gas, SetupError};
@@ -7,11 +7,11 @@ use corpuscle_scene as scene;
 use corpuscle_scene::{Axis, Units};
 use std::path::Path;
 
-/// Looks at the gas in a run.
-const LOOKS: f64 = 400.0;
+/// Samples of the gas in a run.
+const SAMPLES_PER_RUN: f64 = 400.0;
 
-/// Balls beyond which there are fewer looks, in proportion.
-const MANY: f64 = 1e5;
+/// Number of balls beyond which there are fewer samples, in inverse proportion.
+const MAX_BALLS_AT_FULL_RATE: f64 = 1e5;
 
 /// Makes the gas of a scene whose defaults are filled in. `folder` is what relative paths refer to; `until` is the end of the run.
 ///
@@ -59,10 +59,10 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
         let text = format!("gas.follow = {ball}: there is no such ball; ids run from 0 to {}", count.saturating_sub(1));
         return Err(SetupError::Contradiction(text).into());
     }
-    let looks = (LOOKS * (MANY / count as f64).min(1.0)).max(40.0).round();
+    let samples = (SAMPLES_PER_RUN * (MAX_BALLS_AT_FULL_RATE / count as f64).min(1.0)).max(40.0).round();
     setup.measure = Measure {
         from: written.measure.from_s.unwrap_or(0.0),
-        every: Some(until / looks),
+        every: Some(until / samples),
         speed_bins: written.measure.speed_bins,
         profile_axis: written.measure.profile_axis.index(),
         profile_bins: written.measure.profile_bins,

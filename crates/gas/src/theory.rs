@@ -89,7 +89,7 @@ pub fn atmosphere<const D: usize>(mean: f64, weight: f64) -> Vec<f64> {
 }
 
 /// Temperature over that at the start of a gas that is slowly taken from one volume to another, without heat: d ln T =
-/// -(2/D) Z d ln V. `packing_at` tells the packing at a volume.
+/// -(2/D) Z d ln V. `packing_at` gives the packing at a volume.
 pub fn adiabat<const D: usize>(from: f64, to: f64, packing_at: impl Fn(f64) -> f64) -> f64 {
     let width = (to / from).ln() / STEPS as f64;
     let middles = (0..STEPS).map(|step| from * ((step as f64 + 0.5) * width).exp());

@@ -15,8 +15,8 @@ pub fn storage<T>(gpu: &Gpu, label: &'static str, length: usize) -> Result<wgpu:
     if bytes > most {
         return Err(GpuError::Memory { name: gpu.name.clone(), what: label, bytes, most });
     }
-    let told = BufferUsages::INDIRECT | BufferUsages::VERTEX;
-    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | told;
+    let indirect = BufferUsages::INDIRECT | BufferUsages::VERTEX;
+    let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC | indirect;
     let buffer = buffer(gpu, label, bytes, usage);
     gpu.check()?;
     Ok(buffer)
@@ -51,7 +51,7 @@ pub fn read<T: Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, length: usize) -> Result<V
     Ok(elements)
 }
 
-/// Reads the first bytes of several buffers back, as many as told of each, and waits for the device but once.
+/// Reads the first bytes of several buffers back, of each the given number, and waits for the device once.
 ///
 /// # Errors
 /// [`GpuError::Lost`].

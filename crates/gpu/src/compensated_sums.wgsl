@@ -2,7 +2,7 @@
 // run time so that the optimiser keeps the sums.
 #import declared
 
-// The number itself; the optimiser cannot tell, and so keeps (a + b) - a as it is.
+// The number itself: its zero is read at run time, so that the optimiser keeps (a + b) - a.
 fn opaque(number: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(number) ^ parameters.zero);
 }

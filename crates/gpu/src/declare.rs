@@ -206,7 +206,7 @@ pub trait SharedPiece {
     }
 }
 
-/// A buffer that shaders see.
+/// A buffer of shaders.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Binding {
     /// Its name.
@@ -219,7 +219,7 @@ pub struct Binding {
     pub piece: Option<(&'static str, String)>,
 }
 
-/// What [`declare!`](crate::declare) tells of a declaration.
+/// A declaration as [`declare!`](crate::declare) makes it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Declaration {
     /// The constants as WGSL lines.
@@ -253,7 +253,7 @@ impl Declaration {
         is_atomic(&binding.wgsl) || members.map(|member| member.wgsl.as_str()).any(is_atomic)
     }
 
-    /// All in WGSL, with the bindings for which `used` tells how a shader uses them.
+    /// All in WGSL, with the bindings for which `used` gives how a shader uses them.
     fn wgsl(&self, used: impl Fn(u32) -> Option<Use>) -> String {
         let line = |(number, binding): (u32, &Binding)| {
             let space = match (binding.is_uniform, used(number)?) {

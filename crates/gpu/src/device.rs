@@ -32,7 +32,7 @@ pub struct Gpu {
 #[derive(Debug, Clone, Default)]
 struct Compiled(Arc<Mutex<HashMap<String, wgpu::ComputePipeline>>>);
 
-/// The first thing that went wrong on a device, which tells of it when it likes.
+/// The first error on a device, which reports errors asynchronously.
 #[derive(Debug, Clone, Default)]
 struct Faults(Arc<OnceLock<String>>);
 
@@ -53,7 +53,7 @@ impl Faults {
 }
 
 impl Gpu {
-    /// What a device must have to time kernels; it is asked for where it is there, and nothing but [`crate::Stopwatch`] needs it.
+    /// Features that a device needs to time kernels; requested where available, and nothing but [`crate::Stopwatch`] needs it.
     pub(crate) const TIMING: wgpu::Features =
         wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
 
@@ -86,7 +86,7 @@ impl Gpu {
         Err(refused)
     }
 
-    /// A device that somebody else opened with [`Gpu::request`], such as a window's.
+    /// A device that the caller opened with [`Gpu::request`], such as a window's.
     pub fn of(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = adapter.get_info();
         let software = info.device_type == wgpu::DeviceType::Cpu;
@@ -101,7 +101,7 @@ impl Gpu {
         Arc::ptr_eq(&self.faults.0, &other.faults.0)
     }
 
-    /// What a device is asked for: the portable floor, as much memory as there is, and its clock if it has one.
+    /// The request for a device: the portable limits, as much memory as there is, and timestamps if it has them.
     pub fn request(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
         wgpu::DeviceDescriptor {
             label: Some("corpuscle"),
@@ -116,7 +116,7 @@ impl Gpu {
         rank(adapter.get_info().device_type)
     }
 
-    /// Whether nothing has gone wrong so far. A device tells late: ask again after reading something back.
+    /// Whether there was no error so far. A device reports errors late: call this again after reading something back.
     ///
     /// # Errors
     /// [`GpuError::Lost`] with what went wrong first.

@@ -42,7 +42,7 @@ pub enum GpuError {
         name: String,
         /// What the memory is for.
         what: &'static str,
-        /// Asked for, bytes.
+        /// Requested, bytes.
         bytes: u64,
         /// To be had, bytes.
         most: u64,
@@ -52,7 +52,7 @@ pub enum GpuError {
         "{count} particles or cells are more than the {most} that a graphics device goes through at once; take fewer, or `--backend cpu`"
     )]
     TooMany {
-        /// Asked for.
+        /// Requested number.
         count: usize,
         /// To be had.
         most: usize,

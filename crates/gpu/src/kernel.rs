@@ -93,7 +93,7 @@ fn for_device(gpu: &Gpu, text: String) -> String {
 }
 
 impl Task {
-    /// Does it with so many groups of threads.
+    /// Runs it with a number of groups of threads.
     pub fn run(&self, pass: &mut Pass<'_>, groups: u32) {
         self.set(pass);
         pass.pass.dispatch_workgroups(groups, 1, 1);

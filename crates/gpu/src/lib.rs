@@ -2,7 +2,7 @@
 //! shaders joined from pieces.
 //!
 //! Everything here keeps to the portable floor, so that the same shaders run in a browser: WebGPU's default limits (8 storage
-//! buffers a stage, 256 threads a group, 65535 groups a dimension), no optional feature. Of memory as much is asked for as the device
+//! buffers a stage, 256 threads a group, 65535 groups a dimension), no optional feature. As much memory is requested as the device
 //! has to give: 128 MiB a binding at least.
 
 mod buffer;

@@ -1,5 +1,5 @@
 //! Particles of a model that are drawn where they lie: whoever moves them writes them, whoever draws them reads them, and
-//! nothing comes to the host.
+//! nothing is downloaded to the host.
 
 use crate::{Gpu, GpuError, Shared, SharedPiece, read, storage};
 

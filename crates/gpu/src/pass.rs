@@ -7,7 +7,7 @@ use std::time::Duration;
 /// Times that one set of queries holds (WebGPU's own limit).
 const MOST_MARKS: u32 = wgpu::QUERY_SET_MAX_QUERIES;
 
-/// A compute pass in which tasks are done one after the other, timed where that is asked for.
+/// A compute pass in which tasks run one after the other, timed on request.
 #[derive(Debug)]
 pub struct Pass<'a> {
     pub(crate) pass: wgpu::ComputePass<'a>,
@@ -83,7 +83,7 @@ impl Stopwatch {
         Some(Self { queries, resolved, marks: Vec::new(), taken: BTreeMap::new() })
     }
 
-    /// To be called after a pass, before what it was recorded with is handed to the device.
+    /// To be called after a pass, before its encoder is submitted to the device.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..self.marks.len() as u32, &self.resolved, 0);
     }

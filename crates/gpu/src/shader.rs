@@ -1,6 +1,6 @@
 //! Shaders joined from pieces.
 //!
-//! A line `#import name` stands for the piece of that name, which is taken in once however often it is asked for. Pieces may
+//! A line `#import name` stands for the piece of that name, which is included once however often it is imported. Pieces may
 //! import pieces.
 
 use crate::ImportError;
@@ -12,7 +12,7 @@ pub type ShaderLibrary<'a> = &'a [(&'a str, &'a str)];
 /// The piece `sums_before`: the sum of a number over the threads of a group before each, and over all. Its groups have 256 threads.
 pub const SUMS_BEFORE: (&str, &str) = ("sums_before", include_str!("sums_before.wgsl"));
 
-/// The piece `compensated_sums`: sums without error in pairs of numbers (see [`to_pair`](crate::to_pair)), and counts of more than 32 bits. The declaration of who imports
+/// The piece `compensated_sums`: sums without error in pairs of numbers (see [`to_pair`](crate::to_pair)), and counts of more than 32 bits. The declaration of the shader that imports
 /// it has a buffer `parameters` with a member `zero`, which is always 0.
 pub const COMPENSATED_SUMS: (&str, &str) = ("compensated_sums", include_str!("compensated_sums.wgsl"));
 

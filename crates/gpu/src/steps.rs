@@ -14,15 +14,15 @@ crate::declare! {
         pub const GOING: u32 = 0;
         /// The host has just started a batch.
         pub const BATCH_START: u32 = 1;
-        /// The time asked for is reached.
+        /// The requested time is reached.
         pub const ARRIVED: u32 = 2;
         /// The host is to do something first: make cells, or room.
         pub const NEEDS_HOST: u32 = 3;
-        /// Something is no number, or the step is too short to go on.
+        /// A value is not finite, or the step is too short to go on.
         pub const BROKEN: u32 = 4;
         /// Larger than any value: where the search for a minimum starts.
         pub const FAR: f32 = 3.0e38;
-        /// Cells of a search are taken to be this part thicker than they are: who lies on their border may be in either.
+        /// Cells of a search are taken to be this part thicker than they are: a particle on their border may be in either.
         pub const CELL_BORDER: f32 = 0.01;
         /// Threads of a group.
         pub const GROUP: u32 = crate::THREADS;
@@ -38,15 +38,15 @@ crate::declare! {
 /// Steps of a batch at most.
 pub const MOST_STEPS: u32 = 64;
 
-/// A batch takes about so long at most, s: then the host looks whether it is to stop.
-const LONGEST: f64 = 0.2;
+/// Longest wall time of a batch, about, s: after it the host checks whether to stop.
+const MAX_BATCH_SECONDS: f64 = 0.2;
 
 /// Why a batch ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Halt {
     /// All its steps are done.
     Full,
-    /// The time asked for is reached.
+    /// The requested time is reached.
     Arrived,
     /// The host is to do something first.
     NeedsHost,
@@ -144,7 +144,7 @@ impl Batches {
 
     /// Finds the size of the next batch after one of `count` steps that took so long, s.
     fn adapt_size(&mut self, count: u32, took: f64) {
-        let next = if took < 0.5 * LONGEST { 2 * count.max(self.size / 2) } else { count / 2 };
+        let next = if took < 0.5 * MAX_BATCH_SECONDS { 2 * count.max(self.size / 2) } else { count / 2 };
         self.size = next.clamp(1, MOST_STEPS);
     }
 }

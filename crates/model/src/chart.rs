@@ -20,7 +20,7 @@ pub struct Chart {
 /// An axis of a chart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ChartAxis {
-    /// What is told along it: `Speed`.
+    /// The quantity along it: `Speed`.
     pub label: String,
     /// Unit as printed: `m/s`; empty for a number and in reduced units.
     pub unit: String,

@@ -32,7 +32,7 @@ pub trait GpuModel {
     fn particles_on_gpu(&self) -> Result<Option<DeviceParticles>, ModelError>;
 
     /// Advances to `time`, s, as [`Model::advance_with`](crate::Model::advance_with) does, and calls `show` from the first of the times `shown`,
-    /// s, on; `show` returns when it wants to be called next, s (a time that has passed stands for the end of the next step). Where the second of
+    /// s, on; `show` returns the time of its next call, s (a past time stands for the end of the next step). Where the second of
     /// `shown` is true, the particles that the host does not have are shown too. Nothing of them comes back to the host before the end. On the CPU `show` is never
     /// called.
     ///

@@ -22,7 +22,7 @@ pub struct Balance {
     pub outflow: f64,
     /// Amount now.
     pub now: f64,
-    /// Amount below which nothing but rounding is seen; 0 where there is none.
+    /// Amount below which there is only rounding error; 0 where there is none.
     pub least: f64,
 }
 

@@ -1,6 +1,6 @@
 //! The contract a model fulfils, and what it gives: frames, gauges, maps, charts, paths and a ledger.
 //!
-//! A model knows no screen, file or window. Whoever runs it asks for a time and reads what it shows.
+//! A model depends on no screen, file or window. The caller advances it to a time and reads its state.
 
 mod chart;
 mod container;
@@ -39,10 +39,10 @@ pub enum ModelError {
         time: f64,
         /// Number of the step.
         step: u64,
-        /// What was seen and what to try.
+        /// The cause, and what to try.
         what: String,
     },
-    /// The scene asks for something that cannot be set up.
+    /// The scene requires something that cannot be set up.
     #[error("{0}")]
     Setup(String),
     /// The device that computes gave up: lost, or out of memory.
@@ -58,14 +58,14 @@ pub enum ModelError {
 pub struct CpuOnly {
     /// What runs on the CPU only, as a sentence.
     pub what: &'static str,
-    /// What to do where a GPU was asked for.
+    /// What to do where a GPU was requested.
     pub remedy: &'static str,
 }
 
-/// A model: physics that advances in time and can be looked at.
+/// A model: physics that advances in time and whose state can be read.
 ///
-/// The model steps at its own pace. The state that it shows at the time asked for is read between two steps
-/// (dense output), so when it is looked at never changes the physics: the same scene gives the same bits
+/// The model steps at its own pace. The state that it shows at the requested time is read between two steps
+/// (dense output), so reading it never changes the physics: the same scene gives the same bits
 /// whatever the frame or gauge period.
 pub trait Model: Any + Send {
     /// The model's name as written in a scene: `flood`, `gas` or `dew`.
@@ -93,7 +93,7 @@ pub trait Model: Any + Send {
         None
     }
 
-    /// The time the model shows now, s. Exactly the time last asked of [`Model::advance_to`].
+    /// The time the model shows now, s. Exactly the time of the last call of [`Model::advance_to`].
     fn time(&self) -> f64;
 
     /// Steps taken so far (gas: collisions).
@@ -161,7 +161,7 @@ pub trait Model: Any + Send {
     /// What should be conserved, what came in and what went out.
     fn ledger(&self) -> Ledger;
 
-    /// Things a user should know about this run, in sentences.
+    /// Warnings about this run, in sentences.
     fn warnings(&self) -> Vec<String>;
 
     /// The whole state, to the bit.

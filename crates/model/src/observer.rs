@@ -3,7 +3,7 @@
 use crate::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
-/// How far a model has come.
+/// Progress of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModelProgress {
     /// Simulated time, s.
@@ -14,23 +14,24 @@ pub struct ModelProgress {
     pub particle_steps: u64,
 }
 
-/// Callbacks while a model advances: `gauges` takes the rows that fall due, `passed` the progress, and may have the model return early. A model that computes on a GPU need not bring its whole state back for them.
+/// Callbacks called while a model advances: `gauges` with each row that falls due, and `progressed` with the progress, which may make the model return
+/// early. A model that computes on a GPU need not download its whole state for them.
 pub trait AdvanceObserver {
-    /// The first time after `time`, s, at which the gauges are to be read; none where there is none. It is asked for times to come as well, before
-    /// the rows until then are taken.
+    /// The first time after `time`, s, at which the gauges are to be read; none where there is none. It is called for future times as well, before
+    /// the rows until then are recorded.
     fn gauges_after(&self, time: f64) -> Option<f64>;
 
-    /// The first time after `time`, s, by which a model should say how far it is; none where it need not. A model that says so
-    /// often anyway may pass over it.
+    /// The first time after `time`, s, by which a model should report its progress; none where it need not. A model that reports
+    /// often anyway may ignore it.
     fn pause_after(&self, _time: f64) -> Option<f64> {
         None
     }
 
-    /// Takes the row of gauges ([`Model::gauge_row`](crate::Model::gauge_row)) of a time, s.
+    /// Called with the row of gauges ([`Model::gauge_row`](crate::Model::gauge_row)) of a time, s.
     fn gauges(&mut self, time: f64, row: &[f64]);
 
-    /// Takes the progress. False has the model return as soon as its state is sound.
-    fn passed(&mut self, passed: ModelProgress) -> bool;
+    /// Called with the progress. After `false` the model returns as soon as its state is consistent.
+    fn progressed(&mut self, progress: ModelProgress) -> bool;
 }
 
 /// No callbacks.
@@ -41,12 +42,12 @@ impl AdvanceObserver for () {
 
     fn gauges(&mut self, _time: f64, _row: &[f64]) {}
 
-    fn passed(&mut self, _passed: ModelProgress) -> bool {
+    fn progressed(&mut self, _progress: ModelProgress) -> bool {
         true
     }
 }
 
-/// [`Model::advance_with`] of a model that can be looked at wherever it stands: it is advanced from one time that is due to the next.
+/// [`Model::advance_with`] of a model whose state can be read at any time: it is advanced from one due time to the next.
 ///
 /// # Errors
 /// Those of [`Model::advance_to`].
@@ -69,7 +70,7 @@ pub fn advance_with<M: Model + ?Sized>(
             observer.gauges(next, &model.gauge_row());
         }
         let (particles, particle_steps) = (model.particles(), model.particle_steps());
-        if !observer.passed(ModelProgress { time: next, particles, particle_steps }) {
+        if !observer.progressed(ModelProgress { time: next, particles, particle_steps }) {
             break;
         }
     }

@@ -1,12 +1,12 @@
-//! Where one particle went.
+//! Trajectories of single particles.
 
-/// The way of one particle as a polyline.
+/// The trajectory of one particle as a polyline.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Path {
     /// Name for legends: `ball 0`.
     pub name: String,
     /// Time at each point, s.
     pub times: Vec<f64>,
-    /// The points, m; one for each time. Not-a-number parts two pieces, as where a periodic side is crossed.
+    /// The points, m; one for each time. Not-a-number separates two pieces, as where a periodic side is crossed.
     pub points: Vec<[f64; 3]>,
 }

@@ -1,4 +1,4 @@
-//! The text of a scene as a tree that knows where each value is written.
+//! The text of a scene as a tree with the position of each value.
 
 use crate::error::{Place, Problem};
 use crate::{old_names, units};

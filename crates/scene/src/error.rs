@@ -9,7 +9,7 @@ pub enum SceneError {
     /// The file cannot be read.
     #[error("cannot read the scene {}: {source}", path.display())]
     Unreadable {
-        /// The file asked for.
+        /// The requested file.
         path: PathBuf,
         /// The system's reason.
         source: std::io::Error,

@@ -1,6 +1,6 @@
 //! Expressions of the position: `2 + 0.1 * exp(-((x - 50)^2 + (y - 50)^2) / 200)`.
 //!
-//! Reading and computing are our own, so that an error tells its character and what to write, and -x^2 is -(x^2) as in mathematics.
+//! Reading and computing are our own, so that an error names its character and what to write, and -x^2 is -(x^2) as in mathematics.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -101,7 +101,7 @@ const OPERATORS: [(&str, Operator, u8, bool); 9] = [
 const SIGN: u8 = 4;
 
 impl Expression {
-    /// What may be called, as told in messages.
+    /// The functions that may be called, for messages.
     pub const FUNCTIONS: &str =
         "sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln, log10, sqrt, abs, floor, min, max, atan2, hypot";
 

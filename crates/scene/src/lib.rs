@@ -1,4 +1,4 @@
-//! Scene files: what a user asks for, typed and checked; in SI units, but for a gas in reduced ones.
+//! Scene files: the settings of a run, typed and checked; in SI units, but for a gas in reduced ones.
 //!
 //! [`Scene::read`] takes a TOML file, [`Scene::parse`] its text; [`builtin`] holds the scenes that come with the program.
 //! A [`Scene`] that was read is checked: numbers are finite and in range, names unique, exactly one kind given where
@@ -41,19 +41,19 @@ use serde::{Deserialize, Serialize};
 /// A scene: everything that a run depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// One line: what is seen here.
+    /// Title, one line.
     pub title: String,
     /// A few sentences for the gallery and the report.
     pub description: String,
     /// Seed of everything random.
     pub seed: u64,
-    /// How long to run and how often to look.
+    /// Duration of the run and its output intervals.
     pub run: Run,
     /// What is moved.
     pub model: ModelTables,
 }
 
-/// How long to run and how often to look. For a gas in reduced units read its unit of time for s.
+/// Duration of the run and its output intervals. For a gas in reduced units read its unit of time for s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {

@@ -1,4 +1,4 @@
-//! The part of a scene that one model has, and the models that scene files know.
+//! The part of a scene that belongs to one model, and the registered models.
 
 use crate::builtin::{DEW, FLOOD, GAS};
 use crate::check::{Check, Checked};
@@ -13,7 +13,7 @@ use toml::de::{DeTable, ValueDeserializer};
 
 /// What a scene says of its model: the table of that name, as it is in memory.
 ///
-/// It is read and written by serde; `#[serde(deny_unknown_fields)]` has keys that it does not know refused with their line.
+/// It is read and written by serde; `#[serde(deny_unknown_fields)]` makes it refuse unknown keys with their line.
 pub trait ModelScene: fmt::Debug + Clone + PartialEq + Serialize + DeserializeOwned + Send + Sync + 'static {
     /// Name of the model and of its table, as in `[gas]`.
     const NAME: &'static str;
@@ -37,7 +37,7 @@ pub trait ModelScene: fmt::Debug + Clone + PartialEq + Serialize + DeserializeOw
     /// Checks its values beyond their types.
     ///
     /// # Errors
-    /// The key and value of the first thing that is not as it must be: see [`Check`].
+    /// The key and value of the first error: see [`Check`].
     fn check(&self, _check: &Check) -> Checked {
         Ok(())
     }
@@ -80,7 +80,7 @@ impl Tables<'_> {
     }
 }
 
-/// A model as scene files know it: see [`register`].
+/// A model that scene files may name: see [`register`].
 #[derive(Clone, Copy)]
 pub struct SceneKind {
     /// Name of the model.
@@ -112,12 +112,12 @@ impl SceneKind {
     }
 }
 
-/// The models that scene files know from the start.
+/// The models that are registered from the start.
 const OWN: [SceneKind; 3] = [SceneKind::GAS, SceneKind::FLOOD, SceneKind::DEW];
 
 static ADDED: RwLock<Vec<SceneKind>> = RwLock::new(Vec::new());
 
-/// Has scene files know one more model from here on, in this process. Nothing changes where one of that name is known.
+/// Registers one more model for scene files of this process. Nothing changes where one of that name is registered.
 pub fn register(kind: SceneKind) {
     let mut added = ADDED.write().unwrap_or_else(PoisonError::into_inner);
     if OWN.iter().chain(&*added).all(|known| known.name != kind.name) {
@@ -125,7 +125,7 @@ pub fn register(kind: SceneKind) {
     }
 }
 
-/// The models that scene files know.
+/// The registered models.
 pub fn kinds() -> Vec<SceneKind> {
     let added = ADDED.read().unwrap_or_else(PoisonError::into_inner);
     OWN.iter().chain(&*added).copied().collect()

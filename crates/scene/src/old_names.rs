@@ -2,7 +2,7 @@
 //!
 //! Scheme `paper` of a flood is `sph-swe`, and its table `[flood.paper]` is `[flood.sph_swe]`; what is written out has the new names. Scheme `balanced` is
 //! gone, and with it `[flood.refinement]`: both are refused. Scenes that a run wrote out held `[flood.balanced]` and `flood.rain.film_m` in every
-//! scheme; where another scheme is written these are passed over, as they did nothing there.
+//! scheme; where another scheme is written these are ignored, as they had no effect there.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};

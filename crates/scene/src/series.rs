@@ -155,7 +155,7 @@ fn between(before: [f64; 2], after: [f64; 2], t: f64) -> f64 {
     before[1] + part * (after[1] - before[1])
 }
 
-/// Looks for the first row that cannot be; gives its index and what is wrong.
+/// Finds the first invalid row; returns its index and the reason.
 pub(crate) fn check_rows(rows: &[[f64; 2]]) -> Result<(), (usize, String)> {
     if rows.is_empty() {
         return Err((0, "there are no rows; give at least one of [time_s, value]".into()));

@@ -15,7 +15,7 @@ pub const LANES: usize = 8;
 /// Several `f64`, operated on lane by lane.
 pub type Lanes<S> = f64x8<S>;
 
-/// What pair loops ask of lanes beyond arithmetic.
+/// Operations of pair loops on lanes beyond arithmetic.
 pub trait LanesExt<S: Simd>: Copy {
     /// The number itself where it is positive, else 0.
     fn positive(self) -> Self;

@@ -8,7 +8,7 @@ pub enum SolidError {
     /// A size that cannot be.
     #[error("{what} is {value}: it must be {must}")]
     Size {
-        /// What it tells.
+        /// The cause.
         what: &'static str,
         /// The number.
         value: f64,
@@ -44,7 +44,7 @@ pub enum SolidError {
         volume: f64,
         /// Its surface, m².
         area: f64,
-        /// The distance asked for, m.
+        /// The requested distance, m.
         spacing: f64,
         /// About how many particles that makes.
         count: f64,

@@ -1,9 +1,9 @@
-//! Solids told by a few numbers.
+//! Solids given by a few numbers.
 
 use crate::{Nearest, Profile, SolidError};
 use std::f64::consts::PI;
 
-/// A solid told by a few numbers, in its own coordinates, m.
+/// A solid given by a few numbers, in its own coordinates, m.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A box with its middle at the origin.

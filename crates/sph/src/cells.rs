@@ -17,7 +17,7 @@ pub struct Cells<const D: usize> {
     /// Cell of each particle, in the order given to [`Cells::sort`].
     cell: Vec<u32>,
     order: Vec<u32>,
-    /// How far a search from each cell must look, where that differs: see [`Cells::set_reach`].
+    /// Search radius from each cell, where that differs: see [`Cells::set_reach`].
     pub(crate) reach: Vec<f64>,
     /// The same from the particles of the cell's own row.
     pub(crate) along_rows: Vec<f64>,

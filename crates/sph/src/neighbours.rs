@@ -40,13 +40,13 @@ pub trait Reach<const D: usize>: Sync {
     /// Whether lists keep distances, for later passes. Otherwise sums are given squares, which are not kept.
     const DISTANCES: bool;
 
-    /// How far to look from particle `i`, which stands at `place`, m.
+    /// Search radius of particle `i` at `place`, m.
     fn farthest(&self, cells: &Cells<D>, i: usize, place: [f64; D]) -> f64;
 
     /// Squares of the distances within which the particles from `at` on are neighbours of particle `i`, m2.
     fn squared<S: Simd>(&self, simd: S, i: usize, at: usize) -> Lanes<S>;
 
-    /// Square of the smallest distance that is told, m2: closer particles are told to be as far. Only where distances are kept.
+    /// Square of the smallest distance recorded, m2: closer particles are recorded at that. Only where distances are kept.
     fn nearest_squared(&self, i: usize) -> f64;
 }
 
@@ -117,9 +117,9 @@ impl Reach<2> for EachReach<'_> {
 
 /// A sum over the neighbours of a particle.
 pub trait PairSum<T>: Sync {
-    /// Whether this particle's neighbours are wanted; the list of another stays empty.
+    /// Whether this particle's neighbours are required; the list of another stays empty.
     #[inline(always)]
-    fn wants(&self, _particle: usize) -> bool {
+    fn requires(&self, _particle: usize) -> bool {
         true
     }
 
@@ -127,13 +127,13 @@ pub trait PairSum<T>: Sync {
     fn sum<S: Simd>(&self, simd: S, particle: usize, found: Neighbours) -> T;
 }
 
-/// No sum: for who wants the lists only.
+/// No sum: only the lists are required.
 impl PairSum<()> for () {
     fn sum<S: Simd>(&self, _: S, _: usize, _: Neighbours) {}
 }
 
 impl NeighbourLists {
-    /// Finds the neighbours of all particles, whose `places` are in the order of `cells`. `sum` is called once for every particle that it wants, and
+    /// Finds the neighbours of all particles, whose `places` are in the order of `cells`. `sum` is called once for every particle that it requires, and
     /// its result goes to `out`.
     pub fn search<const D: usize, T: Send>(
         &mut self,
@@ -191,7 +191,7 @@ fn search_block<S: Simd, const D: usize, T, R: Reach<D>>(
     let mut begin = 0;
     for (k, out) in out.iter_mut().enumerate() {
         let i = first + k;
-        if !sum.wants(i) {
+        if !sum.requires(i) {
             start.push(begin as u32);
             continue;
         }
@@ -294,11 +294,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Counts those found; of a fifth of the particles the neighbours are not wanted.
+    /// Counts those found; of a fifth of the particles the neighbours are not required.
     struct Count;
 
     impl PairSum<usize> for Count {
-        fn wants(&self, particle: usize) -> bool {
+        fn requires(&self, particle: usize) -> bool {
             particle % 5 != 3
         }
 
@@ -328,7 +328,7 @@ mod tests {
         lists.search(cells, columns.each_ref().map(|column| &column[..]), reach, &mut counts, &Count);
         let squared = |i: usize, j: usize| columns.iter().map(|column| (column[i] - column[j]).powi(2)).sum::<f64>();
         for (i, counted) in counts.into_iter().enumerate() {
-            let is_near = |&j: &usize| Count.wants(i) && j != i && squared(i, j) < within(i, j);
+            let is_near = |&j: &usize| Count.requires(i) && j != i && squared(i, j) < within(i, j);
             let mut expected: Vec<u32> = (0..count).filter(is_near).map(|j| j as u32).collect();
             assert_eq!(counted, expected.len());
             let list = lists.numbers_of(i);

@@ -1,4 +1,4 @@
-//! How far a search must look in the plane where particles reach differently far.
+//! Search radii in the plane where particles have different supports.
 
 use crate::{Cells, FEWEST};
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ impl Cells<2> {
         self.reach.par_chunks_mut(columns).enumerate().with_min_len(rows_together).for_each(spread_to_rows);
     }
 
-    /// How far a search from a place must look to find all particles that reach it.
+    /// Search radius from a position that finds all particles whose support covers it.
     #[inline]
     pub fn reach_at(&self, place: [f64; 2]) -> f64 {
         self.reach[self.along(1, place[1]) * self.count[0] + self.along(0, place[0])]

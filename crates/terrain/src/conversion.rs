@@ -5,7 +5,7 @@ use crate::{MapBox, ReferenceSystem};
 use proj4rs::Proj;
 
 /// Places on each side of a box that are converted to find the box round it in another system.
-const LOOKS: usize = 16;
+const SAMPLES_PER_EDGE: usize = 16;
 
 /// From one reference system to another; `None` where they are the same.
 #[derive(Debug)]
@@ -48,7 +48,9 @@ impl Conversion {
         if self.is_none() {
             return Ok(*part);
         }
-        let along = |a: f64, b: f64| (0..=LOOKS).map(move |step| a + (b - a) * step as f64 / LOOKS as f64);
+        let along = |a: f64, b: f64| {
+            (0..=SAMPLES_PER_EDGE).map(move |step| a + (b - a) * step as f64 / SAMPLES_PER_EDGE as f64)
+        };
         let level = along(part.west, part.east).flat_map(|x| [[x, part.south], [x, part.north]]);
         let upright = along(part.south, part.north).flat_map(|y| [[part.west, y], [part.east, y]]);
         let mut all: Option<MapBox> = None;

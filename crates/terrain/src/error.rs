@@ -51,7 +51,7 @@ pub enum TerrainError {
         /// What is wrong with it.
         what: String,
     },
-    /// A place on Earth was asked for, and the terrain has none.
+    /// A position on Earth is required, and the terrain has none.
     #[error(
         "the terrain has no known reference system, so longitude and latitude mean nothing on it; give places in the \
          terrain's own coordinates, or name the reference system of a terrain file with `crs` in [terrain.file]"
@@ -68,7 +68,7 @@ pub enum TerrainError {
     /// A generated terrain's numbers make no ground.
     #[error("the terrain cannot be made: {0}")]
     Shape(String),
-    /// The scene wants terrain from a server, which is to be fetched first.
+    /// The scene has terrain from a server, which must be fetched first.
     #[error(
         "the terrain of [terrain.fetch] comes over a network, which this program was built without; fetch it elsewhere \
          with `corpuscle terrain fetch`, and name the file in [terrain.file]"

@@ -7,7 +7,7 @@ use crate::system::ReferenceSystem;
 use crate::{Georeference, MapBox, Raster, TerrainError, read_raster, read_raster_part, survey};
 use std::path::{Path, PathBuf};
 
-/// Cells beyond a part that are read too, so that what is interpolated at its sides sees what is there.
+/// Cells beyond a part that are read too, so that values interpolated at its sides use the cells beyond.
 const MARGIN: f64 = 2.0;
 
 /// Reads raster files as one raster, as [`merge`] says: all of them, or the cells that share area with `part`, given in
@@ -23,8 +23,8 @@ pub fn read_rasters(paths: &[PathBuf], crs: Option<&str>, part: Option<&MapBox>)
     let mut rasters = Vec::new();
     for path in paths {
         let Some(mut raster) = read(path, crs, part, common.georeference.system.as_ref())? else { continue };
-        let told = choose_system(&mut raster.georeference, crs, path)?;
-        warnings.extend(told.into_iter().map(|warning| (path.as_path(), warning)));
+        let warning = choose_system(&mut raster.georeference, crs, path)?;
+        warnings.extend(warning.into_iter().map(|warning| (path.as_path(), warning)));
         rasters.push((path.clone(), raster));
     }
     let mut raster = match (rasters.len(), part) {
@@ -75,7 +75,7 @@ fn without_repeats(warnings: Vec<(&Path, String)>) -> Vec<String> {
     kept
 }
 
-/// Settles the reference system from what the file and the scene say; gives what a user should know.
+/// Settles the reference system from what the file and the scene say; returns a warning, if any.
 pub(crate) fn choose_system(
     place: &mut Georeference,
     crs: Option<&str>,

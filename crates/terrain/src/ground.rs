@@ -15,14 +15,14 @@ use std::sync::Arc;
 const LOWEST_ON_EARTH: f64 = -11_000.0;
 const HIGHEST_ON_EARTH: f64 = 9_000.0;
 
-/// Heights beyond this in magnitude are no ground at all, m.
-const ABSURD: f64 = 1e6;
+/// Largest magnitude of valid heights, m.
+const MAX_HEIGHT: f64 = 1e6;
 
 /// A local projection is stretched by more than a thousandth beyond this distance from its middle line, m.
 const FAR_FROM_CENTRE: f64 = 285e3;
 
-/// A projection is told of when its scale is wrong by more than this (UTM and national grids keep within 0.002).
-const DISTORTED: f64 = 0.005;
+/// Error of a projection's scale above which there is a warning (UTM and national grids keep within 0.002).
+const MAX_SCALE_ERROR: f64 = 0.005;
 
 /// The ground from a raster; `path` is for messages.
 pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> Result<Terrain, TerrainError> {
@@ -46,7 +46,8 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
         (bounds, resampled(&raster, bounds, &map_grid))
     } else {
         let bounds = outside(&map_grid);
-        if let Some(scale) = map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > DISTORTED) {
+        if let Some(scale) = map_grid.frame.scale(bounds.centre()).filter(|scale| (scale - 1.0).abs() > MAX_SCALE_ERROR)
+        {
             warnings.push(format!(
                 "A metre of the terrain's projection is {scale:.3} m on the ground, and so are areas and volumes out of \
                  proportion; project it to one that is true to scale here, e.g. UTM, with `gdalwarp -t_srs`."
@@ -57,12 +58,12 @@ pub(crate) fn from_raster(mut raster: Raster, path: &Path, no_data: NoData) -> R
     Ok(Terrain { bounds, ground: Ground::Surface(surface), map_grid, valid, warnings })
 }
 
-/// Refuses heights that are none, and tells of doubtful ones.
+/// Refuses invalid heights, and warns of doubtful ones.
 fn check_heights(raster: &Raster, path: &Path, warnings: &mut Vec<String>) -> Result<(), TerrainError> {
     let lowest = raster.values.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = raster.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let hint = "if that marks cells without data, say so in the file: `gdal_edit.py -a_nodata`";
-    if lowest < -ABSURD || highest > ABSURD {
+    if lowest < -MAX_HEIGHT || highest > MAX_HEIGHT {
         let what = format!("its heights go from {lowest} to {highest} m, which is no ground; {hint}");
         return Err(TerrainError::unusable(path, what));
     }

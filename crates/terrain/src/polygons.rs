@@ -6,7 +6,7 @@ use geojson::{GeoJson, GeometryValue};
 /// Rings of places; those that an odd number of them hold are inside.
 pub type Polygon = Vec<Vec<[f64; 2]>>;
 
-/// The polygons of a GeoJSON text, as written there; other geometries are passed over.
+/// The polygons of a GeoJSON text, as written there; other geometries are ignored.
 ///
 /// # Errors
 /// What is wrong with a text that is no GeoJSON.
@@ -42,7 +42,7 @@ fn collect(geometry: &GeometryValue, polygons: &mut Vec<Polygon>) {
 }
 
 impl Terrain {
-    /// Brings polygons of GeoJSON to the terrain's own coordinates. They are in longitude and latitude as RFC 7946 asks; numbers that
+    /// Brings polygons of GeoJSON to the terrain's own coordinates. They are in longitude and latitude as RFC 7946 requires; numbers that
     /// cannot be those, and any numbers on a terrain without reference system, are the terrain's own already.
     pub fn polygons_to_own(&self, mut polygons: Vec<Polygon>) -> Vec<Polygon> {
         let could_be_degrees = |[x, y]: &[f64; 2]| (-180.0..=180.0).contains(x) && (-90.0..=90.0).contains(y);

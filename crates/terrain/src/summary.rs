@@ -24,7 +24,7 @@ pub struct Summary {
     pub heights_m: Option<[f64; 2]>,
     /// Cells without data.
     pub no_data: u64,
-    /// What a user should know about it, in sentences.
+    /// Warnings about it, in sentences.
     pub warnings: Vec<String>,
 }
 
@@ -97,7 +97,7 @@ impl Default for Heights {
 impl Heights {
     fn add(&mut self, raster: &Raster) {
         for height in &raster.values {
-            // Not-a-number is passed over by both.
+            // Both ignore not-a-number.
             self.lowest = self.lowest.min(*height);
             self.highest = self.highest.max(*height);
             self.no_data += u64::from(height.is_nan());

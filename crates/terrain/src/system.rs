@@ -116,7 +116,7 @@ impl ReferenceSystem {
         Proj::from_proj_string(definition).ok()
     }
 
-    /// What a user should know about results in this system.
+    /// A warning about results in this system.
     pub(crate) fn warning(&self) -> Option<String> {
         let name = &self.name;
         match (&self.definition, self.geographic) {
@@ -154,7 +154,7 @@ impl ReferenceSystem {
 }
 
 /// Definition of an EPSG code that can be computed with. Shift grids are files that are not at hand: a definition that
-/// wants one is used without (an error of metres at most).
+/// requires one is used without (an error of metres at most).
 fn epsg_definition(code: u16) -> Option<(String, Proj)> {
     let text = crs_definitions::from_code(code)?.proj4;
     let without_grids: Vec<&str> = text.split_whitespace().filter(|word| !word.starts_with("+nadgrids=")).collect();

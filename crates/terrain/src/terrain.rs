@@ -1,4 +1,4 @@
-//! The ground as a model sees it.
+//! The ground of a model.
 
 use crate::frame::Frame;
 use crate::surface::{GroundPatches, Surface};
@@ -79,11 +79,11 @@ impl Terrain {
         }
     }
 
-    /// The ground that a scene asks for. `seed` makes generated ground, `folder` is what a relative path refers to.
+    /// The ground of a scene. `seed` makes generated ground, `folder` is what a relative path refers to.
     ///
     /// # Errors
     /// A text that says what is wrong with the file or with the numbers of a generated terrain;
-    /// [`TerrainError::NotFetched`] for one that comes over a network, of which this crate knows nothing.
+    /// [`TerrainError::NotFetched`] for one that comes over a network, which this crate does not access.
     pub fn open(scene: &Scene, seed: u64, folder: &Path) -> Result<Self, TerrainError> {
         match scene {
             Scene::File(scene) => {
@@ -225,7 +225,7 @@ impl Terrain {
         Arc::clone(&self.map_grid.frame)
     }
 
-    /// What a user should know about this terrain, in sentences.
+    /// Warnings about this terrain, in sentences.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -149,12 +149,12 @@ impl AdvanceObserver for GlideObserver<'_, '_> {
         *glide.measured = Arc::new(measured);
     }
 
-    fn passed(&mut self, passed: ModelProgress) -> bool {
+    fn progressed(&mut self, progress: ModelProgress) -> bool {
         let mut glide = self.0.borrow_mut();
-        glide.particles = passed.particles;
-        glide.slice.has_stepped |= passed.particle_steps > glide.work;
-        glide.work = passed.particle_steps;
-        glide.rate.note(passed.particle_steps);
+        glide.particles = progress.particles;
+        glide.slice.has_stepped |= progress.particle_steps > glide.work;
+        glide.work = progress.particle_steps;
+        glide.rate.note(progress.particle_steps);
         let (from, probes) = glide.look_at;
         let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);
         if is_looked_at && Instant::now() >= from {

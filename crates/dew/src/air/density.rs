@@ -53,7 +53,7 @@ fn normalise_block<S: Simd>(simd: S, sums: &[Sums], places: &[u32], tensors: &mu
 }
 
 impl PairSum<Sums> for Filling<'_> {
-    fn wants(&self, particle: usize) -> bool {
+    fn requires(&self, particle: usize) -> bool {
         !self.entries[particle].image
     }
 

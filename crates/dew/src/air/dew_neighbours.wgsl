@@ -1,7 +1,7 @@
-// Who is near: cells to look through, and images beyond faces.
+// Neighbour search: cells to search, and ghost particles beyond faces.
 //
-// Images are not stored as the CPU's are: who stands near a face looks once more from where it would stand in the mirror, and turns
-// what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are. Twin of `Room::images`.
+// Ghost particles are not stored as on the CPU: near a face the search is repeated from the mirrored position, and what it finds is
+// mirrored. So each pass loops over `Mirror`s, the first of which is the identity. Twin of `Room::images`.
 #import dew_particles
 #import smoothing_kernel
 
@@ -11,55 +11,55 @@ struct Mirror {
     shift: vec3f,
 }
 
-// Whether there are images beyond the low and the high side of an axis that may be within reach of a place.
+// Whether there are ghost particles beyond the low and the high side of an axis that may be within reach of a position.
 fn shown_beyond(axis: u32, at: f32) -> vec2<bool> {
     let is_near = vec2f(at - parameters.low[axis], parameters.high[axis] - at) < vec2f(parameters.h);
     let rules = vec2u(face(2u * axis), face(2u * axis + 1u));
     return is_near & (rules <= vec2u(PERIODIC));
 }
 
-fn ways_along(axis: u32, at: f32) -> u32 {
+fn mirrors_along(axis: u32, at: f32) -> u32 {
     let beyond = shown_beyond(axis, at);
     return 1u + u32(beyond.x) + u32(beyond.y);
 }
 
-// How many mirrors there are to look into from a place, the plain view among them: amid the room that alone.
+// Number of mirrors to search from a position, the identity among them: away from the faces that alone.
 fn mirrors_round(place: vec3f) -> u32 {
     let is_amid = all(place - parameters.h > parameters.low) && all(place + parameters.h < parameters.high);
     if is_amid {
         return 1u;
     }
-    return ways_along(0u, place.x) * ways_along(1u, place.y) * ways_along(2u, place.z);
+    return mirrors_along(0u, place.x) * mirrors_along(1u, place.y) * mirrors_along(2u, place.z);
 }
 
-// Sign and shift of a way along an axis: 0 is plain, then come the low side and the high one where they show anything.
-fn along(axis: u32, way: u32, at: f32) -> vec2f {
-    if way == 0u {
+// Sign and shift of the mirror of a number along an axis: 0 is the identity, then the low side and the high one where they have ghost particles.
+fn along(axis: u32, number: u32, at: f32) -> vec2f {
+    if number == 0u {
         return vec2f(1.0, 0.0);
     }
     let low = parameters.low[axis];
     let high = parameters.high[axis];
-    let is_low = way == 1u && shown_beyond(axis, at).x;
+    let is_low = number == 1u && shown_beyond(axis, at).x;
     if face(2u * axis + select(1u, 0u, is_low)) == PERIODIC {
         return vec2f(1.0, select(high - low, low - high, is_low));
     }
     return vec2f(-1.0, 2.0 * select(high, low, is_low));
 }
 
-// The mirror of a number below `mirrors_round`, 0 being the plain view, as seen from a place.
+// The mirror of a number below `mirrors_round` from a position; 0 is the identity.
 fn mirror(number: u32, place: vec3f) -> Mirror {
     if number == 0u {
         return Mirror(vec3f(1.0), vec3f(0.0));
     }
-    let ways_x = ways_along(0u, place.x);
-    let ways_y = ways_along(1u, place.y);
-    let x = along(0u, number % ways_x, place.x);
-    let y = along(1u, (number / ways_x) % ways_y, place.y);
-    let z = along(2u, number / (ways_x * ways_y), place.z);
+    let mirrors_x = mirrors_along(0u, place.x);
+    let mirrors_y = mirrors_along(1u, place.y);
+    let x = along(0u, number % mirrors_x, place.x);
+    let y = along(1u, (number / mirrors_x) % mirrors_y, place.y);
+    let z = along(2u, number / (mirrors_x * mirrors_y), place.z);
     return Mirror(vec3f(x.x, y.x, z.x), vec3f(x.y, y.y, z.y));
 }
 
-// Where what the mirror shows at `place` stands in truth.
+// The original position of a ghost particle at `place`.
 fn behind(mirror: Mirror, place: vec3f) -> vec3f {
     return mirror.sign * (place - mirror.shift);
 }
@@ -85,7 +85,7 @@ fn columns_round(place: vec3f, y: u32, z: u32) -> vec2u {
     let border = CELL_BORDER * size;
     let row = vec2u(y, z);
     let low = parameters.corner.yz + size * vec2f(row);
-    // What is beyond the first and the last row stands in these.
+    // Particles beyond the first and the last row are stored in these.
     let below = select(low - place.yz, vec2f(0.0), row == vec2u(0u));
     let above = select(place.yz - low - size, vec2f(0.0), row + 1u == parameters.cells.yz);
     let apart = max(max(below, above) - border, vec2f(0.0));

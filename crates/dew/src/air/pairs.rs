@@ -47,7 +47,7 @@ pub struct Rates {
 
 /// Neighbours that approach each other are held up by the pressure of their impact, rho min(3 a, c) a for an approach at a
 /// (Zhang, Hu & Adams 2017: a Riemann solver of low dissipation). It is of second order in how velocities differ, so slow and
-/// smooth flow does not feel it; without it the noise of air that is fast for its particles' distance grows until it bursts.
+/// it does not affect smooth flow; without it the noise of air that is fast for its particles' distance grows until it bursts.
 pub(crate) const DAMPING: f64 = 3.0;
 
 /// Sums over all pairs of air. Viscosity and diffusivity of a pair are those at the mean of its temperatures.

@@ -34,9 +34,9 @@ pub struct Particle {
 pub enum Role {
     /// In the room, and taking part in everything.
     Inside,
-    /// Before an inlet, on its way in: axis and side of the face.
+    /// Before an inlet, moving in: axis and side of the face.
     Coming(u8, u8),
-    /// Beyond an outlet, on its way off: axis and side of the face.
+    /// Beyond an outlet, moving away: axis and side of the face.
     Leaving(u8, u8),
     /// Beyond an open side, where it comes and goes as the air before it does: axis and side of the face.
     Outside(u8, u8),
@@ -44,7 +44,7 @@ pub enum Role {
     Still,
     /// Has left by such an edge, and is about to be taken out.
     Gone,
-    /// In the room, but of low utility: it only moves on. The ledger has it as gone.
+    /// In the room, but of low utility: it only moves. The ledger has booked it as outflow.
     Idle,
 }
 

@@ -15,11 +15,11 @@ pub struct Scale {
     pub volume: f64,
     /// The kernel.
     pub kernel: Kernel<3>,
-    /// Over sum V W: 1 for a kernel that sees no lattice.
+    /// Inverse of sum V W on the lattice: 1 in the continuum limit.
     pub to_density: f64,
     /// Over sum V r |W'| / 3.
     pub to_gradient: f64,
-    /// Sum V r^2 lap W / 6 on the lattice: 1 for a kernel that sees no lattice.
+    /// Sum V r^2 lap W / 6 on the lattice: 1 in the continuum limit.
     pub moment: f64,
 }
 

@@ -1,11 +1,11 @@
-//! Accelerated time: what is slow goes faster, and the air stays as it is.
+//! Accelerated time: slow processes are accelerated, and the air is unchanged.
 //!
 //! Temperatures of solids and water on them change `time_factor` times as fast as in reality. Conductivities, diffusivities and velocities of
 //! the air are the true ones, and so are Rayleigh, Reynolds, Nusselt and Sherwood numbers. That is right as long as the air settles much faster
 //! than the solids change: see [`Dew::lags`].
 //!
 //! The factor makes solids take heat and water that no air gave. Where air comes and goes, what is in the room is what came in a moment ago,
-//! and the balances count the rest as come from outside. In a closed room it is taken from all air alike: its mean changes as fast as
+//! and the balances count the rest as come from outside. In a closed room it is taken from all air equally: its mean changes as fast as
 //! the solids, its differences from place to place as in reality.
 
 use super::Dew;
@@ -32,7 +32,7 @@ impl Taken {
 }
 
 impl Dew {
-    /// Whether no air comes or goes.
+    /// Whether no air enters or leaves.
     pub(crate) fn is_closed(&self) -> bool {
         self.room.faces.as_flattened().iter().all(|face| matches!(face, Face::Wall | Face::Periodic))
     }
@@ -54,8 +54,8 @@ impl Dew {
         }
     }
 
-    /// Water, kg, and energy, J, that the air is still to gain: less than 0 where it is to lose them.
-    pub(super) fn owed(&self) -> [f64; 2] {
+    /// Water, kg, and energy, J, of the drift that is not yet applied to the air; negative where the air is to lose them.
+    pub(super) fn residual(&self) -> [f64; 2] {
         let mass = self.particle_mass() * self.state.air.len() as f64;
         let [temperature, vapour] = self.state.drift;
         [mass * vapour, mass * (self.air.heat_capacity * temperature + self.latent_heat * vapour)]

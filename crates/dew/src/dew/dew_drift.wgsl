@@ -15,7 +15,7 @@ fn wrapped(at: f32, low: f32, high: f32) -> f32 {
     return select(low, shifted, shifted >= low && shifted < high);
 }
 
-// Brings back what has crossed periodic faces and walls, and what has gone beyond the rim of an inlet.
+// Brings particles back that have crossed periodic faces, walls, or the rim of an inlet.
 fn keep(particle: ptr<function, Particle>) {
     let is_coming = ((*particle).role & ROLE_MASK) == COMING;
     let inlet = (*particle).role >> FACE_BITS;

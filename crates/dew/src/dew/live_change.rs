@@ -64,7 +64,7 @@ pub enum LiveChange {
         /// Acceleration along it, m/s2.
         acceleration: f64,
     },
-    /// Temperatures of solids and water on them change so many times faster than in reality; at least 1.
+    /// Factor by which temperatures of solids and water on them change faster than in reality; at least 1.
     TimeFactor(f64),
     /// Something that heats or cools a solid changes.
     Source(SourceChange),
@@ -81,7 +81,7 @@ pub(crate) struct Overrides {
     held_to: Vec<Option<Table>>,
     /// Heaters, the outside, radiation.
     sources: Vec<BodySources>,
-    /// Gravity as drops feel it, m/s2.
+    /// Gravity on drops, m/s2.
     on_drops: Option<[f64; 3]>,
 }
 
@@ -219,7 +219,7 @@ impl Dew {
         Ok(())
     }
 
-    /// Drops feel it, and air, where it rises and sinks.
+    /// Gravity acts on drops, and on air where it rises and sinks.
     fn turn_gravity(&mut self, axis: usize, acceleration: f64) {
         if self.buoyant {
             self.settings.gravity[axis] = acceleration;

@@ -69,11 +69,11 @@ pub struct Dew {
     pub(crate) names: Vec<String>,
     /// The air before the bodies that say how they keep it out.
     pub(crate) layers: Vec<Option<Layer>>,
-    /// Temperature over time, °C, of the bodies that are held at one told by a scene.
+    /// Temperature over time, °C, of the bodies whose temperature a scene prescribes.
     pub(crate) held_to: Vec<Option<Table>>,
     /// What frames show.
     pub(crate) shows: Output,
-    /// The surfaces of the bodies; none where one does not tell its own.
+    /// The surfaces of the bodies; none where one has none.
     pub(crate) surfaces: Vec<Surface>,
     pub(crate) fans: Vec<Fan>,
     /// The sides of the room by which air comes and goes.
@@ -113,7 +113,7 @@ pub(crate) struct State {
     pub supplied: Vec<[ExactSum; 3]>,
     /// Heat that each solid takes from the air through its surface, W, in the last step.
     pub heat_flow: Vec<f64>,
-    /// When it was last looked for air that no longer matters, s.
+    /// Time of the last search for air of low utility, s.
     pub utility_seen: f64,
     /// How far the air before each inlet has come since its last layer, m.
     pub inlet_phase: [[f64; 2]; 3],
@@ -150,11 +150,11 @@ pub struct Setup {
 }
 
 impl Dew {
-    /// Air in a room with solids, at rest on a lattice wherever there is no solid; `start` tells temperature, K, and vapour,
+    /// Air in a room with solids, at rest on a lattice wherever there is no solid; `start` gives temperature, K, and vapour,
     /// part of the mass, at a place.
     ///
     /// # Errors
-    /// Where ghost samples or air of low utility are asked for and a body does not tell its surface.
+    /// Where ghost samples or air of low utility are required and a body has no surface.
     pub fn new(setup: &Setup, start: impl Fn([f64; 3]) -> [f64; 2]) -> Result<Self, ModelError> {
         let Setup { settings, air, room, bodies, fans, seed } = setup;
         if settings.low_utility.is_some() && bodies.iter().any(|body| body.surface.is_none()) {
@@ -261,7 +261,7 @@ impl Dew {
         let step = self.state.time_step;
         self.drift(step);
         self.cross_faces(step);
-        self.tend_utility();
+        self.update_utility();
         self.evaluate(0.5 * step);
         let drift = std::mem::take(&mut self.state.drift);
         self.exchange(step);
@@ -298,7 +298,7 @@ impl Dew {
         })
     }
 
-    /// Brings solids whose temperature is told over time to that of now.
+    /// Sets the temperature of solids for which it is prescribed over time.
     fn hold(&mut self) {
         let changing = |table: &&Table| table.rows().len() > 1;
         if !self.held_to.iter().flatten().any(|table| changing(&table)) {
@@ -319,7 +319,7 @@ impl Dew {
         self.state.energy.initial = self.energy();
     }
 
-    /// Air faster than the artificial sound is no flow any more. Where no drops are laid, air may be driven as hard as is asked for.
+    /// Refuses air above Mach 1 of the artificial speed of sound, where the weakly compressible assumption fails. Where no drops are laid, any drive is accepted.
     fn refuse_what_is_faster_than_sound(&self, fastest: f64) -> Result<(), ModelError> {
         if fastest <= self.air.sound_speed || self.wetting.is_none() {
             return Ok(());
@@ -344,7 +344,7 @@ impl Dew {
     pub(crate) fn water(&self) -> f64 {
         let in_air = self.inside().map(|particle| self.particle_mass() * (particle.vapour + particle.fog));
         let on_solids = self.water_on_all();
-        in_air.chain([on_solids, self.owed()[0]]).collect::<ExactSum>().value()
+        in_air.chain([on_solids, self.residual()[0]]).collect::<ExactSum>().value()
     }
 
     /// Water on the solids, kg.
@@ -367,7 +367,7 @@ impl Dew {
         self.inside()
             .map(|particle| self.energy_of(particle))
             .chain(solids)
-            .chain([self.owed()[1]])
+            .chain([self.residual()[1]])
             .collect::<ExactSum>()
             .value()
     }

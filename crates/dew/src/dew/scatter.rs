@@ -18,11 +18,11 @@ pub struct Scatter {
     pub seed: u64,
 }
 
-/// Tries to find a free place for a particle; it stays where none is found.
-const TRIES: u32 = 30;
+/// Random positions tried for a particle; it stays where none is free.
+const SCATTER_TRIES: u32 = 30;
 
 impl Dew {
-    /// Moves the air in the room to random places outside of solids, as there from the start; `start` tells temperature, K, and
+    /// Moves the air in the room to random places outside of solids, as there from the start; `start` gives temperature, K, and
     /// vapour, part of the mass, at a place.
     pub fn scatter(&mut self, scatter: Scatter, start: impl Fn([f64; 3]) -> [f64; 2]) {
         let (room, reach) = (self.room, scatter.reach * self.scale.spacing);
@@ -32,7 +32,7 @@ impl Dew {
         let free = Free::new(&self.solids, &room, &self.scale, surfaces.into_iter());
         let mut random = ChaCha8Rng::seed_from_u64(scatter.seed);
         for particle in self.state.air.iter_mut().filter(|particle| particle.role == Role::Inside) {
-            for _ in 0..TRIES {
+            for _ in 0..SCATTER_TRIES {
                 let mut place = particle.position.map(|at| at + reach * (2.0 * random.random::<f64>() - 1.0));
                 room.keep(&mut place, &mut [0.0; 3]);
                 if room.contains(place) && free.holds(place) {
@@ -49,7 +49,7 @@ impl Dew {
         self.take_as_rest();
         self.evaluate(0.0);
         self.state.time_step = self.next_step(&[], self.extremes());
-        // What has gone in and out before is no part of the run.
+        // Inflow and outflow before are no part of the run.
         self.state.water = Account { initial: self.water(), ..Account::default() };
         self.state.energy = Account { initial: self.energy(), ..Account::default() };
         self.state.held_heat.fill(ExactSum::default());

@@ -17,14 +17,14 @@ pub enum SourceChange {
         /// Its power.
         power: f64,
     },
-    /// A heater has so many times the power that the scene says, now and later.
+    /// Multiplies a heater's power in the scene by a factor, now and later.
     HeaterTimes {
         /// The solid.
         solid: usize,
         /// By what it is multiplied.
         times: f64,
     },
-    /// Temperature of the air outside, °C; surroundings of which the scene tells none have it too.
+    /// Temperature of the air outside, °C; surroundings without a temperature in the scene have it too.
     OutsideTemperature {
         /// The solid.
         solid: usize,

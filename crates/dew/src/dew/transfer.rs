@@ -121,7 +121,7 @@ impl Dew {
         }
     }
 
-    /// What is beyond saturation condenses: at a surface onto it where that is asked for, else as fog, which evaporates
+    /// What is beyond saturation condenses: at a surface onto it where that is required, else as fog, which evaporates
     /// again in drier air.
     pub(super) fn saturate(&mut self, step: f64) {
         if !self.settings.fog && self.settings.condensation != Condensation::Particle {
@@ -154,7 +154,7 @@ impl Dew {
         }
     }
 
-    /// What particles at a surface have too much goes onto it, with its heat. Takes it out of `excesses`.
+    /// Deposits the excess of particles at a surface onto it, with its heat, and removes it from `excesses`.
     fn deposit(&mut self, excesses: &mut [f64], step: f64) {
         let mass = self.particle_mass();
         let mut shares = std::mem::take(&mut self.work.shares);
@@ -171,7 +171,7 @@ impl Dew {
         self.work.shares = shares;
     }
 
-    /// Water of an air particle, kg, goes onto the boundary particles near it by their shares.
+    /// Deposits water of an air particle, kg, onto the boundary particles near it by their shares.
     fn deposit_of(&mut self, particle: usize, water: f64, shares: &[(u32, f64)], step: f64) {
         let mass = self.particle_mass();
         let factor = self.settings.time_factor;

@@ -1,7 +1,7 @@
-//! Finding drops near a place, small and large ones alike.
+//! Search for drops near a position, small and large ones.
 
 /// Drops (or patches) filed by place, each in cells as wide as it is or up to twice as wide: a level for each power of two of their
-/// reach. A drop is looked for in the cells of each level that it may reach from.
+/// reach. A drop is searched in the cells of each level that it may reach from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Grid {
     smallest: f64,

@@ -8,11 +8,11 @@ use std::f64::consts::PI;
 pub struct Share {
     /// Water, kg.
     pub water: f64,
-    /// Area covered by drops that are seen, m2.
+    /// Area covered by resolved drops, m2.
     pub covered: f64,
-    /// Water in drops that are not seen, kg.
+    /// Water in unresolved drops, kg.
     pub unseen: f64,
-    /// Vapour that leaves the drops that are seen, over diffusivity and difference of density, m.
+    /// Vapour that leaves the resolved drops, over diffusivity and difference of density, m.
     pub evaporation: f64,
 }
 
@@ -30,7 +30,7 @@ pub struct Portion {
 }
 
 impl Drops {
-    /// The share of each patch: the drops of its sites that are not seen, and of each that is seen a part in proportion to the areas of the patches
+    /// The share of each patch: the unresolved drops of its sites, and of each resolved one a part in proportion to the areas of the patches
     /// whose middle it covers. A drop that covers the middle of none is on the nearest. All shares together are all water, but for drops on
     /// solids without patches.
     pub fn shares(&self) -> Vec<Share> {
@@ -70,7 +70,7 @@ impl Drops {
         shares
     }
 
-    /// The drops of a patch that are not seen, where it has this share: on what drops that are seen leave of it.
+    /// The unresolved drops of a patch, where it has this share: on the area that resolved drops leave.
     pub fn unseen_on(&self, patch: usize, share: &Share) -> Unseen {
         let Some(at) = self.patches.get(patch) else { return Unseen::default() };
         let bare = (1.0 - share.covered / at.area()).max(MIN_BARE_PART);
@@ -92,12 +92,12 @@ impl Drops {
     }
 
     /// Water evaporates where `gained` (kg, one for each patch) is below 0: from all drops there, in proportion to what each has of the patch.
-    /// `portions` and `shares` tell that; nothing must have happened to the drops since.
+    /// `portions` and `shares` give that; nothing must have happened to the drops since.
     pub fn evaporate(&mut self, portions: &[Portion], shares: &[Share], gained: &[f64]) {
         if gained.iter().all(|&gained| gained >= 0.0) {
             return;
         }
-        // What goes, as a part of what there was.
+        // The part of the water that leaves.
         let lost = |patch: u32| {
             let gained = gained[patch as usize];
             if gained < 0.0 { -gained / shares[patch as usize].water } else { 0.0 }
@@ -149,5 +149,5 @@ fn a_molecule_or_more(mass: f64) -> f64 {
     if mass < MOLECULE { 0.0 } else { mass }
 }
 
-/// Least part of a patch on which drops that are not seen are taken to be.
+/// Least part of a patch that unresolved drops are taken to cover.
 const MIN_BARE_PART: f64 = 0.02;

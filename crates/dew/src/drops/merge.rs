@@ -28,7 +28,7 @@ impl Drops {
         }
     }
 
-    /// For each drop the first of those that it touches, directly or by others.
+    /// For each drop the first of its cluster.
     fn clusters(&self) -> Vec<usize> {
         let drops = &self.state.drops;
         let mut heads: Vec<usize> = (0..drops.len()).collect();
@@ -84,7 +84,7 @@ impl Drops {
     }
 }
 
-/// The head of a cluster, with the way to it made shorter for the next time.
+/// The head of a cluster, with path compression for the next search.
 fn head(heads: &mut [usize], mut at: usize) -> usize {
     while heads[at] != at {
         heads[at] = heads[heads[at]];

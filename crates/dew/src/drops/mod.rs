@@ -1,7 +1,7 @@
 //! Drops on solids: how they grow, merge, stay, slide and leave.
 //!
 //! A drop is a cap of a sphere on the surface of a solid. Water that condenses on a [`Patch`] goes to the nucleation [`Site`]s whose areas
-//! are there: to the drop that covers a site, or else to a drop at the site that is seen once it is of the smallest size. Drops that touch
+//! are there: to the drop that covers a site, or else to a drop at the site that is resolved once it is of the smallest size. Drops that touch
 //! become one, of their mass and momentum. A drop is held up to a bound, by the hysteresis of its contact angle or by friction; beyond that it slides,
 //! braked by viscosity, and sweeps up what it rolls over. One thread does all of it, in a fixed order.
 
@@ -60,7 +60,7 @@ pub struct Patch {
     pub solid: u32,
     /// Middle of the patch, on the surface, m.
     pub position: [f64; 3],
-    /// The way out of the solid.
+    /// Outward normal of the solid.
     pub normal: [f64; 3],
     /// Half the side of the patch, m.
     pub half_width: f64,
@@ -87,7 +87,7 @@ pub struct Drop {
     pub solid: u32,
     /// Middle of the covered disk, on the surface, m.
     pub position: [f64; 3],
-    /// The way out of the solid there.
+    /// Outward normal of the solid there.
     pub normal: [f64; 3],
     /// Velocity, m/s, along the surface.
     pub velocity: [f64; 3],
@@ -102,7 +102,7 @@ pub struct Drop {
 pub struct DropState {
     /// The drops.
     pub drops: Vec<Drop>,
-    /// Mass of the drop at each site that is not seen yet, kg.
+    /// Mass of the drop at each site that is not resolved yet, kg.
     pub unseen: Vec<f64>,
     /// Mass that left the solids as drops, kg.
     pub dripped: ExactSum,
@@ -114,7 +114,7 @@ pub struct DropState {
     next_id: u64,
 }
 
-/// A drop that was first seen when water condensed.
+/// A drop that became resolved when water condensed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Begun {
     /// Its site.
@@ -220,7 +220,7 @@ impl Drops {
         self.state.drops.push(Drop { id, solid, position, normal, velocity, mass, radius });
     }
 
-    /// The point of a solid's surface nearest to a place, and the way out there.
+    /// The point of a solid's surface nearest to a position, and the outward normal there.
     fn foot(&self, solid: u32, place: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let nearest = self.solids[solid as usize].nearest(place);
         let foot = std::array::from_fn(|axis| place[axis] - nearest.distance * nearest.normal[axis]);
@@ -259,7 +259,7 @@ impl Drops {
         self.state.drops.iter().map(|drop| std::f64::consts::PI * drop.radius.powi(2)).sum()
     }
 
-    /// Water on the solids now, in drops that are seen or not, kg.
+    /// Water on the solids now, in drops that are resolved or not, kg.
     pub fn water(&self) -> f64 {
         let drops = self.state.drops.iter().map(|drop| drop.mass);
         drops.chain(self.state.unseen.iter().copied()).collect::<ExactSum>().value()
@@ -288,7 +288,7 @@ impl Drops {
     }
 
     /// Water condenses where `gained` (kg, one for each patch) is above 0: each site gathers that of its area, for the drop that covers it or
-    /// for one of its own. Tells the drops that are seen from now on.
+    /// for one of its own. Returns the drops that are resolved from now on.
     pub fn condense(&mut self, gained: &[f64]) -> Vec<Begun> {
         self.gains.fill(0.0);
         for piece in &self.sites.pieces {
@@ -368,12 +368,12 @@ impl Drops {
     }
 }
 
-/// Mass of the smallest drop that is seen, kg.
+/// Mass of the smallest resolved drop, kg.
 fn smallest_mass(laws: &DropLaws) -> f64 {
     laws.density * Cap::new(laws.contact_angle).volume(laws.smallest_radius)
 }
 
-/// How far the smallest drop that is seen reaches sideways, m.
+/// Radius of the base of the smallest resolved drop, m.
 pub fn smallest_reach(laws: &DropLaws) -> f64 {
     let cap = Cap::new(laws.contact_angle);
     reach(laws.smallest_radius, cap.volume(laws.smallest_radius))

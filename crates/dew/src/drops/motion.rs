@@ -3,8 +3,8 @@
 use super::{Drop, Drops, Retention, contact_line, dot, without};
 use std::f64::consts::PI;
 
-/// A drop moves by at most this part of the radius that it covers before it is looked for what it met.
-const LONGEST_WAY: f64 = 0.25;
+/// Largest displacement of a drop between two tests for contacts, over the radius that it covers.
+const MAX_DISPLACEMENT: f64 = 0.25;
 
 /// A drop cannot follow a surface that bends away by more than this at an edge: cosine of 45 degrees.
 const SHARPEST_BEND: f64 = 0.707;
@@ -27,7 +27,7 @@ impl Drops {
         }
     }
 
-    /// Drops that slide take up the drops below them that are not seen.
+    /// Merges unresolved drops into the sliding drops above them.
     fn sweep(&mut self) {
         let mut drops = std::mem::take(&mut self.state.drops);
         let mut unseen = std::mem::take(&mut self.state.unseen);
@@ -80,7 +80,7 @@ impl Drops {
         contact_line::drag(drop.radius, self.angle(drop), self.laws.viscosity) / drop.mass
     }
 
-    /// The time in which a drop moves by [`LONGEST_WAY`], s; without end where it stays.
+    /// The time in which a drop moves by [`MAX_DISPLACEMENT`], s; without end where it stays.
     fn longest_step(&self, drop: &Drop) -> f64 {
         let along = without(self.laws.gravity, drop.normal);
         let speed = dot(drop.velocity, drop.velocity).sqrt();
@@ -88,11 +88,11 @@ impl Drops {
         if speed == 0.0 && faster == 0.0 {
             return f64::INFINITY;
         }
-        let way = LONGEST_WAY * drop.radius;
-        let unbraked = 2.0 * way / (speed + (speed * speed + 2.0 * faster * way).sqrt());
-        // It comes to no more than its final speed.
+        let displacement = MAX_DISPLACEMENT * drop.radius;
+        let unbraked = 2.0 * displacement / (speed + (speed * speed + 2.0 * faster * displacement).sqrt());
+        // It does not exceed its final speed.
         let fastest = speed.max(faster / self.braking(drop));
-        if fastest.is_finite() { unbraked.max(way / fastest) } else { unbraked }
+        if fastest.is_finite() { unbraked.max(displacement / fastest) } else { unbraked }
     }
 
     /// Velocity of a drop after a time, and its mean until then, m/s: what holds the drop works against its motion, and at rest against what would move it,
@@ -126,7 +126,7 @@ impl Drops {
             return Some(Drop { velocity, ..drop });
         }
         let ahead = std::array::from_fn(|axis| drop.position[axis] + step * mean[axis]);
-        // A solid that stands in the way takes the drop over.
+        // A solid in its path takes the drop.
         let mut others = (0..self.solids.len() as u32).filter(|&other| other != drop.solid);
         let in_the_way = others.find(|&other| self.solids[other as usize].signed_distance(ahead) < 0.0);
         let solid = in_the_way.unwrap_or(drop.solid);

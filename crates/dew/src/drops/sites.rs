@@ -77,7 +77,7 @@ impl Place {
     }
 }
 
-/// Density of the sites that are kept at most, 1/m2, where drops reach so far when they are seen, m.
+/// Largest density of kept sites, 1/m2, for the radius `reach` of drops when they become resolved, m.
 pub fn most_per_area(reach: f64) -> f64 {
     JAMMING_COVERAGE / (PI * reach * reach)
 }
@@ -146,7 +146,7 @@ struct Scatter<'a> {
     per_area: f64,
     reach: f64,
     room: [[f64; 3]; 2],
-    /// Smallest and largest coordinates of what is looked at.
+    /// Smallest and largest coordinates of the searched region.
     within: [[f64; 3]; 2],
 }
 
@@ -197,8 +197,8 @@ impl Scatter<'_> {
             return;
         }
         for part in 0..8 {
-            let way = |axis: usize| if part >> axis & 1 == 0 { -0.25 * side } else { 0.25 * side };
-            let middle = std::array::from_fn(|axis| middle[axis] + way(axis));
+            let offset = |axis: usize| if part >> axis & 1 == 0 { -0.25 * side } else { 0.25 * side };
+            let middle = std::array::from_fn(|axis| middle[axis] + offset(axis));
             self.divide(&Cube { middle, side: 0.5 * side, number: number << 3 | part }, cubes);
         }
     }
@@ -230,7 +230,8 @@ impl Scatter<'_> {
         if nearest.distance <= 0.0 || nearest.distance > self.reach {
             return None;
         }
-        let along = |from: [f64; 3], way: f64| std::array::from_fn(|axis| from[axis] + way * nearest.normal[axis]);
+        let along =
+            |from: [f64; 3], offset: f64| std::array::from_fn(|axis| from[axis] + offset * nearest.normal[axis]);
         let position = along(drawn, -nearest.distance);
         let is_in_room = (0..3).all(|axis| (self.room[0][axis]..=self.room[1][axis]).contains(&position[axis]));
         let depth = 0.1 * self.reach;
@@ -327,13 +328,13 @@ fn nearest(grid: &Grid, place: &Place, within: f64, of: impl Fn(usize) -> (u32, 
     best.map(|(_, at)| at)
 }
 
-/// Sites below drops are looked for in cells so many times wider than sites are apart.
+/// Width of the cells in which sites below drops are searched, over the distance between sites.
 const SITE_CELL_RATIO: f64 = 4.0;
 
 /// A position is on the nearest patch where it is within so many times the distance of its corners.
 const PATCH_MARGIN: f64 = 1.2;
 
-/// The nearest site is looked for within the distance between sites, and up to so many times twice as far.
+/// Most doublings of the radius in which the nearest site is searched; the first is the distance between sites.
 const SITE_SEARCH_DOUBLINGS: u32 = 4;
 
 /// Patches that no position is on, as they are small, gather for the nearest site; where there is none, for one of their own.

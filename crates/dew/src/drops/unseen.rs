@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// 1991, 2858; 0.55 for hemispheres).
 const MERGING_COVERAGE: f64 = 0.55;
 
-/// Drops that are not seen, on an area.
+/// Unresolved drops on an area.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Unseen {
     /// Radius of the disk that a mean one covers, m.

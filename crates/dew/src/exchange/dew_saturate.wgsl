@@ -41,7 +41,7 @@ fn weights_near(place: vec3f) -> vec2f {
     return sums;
 }
 
-// What an air particle has beyond saturation goes onto solids near it, or becomes fog; gives the vapour that became fog.
+// Deposits the supersaturated vapour of an air particle onto solids near it, or turns it into fog; returns the vapour that became fog.
 fn saturate(particle: ptr<function, Particle>) -> f32 {
     let excess = excess(*particle);
     if excess == 0.0 {

@@ -44,7 +44,7 @@ pub struct ToSolid {
     pub heat: f64,
     /// Water, kg/s.
     pub water: f64,
-    /// Part of the evaporation asked for that there is water for.
+    /// Part of the required evaporation for which there is water.
     pub share: f64,
     /// Sum of its conductances to air, W/K.
     pub conductance: f64,
@@ -156,7 +156,7 @@ impl Exchange<'_> {
         })
     }
 
-    /// What every air particle near a site gets, into `given`; `share_of` tells the share of evaporation of a solid's particle.
+    /// Adds what every air particle near a site receives to `given`; `share_of` gives the share of evaporation of a solid's particle.
     pub fn to_air(&self, share_of: &[f64], given: &mut Vec<ToAir>) {
         self.contact.near.par_iter().map(|near| self.to_one(near, share_of)).collect_into_vec(given);
     }

@@ -1,5 +1,5 @@
-// Each particle gets the role of where it is now, what comes and goes is booked, and each counts itself in its cell and before open sides.
-// Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::look` in `faces/open.rs`.
+// Sets each particle's role by its position, books inflow and outflow, and counts the particles of cells and before open sides.
+// Twin of `cross` and `cross_faces` in `faces/mod.rs`, and of `OpenSide::sample_velocities` in `faces/open.rs`.
 #import dew_neighbours
 #import dew_columns
 #import dew_utility
@@ -7,7 +7,7 @@
 
 const NOWHERE = 6u;
 
-// What came and went with a particle: see `booked`.
+// Inflow and outflow of a particle: see `booked`.
 struct Crossed {
     came: vec4f,
     went: vec4f,
@@ -79,7 +79,7 @@ fn hold_at_inlets(particle: ptr<function, Particle>) {
     }
 }
 
-// Whether it has gone for good.
+// Whether it is removed.
 fn cross_over(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role & ROLE_MASK;
     if role == INSIDE {
@@ -89,7 +89,7 @@ fn cross_over(particle: ptr<function, Particle>) -> bool {
     let number = beyond.number;
     let held = booked(*particle);
     if (role == INSIDE || role == IDLE) && number != NOWHERE {
-        // What no longer mattered is booked as gone.
+        // Air of low utility is booked as outflow already.
         crossed.went = select(vec4f(0.0), held, role == INSIDE);
         if beyond.is_edge {
             return true;
@@ -134,7 +134,7 @@ fn mark_columns(particle: Particle) {
     }
 }
 
-// Whether a particle is taken out that has been of no use for long. Twin of `tend_utility`.
+// Whether a particle is taken out that has been of no use for long. Twin of `update_utility`.
 fn tend(particle: ptr<function, Particle>) -> bool {
     let role = (*particle).role;
     if role != INSIDE && role != IDLE {

@@ -1,4 +1,4 @@
-//! Air that comes in by inlets, goes out by outlets and both by open sides, and where it stands at the start.
+//! Air that enters by inlets, leaves by outlets and both by open sides, and its initial positions.
 
 mod inlet;
 mod open;
@@ -12,7 +12,7 @@ use crate::dew::Dew;
 use crate::room::{Face, Mirrors, Room};
 use crate::solids::{Body, Searched, Solids, Surface};
 
-/// How far air goes on beyond an open face, in smoothing lengths: what is inside feels the first, which feels the second.
+/// Distance beyond an open face at which air is removed, in smoothing lengths: particles inside have neighbours in the first, and these in the second.
 pub(crate) const BEYOND: f64 = 2.0;
 
 /// How far before an inlet a new layer of particles stands, m; they are `apart` m apart, and `h` is the smoothing length.
@@ -115,14 +115,14 @@ impl Dew {
         self.move_outside();
     }
 
-    /// Gives a particle the role of where it is now, and books what comes and goes; beyond outlets it goes on, as much faster as the air before them.
+    /// Sets a particle's role by its position, and books inflow and outflow; beyond outlets it goes on, as much faster as the air before them.
     fn cross(&mut self, particle: &mut Particle, step: f64, before: &[[BeforeOutlet; 2]; 3]) {
         if particle.role == Role::Inside {
             self.room.hold_at_inlets(&mut particle.position, &mut particle.velocity);
         }
         match (particle.role, self.room.beyond(particle.position)) {
             (Role::Inside | Role::Idle, Some((axis, side))) => {
-                // What no longer mattered is booked as gone.
+                // Air of low utility is booked as outflow already.
                 if particle.role == Role::Inside {
                     self.book(particle, -1.0);
                 }
@@ -150,7 +150,7 @@ impl Dew {
         }
     }
 
-    /// Least speed of air beyond an outlet, m/s: it does not stand in the way.
+    /// Least speed of air beyond an outlet, m/s: it must not block the outflow.
     pub(crate) fn slowest(&self) -> f64 {
         SLOWEST * self.air.sound_speed
     }
@@ -203,7 +203,7 @@ impl Dew {
     }
 }
 
-/// Thickness of the layer before an outlet whose mean particle shift the air beyond takes over, in smoothing lengths: less than one layer of particles,
+/// Thickness of the layer before an outlet whose mean particle shift is applied to the air beyond, in smoothing lengths: less than one layer of particles,
 /// so that a layer keeps the shift that moves it as a whole; without it sound between an inlet and the outlet grows.
 pub(crate) const OUTLET_LAYER: f64 = 0.2;
 

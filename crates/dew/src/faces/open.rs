@@ -1,7 +1,7 @@
 //! Open sides: the air outside goes in and out as the air before the side moves, and there is always more of it.
 //!
 //! Outside, air stands in columns across the side. Each column moves as the air in the room before it does on average, outwards or
-//! inwards: the velocity goes on evenly, the pressure is told. That is the open boundary of Tafuni et al. (Computer Methods in
+//! inwards: the velocity is extrapolated evenly, the pressure is prescribed. That is the open boundary of Tafuni et al. (Computer Methods in
 //! Applied Mechanics and Engineering 342, 2018, 604), with columns for its ghost nodes. Air that goes out meets the pressure of
 //! the air outside, that of rest; air that comes in has come from rest, and its pressure is lower by rho u^2 / 2 (Bernoulli).
 
@@ -11,7 +11,7 @@ use crate::dew::Dew;
 use crate::room::{Face, Room};
 
 /// How far beyond an open side the last particle of a full column stands, m, nearer than what is let go of; particles are `apart` m apart, and
-/// `h` is the smoothing length. A ten-thousandth more, so that rounding does not tell whether there is room for one.
+/// `h` is the smoothing length. A ten-thousandth more, so that rounding does not decide whether there is room for one.
 pub(crate) fn deepest(h: f64, apart: f64) -> f64 {
     ((BEYOND * h / apart - 0.5).ceil() - 0.5 + 1e-4) * apart
 }
@@ -99,8 +99,8 @@ impl OpenSide {
         index[0] + self.counts[0] * index[1]
     }
 
-    /// Finds how the air before each column moves.
-    fn look(&mut self, room: &Room, air: &[Particle], reach: f64, rise: impl Fn(&Particle) -> f64) {
+    /// Samples the velocity of the air before each column.
+    fn sample_velocities(&mut self, room: &Room, air: &[Particle], reach: f64, rise: impl Fn(&Particle) -> f64) {
         let outward = [-1.0, 1.0][self.side];
         self.before.fill([0.0; 2]);
         self.outermost.fill(f64::NEG_INFINITY);
@@ -151,7 +151,7 @@ impl Dew {
                 let inward = [1.0, -1.0][side] * particle.velocity[axis];
                 sound * (particle.density / rest - 1.0) + 0.5 * inward.max(0.0).powi(2) / sound
             };
-            open.look(&self.room, &self.state.air, self.scale.h(), rise);
+            open.sample_velocities(&self.room, &self.state.air, self.scale.h(), rise);
             for particle in &mut self.state.air {
                 if particle.role == Role::Outside(open.axis as u8, open.side as u8) {
                     particle.velocity = [0.0; 3];

@@ -1,4 +1,4 @@
-// Brings the air into the order of its cells; particles in the last cell, which have gone, are out of the count. Twin of
+// Sorts the air by its cells; particles in the last cell, which have left, are not counted. Twin of
 // `Arrangement::arrange`. Air outside open sides gets its velocity. Twin of `move_outside` in `faces/open.rs`.
 #import dew_columns
 

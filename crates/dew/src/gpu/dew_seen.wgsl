@@ -1,4 +1,4 @@
-// Air as it is seen at the time shown, which may be a little after the last step. Twin of `Dew::frame`.
+// Writes the air as particles for drawing at the time shown, which may be a little after the last step. Twin of `Dew::frame`.
 #import dew_particles
 
 fn as_seen(particle: Particle) -> DeviceParticle {

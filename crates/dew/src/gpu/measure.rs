@@ -1,4 +1,4 @@
-//! What gauges tell, without the air coming back.
+//! Values of gauges, without download of the air.
 
 use super::shared::{self, MEASURING_GROUPS};
 use super::{GpuSolver, Origin};
@@ -7,7 +7,7 @@ use crate::measures::Totals;
 use corpuscle_gpu::{GpuError, read, submit};
 
 impl GpuSolver {
-    /// What gauges tell of the air as a whole. What they tell of solids comes into `state`.
+    /// Values of gauges of the air as a whole. Those of solids are set in `state`.
     pub fn measure(&self, state: &mut State) -> Result<Totals, GpuError> {
         submit(self.batches.gpu(), "gauges", None, |pass| self.tasks.measure.run(pass, MEASURING_GROUPS));
         let groups: Vec<shared::Measured> =

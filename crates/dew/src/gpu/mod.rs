@@ -1,7 +1,7 @@
 //! Humid air on the GPU: twins of the passes of a step, in single precision, that leave the air where it is.
 //!
-//! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it. Drops
-//! stay with the host: they are few, each decides for itself whether it sticks, merges or runs, and they only want to know what
+//! The host says until when to go on and reads a few numbers after some steps. The state is downloaded on demand. Drops
+//! stay with the host: they are few, each sticks, merges or runs by itself, and they only need
 //! water the solids have gained once in some steps.
 //!
 //! What single precision is spent on: see `shared.rs`.
@@ -14,7 +14,7 @@ pub(crate) mod shared;
 mod tasks;
 
 #[cfg(test)]
-pub(crate) use numbers::MANY;
+pub(crate) use numbers::FINE_CELLS_MIN_PARTICLES;
 pub(crate) use shared::MOST_FANS;
 
 use crate::dew::{Dew, State};
@@ -53,7 +53,7 @@ pub(crate) struct GpuSolver {
     held_before: Vec<f64>,
     /// Whether the host has not the air that is here.
     ahead: bool,
-    /// Once somebody draws the air.
+    /// Once the air is drawn.
     seen: OnceLock<Seen>,
     /// Batches of steps until the device is lost.
     #[cfg(test)]
@@ -95,7 +95,7 @@ pub(crate) struct BatchResult {
     pub density_excess_beyond: [[f64; 2]; 3],
     /// Running mean of the velocity along its axis of the air before each outlet, m/s.
     pub running_mean_before: [[f64; 2]; 3],
-    /// When it was last looked for air of low utility, s.
+    /// Time of the last search for air of low utility, s.
     pub utility_seen: f64,
     /// What all air of a closed room gains in the next step: temperature, K, and vapour, part of the mass.
     pub drift: [f64; 2],
@@ -213,7 +213,7 @@ impl GpuSolver {
             running_mean_before: narrow(state.running_mean_before),
             ..Status::zeroed()
         };
-        // Who draws before the first step reads it too.
+        // Drawing before the first step reads it too.
         self.batches.gpu().queue.write_buffer(&self.tasks.memory.status, 0, bytemuck::bytes_of(&self.status));
         self.uploaded_at = state.time;
         self.ahead = false;

@@ -1,4 +1,4 @@
-//! The numbers of a run, as the shaders want them.
+//! The parameters of a run in the format of the shaders.
 
 use super::origin::Origin;
 use super::shared::{self, Inlet, MOST_FANS, Parameters};
@@ -14,9 +14,9 @@ use corpuscle_sph::kernel::SmoothingKernel;
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
 
-/// With so many particles cells are half as large as the reach: that leaves out more of what is not near. Fewer are no work for a GPU, and
+/// Number of particles from which cells are half as large as the support: fewer pairs out of reach are tested. Fewer particles are no work for a GPU, and
 /// with cells of the whole reach a lattice of them stays one: what its particles sum up cancels in pairs.
-pub(crate) const MANY: usize = 50_000;
+pub(crate) const FINE_CELLS_MIN_PARTICLES: usize = 50_000;
 
 /// More cells are not sorted into.
 const MOST_CELLS: f64 = 16e6;
@@ -46,7 +46,7 @@ impl Parameters {
     pub fn of(dew: &Dew, origin: Origin, room: usize) -> Self {
         let full = room.saturating_sub(dew.most_in_a_step()) as u32;
         let mut new = Self { flags: flags(dew), full, ..Self::default() };
-        new.set_room(dew, origin, room >= MANY);
+        new.set_room(dew, origin, room >= FINE_CELLS_MIN_PARTICLES);
         new.set_air(dew);
         new.set_kernels(dew);
         new.set_inlets(dew);

@@ -1,11 +1,11 @@
-//! Air as it is seen, for whoever draws it on the same device.
+//! The air as particles for drawing on the same device.
 
 use super::GpuSolver;
 use super::shared::{Memory, Shown};
 use super::tasks::PIECES;
 use corpuscle_gpu::{DeviceParticles, GpuError, Kernel, THREADS, Task, submit};
 
-/// Air as it is seen, and what writes it.
+/// Buffer of the air's particles for drawing, and the task that fills it.
 #[derive(Debug)]
 pub(super) struct Seen {
     air: DeviceParticles,
@@ -23,10 +23,10 @@ impl Seen {
 }
 
 impl GpuSolver {
-    /// The air as it is seen so long after the last step, s, on the device.
+    /// The air's particles on the device, for drawing at a time, s, after the last step.
     pub fn seen(&self, spacing: f64, since: f64) -> Result<DeviceParticles, GpuError> {
         if self.seen.get().is_none() {
-            // Nobody else can have been faster and done otherwise.
+            // Another thread that was faster has set the same value.
             let _ = self.seen.set(Seen::new(self, spacing)?);
         }
         let gpu = self.batches.gpu();

@@ -9,21 +9,21 @@ use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping, from_pair, 
 corpuscle_gpu::declare! {
     include [Stepping]
     constants {
-        /// Flag of [`Parameters::flags`]: air comes and goes by faces.
+        /// Flag of [`Parameters::flags`]: air enters and leaves by faces.
         pub const IS_PASSED: u32 = 1;
-        /// Vapour diffuses to surfaces; else particles that are colder than their dew point give up what they have too much.
+        /// Vapour diffuses to surfaces; else particles that are colder than their dew point deposit their excess.
         pub const DIFFUSES: u32 = 2;
         /// Vapour beyond saturation becomes fog.
         pub const FOGS: u32 = 4;
-        /// Vapour beyond saturation is looked for.
+        /// There is a search for supersaturated vapour.
         pub const SATURATES: u32 = 8;
         /// Air faster than sound is refused.
         pub const REFUSES_FAST: u32 = 16;
         /// What diffuses is relative humidity.
         pub const RELATIVE: u32 = 32;
-        /// Air of low utility is looked for.
+        /// There is a search for air of low utility.
         pub const TENDS: u32 = 64;
-        /// No air comes or goes.
+        /// No air enters or leaves.
         pub const IS_CLOSED: u32 = 128;
         /// Conductivities of air and solid are harmonically averaged; else arithmetically.
         pub const IS_HARMONIC: u32 = 256;
@@ -35,7 +35,7 @@ corpuscle_gpu::declare! {
         pub const INLET: u32 = 2;
         /// Air leaves.
         pub const OUTLET: u32 = 3;
-        /// Air goes where the flow takes it.
+        /// Particles are advected by the flow.
         pub const OPEN: u32 = 4;
         /// Role of a particle: in the room. Roles of a face have its number, twice the axis and 1 for the high side, in higher bits.
         pub const INSIDE: u32 = 0;
@@ -67,13 +67,13 @@ corpuscle_gpu::declare! {
         pub const HELD: u32 = 32;
         /// An image beyond a side that air passes.
         pub const IMAGE_BEYOND: u32 = 64;
-        /// It is looked for air of low utility once in so many steps.
-        pub const TURN: u32 = crate::utility::STEPS as u32;
+        /// Steps between two searches for air of low utility.
+        pub const TURN: u32 = crate::utility::UTILITY_STEPS as u32;
         /// Groups that share the particles when they are summed up for gauges.
         pub const MEASURING_GROUPS: u32 = 64;
         /// Fans that there is room for: 48 KiB of the 64 that every device has for numbers of this kind.
         pub const MOST_FANS: u32 = 1024;
-        /// How far air goes on beyond a face that it passes, in smoothing lengths.
+        /// Distance beyond a face that air passes at which it is removed, in smoothing lengths.
         pub const BEYOND: f32 = crate::faces::BEYOND as f32;
         /// Depth of the layer before an outlet whose mean velocity air beyond takes, in spacings.
         pub const OUTLET_LAYER: f32 = crate::faces::OUTLET_LAYER as f32;
@@ -89,8 +89,8 @@ corpuscle_gpu::declare! {
         pub const RANGE: f32 = crate::walls::RANGE as f32;
         /// Largest eigenvalue of a tensor of normalisation.
         pub const MAX_EIGENVALUE: f32 = crate::normalisation::MAX_EIGENVALUE as f32;
-        /// How far ahead air of low utility is looked for, in smoothing lengths.
-        pub const WAY: f32 = crate::utility::WAY as f32;
+        /// Displacement after which distances from solids are compared, in smoothing lengths.
+        pub const PROBE_STEP: f32 = crate::utility::PROBE_STEP as f32;
         /// Iterations of Newton's method for the temperature of a surface.
         pub const ITERATIONS: u32 = crate::solids::sources::ITERATIONS as u32;
         /// Constants of the formula of saturation, Bolton 1980: its factor, and °C.
@@ -309,7 +309,7 @@ corpuscle_gpu::declare! {
             pub role_and_idle: [u32; 4],
         }
 
-        /// What neighbours read of a particle, as it lies in memory: who looks for neighbours needs the first part of those out of reach.
+        /// Values of a particle that its neighbours read: a search reads only the first part of those out of reach.
         pub struct PackedColumn {
             /// m; pressure over the square of the density, Pa m6/kg2.
             pub place_and_pressure: [f32; 4],
@@ -323,9 +323,9 @@ corpuscle_gpu::declare! {
 
         /// What a group of threads sums up over its particles.
         pub struct Partial {
-            /// Of those that came: number, temperature, vapour and fog.
+            /// Of particles that entered: number, temperature, vapour and fog.
             pub came: [f32; 4],
-            /// Of those that went.
+            /// Of particles that left.
             pub went: [f32; 4],
             /// What diffused, K/s and 1/s.
             pub diffused: [f32; 2],
@@ -411,13 +411,13 @@ corpuscle_gpu::declare! {
             pub water: f32,
         }
 
-        /// What air sees of a particle of a solid in a step, and what that gets.
+        /// State of a particle of a solid for the air in a step, and what the particle receives.
         pub struct Surface {
             /// From the ambient air's, K.
             pub temperature: f32,
             /// kg.
             pub water: f32,
-            /// Part of the evaporation asked for that there is water for.
+            /// Part of the required evaporation for which there is water.
             pub share: f32,
             /// Heat from the air, W.
             pub heat: f32,
@@ -521,7 +521,7 @@ corpuscle_gpu::declare! {
         pub struct OutsideColumn {
             /// How the air before it moves across the side, m/s.
             pub velocity: f32,
-            /// Whether no solid stands in it.
+            /// Whether no solid is in it.
             pub is_free: u32,
         }
 
@@ -569,13 +569,13 @@ corpuscle_gpu::declare! {
             pub time: [f32; 2],
             /// Time at which to halt, s since the state was sent.
             pub until: [f32; 2],
-            /// When it was last looked for air of low utility, s since the state was sent.
+            /// Time of the last search for air of low utility, s since the upload.
             pub seen: [f32; 2],
             /// Vapour that became fog, part of a particle's mass.
             pub fogged: [f32; 2],
             /// Of particles that came: number, temperature, K, vapour and fog, parts of the mass.
             pub came: FourSums,
-            /// The same of those that went.
+            /// The same of particles that left.
             pub went: FourSums,
             /// Over the mass of a particle: water that diffused in and out over faces, and energy, J/kg.
             pub diffused: FourSums,
@@ -649,7 +649,7 @@ corpuscle_gpu::declare! {
         storage solids: [Solid],
         /// Water on them.
         storage waters: [Water],
-        /// What air sees of them in a step.
+        /// Their state for the air in a step.
         storage surfaces: [Surface],
         /// Pairs between which heat goes: the other, and the bits of the conductance, W/K.
         storage pairs: [[u32; 2]],

@@ -57,7 +57,7 @@ pub(super) struct Tasks {
     forces: Task,
     take_up: Option<[Task; 2]>,
     finish: Task,
-    /// What gauges tell of the air.
+    /// The tasks of gauges of the air.
     pub measure: Task,
 }
 

@@ -1,7 +1,7 @@
 //! Humid air: how much water it holds, and at what temperature it gives it up.
 //!
 //! Temperatures are in K, pressures in Pa. Air and vapour are ideal gases. Saturation is over liquid water at all
-//! temperatures: frost is out of scope, and [`is_frost`] tells where it would form.
+//! temperatures: frost is out of scope, and [`is_frost`] gives where it would form.
 
 /// 0 °C, K.
 pub const ZERO_CELSIUS: f64 = 273.15;
@@ -72,7 +72,7 @@ pub fn saturation_density(temperature: f64) -> f64 {
     saturation_pressure(temperature) / (VAPOUR_GAS_CONSTANT * temperature)
 }
 
-/// Air at a temperature and pressure with vapour in it. Humidity is told in any way and read in any other.
+/// Air at a temperature and pressure with vapour in it. Humidity is set and read in any measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HumidAir {
     /// Temperature, K.
@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn clausius_and_clapeyron_hold_within_a_percent() {
-        // de/dT = L e / (R_v T^2), which the fitted formula knows nothing of.
+        // de/dT = L e / (R_v T^2), which the fitted formula does not satisfy exactly.
         for celsius in [0.0, 10.0, 20.0, 30.0] {
             let temperature = celsius + ZERO_CELSIUS;
             let law = latent_heat(temperature) * saturation_pressure(temperature)

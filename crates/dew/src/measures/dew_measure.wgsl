@@ -1,4 +1,4 @@
-// What gauges tell of the air as a whole, summed up by groups that share the particles. Twin of `Totals` in `measures/mod.rs`.
+// Totals of the air for gauges, summed by groups that share the particles. Twin of `Totals` in `measures/mod.rs`.
 #import dew_particles
 #import group_reduction
 

@@ -8,7 +8,7 @@ use crate::humid_air::is_frost;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle, ExactSum, GaugeColumn};
 use std::f64::consts::SQRT_2;
 
-/// What gauges tell of the air as a whole.
+/// Totals of the air for gauges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Totals {
     /// Particles inside.
@@ -21,7 +21,7 @@ pub(crate) struct Totals {
     pub fastest: f64,
 }
 
-/// Times that are told of a surface.
+/// Times measured at a surface.
 const COVER: [&str; 3] = ["fogged_at", "clear_at", "time_to_clear"];
 
 /// They, s; not numbers where they are not known yet.
@@ -106,7 +106,7 @@ impl Dew {
         }
     }
 
-    /// What goes in the columns, of air of which this is told.
+    /// The values of the columns, from totals of the air.
     pub(crate) fn measured(&self, air: &Totals) -> Vec<f64> {
         let mass = self.particle_mass();
         let particles = self.solids().particles.iter().zip(&self.state.water_on);

@@ -69,7 +69,7 @@ fn applied(m: Moments, tensor: Symmetric) -> Symmetric {
 }
 
 // Components xx, yy, zz and, doubled, xy, xz, yz of the tensor that solves the six equations of a right side, from a scalar in its stead. Single precision
-// wants it twice: what the first solution leaves of the right side is solved for again.
+// requires it twice: what the first solution leaves of the right side is solved for again.
 fn solved(m: Moments, right: f32, scalar: f32) -> Symmetric {
     let inner = inverse(Symmetric(m.mixed, vec3f(m.of_x.z, m.of_y.y, m.of_z.x)));
     let x = times(inner, m.of_x);

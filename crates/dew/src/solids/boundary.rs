@@ -1,4 +1,4 @@
-//! Where the surface of the solids is, told by the gradient of the colour c_s = sum V_j W, 1 in solids and 0 in air.
+//! Position of the surface of the solids, from the gradient of the colour c_s = sum V_j W, 1 in solids and 0 in air.
 
 use super::{Searched, Solids};
 use crate::air::Scale;

@@ -12,14 +12,14 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Tries to find room for a sample (their section 4).
-const TRIES: u32 = 30;
+/// Random positions tried for a sample (their section 4).
+const SAMPLE_TRIES: u32 = 30;
 
 /// Least distance of samples over the spacing of the air: denser than the air.
-const NEAREST: f64 = 0.5;
+const MIN_SAMPLE_DISTANCE: f64 = 0.5;
 
-/// Times that every sample looks for a better place.
-const SWEEPS: u32 = 5;
+/// Times that a better position of every sample is searched.
+const IMPROVEMENT_SWEEPS: u32 = 5;
 
 /// Times that the volumes of samples are corrected.
 const CORRECTIONS: u32 = 8;
@@ -27,7 +27,7 @@ const CORRECTIONS: u32 = 8;
 /// Ghost samples of the bodies that keep air out by them, to be in contact with air.
 ///
 /// # Errors
-/// Where such a body does not tell its surface.
+/// Where such a body has no surface.
 pub(crate) fn ghost_contact(
     bodies: &[Body],
     walls: &[WallTreatment],
@@ -46,7 +46,7 @@ pub(crate) fn ghost_contact(
             )));
         };
         let inside = |place| surface(place) < 0.0 && room.contains(place);
-        let apart = NEAREST * scale.spacing;
+        let apart = MIN_SAMPLE_DISTANCE * scale.spacing;
         let mut samples = Samples { apart, inside, taken: HashMap::new(), places: Vec::new() };
         samples.fill(body, scale.spacing, &mut random);
         samples.relax(&mut random);
@@ -103,7 +103,7 @@ impl<F: Fn([f64; 3]) -> bool> Samples<F> {
         place.map(|at| (at / self.apart).floor() as i64)
     }
 
-    /// Throws samples into cells so small that each holds one at most; every cell is tried [`TRIES`] times.
+    /// Throws samples into cells so small that each holds one at most; every cell is tried [`SAMPLE_TRIES`] times.
     fn fill(&mut self, body: &Body, spacing: f64, random: &mut ChaCha8Rng) {
         let side = self.apart / 3.0_f64.sqrt();
         let mut low = [f64::INFINITY; 3];
@@ -117,7 +117,7 @@ impl<F: Fn([f64; 3]) -> bool> Samples<F> {
         let counts = [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / side).ceil() as u64);
         for number in 0..counts.iter().product() {
             let cell = [number % counts[0], number / counts[0] % counts[1], number / counts[0] / counts[1]];
-            for _ in 0..TRIES {
+            for _ in 0..SAMPLE_TRIES {
                 let place = [0, 1, 2].map(|axis| low[axis] + side * (cell[axis] as f64 + random.random::<f64>()));
                 if (self.inside)(place) && self.room(place, None) >= self.apart * self.apart {
                     self.taken.entry(self.cell(place)).or_default().push(self.places.len());
@@ -144,12 +144,12 @@ impl<F: Fn([f64; 3]) -> bool> Samples<F> {
 
     /// Moves each sample to the roomiest of some random places near it (their algorithm 2).
     fn relax(&mut self, random: &mut ChaCha8Rng) {
-        for sweep in 0..SWEEPS {
+        for sweep in 0..IMPROVEMENT_SWEEPS {
             let reach = self.apart / f64::from(1 << sweep);
             for number in 0..self.places.len() {
                 let from = self.places[number];
                 let mut best = (self.room(from, Some(number)), from);
-                for _ in 0..TRIES {
+                for _ in 0..SAMPLE_TRIES {
                     let place = from.map(|at| at + reach * (2.0 * random.random::<f64>() - 1.0));
                     let room = self.room(place, Some(number));
                     if room > best.0 && (self.inside)(place) {

@@ -1,4 +1,4 @@
-//! Solids as particles that stay where they are: what they are made of, where their surface is, how heat goes through them.
+//! Solids as particles that stay where they are: what they are made of, where their surface is, how they conduct heat.
 
 mod boundary;
 mod conduction;
@@ -83,7 +83,7 @@ pub struct SolidParticle {
     pub area: f64,
     /// Which body it is of.
     pub body: u32,
-    /// The way out, of length 1, where it is a boundary particle.
+    /// Outward unit normal, where it is a boundary particle.
     pub normal: Option<[f64; 3]>,
     /// Whether air can come within reach of it.
     pub near_surface: bool,

@@ -1,4 +1,4 @@
-//! Solids as the shaders see them: their particles, what air is near, and how heat goes through them.
+//! Upload of solids: their particles, the air near them, and heat conduction.
 
 use crate::contact::Contact;
 use crate::dew::Dew;
@@ -10,7 +10,7 @@ use crate::solids::Site;
 use corpuscle_gpu::{Gpu, GpuError, storage, wgpu};
 use corpuscle_scene::Table;
 
-/// What is told once of the solids.
+/// Parameters of the solids that are uploaded once.
 #[derive(Debug)]
 pub(crate) struct GpuSolids {
     /// First site of each cell of the air.
@@ -19,7 +19,7 @@ pub(crate) struct GpuSolids {
     pub sites: wgpu::Buffer,
     /// The particles themselves, in order, then the cells of the walls behind solids.
     pub own: wgpu::Buffer,
-    /// Pairs between which heat goes.
+    /// Pairs between which heat flows.
     pub pairs: wgpu::Buffer,
     /// Particles and cells.
     pub count: usize,

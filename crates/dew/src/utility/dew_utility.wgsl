@@ -38,7 +38,7 @@ fn distance_at(place: vec3f) -> f32 {
 
 fn goes_away(place: vec3f, velocity: vec3f, distance: f32) -> bool {
     let speed = length(velocity);
-    return speed > 0.0 && distance_at(place + WAY * parameters.h / speed * velocity) > distance;
+    return speed > 0.0 && distance_at(place + PROBE_STEP * parameters.h / speed * velocity) > distance;
 }
 
 fn utility(particle: Particle) -> u32 {

@@ -1,7 +1,7 @@
 //! Air that no longer matters to any solid (patent CN106650064B): far from all of them and receding, by velocity and force.
 //!
 //! It only moves: nothing warms, moistens or pushes it, and to the air that matters it is as air beyond an outlet. After a while it
-//! is taken out. To the ledger it has gone when it begins to be of low utility; if it turns back it has come in again.
+//! is removed. The ledger books it as outflow when it becomes of low utility, and as inflow if it turns back.
 
 #[cfg(feature = "gpu")]
 pub(crate) mod upload;
@@ -12,16 +12,16 @@ use crate::settings::LowUtility;
 use crate::solids::Surface;
 use rayon::prelude::*;
 
-/// It is looked for air that no longer matters once in so many steps.
-pub(crate) const STEPS: u64 = 10;
+/// Steps between two searches for air of low utility.
+pub(crate) const UTILITY_STEPS: u64 = 10;
 
-/// Taken out is only what has gone on by this, so that air that matters does not see the hole, in smoothing lengths.
-pub(crate) const FARTHER: f64 = 2.0;
+/// Distance beyond that of low utility from which air is removed, in smoothing lengths: air that matters has no neighbours in the gap.
+pub(crate) const CULL_MARGIN: f64 = 2.0;
 
-/// Distances are compared after a way of this, in smoothing lengths.
-pub(crate) const WAY: f64 = 0.05;
+/// Displacement along the velocity after which distances are compared, in smoothing lengths.
+pub(crate) const PROBE_STEP: f64 = 0.05;
 
-/// What is to become of a particle.
+/// Class of a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Utility {
     Matters,
@@ -30,9 +30,11 @@ enum Utility {
 }
 
 impl Dew {
-    /// Finds the air that no longer matters, where it is the turn of that, and takes out what has not mattered for long.
-    pub(crate) fn tend_utility(&mut self) {
-        let Some(low) = self.settings.low_utility.filter(|_| self.state.steps.is_multiple_of(STEPS)) else { return };
+    /// Finds the air of low utility, where a search is due, and removes what has been so for long.
+    pub(crate) fn update_utility(&mut self) {
+        let Some(low) = self.settings.low_utility.filter(|_| self.state.steps.is_multiple_of(UTILITY_STEPS)) else {
+            return;
+        };
         let elapsed = self.state.time - self.state.utility_seen;
         self.state.utility_seen = self.state.time;
         let zone = Zone { surfaces: &self.surfaces, h: self.scale.h(), sound_speed: self.air.sound_speed, low };
@@ -59,7 +61,7 @@ impl Dew {
     }
 }
 
-/// What tells whether air matters.
+/// The criteria of utility.
 struct Zone<'a> {
     surfaces: &'a [Surface],
     /// Smoothing length, m.
@@ -78,7 +80,7 @@ impl Zone<'_> {
         if distance < self.low.distance * self.h || !self.recedes(particle, distance) {
             return Utility::Matters;
         }
-        let is_far = distance > (self.low.distance + FARTHER) * self.h;
+        let is_far = distance > (self.low.distance + CULL_MARGIN) * self.h;
         let was_long = particle.role == Role::Idle && particle.idle > self.low.after;
         if is_far && was_long { Utility::Gone } else { Utility::Low }
     }
@@ -87,14 +89,14 @@ impl Zone<'_> {
         self.surfaces.iter().map(|surface| surface(place)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether it goes away from the nearest solid, now and with the velocity that the force gives it while sound crosses a
+    /// Whether a particle moves away from the nearest solid, now and with the velocity that the force gives it while sound crosses a
     /// smoothing length.
     fn recedes(&self, particle: &Particle, distance: f64) -> bool {
         let later = self.h / self.sound_speed;
         let with_force = [0, 1, 2].map(|axis| particle.velocity[axis] + later * particle.acceleration[axis]);
         [particle.velocity, with_force].into_iter().all(|velocity| {
             let speed = velocity.iter().map(|along| along * along).sum::<f64>().sqrt();
-            let ahead = |axis: usize| particle.position[axis] + WAY * self.h * velocity[axis] / speed;
+            let ahead = |axis: usize| particle.position[axis] + PROBE_STEP * self.h * velocity[axis] / speed;
             speed > 0.0 && self.distance([0, 1, 2].map(ahead)) > distance
         })
     }

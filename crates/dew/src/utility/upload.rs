@@ -1,18 +1,18 @@
-//! How far solids are, on nodes: where it is looked for air of low utility.
+//! Distance from solids on nodes, for the search for air of low utility.
 
 use crate::dew::Dew;
 use crate::gpu::origin::Origin;
 use crate::gpu::shared::Parameters;
-use crate::utility::FARTHER;
+use crate::utility::CULL_MARGIN;
 use rayon::prelude::*;
 
 /// Nodes for each distance of particles: air that is missed or taken for too near is within some thousandths of it.
 const FINER: f64 = 2.0;
 
-/// Nodes beyond the room, for what looks two of them on.
+/// Nodes beyond the room, which interpolation reads.
 const BEYOND: f64 = 3.0;
 
-/// Tells where the distances are known, and gives them, m; nothing where air of low utility is not looked for.
+/// Sets the grid of the distances, and returns them, m; none where there is no search for air of low utility.
 pub(crate) fn distance_field(parameters: &mut Parameters, dew: &Dew, origin: Origin) -> Vec<f32> {
     let Some(low) = dew.settings.low_utility else { return Vec::new() };
     let (h, apart) = (dew.scale.h(), dew.scale.spacing / FINER);
@@ -22,7 +22,7 @@ pub(crate) fn distance_field(parameters: &mut Parameters, dew: &Dew, origin: Ori
     parameters.per_node = (1.0 / apart) as f32;
     parameters.nodes = nodes.map(|count| count as u32);
     parameters.low_beyond = (low.distance * h) as f32;
-    parameters.useless_beyond = ((low.distance + FARTHER) * h) as f32;
+    parameters.useless_beyond = ((low.distance + CULL_MARGIN) * h) as f32;
     parameters.low_after = low.after as f32;
     let distance = |number: usize| {
         let index = [number % nodes[0], number / nodes[0] % nodes[1], number / (nodes[0] * nodes[1])];

@@ -1,4 +1,4 @@
-//! Rigid obstacles as a scene tells them: buildings and walls that water goes round.
+//! Rigid obstacles of a scene: buildings and walls that water flows around.
 
 mod open;
 mod outline;

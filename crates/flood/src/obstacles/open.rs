@@ -1,4 +1,4 @@
-//! Obstacles as a scene tells them.
+//! Obstacles of a scene.
 
 use super::{Outline, Outlines};
 use crate::limits::check_inside;
@@ -18,11 +18,11 @@ const ROUND: usize = 360;
 pub(crate) fn open(flood: &Settings, terrain: &Terrain, folder: &Path, reach: f64) -> Result<Outlines, ModelError> {
     let mut outlines = Vec::new();
     for (number, obstacle) in flood.obstacle.iter().enumerate() {
-        let who = format!("the obstacle '{}'", obstacle.name);
+        let subject = format!("the obstacle '{}'", obstacle.name);
         for rings in polygons(obstacle, terrain, folder)? {
             let rings: Polygon = rings.into_iter().filter(|ring| ring.len() >= 3).collect();
             let Some(outer) = rings.first() else { continue };
-            check_overlap(&who, outer, terrain)?;
+            check_overlap(&subject, outer, terrain)?;
             let rings = rings.into_iter().map(|ring| going_on_beyond(ring, terrain.bounds(), reach)).collect();
             outlines.push(Outline { obstacle: number, rings });
         }
@@ -62,7 +62,7 @@ fn round(circle: Circle, terrain: &Terrain) -> Vec<[f64; 2]> {
     (0..ROUND).map(corner).collect()
 }
 
-/// A ring with a side along an edge of the terrain goes on beyond it: that side is no wall to the water.
+/// Extends a ring with a side along an edge of the terrain beyond it, so that this side is no wall to the water.
 fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[f64; 2]> {
     let near = 1e-6 * reach;
     let edges =
@@ -83,15 +83,16 @@ fn going_on_beyond(mut ring: Vec<[f64; 2]>, bounds: Bounds, reach: f64) -> Vec<[
     ring
 }
 
-pub(crate) fn check_overlap(who: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
+pub(crate) fn check_overlap(subject: &str, ring: &[[f64; 2]], terrain: &Terrain) -> Result<(), ModelError> {
     let bounds = terrain.bounds();
     let beyond = |axis: usize, low: f64, high: f64| {
         ring.iter().all(|corner| corner[axis] < low) || ring.iter().all(|corner| corner[axis] > high)
     };
     if beyond(0, bounds.x_min, bounds.x_max) || beyond(1, bounds.y_min, bounds.y_max) {
         let [x, y] = ring[0];
-        let what =
-            format!("{who} lies outside the terrain: its first corner is at ({x}, {y}) m in the model's coordinates");
+        let what = format!(
+            "{subject} lies outside the terrain: its first corner is at ({x}, {y}) m in the model's coordinates"
+        );
         return Err(ModelError::Setup(what));
     }
     Ok(())

@@ -65,7 +65,7 @@ impl Outline {
     }
 }
 
-/// All outlines, to be asked quickly which are near a place.
+/// All outlines, with an index that finds those near a position.
 #[derive(Debug, Default)]
 pub(crate) struct Outlines {
     /// The outlines.

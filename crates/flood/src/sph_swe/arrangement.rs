@@ -55,7 +55,7 @@ struct Unsorted {
 }
 
 impl Arrangement {
-    /// Arranges `particles`, which `reaching` tells as (x, y, reach), and their images beyond the edges.
+    /// Arranges `particles`, of which `reaching` gives (x, y, reach), and their ghost particles beyond the edges.
     pub fn arrange<T: Sync>(
         &mut self,
         particles: &[T],

@@ -22,7 +22,7 @@ impl SphSweFlood {
         Some(ModelError::Breakdown { time, step, what })
     }
 
-    /// Where a particle is, in words; where it was, if its position is no number and the state knows it from before.
+    /// The position of a particle, in words; the last finite one, if it is not finite now.
     fn place_of(&self, particle: &Particle) -> String {
         let is_known = |particle: &&Particle| particle.x.is_finite() && particle.y.is_finite();
         let before = || self.state.particles.iter().filter(|before| before.id == particle.id).find(is_known);

@@ -104,13 +104,13 @@ impl SphSweFlood {
     }
 
     /// The parameters of the scheme as they are now.
-    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "the GPU asks for them"))]
+    #[cfg_attr(not(feature = "gpu"), expect(dead_code, reason = "only the GPU needs them"))]
     pub(super) fn parameters(&self) -> SphSwe {
         let written = &self.settings.sph_swe;
         SphSwe { control_force: self.state.overrides.control.unwrap_or(written.control_force), ..written.clone() }
     }
 
-    /// A GPU that takes the steps gets to know what has changed.
+    /// Uploads the changed state and parameters to a GPU that takes the steps.
     pub(super) fn renew_gpu(&mut self) -> Result<(), ModelError> {
         #[cfg(feature = "gpu")]
         if let Some(on_gpu) = &self.on_gpu {

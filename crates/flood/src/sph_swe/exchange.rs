@@ -1,20 +1,19 @@
-//! Water that comes and goes.
+//! Inflow and outflow of water.
 
 use super::edges::OUTWARD;
-use super::inflow::Nursery;
+use super::inflow::ParticleSpawner;
 use super::particle::Particle;
 use super::{DENSITY, SphSweFlood, State};
 
-/// How far beyond an edge particles go on, in smoothing lengths: those before the edge and their neighbours see them.
+/// Distance beyond an edge at which particles are removed, in smoothing lengths: until then they are neighbours of those inside.
 pub(super) const BEYOND: f64 = 4.0;
 
-/// A particle that has left goes on at its speed, but not so slowly that it would stand in the way: at this Froude number
-/// at least.
+/// Lowest Froude number of a particle that has left: it keeps its speed, but must not block the outflow.
 pub(super) const SLOWEST_LEAVING: f64 = 0.1;
 
 impl SphSweFlood {
-    /// Books what crosses the edges, and takes out what is well beyond them.
-    pub(super) fn lose(&mut self) {
+    /// Books particles that cross the edges, and removes those well beyond them.
+    pub(super) fn remove_outflow(&mut self) {
         let edges = &self.surroundings.edges;
         let gravity = self.settings.gravity_m_per_s2;
         let State { particles, water, momentum, .. } = &mut self.state;
@@ -44,38 +43,38 @@ impl SphSweFlood {
         });
     }
 
-    /// Lets in what comes during the coming step.
-    pub(super) fn gain(&mut self, step: f64) {
+    /// Adds particles of inflows, and drops that land, during the next step.
+    pub(super) fn add_inflow(&mut self, step: f64) {
         if self.sources.is_empty() && self.state.falling.is_empty() {
             return;
         }
-        let mut owed = std::mem::take(&mut self.state.owed);
+        let mut residual_volume = std::mem::take(&mut self.state.residual_volume);
         let mut falling = std::mem::take(&mut self.state.falling);
-        let mut nursery = Nursery {
+        let mut spawner = ParticleSpawner {
             water: self.sampler(0.0),
             bounds: self.surroundings.edges.bounds,
             volume: self.volume,
             h: self.h,
             seed: self.seed,
             next_id: self.state.next_id,
-            born: Vec::new(),
+            spawned: Vec::new(),
         };
-        for (source, owed) in self.sources.iter().zip(&mut owed) {
-            nursery.pour(source, owed, self.state.time, step);
+        for (source, residual_volume) in self.sources.iter().zip(&mut residual_volume) {
+            spawner.inject(source, residual_volume, self.state.time, step);
         }
-        let Nursery { next_id, mut born, .. } = nursery;
+        let ParticleSpawner { next_id, mut spawned, .. } = spawner;
         let landed = {
             let water = self.sampler(0.0);
             falling.iter_mut().for_each(|drop| drop.fall(self.settings.gravity_m_per_s2, step));
             falling.extract_if(.., |drop| drop.has_landed(&water)).map(|drop| drop.particle).collect::<Vec<_>>()
         };
         let state = &mut self.state;
-        (state.owed, state.falling, state.next_id) = (owed, falling, next_id);
-        for particle in &born {
+        (state.residual_volume, state.falling, state.next_id) = (residual_volume, falling, next_id);
+        for particle in &spawned {
             state.water.inflow.add(particle.volume);
             state.momentum.book(DENSITY * particle.volume * (particle.u + particle.v));
         }
-        state.particles.append(&mut born);
+        state.particles.append(&mut spawned);
         state.particles.extend(landed);
     }
 }

@@ -1,4 +1,4 @@
-//! What the water did at each cell of the terrain: maxima, arrival, duration, hazard.
+//! Maps over the cells of the terrain: maxima, arrival, duration, hazard.
 
 use super::Sampler;
 use crate::sampling::Sample;
@@ -14,11 +14,11 @@ pub(crate) struct Maps {
     wet_depth: f64,
     columns: usize,
     cells: Vec<Record>,
-    /// Time of the last look, s.
+    /// Time of the last sample, s.
     last: f64,
 }
 
-/// What the water did at a cell.
+/// The maxima and times of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Record {
     /// m.
@@ -27,9 +27,9 @@ pub(crate) struct Record {
     pub max_speed: f32,
     /// Largest depth x (speed + 0.5), m2/s.
     pub hazard: f32,
-    /// When it was first seen wet, s; not-a-number before.
+    /// When a sample first was wet, s; not-a-number before.
     pub arrival: f32,
-    /// For how long it has been seen wet since, s.
+    /// Time over which samples were wet since, s.
     pub duration: f32,
 }
 
@@ -46,7 +46,7 @@ impl Maps {
         self.columns == other.columns && self.cells.len() == other.cells.len()
     }
 
-    /// What goes on the GPU and comes back from there.
+    /// The record of a cell, which is uploaded to the GPU and downloaded from there.
     #[cfg(feature = "gpu")]
     pub fn record(&self, cell: usize) -> &Record {
         &self.cells[cell]
@@ -63,7 +63,7 @@ impl Maps {
         self.wet_depth
     }
 
-    /// Time of the last look, s.
+    /// Time of the last sample, s.
     #[cfg(feature = "gpu")]
     pub fn last(&self) -> f64 {
         self.last
@@ -74,14 +74,14 @@ impl Maps {
         self.last = time;
     }
 
-    /// Looks at the water at `time` s. Wet time is counted since the last look.
-    pub fn look(&mut self, water: &Sampler, time: f64) {
+    /// Samples the water at `time` s. Wet time is counted since the last sample.
+    pub fn sample(&mut self, water: &Sampler, time: f64) {
         let (wet_depth, since) = (self.wet_depth, (time - self.last) as f32);
         self.last = time;
         self.cells.par_chunks_mut(self.columns).enumerate().for_each(|(row, cells)| {
             for (column, cell) in cells.iter_mut().enumerate() {
                 if let Some(sample) = wet(water, column, row, wet_depth) {
-                    cell.see(&sample, time as f32, since);
+                    cell.add(&sample, time as f32, since);
                 }
             }
         });
@@ -136,7 +136,7 @@ fn wet(water: &Sampler, column: usize, row: usize, wet_depth: f64) -> Option<Sam
 }
 
 impl Record {
-    fn see(&mut self, sample: &Sample, time: f32, since: f32) {
+    fn add(&mut self, sample: &Sample, time: f32, since: f32) {
         let (depth, speed) = (sample.depth as f32, sample.speed() as f32);
         self.max_depth = self.max_depth.max(depth);
         self.max_speed = self.max_speed.max(speed);

@@ -1,4 +1,4 @@
-//! What gauges measure.
+//! Values of gauges.
 
 use super::{DENSITY, SphSweFlood};
 use crate::gauges::{LineGauge, PointGauge};
@@ -6,10 +6,10 @@ use crate::obstacles::force_columns;
 use crate::sampling::Sample;
 use corpuscle_model::GaugeColumn;
 
-/// What gauges show at a time.
+/// Values of all gauges at a time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Reading {
-    /// The water at each place that gauges look at.
+    /// The water at each position of the gauges.
     pub samples: Vec<Sample>,
     /// Force on each obstacle and its sum over time, over the density of water: m4/s2 and m4/s.
     pub on_obstacles: Vec<[f64; 2]>,
@@ -41,14 +41,14 @@ impl SphSweFlood {
         points.chain(lines).chain(["stored", "total_inflow", "total_outflow"].map(total)).chain(placed).collect()
     }
 
-    /// The places that gauges look at: points, those along lines, and points that were placed live.
+    /// The positions of the gauges: points, those along lines, and points that were placed live.
     pub(super) fn gauge_places(&self) -> Vec<[f64; 2]> {
         let points = self.points.iter().map(|point| point.at);
         let along_lines = self.lines.iter().flat_map(LineGauge::places);
         points.chain(along_lines).chain(self.placed().map(|point| point.at)).collect()
     }
 
-    /// What they show at the time shown.
+    /// The values at the time shown.
     pub(super) fn reading(&self) -> Reading {
         let water = self.sampler(self.since());
         Reading {
@@ -61,7 +61,7 @@ impl SphSweFlood {
         }
     }
 
-    /// What goes in the columns.
+    /// The values of the columns.
     pub(super) fn row(&self, reading: &Reading) -> Vec<f64> {
         let mut samples = &reading.samples[..];
         let mut next = |count: usize| samples.split_off(..count).unwrap_or_default();

@@ -43,7 +43,7 @@ use corpuscle_scene::{Flood as Settings, Table};
 use falling::Falling;
 use serde::{Deserialize, Serialize};
 use solver::SphSwe;
-use step::Renewal;
+use step::BlockUpdate;
 use surroundings::Surroundings;
 
 /// Density of water, kg/m3.
@@ -72,7 +72,7 @@ pub struct SphSweFlood {
     written: Vec<(usize, Table)>,
     /// Working memory.
     of_blocks: Vec<f64>,
-    renewals: Vec<Renewal>,
+    block_updates: Vec<BlockUpdate>,
     /// The time shown, s; up to one step after the state's.
     shown: f64,
     /// The GPU that takes the steps, where one does.
@@ -88,14 +88,14 @@ struct State {
     particle_steps: u64,
     particles: Vec<Particle>,
     falling: Vec<Falling>,
-    /// Water that each source owes, less than a particle, m3.
-    owed: Vec<ExactSum>,
+    /// Inflow of each source that is not yet a whole particle, m3.
+    residual_volume: Vec<ExactSum>,
     next_id: u64,
     water: Account,
     momentum: Account,
     maps: Maps,
-    /// Number of the next look at the maps.
-    next_look: u64,
+    /// Number of the next sample of the maps.
+    next_sample: u64,
     /// Next time step, s.
     time_step: f64,
     /// Size of a cell, m.
@@ -109,7 +109,7 @@ struct State {
     put_back: u64,
     /// When water was first seen to stand higher than each obstacle, s.
     overtopped: Vec<Option<f64>>,
-    /// What a user should know of the water at the start.
+    /// Warnings about the water at the start.
     warnings: Vec<String>,
     /// What was changed live.
     overrides: Overrides,

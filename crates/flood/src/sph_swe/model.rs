@@ -141,7 +141,7 @@ impl Model for SphSweFlood {
 
     fn warnings(&self) -> Vec<String> {
         let names = self.surroundings.obstacles.names.iter().zip(&self.state.overtopped);
-        let told = |(name, time): (&String, &Option<f64>)| {
+        let warning = |(name, time): (&String, &Option<f64>)| {
             let time = (*time)?;
             Some(format!(
                 "from t = {time:.0} s the water at the obstacle '{name}' stood higher than its height_m: it would have flowed over it, \
@@ -149,7 +149,7 @@ impl Model for SphSweFlood {
             ))
         };
         let terrain = self.surroundings.terrain.warnings().iter();
-        terrain.chain(&self.state.warnings).cloned().chain(names.filter_map(told)).collect()
+        terrain.chain(&self.state.warnings).cloned().chain(names.filter_map(warning)).collect()
     }
 
     fn save(&self) -> Vec<u8> {
@@ -160,7 +160,7 @@ impl Model for SphSweFlood {
         let refused = |what: String| ModelError::Checkpoint(what);
         let (shown, state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
-        if state.owed.len() != self.sources.len()
+        if state.residual_volume.len() != self.sources.len()
             || state.impulses.len() != self.surroundings.obstacles.names.len()
             || !state.maps.fit(&self.state.maps)
         {
@@ -175,7 +175,7 @@ impl Model for SphSweFlood {
             return self.renew_gpu();
         }
         #[cfg(feature = "gpu")]
-        self.send_to_gpu().map_err(|error| ModelError::Device(error.to_string()))?;
+        self.upload_to_gpu().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())
     }
 }

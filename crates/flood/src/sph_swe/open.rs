@@ -108,12 +108,12 @@ impl SphSweFlood {
             particle_steps: 0,
             particles: Vec::new(),
             falling: Vec::new(),
-            owed: vec![ExactSum::default(); sources.len()],
+            residual_volume: vec![ExactSum::default(); sources.len()],
             next_id: 0,
             water: Account::default(),
             momentum: Account::default(),
             maps: Maps::new(&terrain, flood.wet_depth_m),
-            next_look: 0,
+            next_sample: 0,
             time_step: 0.0,
             cell: h,
             external: [0.0; 2],
@@ -140,7 +140,7 @@ impl SphSweFlood {
             state,
             written: Vec::new(),
             of_blocks: Vec::new(),
-            renewals: Vec::new(),
+            block_updates: Vec::new(),
             shown: 0.0,
             #[cfg(feature = "gpu")]
             on_gpu: None,
@@ -227,20 +227,20 @@ impl SphSweFlood {
     fn begin(&mut self) -> Result<(), ModelError> {
         self.state.water.initial = self.stored();
         self.state.momentum.initial = self.momentum();
-        self.renew();
+        self.update_smoothing_lengths();
         self.arrange();
         self.state.external = self.solver.evaluate(&mut self.state.particles, &self.surroundings, 0.0);
-        self.state.time_step = self.limited(self.settings.sph_swe.time_step_s);
+        self.state.time_step = self.limit_time_step(self.settings.sph_swe.time_step_s);
         self.state.on_obstacles.copy_from_slice(self.solver.on_obstacles());
         if let Some(error) = self.defect_among(&self.state.particles, 0.0, 0) {
             return Err(error);
         }
-        self.look();
+        self.sample_maps();
         Ok(())
     }
 }
 
-/// What the sides do.
+/// The rules of the sides.
 fn edge_rules(scene: &Settings, terrain: &Terrain) -> Result<EdgeRules, ModelError> {
     let rule = |edge: &Edge| match edge {
         Edge::Open => Ok(EdgeRule::Open),

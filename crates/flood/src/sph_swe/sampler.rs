@@ -1,4 +1,4 @@
-//! The water at any place, from the particles round it.
+//! Samples of the water at any position, from the particles near it.
 
 use super::SAMPLED;
 use super::arrangement::{Arrangement, IMAGE};
@@ -8,13 +8,13 @@ use crate::sampling::Sample;
 use corpuscle_sph::kernel::CubicSpline;
 use corpuscle_terrain::Terrain;
 
-/// Share of a place's surroundings that water must cover for the place to be wet.
+/// Share of a position's surroundings that water must cover for the position to be wet.
 pub(super) const COVERED: f64 = 0.5;
 
-/// A place is at most this much deeper than the deepest particle near it.
+/// Largest depth at a position over that of the deepest particle near it.
 pub(super) const DEEPER: f64 = 1.2;
 
-/// The particles, to be asked for the water at a place, a little after they were arranged.
+/// Samples the water at a position from the particles, a little after they were arranged.
 pub(crate) struct Sampler<'a> {
     pub particles: &'a [Particle],
     pub arrangement: &'a Arrangement,
@@ -37,7 +37,7 @@ impl Sampler<'_> {
         places.filter(|&&k| k != IMAGE).map(|&k| &self.particles[k as usize])
     }
 
-    /// The share of the surroundings of (x, y) that images beyond walls and periodic sides cover.
+    /// The share of the surroundings of (x, y) that ghost particles beyond walls and periodic sides cover.
     fn covered_by_images(&self, x: f64, y: f64) -> f64 {
         let Arrangement { cells, particle, images, x: at_x, y: at_y, .. } = self.arrangement;
         let places = cells.ranges([x, y], 1.1 * cells.reach_at([x, y])).flatten();
@@ -51,7 +51,7 @@ impl Sampler<'_> {
         places.filter(|place| particle[*place] == IMAGE).filter_map(weight).sum()
     }
 
-    /// Where the water that is at (x, y) now was when the particles were arranged: in a fast step it goes farther than they reach.
+    /// The position, when the particles were arranged, of the water that is at (x, y) now: in a fast step it moves farther than their support.
     fn origin(&self, x: f64, y: f64) -> [f64; 2] {
         if self.since == 0.0 {
             return [x, y];
@@ -119,7 +119,7 @@ impl Sampler<'_> {
             deepest = deepest.max(particle.depth);
         });
         let from_surface = (surface - self.terrain.height(x, y)).min(DEEPER * deepest);
-        // Variances squared, so that the smoother field decides alone but where the two are much alike.
+        // Variances squared, so that the smoother field decides alone unless the two are similar.
         let [surface_spread, depth_spread] = [surface_spread, depth_spread].map(|spread| spread * spread);
         let spread = surface_spread + depth_spread;
         let share = if spread > 0.0 { depth_spread / spread } else { 1.0 };

@@ -12,14 +12,14 @@ const C_2: f64 = 0.25 * FRAC_2_SQRT_PI;
 
 /// The support of a kernel over the h of form (8): with c_2 the circle of radius 2 h has the area of the neighbours. The kernels
 /// here have the support h, so that their h is that of form (8) times this.
-const SUPPORT: f64 = 2.0;
+const SUPPORT_OVER_H: f64 = 2.0;
 
 /// The h of form (8), in spacings, for which its neighbours are counted.
-const SPACINGS: f64 = 1.2;
+const H_IN_SPACINGS: f64 = 1.2;
 
-/// Smoothing lengths are at least this part of h0 (rho0 / rho)^(1/2). In water that splashes form (9) takes them ever lower, and without
+/// Least smoothing length over h0 (rho0 / rho)^(1/2). In water that splashes form (9) takes them ever lower, and without
 /// neighbours it leaves them there. The density of a particle alone, 4 m / (pi h^2), makes the bound larger than its h, until it finds some.
-const LEAST: f64 = 0.5;
+const MIN_H_FACTOR: f64 = 0.5;
 
 impl SphSwe {
     /// Smoothing lengths for the next step by forms (8) and (9): the first for particles that have none yet (`next_h` is 0), the
@@ -35,14 +35,14 @@ impl SphSwe {
                 self.first(particle, obstacles, place)
             };
             let by_density = h_of_density(parameters, *h0, parameters.density_kg_per_m3 * particle.depth);
-            particle.next_h = h.max(LEAST * by_density).min(longest);
+            particle.next_h = h.max(MIN_H_FACTOR * by_density).min(longest);
         });
     }
 
     /// Form (8), h_i = c_2 (sum_j m_j / rho_i)^(1/2), as the support of a kernel, m; the particle is a neighbour of itself. Only those
     /// within its present smoothing length are counted.
     fn first(&self, particle: &Particle, obstacles: &Obstacles, place: u32) -> f64 {
-        let reach = SUPPORT * SPACINGS * particle.area().sqrt();
+        let reach = SUPPORT_OVER_H * H_IN_SPACINGS * particle.area().sqrt();
         let near = self.arrangement.lists.of(place as usize);
         let mut volume = particle.volume;
         for (&other, &r) in near.index.iter().zip(near.distance) {
@@ -52,7 +52,7 @@ impl SphSwe {
             }
         }
         obstacles.each([particle.x, particle.y], reach.min(particle.h), |site, _, _| volume += site.volume);
-        SUPPORT * C_2 * (volume / particle.depth).sqrt()
+        SUPPORT_OVER_H * C_2 * (volume / particle.depth).sqrt()
     }
 
     /// Form (9) over h, (1/h_i) Dh_i/Dt = -1/(2 rho_i) sum_j m_j (v_i - v_j) . grad W(r_ij, h_i), 1/s: the kernel of the
@@ -63,7 +63,7 @@ impl SphSwe {
         let kernel = Kernel::<2>::new(self.parameters.kernel, own.h);
         let mut sum = 0.0;
         for (&other, &r) in near.index.iter().zip(near.distance) {
-            // Lists are filled up with numbers of nobody, far away.
+            // Lists are padded with indices of no particle, far away.
             if r < own.h {
                 let other = &self.columns[other as usize];
                 let apart = (own.u - other.u) * (own.x - other.x) + (own.v - other.v) * (own.y - other.y);

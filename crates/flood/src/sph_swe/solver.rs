@@ -11,7 +11,7 @@ use super::density::{Depths, NumberDensities};
 use super::edges::EdgeRule;
 use super::obstacles::Obstacles;
 use super::particle::Particle;
-use super::surroundings::{Surroundings, TOGETHER};
+use super::surroundings::{GROUND_BLOCK, Surroundings};
 use bytemuck::{Pod, Zeroable};
 use corpuscle_scene::{SmoothingForm, SphSwe as Parameters};
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
@@ -135,7 +135,7 @@ impl SphSwe {
             lists.search(cells, places, &reach, out, &Depths { kernel, reach_squared, volumes });
         }
         let (this, rho0) = (&*self, self.parameters.density_kg_per_m3);
-        let groups = particles.par_chunks_mut(TOGETHER).zip(this.arrangement.real.par_chunks(TOGETHER));
+        let groups = particles.par_chunks_mut(GROUND_BLOCK).zip(this.arrangement.real.par_chunks(GROUND_BLOCK));
         groups.for_each(|(particles, places)| {
             surroundings.find_ground(particles);
             for (particle, &place) in particles.iter_mut().zip(places) {
@@ -190,8 +190,8 @@ impl SphSwe {
         }
     }
 
-    /// Slope of the ground and control force, added to the pair forces; the sum of both over all the water.
-    fn take_over(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
+    /// Adds slope of the ground and control force to the pair forces; returns the sum of both over all the water.
+    fn add_external_forces(&mut self, particles: &mut [Particle], surroundings: &Surroundings, step: f64) -> [f64; 2] {
         let controlled = self.parameters.control_force && step > 0.0;
         let Self { parameters, h0, gravity, accelerations, of_groups, .. } = self;
         let groups = particles.par_chunks_mut(CONTROLLED).zip(self.arrangement.real.par_chunks(CONTROLLED));
@@ -252,8 +252,8 @@ fn push_of_walls(parameters: &Parameters, obstacles: &Obstacles, particle: &Part
     (push, obstacle)
 }
 
-/// Particles whose control forces are found together: each looks at four places of the ground.
-const CONTROLLED: usize = TOGETHER / 4;
+/// Particles whose control forces are computed together: each evaluates four positions of the ground.
+const CONTROLLED: usize = GROUND_BLOCK / 4;
 
 /// Corners of a square of side 1 round the origin.
 const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]];
@@ -271,7 +271,7 @@ fn control(
     step: f64,
 ) -> [[f64; 2]; CONTROLLED] {
     let [mut dx, mut dy, mut side] = [[0.0; CONTROLLED]; 3];
-    let [mut x, mut y] = [[0.0; TOGETHER]; 2];
+    let [mut x, mut y] = [[0.0; GROUND_BLOCK]; 2];
     for (k, particle) in particles.iter().enumerate() {
         (dx[k], dy[k]) = (step * particle.u, step * particle.v);
         let h = match parameters.smoothing {
@@ -305,8 +305,8 @@ fn ways<S: Simd>(
     simd: S,
     dx: &[f64; CONTROLLED],
     dy: &[f64; CONTROLLED],
-    slope_x: &[f64; TOGETHER],
-    slope_y: &[f64; TOGETHER],
+    slope_x: &[f64; GROUND_BLOCK],
+    slope_y: &[f64; GROUND_BLOCK],
 ) -> [f64; CONTROLLED] {
     let mut ways = [0.0; CONTROLLED];
     for (group, ways) in ways.chunks_exact_mut(LANES).enumerate() {
@@ -375,7 +375,7 @@ impl SphSwe {
             dispatch!(Level::new(), simd => pair_forces(simd, parameters, &self.arrangement, &self.columns, first, out));
         });
         self.add_walls(particles, &surroundings.obstacles);
-        self.take_over(particles, surroundings, step)
+        self.add_external_forces(particles, surroundings, step)
     }
 
     /// The particles in their cells, as last arranged.

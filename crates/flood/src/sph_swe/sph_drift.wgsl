@@ -1,4 +1,4 @@
-// The particles move, and those that came into obstacles are put back. Twin of `move_particles` and `keep_out` in `step.rs`.
+// Moves the particles, and puts those that penetrate obstacles back to the wall. Twin of `move_particles` and `resolve_obstacle_penetration` in `step.rs`.
 #import sph_common
 #import sph_outlines
 #import group_reduction
@@ -40,7 +40,7 @@ fn way_out(place: vec2f, found: Within, first: u32, end: u32) -> vec2f {
     return select(across, -across, within(place + across, first, end).is_inside);
 }
 
-// Puts a particle that has come into an obstacle back to the wall; what of its velocity led in is taken off. Gives that. Twin of `Obstacles::keep_out`.
+// Puts a particle that has come into an obstacle back to the wall, and removes the inward part of its velocity. Returns that. Twin of `Obstacles::resolve_penetration`.
 fn kept_out(particle: ptr<function, Particle>) -> vec2f {
     let cell = outline_cell((*particle).place);
     if cell == NONE {

@@ -1,5 +1,5 @@
 // Pressure, viscosity, the slope of the ground and the control force, the step's acceleration, friction, and what a group's particles sum up to. Twin of
-// `pair_forces`, `control` and `take_over` in `solver.rs` and of `accelerate` in `step.rs`.
+// `pair_forces`, `control` and `add_external_forces` in `solver.rs` and of `accelerate` in `step.rs`.
 #import sph_common
 #import sph_neighbours
 #import sph_kernels
@@ -78,7 +78,7 @@ fn control(particle: Particle) -> vec2f {
     return -min(force / speed, 1.0 / status.step) * particle.velocity;
 }
 
-// The next smoothing length of a particle; infinite where something of it is no number, which ends the run: beyond an edge no force tells of it.
+// The next smoothing length of a particle; infinite where a value of it is not finite, which ends the run: beyond an edge no force would show it.
 fn sound_h(particle: Particle) -> f32 {
     let is_placed = is_finite(particle.place.x) && is_finite(particle.place.y);
     let is_moved = is_finite(particle.velocity.x) && is_finite(particle.velocity.y);

@@ -1,4 +1,4 @@
-// The water at the positions that a row of gauges looks at, at its time: a little after the last step. Twin of `SphSweFlood::reading`.
+// Samples the water at the positions of a row of gauges, at its time: a little after the last step. Twin of `SphSweFlood::reading`.
 #import sph_water
 #import sph_rows
 

@@ -1,4 +1,4 @@
-// Makes particles of what has landed, in the order of the drops. Twin of `gain` in `exchange.rs`. One group.
+// Turns drops that have landed into particles, in the order of the drops. Twin of `add_inflow` in `exchange.rs`. One group.
 #import sph_common
 #import sums_before
 

@@ -1,4 +1,4 @@
-// What crosses the edges is put back or booked, and each particle counts itself in its cell. Twin of `lose` in `exchange.rs`.
+// Reflects or books particles that cross the edges, and counts the particles of each cell. Twin of `remove_outflow` in `exchange.rs`.
 #import sph_common
 #import group_reduction
 
@@ -6,7 +6,7 @@
 // left for good, over the low side (1) or the high one (2).
 fn keep(value: f32, low: f32, high: f32, low_rule: u32, high_rule: u32) -> vec3f {
     let is_low = value < low;
-    // What is no number stays so, and ends the run: see `sph_forces.wgsl`.
+    // A value that is not finite stays so, and ends the run: see `sph_forces.wgsl`.
     if !is_finite(value) || (!is_low && value < high) {
         return vec3f(value, 1.0, 0.0);
     }
@@ -51,7 +51,7 @@ fn put_back(particle: ptr<function, Particle>) -> vec3f {
     return booked;
 }
 
-// Whether a particle is so far beyond an edge that it is seen no more. One whose position is no number stays, so that it is found.
+// Whether a particle is so far beyond an edge that it is removed. One whose position is not finite stays, so that it is found.
 fn is_gone(particle: Particle) -> bool {
     let bounds = parameters.bounds;
     let place = particle.place;

@@ -1,4 +1,4 @@
-// What the water has done at each cell of the maps: a look at all of them. Twin of `Maps::look`.
+// Samples the water in each cell of the maps. Twin of `Maps::sample`.
 #import sph_water
 
 @compute @workgroup_size(GROUP)
@@ -18,7 +18,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if cell.arrival < 0.0 {
         cell.arrival = status.clock_began + total(status.clock);
     } else {
-        cell.duration += status.since_look;
+        cell.duration += status.since_sample;
     }
     map_cells[id.x] = cell;
 }

@@ -1,7 +1,7 @@
-// Who is near: cells to look through, and images of particles beyond the edges.
+// Neighbour search: cells to search, and ghost particles beyond the edges.
 //
-// Images are not stored as the CPU's are: who stands near an edge looks once more from where it would stand in the mirror, and turns
-// what it finds. So each pass goes through `Mirror`s, the first of which shows things as they are.
+// Ghost particles are not stored as on the CPU: near an edge the search is repeated from the mirrored position, and what it finds is
+// mirrored. So each pass loops over `Mirror`s, the first of which is the identity.
 #import sph_common
 
 struct Mirror {
@@ -16,7 +16,7 @@ struct Mirror {
 
 const MIRRORS = 9u;
 
-// How many of them there are to look into: amid the water the first alone.
+// Number of mirrors to search from a position: away from the edges the first alone.
 fn mirrors_round(place: vec2f) -> u32 {
     let farthest = parameters.widest_h;
     let is_amid = all(place - farthest > parameters.bounds.xz) && all(place + farthest < parameters.bounds.yw);
@@ -38,7 +38,7 @@ fn along(beyond: i32, low: f32, high: f32, rules: vec2u) -> vec3f {
     return vec3f(1.0, 0.0, 0.0);
 }
 
-// The mirror of a number below MIRRORS, 0 being none.
+// The mirror of a number below MIRRORS; 0 is the identity.
 fn mirror(number: u32) -> Mirror {
     if number == 0u {
         return Mirror(vec2f(1.0), vec2f(0.0), vec2f(0.0), true);
@@ -49,17 +49,17 @@ fn mirror(number: u32) -> Mirror {
     return Mirror(vec2f(x.x, y.x), vec2f(x.y, y.y), vec2f(beyond), x.z * y.z > 0.0);
 }
 
-// Where what the mirror shows at `place` stands in truth.
+// The original position of a ghost particle at `place`.
 fn behind(mirror: Mirror, place: vec2f) -> vec2f {
     return mirror.sign * (place - mirror.shift);
 }
 
-// Where the mirror shows what stands at `place`.
+// The position of the ghost particle of a particle at `place`.
 fn image_of(mirror: Mirror, place: vec2f) -> vec2f {
     return mirror.sign * place + mirror.shift;
 }
 
-// Whether the mirror shows anything within `reach` of a place.
+// Whether the mirror may have ghost particles within `reach` of a position.
 fn sees(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     if !mirror.is_there {
         return false;
@@ -71,7 +71,7 @@ fn sees(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     return all(along | ((truth + reach >= bounds.xz) & (truth - reach <= bounds.yw)));
 }
 
-// Whether a particle whose image stands at `place` has one: not too far from the edge.
+// Whether a particle has a ghost particle at `place`: not too far from the edge.
 fn has_image(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     let bounds = parameters.bounds;
     let out = max(bounds.xz - place, place - bounds.yw);
@@ -79,7 +79,7 @@ fn has_image(mirror: Mirror, place: vec2f, reach: f32) -> bool {
     return all(near | (mirror.beyond == vec2f(0.0)));
 }
 
-// First and last column and row of the cells within `reach` of a place.
+// First and last column and row of the cells within `reach` of a position.
 fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
     let last = vec2u(grid.columns, grid.rows) - 1u;
     let low = max((place - reach - grid.corner) * grid.per_cell, vec2f(0.0));
@@ -87,12 +87,12 @@ fn cells_round(grid: Grid, place: vec2f, reach: f32) -> vec4u {
     return vec4u(min(vec2u(low), last), min(vec2u(high), last));
 }
 
-// First and last column of those cells of a row in which there may be something within `reach` of a place: less than `cells_round` has, in
-// rows that pass the place by. None: the first comes after the last.
+// First and last column of those cells of a row in which particles may be within `reach` of a position: fewer than those of `cells_round`, in
+// rows away from the position. None: the first is after the last.
 fn columns_round(grid: Grid, place: vec2f, reach: f32, row: u32) -> vec2u {
     let border = CELL_BORDER * grid.cell;
     let south = grid.corner.y + f32(row) * grid.cell - border;
-    // What is beyond the first and the last row stands in these.
+    // Particles beyond the first and the last row are stored in these.
     let from_south = select(south - place.y, 0.0, row == 0u);
     let from_north = select(place.y - (south + grid.cell + 2.0 * border), 0.0, row + 1u == grid.rows);
     let apart = max(max(from_south, from_north), 0.0);
@@ -109,7 +109,7 @@ fn cell_at(grid: Grid, place: vec2f) -> u32 {
     return cell.y * grid.columns + cell.x;
 }
 
-// Whether cells come within `reach` of a place.
+// Whether cells lie within `reach` of a position.
 fn is_near(grid: Grid, place: vec2f, reach: f32) -> bool {
     let high = grid.corner + grid.cell * vec2f(vec2u(grid.columns, grid.rows));
     return grid.columns > 0u && all(place + reach >= grid.corner) && all(place - reach <= high);

@@ -1,4 +1,4 @@
-// How far a particle in each cell must look to find all that reach it. Twin of `Cells::set_reach` in the crate sph.
+// Search radius in each cell that finds all particles whose support covers a particle there. Twin of `Cells::set_reach` in the crate sph.
 #import declared
 
 @compute @workgroup_size(GROUP)

@@ -1,4 +1,4 @@
-// Brings the particles into the order of their cells, with the smoothing lengths that they have come to need; those in the last cell, which have left, are
+// Sorts the particles by their cells, with their new smoothing lengths; those in the last cell, which have left, are
 // out of the count.
 #import sph_common
 

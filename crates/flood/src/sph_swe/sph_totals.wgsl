@@ -1,4 +1,4 @@
-// What a row of gauges tells of all the water and of obstacles: one group for each row. Twin of `SphSweFlood::reading`.
+// Writes the totals of water and obstacles into rows of gauges: one group for each row. Twin of `SphSweFlood::reading`.
 #import compensated_sums
 #import sph_rows
 #import group_reduction
@@ -9,13 +9,13 @@ fn combine(a: Reduced, b: Reduced) -> Reduced {
     return a + b;
 }
 
-fn tell(at: u32, number: f32) {
+fn set_number(at: u32, number: f32) {
     rows[at] = bitcast<u32>(number);
 }
 
 fn set_pair(at: u32, pair: vec2f) {
-    tell(at, pair.x);
-    tell(at + 1u, pair.y);
+    set_number(at, pair.x);
+    set_number(at + 1u, pair.y);
 }
 
 fn set_obstacle(at: u32, number: u32) {
@@ -41,7 +41,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) th
     if thread == 0u {
         set_pair(row, status.inflow);
         set_pair(row + 2u, status.outflow);
-        tell(row + STORED, all);
-        tell(row + SINCE, difference(due[number], status.clock));
+        set_number(row + STORED, all);
+        set_number(row + SINCE, difference(due[number], status.clock));
     }
 }

@@ -1,19 +1,19 @@
-// The water at any place, from the particles round it. Twin of `sampler.rs`.
+// Samples the water at a position from the particles near it. Twin of `sampler.rs`.
 #import sph_common
 #import sph_neighbours
 #import sph_spline
 #import sph_ground
 
-// The share of the surroundings of a place that images beyond walls and periodic sides cover.
-fn covered_by_images(place: vec2f, look: f32) -> f32 {
+// The part of the surroundings of a position that ghost particles beyond walls and periodic sides cover.
+fn covered_by_images(place: vec2f, search_radius: f32) -> f32 {
     var sum = 0.0;
     let mirrors = mirrors_round(place);
     for (var k = 1u; k < mirrors; k++) {
         let mirror = mirror(k);
-        if !sees(mirror, place, look) {
+        if !sees(mirror, place, search_radius) {
             continue;
         }
-        let cells = cells_round(parameters.grid, behind(mirror, place), look);
+        let cells = cells_round(parameters.grid, behind(mirror, place), search_radius);
         for (var row = cells.y; row <= cells.w; row++) {
             let line = row * parameters.grid.columns;
             for (var j = start[line + cells.x]; j < start[line + cells.z + 1u]; j++) {
@@ -29,7 +29,7 @@ fn covered_by_images(place: vec2f, look: f32) -> f32 {
     return sum;
 }
 
-// The share that obstacles cover, seen with the mean smoothing length of the particles that cover the rest.
+// The part that obstacles cover, by the mean smoothing length of the particles that cover the rest.
 fn covered_by_obstacles(place: vec2f, mean_h: f32) -> f32 {
     if parameters.walls.columns == 0u {
         return 0.0;
@@ -49,17 +49,17 @@ fn covered_by_obstacles(place: vec2f, mean_h: f32) -> f32 {
     return min(part, MOST_COVERED);
 }
 
-fn weight_at(particle: Particle, way: vec2f) -> f32 {
-    return particle.volume / particle.depth * spline(length(way), 1.0 / (SAMPLED * particle.h));
+fn weight_at(particle: Particle, offset: vec2f) -> f32 {
+    return particle.volume / particle.depth * spline(length(offset), 1.0 / (SAMPLED * particle.h));
 }
 
-// How far particles near a place reach; 0 where none is.
+// The largest support of particles near a position; 0 where there are none.
 fn reach_at(place: vec2f) -> f32 {
     let is_empty = start[parameters.grid.columns * parameters.grid.rows] == 0u;
     return select(reaches[cell_at(parameters.grid, place)], 0.0, is_empty);
 }
 
-// Where the water that is at a place `since` s after the step was at its end.
+// The position at the end of the step of the water that is at `place` `since` s later.
 fn origin(place: vec2f, since: f32) -> vec2f {
     if since == 0.0 {
         return place;
@@ -95,8 +95,8 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
     if reach <= 0.0 {
         return vec3f(0.0);
     }
-    let look = 1.1 * reach;
-    let cells = cells_round(parameters.grid, before, look);
+    let search_radius = 1.1 * reach;
+    let cells = cells_round(parameters.grid, before, search_radius);
     var total = 0.0;
     var lengths = 0.0;
     // Surface, depth and velocity.
@@ -136,7 +136,7 @@ fn water_later(place: vec2f, since: f32) -> vec3f {
         }
     }
     let from_surface = min(sums.x - ground_at(place).x, DEEPER * deepest);
-    // Variances squared, so that the smoother field decides alone but where the two are much alike; over the depth, as single
+    // Variances squared, so that the smoother field decides alone unless the two are similar; over the depth, as single
     // precision holds no squares of what is very small.
     let scale = 1.0 / max(deepest * deepest, 1e-30);
     let spreads = vec2f(surface_spread, depth_spread) * scale;

@@ -7,19 +7,19 @@ use corpuscle_sph::BLOCK;
 use rayon::prelude::*;
 
 /// Size of a cell over the mean smoothing length: small cells fit the search closer, large ones are fewer and gone through in longer pieces. Particles
-/// look as far as they reach themselves.
+/// search as far as their own support.
 pub(super) const CELL_OVER_H: f64 = 1.4;
 
-/// What a look at a block of particles gives.
-pub(super) struct Renewal {
+/// Sums over a block of particles when their smoothing lengths are updated.
+pub(super) struct BlockUpdate {
     sum_of_h: f64,
     /// Whether they are all inside.
     inside: bool,
 }
 
 impl SphSweFlood {
-    /// A time step short enough for what is in the air, too: it falls its own size in some ten steps.
-    pub(super) fn limited(&self, step: f64) -> f64 {
+    /// The time step, limited while drops fall: one falls its own size in some ten steps.
+    pub(super) fn limit_time_step(&self, step: f64) -> f64 {
         if self.state.falling.is_empty() { step } else { step.min(self.fall_step()) }
     }
 
@@ -28,12 +28,12 @@ impl SphSweFlood {
         0.1 * (self.spacing / self.settings.gravity_m_per_s2).sqrt()
     }
 
-    /// Gives the particles the smoothing lengths that they have come to need, and the cells their size; whether all the particles are still inside.
-    pub(super) fn renew(&mut self) -> bool {
+    /// Sets the particles' new smoothing lengths and the size of the cells; returns whether all the particles are still inside.
+    pub(super) fn update_smoothing_lengths(&mut self) -> bool {
         let edges = &self.surroundings.edges;
         let State { particles, cell, .. } = &mut self.state;
-        let renew_block = |particles: &mut [Particle]| {
-            let mut block = Renewal { sum_of_h: 0.0, inside: true };
+        let update_block = |particles: &mut [Particle]| {
+            let mut block = BlockUpdate { sum_of_h: 0.0, inside: true };
             for particle in particles {
                 particle.h = particle.next_h;
                 block.sum_of_h += particle.h;
@@ -41,12 +41,12 @@ impl SphSweFlood {
             }
             block
         };
-        particles.par_chunks_mut(BLOCK).map(renew_block).collect_into_vec(&mut self.renewals);
+        particles.par_chunks_mut(BLOCK).map(update_block).collect_into_vec(&mut self.block_updates);
         if !particles.is_empty() {
-            let sum_of_h: f64 = self.renewals.iter().map(|block| block.sum_of_h).sum();
+            let sum_of_h: f64 = self.block_updates.iter().map(|block| block.sum_of_h).sum();
             *cell = CELL_OVER_H * sum_of_h / particles.len() as f64;
         }
-        self.renewals.iter().all(|block| block.inside)
+        self.block_updates.iter().all(|block| block.inside)
     }
 
     /// Sorts the particles into cells.
@@ -57,27 +57,27 @@ impl SphSweFlood {
     pub(super) fn step(&mut self) -> Result<(), ModelError> {
         let step = self.state.time_step;
         self.move_particles(step)?;
-        self.keep_out();
-        self.gain(step);
-        if !self.renew() {
-            self.lose();
+        self.resolve_obstacle_penetration();
+        self.add_inflow(step);
+        if !self.update_smoothing_lengths() {
+            self.remove_outflow();
         }
         self.state.time += step;
         self.arrange();
         let external = self.solver.evaluate(&mut self.state.particles, &self.surroundings, step);
         self.accelerate(step)?;
-        self.state.time_step = self.limited(self.settings.sph_swe.time_step_s);
+        self.state.time_step = self.limit_time_step(self.settings.sph_swe.time_step_s);
         self.state.external = external;
         self.state.steps += 1;
         self.state.particle_steps += self.state.particles.len() as u64;
         self.check()?;
         external.into_iter().for_each(|force| self.state.momentum.book(DENSITY * (step * force)));
-        self.push_obstacles(step);
-        self.look();
+        self.add_obstacle_impulses(step);
+        self.sample_maps();
         Ok(())
     }
 
-    /// Moves the particles. A value that is no number ends the run here, at a place that is still known: what has one does not move.
+    /// Moves the particles. A value that is not finite ends the run here, while the position is still known: such a particle does not move.
     fn move_particles(&mut self, step: f64) -> Result<(), ModelError> {
         let move_block = |particles: &mut [Particle]| {
             let mut all_are_sound = true;
@@ -123,20 +123,20 @@ impl SphSweFlood {
         Ok(())
     }
 
-    /// Puts back what has come into obstacles.
-    fn keep_out(&mut self) {
+    /// Puts particles that penetrate obstacles back to the wall.
+    fn resolve_obstacle_penetration(&mut self) {
         if self.surroundings.obstacles.any() {
             let State { particles, impulses, momentum, put_back, .. } = &mut self.state;
             let sum = |impulses: &[[f64; 2]]| impulses.iter().flatten().sum::<f64>();
             let before = sum(impulses);
-            let back = self.surroundings.obstacles.keep_out(particles, self.spacing, impulses);
+            let back = self.surroundings.obstacles.resolve_penetration(particles, self.spacing, impulses);
             *put_back += back as u64;
             momentum.book(-DENSITY * (sum(impulses) - before));
         }
     }
 
     /// Sums the forces on obstacles over a step.
-    fn push_obstacles(&mut self, step: f64) {
+    fn add_obstacle_impulses(&mut self, step: f64) {
         let now = self.solver.on_obstacles();
         let State { on_obstacles, impulses, .. } = &mut self.state;
         for ((impulse, last), now) in impulses.iter_mut().zip(on_obstacles.iter_mut()).zip(now) {
@@ -145,12 +145,12 @@ impl SphSweFlood {
         }
     }
 
-    /// Looks at the maps when it is time to.
-    pub(super) fn look(&mut self) {
-        if self.state.time < self.state.next_look as f64 * self.map_period {
+    /// Samples the maps when it is time to.
+    pub(super) fn sample_maps(&mut self) {
+        if self.state.time < self.state.next_sample as f64 * self.map_period {
             return;
         }
-        self.state.next_look = (self.state.time / self.map_period).floor() as u64 + 1;
+        self.state.next_sample = (self.state.time / self.map_period).floor() as u64 + 1;
         let State { particles, maps, time, .. } = &mut self.state;
         let water = Sampler {
             particles,
@@ -159,8 +159,8 @@ impl SphSweFlood {
             obstacles: &self.surroundings.obstacles,
             since: 0.0,
         };
-        maps.look(&water, *time);
-        if self.looks_for_overtopping() {
+        maps.sample(&water, *time);
+        if self.detects_overtopping() {
             let State { particles, overtopped, time, .. } = &mut self.state;
             let note = |number: usize| overtopped[number] = overtopped[number].or(Some(*time));
             self.surroundings.obstacles.each_overtopped(particles, note);
@@ -168,7 +168,7 @@ impl SphSweFlood {
     }
 
     /// Whether obstacles have a height over which water would flow.
-    pub(super) fn looks_for_overtopping(&self) -> bool {
+    pub(super) fn detects_overtopping(&self) -> bool {
         self.settings.obstacle.iter().any(|obstacle| obstacle.height_m.is_some())
     }
 
@@ -176,7 +176,7 @@ impl SphSweFlood {
         if self.state.external.iter().all(|force| force.is_finite()) { Ok(()) } else { Err(self.breakdown()) }
     }
 
-    /// What ends a run that cannot go on.
+    /// The error that ends a run whose forces are not finite.
     pub(super) fn breakdown(&self) -> ModelError {
         ModelError::Breakdown {
             time: self.state.time,

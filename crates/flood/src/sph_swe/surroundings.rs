@@ -13,15 +13,15 @@ pub(crate) struct Surroundings {
     pub obstacles: Obstacles,
 }
 
-/// How many places of the ground are looked up together.
-pub(crate) const TOGETHER: usize = 64;
+/// Number of positions of the ground that are evaluated together.
+pub(crate) const GROUND_BLOCK: usize = 64;
 
 impl Surroundings {
-    /// Looks up the ground under [`TOGETHER`] particles, or fewer. Beyond an edge it goes on as it falls towards it, and never
+    /// Evaluates the ground under [`GROUND_BLOCK`] particles, or fewer. Beyond an edge it goes on as it falls towards it, and never
     /// rises.
     pub fn find_ground(&self, particles: &mut [Particle]) {
         let last = particles.len() - 1;
-        let places: [_; TOGETHER] = std::array::from_fn(|k| &particles[k.min(last)]);
+        let places: [_; GROUND_BLOCK] = std::array::from_fn(|k| &particles[k.min(last)]);
         let [heights, slopes_x, slopes_y] =
             self.terrain.heights_and_slopes(&places.map(|particle| particle.x), &places.map(|particle| particle.y));
         let bounds = self.edges.bounds;

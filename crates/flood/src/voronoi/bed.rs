@@ -1,4 +1,4 @@
-//! The ground as the cells see it.
+//! The bed of the cells.
 
 use super::mesh::{Ground, SOLID};
 use super::storage::{self, Heights};
@@ -8,14 +8,14 @@ use corpuscle_scene::Storage;
 use corpuscle_terrain::{Bounds, Terrain};
 use std::sync::Arc;
 
-/// Positions along a side at which the ground is compared with that on the joined side.
-const COMPARED: usize = 64;
+/// Samples along a side at which the ground is compared with that on the joined side.
+const SIDE_SAMPLES: usize = 64;
 
-/// Ground on joined sides that differs by the same amount, to this part of its range, goes on beyond them.
-const EVEN: f64 = 1e-6;
+/// Tolerance, as a part of the range of heights, within which ground on joined sides differs by a constant and is continued beyond them.
+const SIDE_TOLERANCE: f64 = 1e-6;
 
 /// Size of a cell of the grid by which walls are found, in spacings.
-const GRID: f64 = 2.0;
+const WALL_GRID_CELL: f64 = 2.0;
 
 /// Terrain, holes in it, and obstacles.
 pub(crate) struct Bed {
@@ -40,7 +40,7 @@ impl Bed {
         storage: Storage,
     ) -> Self {
         let walls = of_outlines(&obstacles.all).chain(no_data(&terrain)).chain(lines);
-        let walls = Walls::new(walls, terrain.bounds(), GRID * spacing);
+        let walls = Walls::new(walls, terrain.bounds(), WALL_GRID_CELL * spacing);
         let lift = [0, 1].map(|axis| if periodic[axis] { lift(&terrain, axis) } else { 0.0 });
         Self { terrain, obstacles, walls, mirrors, periodic, lift, storage }
     }
@@ -143,20 +143,20 @@ fn lift(terrain: &Terrain, axis: usize) -> f64 {
     let Bounds { x_min, x_max, y_min, y_max } = terrain.bounds();
     let [low, high, from, to] = if axis == 0 { [x_min, x_max, y_min, y_max] } else { [y_min, y_max, x_min, x_max] };
     let height = |across: f64, part: usize| {
-        let along = from + (part as f64 + 0.5) / COMPARED as f64 * (to - from);
+        let along = from + (part as f64 + 0.5) / SIDE_SAMPLES as f64 * (to - from);
         if axis == 0 { terrain.height(across, along) } else { terrain.height(along, across) }
     };
-    let lifts: Vec<f64> = (0..COMPARED).map(|part| height(high, part) - height(low, part)).collect();
+    let lifts: Vec<f64> = (0..SIDE_SAMPLES).map(|part| height(high, part) - height(low, part)).collect();
     let [least, most] = [f64::min, f64::max].map(|of| lifts.iter().copied().reduce(of).unwrap_or(0.0));
     let scale = lifts.iter().fold(0.0_f64, |scale, lift| scale.max(lift.abs()));
-    if most - least <= EVEN * scale { 0.5 * (least + most) } else { 0.0 }
+    if most - least <= SIDE_TOLERANCE * scale { 0.5 * (least + most) } else { 0.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Ground that goes on beyond both pairs of joined sides: on a slope, with waves.
+    /// Ground that is continued beyond both pairs of joined sides: on a slope, with waves.
     #[test]
     fn ground_goes_on_beyond_joined_sides() {
         let bounds = Bounds { x_min: 0.0, x_max: 20.0, y_min: -5.0, y_max: 5.0 };

@@ -1,6 +1,6 @@
 //! Live changes of a flood of scheme voronoi.
 //!
-//! A change holds from the end of the last step on. What comes and goes by it is booked as all other water is.
+//! A change holds from the end of the last step on. The water that it adds or removes is booked as all other water.
 
 use super::VoronoiFlood;
 use super::boundaries::Boundary;
@@ -106,7 +106,7 @@ impl VoronoiFlood {
         self.put(over, |now, _| vec![[now, value]])
     }
 
-    /// A value is from now on so many times what the scene says.
+    /// Multiplies a value of the scene by a factor from now on.
     fn multiply(&mut self, over: Over, times: f64) -> Result<(), ModelError> {
         self.put(over, |now, written| {
             let later = written.rows().iter().filter(|[time, _]| *time > now);

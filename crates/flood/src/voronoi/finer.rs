@@ -1,4 +1,4 @@
-//! Parts of the terrain with finer cells, as a scene tells them.
+//! Parts of the terrain with finer cells, from a scene.
 
 use super::mesh::Grading;
 use super::walls::{Wall, of_outlines};
@@ -9,7 +9,7 @@ use corpuscle_scene::{Flood as Settings, Obstacle};
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 
-/// Where a scene asks for finer cells than those `spacing` m wide. `outlines` are those of its obstacles, `lines` its walls of no thickness.
+/// The parts of a scene with finer cells than those `spacing` m wide. `outlines` are those of its obstacles, `lines` its walls of no thickness.
 pub(super) fn grading(
     scene: &Settings,
     terrain: &Terrain,

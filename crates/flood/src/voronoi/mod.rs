@@ -9,7 +9,7 @@
 //! | `walls` | outlines of obstacles and of ground without data, lines |
 //! | `boundaries` | the sides of the terrain |
 //! | `friction` | Manning, Chezy, linear |
-//! | `start`, `rain`, `structures` | where water comes from and goes to |
+//! | `start`, `rain`, `structures` | sources and sinks of water |
 //! | `maps` | what happened in each cell, on the terrain's grid |
 //! | `adaptive` | cells that follow the water |
 //! | `gpu` | the same steps on a GPU; each pass's WGSL stands in the folder of the pass |
@@ -136,7 +136,7 @@ struct State {
     /// Water of the cells now, and before the last step. Kept in the solver while the model runs.
     columns: [Vec<Column>; 2],
     records: Vec<Record>,
-    /// What is known of the water beyond each border face: see [`Boundaries::beyond_at_start`].
+    /// State of the water beyond each border face: see [`Boundaries::beyond_at_start`].
     beyond: Vec<f64>,
     falling: Vec<step::Drop>,
     soaked: Soaked,
@@ -152,7 +152,7 @@ struct State {
     overrides: Overrides,
     /// Blocks with finer cells, by number, and how often the spacing is halved there. Kept in the mesh while the model runs.
     blocks: Vec<(u32, u8)>,
-    /// How often the cells were made anew.
+    /// How often the cells were remade.
     remakes: u64,
 }
 

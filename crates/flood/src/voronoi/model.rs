@@ -198,7 +198,7 @@ impl Model for VoronoiFlood {
         self.solver.columns = now;
         *self.solver.before_mut() = before;
         (self.shown, self.state) = (shown, state);
-        self.solver.renew_as_they_are();
+        self.solver.refresh_water();
         if self.state.steps > 0 {
             self.solver.plan();
         }

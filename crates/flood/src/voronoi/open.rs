@@ -76,7 +76,7 @@ impl VoronoiFlood {
         let mut model = Self::empty(settings, seed, folder, terrain)?;
         model.make_first_tiles(bodies)?;
         model.fill(bodies)?;
-        for _ in 0..model.looks_at_start() {
+        for _ in 0..model.checks_at_start() {
             if !model.adapt_to_start()? {
                 break;
             }
@@ -268,7 +268,7 @@ impl VoronoiFlood {
         self.solver.grow();
         if self.solver.end_local_steps() {
             let step = self.solver.time_step();
-            self.state.time_step = self.limited(step);
+            self.state.time_step = self.limit_time_step(step);
         }
         let mesh = &self.solver.mesh;
         self.solver.slowing.extend(&self.roughness, self.solver.gravity, &mesh.centroid);
@@ -352,7 +352,7 @@ impl VoronoiFlood {
             self.state.warnings.push(what.into());
         }
         let step = self.solver.renew();
-        self.state.time_step = FIRST_STEP * self.limited(step);
+        self.state.time_step = FIRST_STEP * self.limit_time_step(step);
         let columns = self.solver.columns.clone();
         *self.solver.before_mut() = columns;
         for (border, beyond) in self.state.beyond.iter_mut().enumerate() {
@@ -373,7 +373,7 @@ pub(super) fn longest_step(layout: &Layout, gravity: f64) -> f64 {
     0.5 * layout.finest_spacing() / (gravity * DRY_DEPTH).sqrt()
 }
 
-/// Has a layout finer cells where a scene asks for them; what makes cells follow the water, if it does.
+/// Adds finer cells to a layout where a scene has them; returns the adaptive refinement, if any.
 ///
 /// # Errors
 /// [`ModelError::Setup`] where the finest cells would not be finer than others.

@@ -6,7 +6,7 @@ use super::water::Column;
 use crate::zone::Zone;
 use corpuscle_terrain::Bounds;
 
-/// Cells that water comes into or goes out of together.
+/// A group of cells that exchange water together.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Patch {
     pub(super) cells: Vec<u32>,

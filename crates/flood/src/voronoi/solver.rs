@@ -1,7 +1,7 @@
 //! A step of the water: two identical stages, averaged (Heun's method). Each stage is three passes: slopes of cells, fluxes through faces, and the
 //! new columns. Where a face takes much of a cell's water two more come between: how much each cell can give, and the fluxes once more.
 //!
-//! Cells and faces are gone through in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
+//! Cells and faces are processed in chunks; chunks without water, and without water beside them, are left out. Every cell gathers what its
 //! faces bring in the order of its links, so that the result does not depend on the number of threads.
 
 use super::boundaries::Now;
@@ -44,7 +44,7 @@ pub(crate) struct Solver {
     pub borders: Vec<u32>,
     /// Over which borders water may come onto dry ground.
     brings: [bool; 6],
-    /// Whether something came to no number in the last stage: the step ends there.
+    /// Whether a value became not finite in the last stage: the step ends there.
     broken: bool,
     chunks: Chunks,
     /// Cells take steps of their own where that pays; none where all are to take the same.
@@ -84,7 +84,7 @@ struct Found {
     rim: bool,
     /// Number of wet cells.
     count: u32,
-    /// Whether something came to no number.
+    /// Whether a value is not finite.
     broken: bool,
 }
 
@@ -97,9 +97,9 @@ pub(crate) struct Done {
     pub by_ground: [f64; 2],
 }
 
-/// What passed a border face in a step outwards: volume, m3, momentum over density, m4/s, and energy over density above the level 0, m5/s2.
+/// Outward flux through a border face in a step: volume, m3, momentum over density, m4/s, and energy over density above the level 0, m5/s2.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Passed {
+pub(crate) struct BorderFlux {
     pub volume: f64,
     pub momentum: [f64; 2],
     pub energy: f64,
@@ -160,8 +160,8 @@ impl Solver {
         self.time_step()
     }
 
-    /// The same from columns as a step left them, to the bit as it left them.
-    pub fn renew_as_they_are(&mut self) {
+    /// The same from columns of a finished step, bit for bit as the step computed it.
+    pub fn refresh_water(&mut self) {
         let Self { mesh, columns, water, .. } = self;
         water.par_iter_mut().zip(&*columns).enumerate().for_each(|(cell, (water, column))| {
             *water = mesh.water_as_it_is(cell, column);
@@ -169,11 +169,11 @@ impl Solver {
         self.survey();
     }
 
-    /// Looks at the water of all cells.
+    /// Finds wet chunks and the largest stable time step over the water of all cells.
     fn survey(&mut self) {
         let Self { mesh, water, gravity, chunks, .. } = self;
         let gravity = *gravity;
-        let look = |(chunk, water): (usize, &[Water])| {
+        let survey_chunk = |(chunk, water): (usize, &[Water])| {
             let mut found = NOTHING;
             for (k, water) in water.iter().enumerate() {
                 let cell = chunk * CHUNK + k;
@@ -181,11 +181,11 @@ impl Solver {
             }
             found
         };
-        water.par_chunks(CHUNK).enumerate().map(look).collect_into_vec(&mut chunks.found);
+        water.par_chunks(CHUNK).enumerate().map(survey_chunk).collect_into_vec(&mut chunks.found);
         self.time_step();
     }
 
-    /// How long the next step may be, s: where cells may take steps of their own, and that pays, the longest of them.
+    /// Length of the next step, s: where cells may take steps of their own, and that pays, the longest of them.
     pub fn plan(&mut self) -> f64 {
         let shortest = self.time_step();
         let Self { mesh, water, gravity, local, longest, .. } = self;
@@ -221,7 +221,7 @@ impl Solver {
         missing
     }
 
-    /// Whether something came to no number in the last step.
+    /// Whether a value became not finite in the last step.
     pub fn is_broken(&self) -> bool {
         self.broken
     }
@@ -275,13 +275,13 @@ impl Solver {
         });
     }
 
-    /// Goes on by `step` s. `boundaries` gives what each border face does in the first and the second stage, by its number among
-    /// [`Solver::borders`]; `passed` is told what passed each. `ended` is told how far it came, s, whenever cells have ended a step of their own.
+    /// Advances by `step` s. `boundaries` gives the boundary condition of each border face in the first and the second stage, by its number among
+    /// [`Solver::borders`]; `book_border` is called with the flux through each. `ended` is called with the time within the step, s, whenever cells have ended a step of their own.
     pub fn step(
         &mut self,
         step: f64,
         boundaries: &(impl Fn(usize, usize) -> Now + Sync),
-        passed: &mut impl FnMut(usize, Passed),
+        book_border: &mut impl FnMut(usize, BorderFlux),
         ended: &mut impl FnMut(&Self, f64),
     ) -> Done {
         let mut done = Done::default();
@@ -292,7 +292,7 @@ impl Solver {
         for part in 0..parts {
             self.local.iter_mut().for_each(|local| local.begin(part, step));
             for stage in 0..2 {
-                self.stage(shortest, stage, boundaries, passed, &mut done);
+                self.stage(shortest, stage, boundaries, book_border, &mut done);
                 if self.broken {
                     return done;
                 }
@@ -310,7 +310,7 @@ impl Solver {
         step: f64,
         stage: usize,
         boundaries: &(impl Fn(usize, usize) -> Now + Sync),
-        passed: &mut impl FnMut(usize, Passed),
+        book_border: &mut impl FnMut(usize, BorderFlux),
         done: &mut Done,
     ) {
         let second = stage == 1;
@@ -319,7 +319,7 @@ impl Solver {
         self.chunks.activate(second);
         self.find_slopes();
         let by_ground = self.find_fluxes(step, &|border| boundaries(stage, border));
-        self.pass_borders(step, passed);
+        self.pass_borders(step, book_border);
         let slowed = if self.steps_are_local() { self.update_local(second) } else { self.update(step, second) };
         let Self { mesh, local, columns, water, .. } = self;
         let on = local.iter().filter(|local| second && local.is_on());
@@ -418,8 +418,8 @@ impl Solver {
         kept.par_chunks_mut(CHUNK).zip(all_kept).enumerate().for_each(find);
     }
 
-    /// Tells what passes the faces on borders in half of `step` s.
-    fn pass_borders(&self, step: f64, passed: &mut impl FnMut(usize, Passed)) {
+    /// Books the flux through the border faces in half of `step` s.
+    fn pass_borders(&self, step: f64, book_border: &mut impl FnMut(usize, BorderFlux)) {
         let local = Local::in_use(self.local.as_ref());
         for (number, &border) in self.borders.iter().enumerate() {
             let face = &self.mesh.faces[border as usize];
@@ -431,7 +431,7 @@ impl Solver {
             }
             let depth = self.water[cell].depth;
             let half = 0.5 * step * local.map_or(1.0, |local| local.times(cell));
-            // The cell's own thrust is left out: round the cell it comes to nothing.
+            // The cell's own thrust is left out: its sum round the cell is 0.
             let own = 0.5 * self.gravity * depth * depth;
             let momentum = [0, 1].map(|axis| half * (own * face.normal[axis] - flux.momentum[0][axis]));
             let volume = half * flux.volume;
@@ -440,7 +440,7 @@ impl Solver {
             let velocity = [p, q].map(|momentum| if flux.volume == 0.0 { 0.0 } else { momentum / flux.volume });
             let speed_squared = velocity[0] * velocity[0] + velocity[1] * velocity[1];
             let energy = volume * (self.gravity * self.water[cell].level + 0.5 * speed_squared);
-            passed(number, Passed { volume, momentum, energy });
+            book_border(number, BorderFlux { volume, momentum, energy });
         }
     }
 
@@ -482,7 +482,7 @@ impl Solver {
         sum(chunks.found.iter().map(|found| &found.slowed))
     }
 
-    /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell goes on by.
+    /// The same for cells that take steps of their own: momentum counts by the part of its own step that a cell advances.
     fn update_local(&mut self, second: bool) -> [f64; 2] {
         let Self { mesh, columns, water, fluxes, chunks, slowing, gravity, local, .. } = self;
         let Some(local) = local else { return [0.0; 2] };
@@ -604,7 +604,7 @@ fn kept_of_cell(mesh: &Mesh, fluxes: &[Flux], volume: f64, cell: usize, step: f6
     if outflow > volume { ((volume / outflow) as f32).next_down().max(0.0) } else { 1.0 }
 }
 
-/// Columns of a chunk, what they come to at the end of their own steps, and their water.
+/// Columns of a chunk, those at the end of their own steps, and their water.
 type LocalCells<'a> = ((&'a mut [Column], &'a mut [Column]), &'a mut [Water]);
 
 /// Columns of a chunk, the same before the step, and their water.

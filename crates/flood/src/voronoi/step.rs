@@ -1,7 +1,7 @@
 //! A step of the model: what falls from the air, the water's motion, and what comes and goes.
 
 use super::patch::Change;
-use super::solver::{Passed, Solver};
+use super::solver::{BorderFlux, Solver};
 use super::water::Column;
 use super::{DENSITY, State, VoronoiFlood, maps, walls};
 use crate::fields::block_velocity;
@@ -51,8 +51,8 @@ pub(super) fn drops(scene: &Settings, spacing: f64, terrain: &Terrain, seed: u64
 }
 
 impl VoronoiFlood {
-    /// A time step short enough for what is in the air, too: it falls a spacing in some ten steps.
-    pub(super) fn limited(&self, step: f64) -> f64 {
+    /// The time step, limited while drops fall: one falls a spacing in some ten steps.
+    pub(super) fn limit_time_step(&self, step: f64) -> f64 {
         let fall = 0.1 * (self.solver.mesh.layout.spacing() / self.settings.gravity_m_per_s2).sqrt();
         if self.state.falling.is_empty() { step } else { step.min(fall) }
     }
@@ -74,28 +74,28 @@ impl VoronoiFlood {
         }
         (self.state.before, self.state.time) = (from, until);
         let step = self.solver.plan();
-        self.state.time_step = self.limited(step);
+        self.state.time_step = self.limit_time_step(step);
         Ok(())
     }
 
-    /// Moves the water for a step and books what passed the sides.
+    /// Moves the water for a step and books the flow over the sides.
     fn move_water(&mut self, from: f64, step: f64) {
         self.boundaries.prepare(&self.solver, from, step, &self.state.beyond);
         let boundaries = &self.boundaries;
         let now = |stage: usize, border: usize| boundaries.now(stage, border);
         let wet_depth = self.settings.wet_depth_m;
         let State { water, momentum, energy, forces, records, .. } = &mut self.state;
-        // Thrusts of ground and walls are far larger than what they come to together: only that is booked.
+        // Thrusts of ground and walls are far larger than their sum: only that is booked.
         let mut gained = ExactSum::default();
         let obstacle_of = &self.obstacle_of;
         forces.fill([0.0; 2]);
-        let mut book = |border: usize, passed: Passed| {
-            water.book(-passed.volume);
-            energy.book(-DENSITY * passed.energy);
+        let mut book = |border: usize, flux: BorderFlux| {
+            water.book(-flux.volume);
+            energy.book(-DENSITY * flux.energy);
             if let Some(force) = forces.get_mut(obstacle_of[border] as usize) {
-                (0..2).for_each(|axis| force[axis] += passed.momentum[axis] / step);
+                (0..2).for_each(|axis| force[axis] += flux.momentum[axis] / step);
             }
-            passed.momentum.into_iter().for_each(|momentum| gained.add(-momentum));
+            flux.momentum.into_iter().for_each(|momentum| gained.add(-momentum));
         };
         let mut record = |solver: &Solver, done: f64| maps::record(solver, records, from + done, step, wet_depth);
         let done = self.solver.step(step, &now, &mut book, &mut record);
@@ -159,7 +159,7 @@ impl VoronoiFlood {
     fn land(&mut self, drop: &Drop) {
         let [x, y] = inside(self.terrain.bounds(), drop.position);
         let tile = self.solver.mesh.layout.tile_at([x, y]);
-        // Too many cells are told by the step that needs the next ones.
+        // An error of too many cells is returned by the step that needs the next ones.
         let _ = self.make_tiles(vec![tile]);
         let momentum = [0, 1].map(|axis| drop.volume * drop.velocity[axis]);
         match self.solver.mesh.cell_at([x, y]) {
@@ -175,7 +175,7 @@ impl VoronoiFlood {
         }
     }
 
-    /// Says where the computation came to no number, and goes back to the state before.
+    /// The error that says where a value is not finite; goes back to the state before.
     fn breakdown(&mut self, time: f64) -> ModelError {
         let cell = self.solver.broken_cell();
         let place = cell.map(|cell| self.terrain.to_own(self.solver.mesh.centroid[cell]));

@@ -7,15 +7,15 @@
 /// Parts of a cell.
 pub(crate) const PARTS: usize = 16;
 
-/// Sides of triangles of ground are divided in so many parts to look at heights.
-const LOOKS: usize = 4;
+/// Parts into which each side of a triangle of ground is divided to sample its heights.
+const TRIANGLE_DIVISIONS: usize = 4;
 
 /// Heights of the parts of a cell above its mean ground, m, the lowest first.
 pub(crate) type Heights = [f32; PARTS];
 
 /// The heights of a cell's parts: those of the ground, given by `height`, over convex polygons. `bed` is their mean, m.
 pub(crate) fn heights(parts: &[Vec<[f64; 2]>], bed: f64, height: impl Fn([f64; 2]) -> f64) -> Heights {
-    let mut looks: Vec<[f64; 2]> = Vec::new();
+    let mut samples: Vec<[f64; 2]> = Vec::new();
     for part in parts.iter().filter(|part| part.len() > 2) {
         let centre = [0, 1].map(|axis| part.iter().map(|r| r[axis]).sum::<f64>() / part.len() as f64);
         for (k, a) in part.iter().enumerate() {
@@ -23,30 +23,32 @@ pub(crate) fn heights(parts: &[Vec<[f64; 2]>], bed: f64, height: impl Fn([f64; 2
             let [p, q] = [*a, b].map(|r| [r[0] - centre[0], r[1] - centre[1]]);
             let area = 0.5 * (p[0] * q[1] - p[1] * q[0]);
             let place = |[s, t]: [f64; 2]| [0, 1].map(|axis| centre[axis] + s * p[axis] + t * q[axis]);
-            looks.extend(middles().map(|at| [height(place(at)), area / (LOOKS * LOOKS) as f64]));
+            samples.extend(
+                middles().map(|at| [height(place(at)), area / (TRIANGLE_DIVISIONS * TRIANGLE_DIVISIONS) as f64]),
+            );
         }
     }
-    looks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
-    parts_of(&looks, bed)
+    samples.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+    parts_of(&samples, bed)
 }
 
 /// The middles of the small triangles into which the triangle (0, 0), (1, 0), (0, 1) is cut.
 fn middles() -> impl Iterator<Item = [f64; 2]> {
-    let third = |k: usize| k as f64 / (3 * LOOKS) as f64;
-    (0..LOOKS).flat_map(move |row| {
-        let upright = (0..LOOKS - row).map(move |column| [third(3 * column + 1), third(3 * row + 1)]);
-        let turned = (0..LOOKS - row - 1).map(move |column| [third(3 * column + 2), third(3 * row + 2)]);
+    let third = |k: usize| k as f64 / (3 * TRIANGLE_DIVISIONS) as f64;
+    (0..TRIANGLE_DIVISIONS).flat_map(move |row| {
+        let upright = (0..TRIANGLE_DIVISIONS - row).map(move |column| [third(3 * column + 1), third(3 * row + 1)]);
+        let turned = (0..TRIANGLE_DIVISIONS - row - 1).map(move |column| [third(3 * column + 2), third(3 * row + 2)]);
         upright.chain(turned)
     })
 }
 
 /// Mean heights above `bed` of parts of the same area, from heights in order with the area of each.
-fn parts_of(looks: &[[f64; 2]], bed: f64) -> Heights {
-    let area: f64 = looks.iter().map(|[_, area]| area).sum();
+fn parts_of(samples: &[[f64; 2]], bed: f64) -> Heights {
+    let area: f64 = samples.iter().map(|[_, area]| area).sum();
     let size = area / PARTS as f64;
     let mut sums = [0.0; PARTS];
     let mut passed = 0.0;
-    for &[height, mut rest] in looks {
+    for &[height, mut rest] in samples {
         while rest > 0.0 {
             let part = ((passed / size) as usize).min(PARTS - 1);
             let room = if part == PARTS - 1 { rest } else { ((part + 1) as f64 * size - passed).max(1e-12 * size) };
@@ -137,10 +139,10 @@ mod tests {
         /// Level and depth are each other's inverse, from dry to deep.
         #[test]
         fn depth_and_level_are_inverse(raw in prop::collection::vec(-5.0_f64..5.0, PARTS), water in 0.0_f64..8.0) {
-            let mut looks: Vec<[f64; 2]> = raw.iter().map(|height| [*height, 1.0]).collect();
-            looks.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+            let mut samples: Vec<[f64; 2]> = raw.iter().map(|height| [*height, 1.0]).collect();
+            samples.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
             let bed = raw.iter().sum::<f64>() / PARTS as f64;
-            let heights = parts_of(&looks, bed);
+            let heights = parts_of(&samples, bed);
             let found = depth(&heights, level(&heights, water));
             prop_assert!((found - water).abs() < 1e-13, "{found} {water}");
             let lowest = f64::from(heights[0]) - mean(&heights);

@@ -3,7 +3,7 @@
 use super::boundaries::Now;
 use super::friction::Slowing;
 use super::mesh::{Ground, Layout, Mesh, SOLID};
-use super::solver::{Passed, Solver};
+use super::solver::{BorderFlux, Solver};
 use super::water::Column;
 use crate::friction::Law;
 use corpuscle_terrain::Bounds;
@@ -64,7 +64,7 @@ impl Solver {
         let mut steps = 0;
         while time < until {
             let taken = step.min(until - time);
-            self.step(taken, &|_, _| Now::Wall, &mut |_, _: Passed| (), &mut |_, _| ());
+            self.step(taken, &|_, _| Now::Wall, &mut |_, _: BorderFlux| (), &mut |_, _| ());
             step = self.plan();
             time += taken;
             steps += 1;
@@ -153,7 +153,7 @@ fn a_first_stage_that_comes_to_no_number_is_told() {
     solver.fill(|area, _, _, _| Column { volume: area, momentum: [0.0; 2] });
     let step = 0.1 * solver.renew();
     let now = |stage: usize, _| if stage == 0 { Now::Discharge(f64::NAN) } else { Now::Wall };
-    solver.step(step, &now, &mut |_, _: Passed| (), &mut |_, _| ());
+    solver.step(step, &now, &mut |_, _: BorderFlux| (), &mut |_, _| ());
     assert!(solver.is_broken() && solver.broken_cell().is_some());
     solver.take_back();
     assert!(!solver.is_broken() && solver.columns.iter().all(|column| column.volume > 0.0));

@@ -1,11 +1,11 @@
-//! An estimate of the cells that are still to get wet.
+//! An estimate of the cells that will become wet.
 
 use super::VoronoiFlood;
 use crate::spacing::{DEPTH_OF_INFLOW, highest_level, inflow_volume};
 use corpuscle_model::ModelError;
 
-/// Positions along each side of the terrain at which the ground is looked at.
-const LOOKS: usize = 200;
+/// Samples of the ground along each side of the terrain.
+const DRY_SAMPLES_PER_SIDE: usize = 200;
 
 impl VoronoiFlood {
     /// About how many cells get wet from `from` to `until`, s, beside those that are wet now: all ground where it rains, dry ground below the highest level
@@ -37,11 +37,15 @@ impl VoronoiFlood {
     fn dry_below(&self, level: f64) -> f64 {
         let bounds = self.terrain.bounds();
         let [east, north] = bounds.size();
-        let at = |k: usize| (k as f64 + 0.5) / LOOKS as f64;
+        let at = |k: usize| (k as f64 + 0.5) / DRY_SAMPLES_PER_SIDE as f64;
         let is_dry = |k: &usize| {
-            let [x, y] = [bounds.x_min + at(k % LOOKS) * east, bounds.y_min + at(k / LOOKS) * north];
+            let [x, y] = [
+                bounds.x_min + at(k % DRY_SAMPLES_PER_SIDE) * east,
+                bounds.y_min + at(k / DRY_SAMPLES_PER_SIDE) * north,
+            ];
             self.terrain.has_data_at(x, y) && self.terrain.height(x, y) < level && self.sample(x, y).depth <= 0.0
         };
-        east * north * (0..LOOKS * LOOKS).filter(is_dry).count() as f64 / (LOOKS * LOOKS) as f64
+        east * north * (0..DRY_SAMPLES_PER_SIDE * DRY_SAMPLES_PER_SIDE).filter(is_dry).count() as f64
+            / (DRY_SAMPLES_PER_SIDE * DRY_SAMPLES_PER_SIDE) as f64
     }
 }

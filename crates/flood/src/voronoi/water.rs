@@ -78,7 +78,7 @@ impl Water {
         Self::as_it_is(column, area, level)
     }
 
-    /// The same of a column whose momentum was looked at before.
+    /// The same of a column whose momentum was bounded before.
     #[inline]
     pub fn as_it_is(column: &Column, area: f64, level: impl FnOnce(f64) -> f64) -> Self {
         let depth = (column.volume / area).max(0.0);

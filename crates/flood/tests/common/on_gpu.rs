@@ -60,9 +60,9 @@ impl AdvanceObserver for Rows {
         self.rows.push((time, row.to_vec()));
     }
 
-    fn passed(&mut self, passed: ModelProgress) -> bool {
-        assert!(passed.particles > 0 && passed.particle_steps > 0);
-        passed.time < self.until
+    fn progressed(&mut self, progress: ModelProgress) -> bool {
+        assert!(progress.particles > 0 && progress.particle_steps > 0);
+        progress.time < self.until
     }
 }
 

@@ -1,8 +1,8 @@
-//! Looking ahead into memory.
+//! Prefetching of the memory of coming events.
 //!
 //! The next event is anywhere in the gas. In a large one its balls are in no cache, and each read waits for the one before it:
 //! queue, event, partner, cells, balls in them. So events are followed through these stages some time before their turn, and what
-//! they will need is asked for. What happens does not depend on it.
+//! they will need is prefetched. Results do not depend on it.
 
 use super::Engine;
 use super::event::Event;
@@ -10,14 +10,14 @@ use super::grid::Grid;
 use crate::memory::prefetch;
 use crate::world::{Ball, NONE};
 
-/// From this number of balls on looking ahead pays: fewer are found in a CPU's own cache (2 MiB is usual) often enough.
-pub(super) const MANY: usize = 50_000;
+/// Number of balls from which prefetching pays: fewer are found in a CPU's own cache (2 MiB is usual) often enough.
+pub(super) const PREFETCH_MIN_BALLS: usize = 50_000;
 
-/// How many buckets behind the front are looked into. Too many, and what was asked for is thrown out again before it is used.
-const BUCKETS: u64 = 6;
+/// Buckets behind the front that are prefetched. With too many, memory is evicted again before it is used.
+const PREFETCHED_BUCKETS: u64 = 6;
 
-/// Buckets from the one looked into to the one that is asked for.
-const CHUNKS: u64 = 8;
+/// Buckets from the one that is read to the one that is prefetched.
+const PREFETCHED_CHUNKS: u64 = 8;
 
 /// How many events later each stage follows on the one before it: memory needs that long.
 const LAG: usize = 3;
@@ -33,18 +33,18 @@ const NEAR: usize = 64;
 struct Coming {
     ball: u32,
     stamp: u32,
-    /// The first balls in the cells that will be looked into, and their number.
+    /// The first balls in the cells that will be searched, and their number.
     near: [u32; NEAR],
     count: usize,
 }
 
-/// Events to come, on their way through the stages.
+/// Coming events in the stages of the pipeline.
 #[derive(Debug)]
 pub(super) struct Ahead {
     coming: Box<[Coming; ROOM]>,
     /// How many have been found.
     found: usize,
-    /// Number of the last bucket that was looked into.
+    /// Number of the last bucket that was read.
     bucket: u64,
 }
 
@@ -54,7 +54,7 @@ impl Ahead {
         Ahead { coming: Box::new([none; ROOM]), found: 0, bucket: 0 }
     }
 
-    /// The event that is so many stages on its way, if it is still to come.
+    /// The event in a stage, if it is still to come.
     #[inline(always)]
     fn at_stage(&mut self, stage: usize) -> Option<&mut Coming> {
         let coming = &mut self.coming[self.found.wrapping_sub(stage * LAG) & (ROOM - 1)];
@@ -69,9 +69,9 @@ impl<const D: usize> Engine<D> {
         let Engine { queue, events, world, ahead, grid, .. } = self;
         let front = queue.front_bucket();
         ahead.bucket = ahead.bucket.max(front);
-        while ahead.bucket < front + BUCKETS {
+        while ahead.bucket < front + PREFETCHED_BUCKETS {
             ahead.bucket += 1;
-            queue.ask_for_chunk(ahead.bucket + CHUNKS);
+            queue.ask_for_chunk(ahead.bucket + PREFETCHED_CHUNKS);
             queue.each_in(ahead.bucket, |ball, stamp| {
                 let coming = &mut ahead.coming[ahead.found & (ROOM - 1)];
                 (coming.ball, coming.stamp) = (ball, stamp);
@@ -118,9 +118,9 @@ fn follow<const D: usize>(ahead: &mut Ahead, events: &[Event<D>], balls: &[Ball<
     }
 }
 
-/// Tells the cells that touch those where a ball and its partner will be, and these themselves.
+/// Calls `visit` with the cells that touch those where a ball and its partner will be, and these themselves.
 #[inline(always)]
-fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, mut tell: impl FnMut(usize)) {
+fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, mut visit: impl FnMut(usize)) {
     let event = &events[ball as usize];
     let level = &grid.levels[event.level as usize];
     let (mut low, mut high) = (event.cell, event.cell);
@@ -128,7 +128,7 @@ fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, 
         let theirs = &events[partner];
         for axis in 0..D {
             let (a, b) = (event.cell[axis], theirs.cell[axis]);
-            // A partner across a periodic side, or of another size, is passed over.
+            // A partner across a periodic side, or of another size, is skipped.
             if a.abs_diff(b) == 1 && theirs.level == event.level {
                 (low[axis], high[axis]) = (a.min(b), a.max(b));
             }
@@ -142,9 +142,9 @@ fn cells_around<const D: usize>(grid: &Grid<D>, events: &[Event<D>], ball: u32, 
     for x in column(0) {
         for y in column(1) {
             if D == 2 {
-                tell((x + y) as usize);
+                visit((x + y) as usize);
             } else {
-                column(D - 1).iter().for_each(|z| tell((x + y + z) as usize));
+                column(D - 1).iter().for_each(|z| visit((x + y + z) as usize));
             }
         }
     }
@@ -180,9 +180,9 @@ mod tests {
     }
 
     /// All numbers of the balls after many windows, and the collisions.
-    fn end<const D: usize>(along: usize, gravity: f64, looks_ahead: bool) -> (Vec<u64>, u64) {
+    fn end<const D: usize>(along: usize, gravity: f64, prefetches: bool) -> (Vec<u64>, u64) {
         let mut engine = Engine::new(world::<D>(along, gravity));
-        engine.looks_ahead = looks_ahead;
+        engine.prefetches = prefetches;
         engine.rebuild();
         let mut windows = 0;
         while windows < 4 {

@@ -1,4 +1,4 @@
-//! Cells in which balls are looked for.
+//! Cells in which balls are searched.
 //!
 //! Two balls are compared when their cells touch. Balls much larger than most lie in coarser levels, each with cells twice as
 //! wide as the level below; a ball is a member of every level above its own by its place. A cell's number is a sum of one
@@ -61,7 +61,7 @@ impl<const D: usize> Grid<D> {
             }
             let across = |axis: usize| {
                 let coarse = (length[axis] / (finest * f64::from(1_u32 << top))).floor();
-                // Of three cells each is next to the other two on one side only: no two balls are looked at twice.
+                // Of three cells each is next to the other two on one side only: no two balls are tested twice.
                 let least = if periodic[axis] { 3.0 } else { 1.0 };
                 (coarse.max(least) * f64::from(1_u32 << top)) as usize
             };

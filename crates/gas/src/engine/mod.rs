@@ -1,8 +1,8 @@
 //! The event-driven engine: the earliest event, what it changes, what comes next of those it touched; again and again.
 //!
-//! Each ball keeps its own nearest event (Deng, Hu, Li and Zhang 2012). It is looked for in the cells around the ball and queued in
+//! Each ball keeps its own nearest event (Deng, Hu, Li and Zhang 2012). It is searched in the cells around the ball and queued in
 //! a calendar. A ball whose partner is hit by another is disturbed: its event is found out of date when its time comes,
-//! and a new one is looked for then; nothing can have happened to it earlier.
+//! and a new one is searched then; no event of it can be earlier.
 
 mod ahead;
 mod event;
@@ -24,7 +24,7 @@ use grid::Grid;
 use near::Near;
 use queue::Queue;
 
-/// Balls in a box and all that is to come of them.
+/// Balls in a box and their coming events.
 #[derive(Debug)]
 pub(crate) struct Engine<const D: usize> {
     pub world: World<D>,
@@ -33,31 +33,31 @@ pub(crate) struct Engine<const D: usize> {
     queue: Queue,
     near: Box<Near<D>>,
     ahead: Ahead,
-    /// True where the memory of coming events is asked for before their turn: in large gases.
-    looks_ahead: bool,
+    /// True where the memory of coming events is prefetched: in large gases.
+    prefetches: bool,
     /// True where all balls have the same radius.
     alike: bool,
     /// True where a wall is not only met in the outermost cells.
     walls_roam: bool,
-    /// When balls are to be told again of each wall, and the first of these times.
+    /// Times at which the balls near each wall are updated again, and the first of these times.
     watches: Vec<f64>,
     next_watch: f64,
     /// Working memory: balls beside a wall.
     beside_wall: Vec<u32>,
     /// Events handled since the window was moved on.
     handled: u64,
-    /// Cell edges crossed, and looks at what comes next because a partner was lost.
+    /// Cell edges crossed, and searches for a new event because the partner was lost.
     pub crossings: u64,
     pub disturbed: u64,
 }
 
 impl<const D: usize> Engine<D> {
-    /// Takes over a world and finds out what comes next of everything in it.
+    /// Makes the engine of a world and finds the next event of every ball.
     pub fn new(world: World<D>) -> Self {
         let grid = Grid::new([0.0; D], [1.0; D], [false; D], 1.0, 1.0, 1).expect("one cell without periodic sides");
         let mut engine = Engine {
             events: crate::memory::reserved(world.balls.len()),
-            looks_ahead: world.balls.len() >= ahead::MANY,
+            prefetches: world.balls.len() >= ahead::PREFETCH_MIN_BALLS,
             alike: world.kinds.windows(2).all(|pair| pair[0].radius == pair[1].radius),
             walls_roam: world.walls.iter().any(|wall| wall.facing == Facing::Both || wall.moves),
             world,

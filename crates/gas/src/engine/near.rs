@@ -59,7 +59,7 @@ impl<const D: usize> Near<D> {
     }
 
     /// Compares the first `count` balls with `me`; a bit is set for each that is met, perhaps, before `limit`. With `WRAP`,
-    /// in the images that were told.
+    /// in the given images.
     #[inline(always)]
     pub fn compare<M: Mode, const WRAP: bool>(
         &mut self,

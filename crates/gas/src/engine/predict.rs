@@ -98,7 +98,7 @@ impl<const D: usize> Engine<D> {
             [(table[0], below), (table[1], 0.0), (table[2], above)]
         };
         let heads = &self.grid.heads;
-        let mut look = |number: u32, offset: [f64; D]| {
+        let mut collect = |number: u32, offset: [f64; D]| {
             let head = heads[number as usize];
             found[count & (ROOM - 1)] = head;
             if WRAP {
@@ -110,7 +110,7 @@ impl<const D: usize> Engine<D> {
         if D == 2 {
             for x in xs {
                 for y in ys {
-                    look(x.0 + y.0, std::array::from_fn(|axis| [x.1, y.1][axis & 1]));
+                    collect(x.0 + y.0, std::array::from_fn(|axis| [x.1, y.1][axis & 1]));
                 }
             }
         } else {
@@ -118,7 +118,7 @@ impl<const D: usize> Engine<D> {
             for x in xs {
                 for y in ys {
                     for z in zs {
-                        look(x.0 + y.0 + z.0, std::array::from_fn(|axis| [x.1, y.1, z.1][axis]));
+                        collect(x.0 + y.0 + z.0, std::array::from_fn(|axis| [x.1, y.1, z.1][axis]));
                     }
                 }
             }
@@ -221,7 +221,7 @@ impl<const D: usize> Engine<D> {
         (self.grid.heads[number as usize], offset)
     }
 
-    /// First and last cell along each axis, in another level, of the neighbourhood that a ball's pairs are looked for in.
+    /// First and last cell along each axis, in another level, of the neighbourhood in which a ball's pairs are searched.
     fn range(&self, event: &Event<D>, level: usize) -> ([i64; D], [i64; D]) {
         let mine = event.level as usize;
         let mut low = [0; D];
@@ -264,7 +264,7 @@ impl<const D: usize> Engine<D> {
 
 /// The first meeting of `me` with one of the balls in `near`.
 ///
-/// A ball that has something else to do before the meeting is passed over: when it has done that, it looks for itself. `me` is
+/// A ball with an earlier event than the meeting is skipped: after that event it searches again. `me` is
 /// among them, too, and does not meet itself; but a growing ball would, by the same formula.
 #[inline(always)]
 fn nearest<const D: usize, M: Mode, const WRAP: bool>(

@@ -42,7 +42,7 @@ impl<const D: usize> Engine<D> {
 
     /// A queue of the events of all balls.
     pub(super) fn fill_queue(&mut self) {
-        self.queue = Queue::new(&self.events, self.looks_ahead);
+        self.queue = Queue::new(&self.events, self.prefetches);
         self.ahead = Ahead::new();
         for (ball, event) in self.events.iter().enumerate() {
             self.queue.push(event.time, ball as u32, event.stamp);

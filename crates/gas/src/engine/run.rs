@@ -28,7 +28,7 @@ impl<const D: usize> Engine<D> {
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx2"))]
 fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64) -> Pause {
-    let looks_ahead = engine.looks_ahead;
+    let prefetches = engine.prefetches;
     for _ in 0..most {
         let (time, ball) = engine.queue.peek(&engine.events).unwrap_or((f64::INFINITY, NONE));
         if time.min(engine.next_watch) > until || (ball == NONE && engine.next_watch == f64::INFINITY) {
@@ -41,7 +41,7 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
         if engine.window_is_full() {
             return Pause::WindowFull;
         }
-        if looks_ahead {
+        if prefetches {
             engine.look_ahead();
         }
         engine.handled += 1;
@@ -84,7 +84,7 @@ impl<const D: usize> Engine<D> {
         ([ball, ball], 1)
     }
 
-    /// A ball goes over into the next cell.
+    /// Moves a ball into the next cell.
     #[inline(always)]
     fn cross(&mut self, ball: usize, axis: usize, up: bool) {
         self.crossings += 1;
@@ -110,20 +110,20 @@ impl<const D: usize> Engine<D> {
         self.world.hit::<M>(ball, wall);
         self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
         if self.world.walls[wall].bends != bends {
-            self.free_wall_bent::<M>(wall);
+            self.free_wall_changed::<M>(wall);
         }
     }
 
-    /// Takes notice that a wall's motion changed now by plan: balls that it will hit before anything else happens to them must know.
-    pub fn wall_bent(&mut self, wall: usize) {
+    /// Updates the events of balls after a wall's motion changed now by its schedule: those that it will hit before their next event.
+    pub fn wall_changed(&mut self, wall: usize) {
         if self.world.falls() {
-            self.wall_bent_as::<Falling>(wall);
+            self.wall_changed_as::<Falling>(wall);
         } else {
-            self.wall_bent_as::<Straight>(wall);
+            self.wall_changed_as::<Straight>(wall);
         }
     }
 
-    fn wall_bent_as<M: Mode>(&mut self, wall: usize) {
-        (0..self.events.len()).for_each(|ball| self.tell_of_wall::<M>(ball, wall));
+    fn wall_changed_as<M: Mode>(&mut self, wall: usize) {
+        (0..self.events.len()).for_each(|ball| self.update_for_wall::<M>(ball, wall));
     }
 }

@@ -1,51 +1,51 @@
 //! Free walls, whose every hit changes their motion.
 //!
-//! A ball that such a wall may now meet before anything else happens to it must know. Balls near the wall are told at once, at a cost
-//! that goes with the wall's area, not with the number of balls; those farther off when the wall has come as much nearer to them as
-//! leaves it short of them still, if no hit has come before. Balls that come near by themselves look at the wall when they cross the
+//! A ball that such a wall may now meet before its next event needs a new event. Balls near the wall are updated at once, at a cost
+//! in proportion to the wall's area, not with the number of balls; those farther off when the wall has come as much nearer to them as
+//! leaves it short of them still, if no hit has come before. Balls that come near by themselves test the wall when they cross the
 //! edge of a cell.
 
 use super::Engine;
 use crate::world::{Facing, Mode, NONE, first_contact};
 
-/// How far a wall may go, over the side of the finest cells, before balls near it are told again.
-const STEP: f64 = 0.5;
+/// Displacement of a wall after which balls near it are updated again, over the side of the finest cells.
+const WALL_STEP: f64 = 0.5;
 
 impl<const D: usize> Engine<D> {
-    /// Takes notice that a free wall's motion changed now.
-    pub(super) fn free_wall_bent<M: Mode>(&mut self, wall: usize) {
+    /// Updates the events of balls after a free wall's motion changed now.
+    pub(super) fn free_wall_changed<M: Mode>(&mut self, wall: usize) {
         let time = self.watch_after_step(wall);
         self.watches[wall] = time;
         if time > self.world.now {
             let mut near = std::mem::take(&mut self.beside_wall);
             self.find_beside(wall, &mut near);
-            near.drain(..).for_each(|ball| self.tell_of_wall::<M>(ball as usize, wall));
+            near.drain(..).for_each(|ball| self.update_for_wall::<M>(ball as usize, wall));
             self.beside_wall = near;
         } else {
-            // So fast that it is anywhere at once.
+            // So fast that it reaches every ball at once.
             self.watches[wall] = f64::INFINITY;
-            (0..self.events.len()).for_each(|ball| self.tell_of_wall::<M>(ball, wall));
+            (0..self.events.len()).for_each(|ball| self.update_for_wall::<M>(ball, wall));
         }
         self.next_watch = self.watches.iter().copied().fold(f64::INFINITY, f64::min);
     }
 
-    /// Tells balls of the wall whose time has come first.
+    /// Updates the balls near the wall that is due first.
     #[cold]
     pub(super) fn watch<M: Mode>(&mut self) {
         self.world.now = self.next_watch;
         if let Some(wall) = self.watches.iter().position(|&time| time == self.next_watch) {
-            self.free_wall_bent::<M>(wall);
+            self.free_wall_changed::<M>(wall);
         }
     }
 
-    /// Forgets what was to be watched: all balls know of all walls.
+    /// Clears the due times: the events of all balls account for all walls.
     pub(super) fn watch_none(&mut self) {
         self.watches = vec![f64::INFINITY; self.world.walls.len()];
         self.next_watch = f64::INFINITY;
     }
 
-    /// Finds out what comes next of a ball, if it is that the wall hits it.
-    pub(super) fn tell_of_wall<M: Mode>(&mut self, ball: usize, wall: usize) {
+    /// Finds the next event of a ball, if it is a hit by the wall.
+    pub(super) fn update_for_wall<M: Mode>(&mut self, ball: usize, wall: usize) {
         let radius = self.world.radius(ball);
         let time = self.world.walls[wall].meeting::<D, M>(&self.world.balls[ball], radius, &self.world.field);
         if time < self.events[ball].time {
@@ -54,7 +54,7 @@ impl<const D: usize> Engine<D> {
     }
 
     fn step(&self, axis: usize) -> f64 {
-        STEP * self.grid.levels[0].size[axis]
+        WALL_STEP * self.grid.levels[0].size[axis]
     }
 
     /// When a wall will have gone a step towards the gas.

@@ -5,7 +5,7 @@ use crate::method::{Mover, Pause};
 use corpuscle_model::ModelError;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Events between two looks at whether to stop.
+/// Events between two checks whether to stop.
 const AT_A_TIME: u64 = 20_000;
 
 /// Shortest mean path between two hits, over the radius, to which walls may press a gas together.
@@ -14,11 +14,11 @@ const LEAST_ROOM: f64 = 1e-3;
 /// Shortest mean path between two hits, over the radius, of balls that lose energy. A pile at rest has none at all.
 const LEAST_FLIGHT: f64 = 1e-5;
 
-/// Events up to the time asked for at which a gas is given up: at a million a second they take thirty years.
+/// Events up to the requested time above which a gas is given up: at a million a second they take thirty years.
 const MOST_EVENTS: f64 = 1e15;
 
 impl<const D: usize> Gas<D> {
-    /// Moves on to `time`, or to where it was told to stop.
+    /// Advances to `time`, or until `stop` is set.
     pub(super) fn advance(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         loop {
             let (when, due) = self.next_due();
@@ -59,12 +59,12 @@ impl<const D: usize> Gas<D> {
         }
         self.live.due().for_each(|(time, due)| offer(time, due));
         if let Some(every) = self.setup.measure.every {
-            offer(self.next_look as f64 * every, Due::Look);
+            offer(self.next_sample as f64 * every, Due::Sample);
         }
         next
     }
 
-    /// Handles all events up to a time; false where it was told to stop before.
+    /// Handles all events up to a time; false where `stop` was set before.
     fn run_to(&mut self, time: f64, stop: &AtomicBool) -> Result<bool, ModelError> {
         loop {
             let until = self.mover.world().in_window(time);
@@ -152,7 +152,7 @@ impl<const D: usize> Gas<D> {
 
     fn carry_out(&mut self, time: f64, due: Due) {
         let moved = !matches!(self.mover, Mover::FixedStep(_));
-        if moved && due != Due::Look {
+        if moved && due != Due::Sample {
             let world = self.mover.world_mut();
             world.now = world.in_window(time);
         }
@@ -167,9 +167,9 @@ impl<const D: usize> Gas<D> {
             }
             Due::Arrive(held) => self.arrive(held),
             Due::Regulate => self.regulate(),
-            Due::Look => {
-                self.next_look += 1;
-                self.look(time);
+            Due::Sample => {
+                self.next_sample += 1;
+                self.sample_measures(time);
             }
         }
     }
@@ -180,7 +180,7 @@ impl<const D: usize> Gas<D> {
         if let Some(number) = self.partition {
             let wall = &mut self.mover.world_mut().walls[number];
             (wall.present, wall.bends) = (false, wall.bends.wrapping_add(1));
-            self.mover.wall_bent(number);
+            self.mover.wall_changed(number);
         }
     }
 
@@ -195,7 +195,7 @@ impl<const D: usize> Gas<D> {
         let moving = &mut world.walls[wall];
         moving.bend(now, knot.speed);
         (moving.place, moving.acceleration) = (place, knot.acceleration);
-        self.mover.wall_bent(wall);
+        self.mover.wall_changed(wall);
     }
 
     /// Turns all velocities round; walls' too that do not move by plan.

@@ -48,7 +48,7 @@ impl<const D: usize> Gas<D> {
             partition,
             lifted: false,
             reversed: false,
-            next_look: 0,
+            next_sample: 0,
             measures,
             initial: [0.0; 2],
             shown: 0.0,

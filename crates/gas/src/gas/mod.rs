@@ -16,7 +16,7 @@ use live_change::LiveTally;
 
 /// Hard balls in a box, from collision to collision.
 ///
-/// Made by [`Setup::build`]; moved on and looked at by its [`corpuscle_model::Model`].
+/// Made by [`Setup::build`]; advanced and read by its [`corpuscle_model::Model`].
 #[derive(Debug)]
 pub struct Gas<const D: usize> {
     setup: Setup<D>,
@@ -29,8 +29,8 @@ pub struct Gas<const D: usize> {
     partition: Option<usize>,
     lifted: bool,
     reversed: bool,
-    /// Number of the next look.
-    next_look: u64,
+    /// Number of the next sample.
+    next_sample: u64,
     measures: Measures,
     /// Energy and momentum at the start.
     initial: [f64; 2],
@@ -69,7 +69,7 @@ enum Due {
     Arrive(usize),
     /// The thermostat scales velocities.
     Regulate,
-    Look,
+    Sample,
 }
 
 impl<const D: usize> Gas<D> {

@@ -11,8 +11,8 @@ use std::sync::atomic::AtomicBool;
 /// Momentum that is not there for, over all that there is, is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// More balls than this, and overlaps are not looked for at every row of gauges.
-const AUDITED: usize = 20_000;
+/// Number of balls above which overlaps are not searched at every row of gauges.
+const OVERLAP_CHECK_MAX_BALLS: usize = 20_000;
 
 fn padded<const D: usize>(vector: [f64; D]) -> [f64; 3] {
     std::array::from_fn(|axis| vector.get(axis).copied().unwrap_or(0.0))
@@ -46,7 +46,7 @@ impl<const D: usize> Gas<D> {
         if world.walls.iter().any(|wall| wall.moves || wall.temperature.is_some()) {
             rows.push(("work", "J", self.work()));
         }
-        if self.len() <= AUDITED {
+        if self.len() <= OVERLAP_CHECK_MAX_BALLS {
             rows.push(("deepest_overlap", "", self.deepest_overlap()));
         }
         if let Some((overlaps, missed, _)) = self.faults() {

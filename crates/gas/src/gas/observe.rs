@@ -1,4 +1,4 @@
-//! Looking at a gas.
+//! Frames, gauges and measures of a gas.
 
 use super::Gas;
 use crate::hash::Hash;
@@ -8,7 +8,7 @@ use crate::method::{Mover, Nearest};
 use crate::world::speed;
 use corpuscle_model::ExactSum;
 
-/// Looks over which the pressure and such of the moment are taken.
+/// Samples over which current values such as the pressure are averaged.
 const RECENT: usize = 10;
 
 impl<const D: usize> Gas<D> {
@@ -42,7 +42,7 @@ impl<const D: usize> Gas<D> {
         self.len() == 0
     }
 
-    /// Names of the sets of balls: those told one by one, then the species.
+    /// Names of the sets of balls: those given one by one, then the species.
     pub fn sets(&self) -> Vec<&str> {
         self.sets.iter().map(|set| set.name.as_str()).collect()
     }
@@ -288,8 +288,8 @@ impl<const D: usize> Gas<D> {
 
     /// Mean-square displacement of a set since averages began: rows of time since then and value.
     pub fn mean_square_displacement(&self, set: usize) -> Vec<[f64; 2]> {
-        let told = self.measures.samples.iter().filter(|sample| !sample.displacement.is_empty());
-        told.map(|sample| [sample.time - self.measures.started, sample.displacement[set]]).collect()
+        let moving = self.measures.samples.iter().filter(|sample| !sample.displacement.is_empty());
+        moving.map(|sample| [sample.time - self.measures.started, sample.displacement[set]]).collect()
     }
 
     /// Diffusion coefficient of a set: slope of the second half of its mean-square displacement over 2 x dimensions (Einstein 1905).
@@ -320,23 +320,23 @@ impl<const D: usize> Gas<D> {
         path
     }
 
-    /// The last looks and the time shown.
+    /// The last samples and the time shown.
     pub(super) fn recent(&self) -> Vec<Sample> {
-        let looks = &self.measures.samples;
-        let mut recent = looks[looks.len().saturating_sub(RECENT)..].to_vec();
+        let samples = &self.measures.samples;
+        let mut recent = samples[samples.len().saturating_sub(RECENT)..].to_vec();
         recent.retain(|sample| sample.time < self.shown);
         recent.push(self.sample(self.shown));
         recent
     }
 
-    /// Looks at the gas at a time.
-    pub(super) fn look(&mut self, time: f64) {
+    /// Samples the gas at a time.
+    pub(super) fn sample_measures(&mut self, time: f64) {
         let mut snapshot = self.snapshot(time);
         if self.sets.len() > 1 {
             snapshot.sample.mixing = mixing_entropy(&snapshot, self.sets.len());
         }
         snapshot.sample.beyond = self.beyond(&snapshot);
-        self.measures.look(&snapshot, &self.setup.measure);
+        self.measures.add(&snapshot, &self.setup.measure);
     }
 
     /// Balls of each set beyond the partition, or beyond where it was; empty without one.
@@ -443,7 +443,7 @@ pub(super) fn mean_free_path(samples: &[Sample]) -> f64 {
 }
 
 impl<const D: usize> Gas<D> {
-    /// Pressure on the walls over the last looks.
+    /// Pressure on the walls over the last samples.
     pub(super) fn recent_pressure_walls(&self, recent: &[Sample]) -> f64 {
         self.pressure_walls_of(recent)
     }

@@ -16,11 +16,11 @@ struct State {
     dimensions: usize,
     world: SavedWorld,
     method: SavedMethod,
-    /// Knots that each wall's plan has come to.
+    /// Knots of each wall's schedule that are done.
     knots: Vec<usize>,
     lifted: bool,
     reversed: bool,
-    next_look: u64,
+    next_sample: u64,
     measures: Measures,
     initial: [f64; 2],
     shown: f64,
@@ -71,7 +71,7 @@ impl<const D: usize> Gas<D> {
             knots: self.plans.iter().map(|plan| plan.as_ref().map_or(0, |plan| plan.next)).collect(),
             lifted: self.lifted,
             reversed: self.reversed,
-            next_look: self.next_look,
+            next_sample: self.next_sample,
             measures: self.measures.clone(),
             initial: self.initial,
             shown: self.shown,
@@ -99,7 +99,7 @@ impl<const D: usize> Gas<D> {
             (Mover::EventDriven(engine), SavedMethod::EventDriven(saved)) => engine.restore(saved).ok_or_else(other)?,
             (Mover::List(list), SavedMethod::List(handled)) => {
                 list.set_handled(*handled);
-                list.look_all();
+                list.find_all_events();
             }
             (Mover::FixedStep(steps), SavedMethod::FixedStep(faults)) => steps.faults = *faults,
             _ => return Err(other()),
@@ -109,7 +109,7 @@ impl<const D: usize> Gas<D> {
                 plan.next = next;
             }
         }
-        (self.lifted, self.reversed, self.next_look) = (state.lifted, state.reversed, state.next_look);
+        (self.lifted, self.reversed, self.next_sample) = (state.lifted, state.reversed, state.next_sample);
         (self.measures, self.initial, self.shown) = (state.measures, state.initial, state.shown);
         (self.checked, self.live) = (state.checked, state.live);
         Ok(())

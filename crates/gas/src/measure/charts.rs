@@ -7,10 +7,10 @@ use crate::theory;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, ChartStyle};
 use std::f64::consts::PI;
 
-/// Fewer balls than this have no profile.
-const FEW: usize = 20;
+/// Least number of balls with a profile.
+const PROFILE_MIN_BALLS: usize = 20;
 
-/// What charts need to know of the gas besides what was measured.
+/// Properties of the gas that charts need besides the measures.
 pub(crate) struct Context<'a, const D: usize> {
     pub sets: &'a [Set],
     /// Balls of each set.
@@ -57,7 +57,7 @@ impl Measures {
     /// All charts that there is something to show in.
     pub fn charts<const D: usize>(&self, context: &Context<D>) -> Vec<Chart> {
         let mut charts = self.laws(context);
-        if self.looks > 0 {
+        if self.averaged > 0 {
             for set in 0..context.sets.len() {
                 charts.push(self.speeds::<D>(context, set));
                 charts.push(self.velocities(context, set));
@@ -139,8 +139,8 @@ impl Measures {
             };
             counts.iter().enumerate().map(point).collect::<Vec<[f64; 2]>>()
         };
-        let many = context.counts.iter().any(|&count| count >= FEW);
-        let sets = (0..context.sets.len()).filter(|&set| !many || context.counts[set] >= FEW);
+        let many = context.counts.iter().any(|&count| count >= PROFILE_MIN_BALLS);
+        let sets = (0..context.sets.len()).filter(|&set| !many || context.counts[set] >= PROFILE_MIN_BALLS);
         let mut series: Vec<ChartSeries> =
             sets.map(|set| context.series(set, ChartStyle::Line, relative(&self.profile[set]))).collect();
         let laws = self.atmosphere(context);
@@ -195,8 +195,8 @@ impl Measures {
 
     fn displacement_chart<const D: usize>(&self, context: &Context<D>) -> Chart {
         let points = |set: usize| {
-            let told = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
-            told.map(|sample| [sample.time - self.started, sample.displacement[set]]).collect()
+            let moving = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
+            moving.map(|sample| [sample.time - self.started, sample.displacement[set]]).collect()
         };
         // Of several sets one may be much slower than the others.
         let scaled = |axis: ChartAxis| if context.sets.len() > 1 { logarithmic(axis) } else { axis };

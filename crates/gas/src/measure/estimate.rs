@@ -36,7 +36,7 @@ impl Measures {
         &self.samples[first..]
     }
 
-    /// Mean of something told between two samples, over equal parts of the time from `from` on.
+    /// Mean of a value between two samples, over equal parts of the time from `from` on.
     pub fn estimate(&self, from: f64, value: impl Fn(&[Sample]) -> f64) -> Estimate {
         let samples = self.after(from);
         if samples.len() < 2 {

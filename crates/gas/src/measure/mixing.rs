@@ -2,7 +2,7 @@
 
 use super::Snapshot;
 
-/// Balls in a cell, about, in which the mixing is looked at.
+/// Balls in a cell, about, in which the mixing is measured.
 const PER_CELL: f64 = 25.0;
 
 /// Entropy of mixing in units of Boltzmann's constant: minus the sum over balls of ln(part of their own set in their cell), with the

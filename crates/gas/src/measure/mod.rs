@@ -1,4 +1,4 @@
-//! What is measured of a gas, at times that depend on nothing but the set-up.
+//! Measures of a gas, sampled at times that depend only on the set-up.
 
 pub(crate) mod charts;
 pub(crate) mod estimate;
@@ -17,15 +17,15 @@ use crate::setup::{Measure, Setup};
 use pairs::Pairs;
 use serde::{Deserialize, Serialize};
 
-/// Looks between two counts of pairs, which take longer than the rest.
-const LOOKS_PER_PAIRS: usize = 8;
+/// Samples between two counts of pairs, which take longer than the rest.
+const SAMPLES_PER_PAIR_COUNT: usize = 8;
 
 /// Everything measured so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Measures {
     pub samples: Vec<Sample>,
-    /// Looks since averages began.
-    pub looks: usize,
+    /// Samples since averages began.
+    pub averaged: usize,
     /// Speeds are counted as if the temperature had stayed: in a gas that cools by itself.
     pub cools: bool,
     /// Counts of speeds for each set, bars of one width.
@@ -34,7 +34,7 @@ pub(crate) struct Measures {
     pub velocities: Vec<Vec<u64>>,
     /// Largest speed of each set's histograms.
     pub largest: Vec<f64>,
-    /// Sums of temperature over the looks.
+    /// Sums of temperature over these samples.
     pub temperatures: f64,
     /// Counts along the profile's axis for each set.
     pub profile: Vec<Vec<u64>>,
@@ -51,7 +51,7 @@ impl Measures {
         Measures {
             cools: setup.restitution < 1.0,
             samples: Vec::new(),
-            looks: 0,
+            averaged: 0,
             speeds: vec![vec![0; measure.speed_bins]; sets],
             velocities: vec![vec![0; measure.speed_bins]; sets],
             largest,
@@ -63,14 +63,14 @@ impl Measures {
         }
     }
 
-    /// Averages begin anew, with histograms up to other speeds; what was seen over time stays.
+    /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
         let samples = std::mem::take(&mut self.samples);
         *self = Measures { samples, ..Self::new(setup, self.speeds.len(), largest) };
     }
 
-    /// Takes in what the gas is like now.
-    pub fn look<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
+    /// Adds a snapshot of the gas.
+    pub fn add<const D: usize>(&mut self, snapshot: &Snapshot<D>, measure: &Measure) {
         let mut sample = snapshot.sample.clone();
         if sample.time >= measure.from {
             if self.started.is_nan() {
@@ -111,15 +111,15 @@ impl Measures {
             tally(&mut self.profile[set], (snapshot.position[number][axis] - low) / (high - low));
         }
         self.temperatures += temperature;
-        if self.looks.is_multiple_of(LOOKS_PER_PAIRS) {
+        if self.averaged.is_multiple_of(SAMPLES_PER_PAIR_COUNT) {
             self.pairs.count(snapshot);
         }
-        self.looks += 1;
+        self.averaged += 1;
     }
 
-    /// Mean temperature over the looks.
+    /// Mean temperature over these samples.
     pub fn temperature(&self) -> f64 {
-        self.temperatures / self.looks as f64
+        self.temperatures / self.averaged as f64
     }
 }
 

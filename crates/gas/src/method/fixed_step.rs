@@ -5,7 +5,7 @@ use super::Pause;
 use crate::world::{Facing, Falling, Mode, Path, Quadratic, Straight, World};
 use serde::{Deserialize, Serialize};
 
-/// What goes wrong.
+/// Errors of the method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Faults {
     /// Pairs found overlapping, once for each step.

@@ -47,7 +47,7 @@ impl<const D: usize> List<D> {
     pub fn new(world: World<D>) -> Self {
         let nearest = vec![NOTHING; world.balls.len()];
         let mut list = List { world, nearest, handled: 0 };
-        list.look_all();
+        list.find_all_events();
         list
     }
 
@@ -59,15 +59,15 @@ impl<const D: usize> List<D> {
             self.world.begin_window::<Straight>();
         }
         self.handled = 0;
-        self.look_all();
+        self.find_all_events();
     }
 
     /// Finds the nearest events of all balls.
-    pub fn look_all(&mut self) {
+    pub fn find_all_events(&mut self) {
         self.nearest.clear();
         self.nearest.resize(self.world.balls.len(), NOTHING);
         for ball in 0..self.nearest.len() {
-            self.look(ball);
+            self.find_event(ball);
         }
     }
 
@@ -118,14 +118,14 @@ impl<const D: usize> List<D> {
                     self.world.hit::<Straight>(ball, wall);
                 }
                 if self.world.walls[wall].bends != bends {
-                    self.look_all();
+                    self.find_all_events();
                     return;
                 }
             }
-            With::Side(axis, way) => {
-                self.world.wrap(ball, axis, way);
+            With::Side(axis, direction) => {
+                self.world.wrap(ball, axis, direction);
                 self.nearest[ball] = NOTHING;
-                self.look(ball);
+                self.find_event(ball);
                 return;
             }
         }
@@ -137,12 +137,12 @@ impl<const D: usize> List<D> {
             self.nearest[ball] = NOTHING;
         }
         for ball in touched {
-            self.look(ball);
+            self.find_event(ball);
         }
     }
 
-    /// Finds the nearest event of a ball; where its partner had none as near, it is the partner's too.
-    fn look(&mut self, ball: usize) {
+    /// Finds the nearest event of a ball; where its partner had no earlier one, it is the partner's too.
+    fn find_event(&mut self, ball: usize) {
         let found = if self.world.falls() { self.find::<Falling>(ball) } else { self.find::<Straight>(ball) };
         self.nearest[ball] = found;
         if let With::Ball(other) = found.with
@@ -167,8 +167,8 @@ impl<const D: usize> List<D> {
             offer(wall.meeting::<D, M>(&world.balls[ball], world.radius(ball), &world.field), With::Wall(number));
         }
         for axis in (0..D).filter(|&axis| world.field.period[axis] > 0.0) {
-            let (time, way) = self.side::<M>(ball, axis);
-            offer(time, With::Side(axis, way));
+            let (time, direction) = self.side::<M>(ball, axis);
+            offer(time, With::Side(axis, direction));
         }
         nearest.time = nearest.time.max(world.now);
         nearest
@@ -219,7 +219,7 @@ impl<const D: usize> List<D> {
         self.handled
     }
 
-    /// Takes back what [`List::handled`] told.
+    /// Sets the value of [`List::handled`] again.
     pub fn set_handled(&mut self, handled: u64) {
         self.handled = handled;
     }

@@ -13,9 +13,9 @@ use crate::world::World;
 /// Why a method came back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pause {
-    /// Nothing more happens up to the time asked for.
+    /// No event is left up to the requested time.
     Reached,
-    /// The number of events asked for has been handled.
+    /// The requested number of events has been handled.
     Worked,
     /// A new window is due.
     WindowFull,
@@ -67,10 +67,10 @@ impl<const D: usize> Mover<D> {
     }
 
     /// Takes notice that a wall's motion changed now.
-    pub fn wall_bent(&mut self, wall: usize) {
+    pub fn wall_changed(&mut self, wall: usize) {
         match self {
-            Self::EventDriven(engine) => engine.wall_bent(wall),
-            Self::List(list) => list.look_all(),
+            Self::EventDriven(engine) => engine.wall_changed(wall),
+            Self::List(list) => list.find_all_events(),
             Self::FixedStep(_) => {}
         }
     }

@@ -9,13 +9,13 @@ use crate::setup::place::closest;
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
-/// Balls are told from walls by the last two bits of a word of 32.
+/// Balls are distinguished from walls by the last two bits of a word of 32.
 const MOST_BALLS: f64 = 1e9;
 
 /// Depth over the radius at which balls overlap and not just touch.
 const TOUCH: f64 = 1e-12;
 
-/// True for balls that do more than touch, or are nowhere.
+/// True for balls that do more than touch, or whose depth of overlap is not a number.
 fn overlaps(depth: f64, radius: f64) -> bool {
     depth.is_nan() || depth > TOUCH * radius
 }
@@ -46,7 +46,7 @@ impl<const D: usize> Setup<D> {
             positive("the time step", step)?;
         }
         if let Some(every) = self.measure.every {
-            positive("the time between looks", every)?;
+            positive("the time between samples", every)?;
         }
         for ball in &self.balls {
             let what = |which: &str| format!("the {which} of ball {:?}", ball.name);

@@ -37,9 +37,9 @@ pub struct Setup<const D: usize> {
     pub method: Method,
     /// Seed of everything random.
     pub seed: u64,
-    /// Balls told one by one; they have the first numbers.
+    /// Balls given one by one; they have the first numbers.
     pub balls: Vec<Ball<D>>,
-    /// Balls told by the crowd.
+    /// Balls given as species.
     pub species: Vec<Species<D>>,
     /// All velocities are turned round at this time.
     pub reversed_at: Option<f64>,
@@ -129,7 +129,7 @@ pub struct Ball<const D: usize> {
     pub mass: f64,
 }
 
-/// Balls told by the crowd.
+/// Balls given as a species.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Species<const D: usize> {
     /// Name, unique.
@@ -203,7 +203,7 @@ pub enum Start {
 pub struct Measure {
     /// Averages begin here.
     pub from: f64,
-    /// Time between looks at the gas; for `None` nothing but the event counts is measured.
+    /// Time between samples of the gas; for `None` nothing but the event counts is measured.
     pub every: Option<f64>,
     /// Bars of the histograms of speed and velocity.
     pub speed_bins: usize,
@@ -311,14 +311,14 @@ impl<const D: usize> Setup<D> {
         self
     }
 
-    /// Looks at the gas every `every`, and averages from `from` on.
+    /// Samples the gas every `every`, and averages from `from` on.
     pub fn measured(mut self, from: f64, every: f64) -> Self {
         (self.measure.from, self.measure.every) = (from, Some(every));
         self
     }
 
     /// The guard time against inelastic collapse that is taken where none is given: a ten-thousandth of the time in which a ball
-    /// at the mean thermal speed (one told by itself: at its own) flies its own radius, the shortest of all; 0 without loss.
+    /// at the mean thermal speed (one given by itself: at its own) flies its own radius, the shortest of all; 0 without loss.
     pub fn contact_time(&self) -> f64 {
         let thermal =
             |species: &Species<D>| 1e-4 * species.radius / (self.boltzmann * species.temperature / species.mass).sqrt();

@@ -6,7 +6,7 @@ use super::{Amount, Setup, Side, Species, Start, ball_volume};
 use crate::SetupError;
 use rand_chacha::ChaCha8Rng;
 
-/// Close packing: the densest that there is, and who showed it.
+/// Close packing: the densest that exists, and its reference.
 const CLOSEST: [(f64, &str, &str); 2] = [
     (0.906_899_682_117_089_3, "disks", "pi / sqrt(12), Thue 1910"),
     (0.740_480_489_693_061_1, "balls", "pi / sqrt(18), Hales 2005"),
@@ -45,7 +45,7 @@ impl<const D: usize> Setup<D> {
         })
     }
 
-    /// Places of all balls: those told one by one, then each species'.
+    /// Positions of all balls: those given one by one, then each species'.
     pub(crate) fn places(&self, random: &mut ChaCha8Rng) -> Result<Vec<Placed<D>>, SetupError> {
         let mut places: Vec<Placed<D>> =
             self.balls.iter().map(|ball| Placed { position: ball.position, radius: ball.radius }).collect();

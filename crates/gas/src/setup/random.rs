@@ -21,42 +21,42 @@ pub(crate) struct Placed<const D: usize> {
     pub radius: f64,
 }
 
-/// Up to these packings balls are dropped one by one (random sequential addition ends at 0.547 and 0.38).
-const DROPPED: [f64; 2] = [0.40, 0.25];
+/// Packings up to which balls are inserted one by one (random sequential addition ends at 0.547 and 0.38).
+const INSERTION_PACKING: [f64; 2] = [0.40, 0.25];
 
 /// Packings from which balls are grown; the second where there is no room for the first.
-const SEEDS: [[f64; 2]; 2] = [[0.25, 0.15], [0.05, 0.05]];
+const SEED_PACKINGS: [[f64; 2]; 2] = [[0.25, 0.15], [0.05, 0.05]];
 
 /// Largest radius from which balls are grown, over that which they have in the end.
 const SEED_RADIUS: f64 = 0.9;
 
 /// Speed at which radii grow over the thermal speed: in fluids, and beyond the packings below, slower, to end near jamming.
-const GROWTH: [f64; 2] = [0.6, 0.01];
-const FLUID: [f64; 2] = [0.68, 0.53];
+const GROWTH_SPEED: [f64; 2] = [0.6, 0.01];
+const FLUID_PACKING: [f64; 2] = [0.68, 0.53];
 
 /// Collisions of each ball at its final radius, in which most of the excess of balls in contact that growing leaves is lost. To grow fast
 /// and settle then is nearer to equilibrium than to grow slowly for as many collisions.
-const SETTLED: u64 = 3;
+const SETTLING_COLLISIONS: u64 = 3;
 
-/// What is left to grow, over the mean path between two collisions, at which growing is given up. Near jamming the gap that is left is
+/// Remaining growth over the mean free path above which growing is given up. Near jamming the gap that is left is
 /// about two such paths.
-const HOPELESS: f64 = 5.0;
+const MAX_GAP_IN_FREE_PATHS: f64 = 5.0;
 
-/// What many equal balls do not reach: by thousands they jam at 0.867 to 0.871, in space a little above 0.64 (measured with this code).
-const REACHED: [f64; 2] = [0.875, 0.66];
-const MANY: usize = 1000;
+/// Packings that many equal balls do not reach, and the number from which that holds: by thousands they jam at 0.867 to 0.871, in space a little above 0.64 (measured with this code).
+const JAMMING_PACKING: [f64; 2] = [0.875, 0.66];
+const JAMMING_MIN_COUNT: usize = 1000;
 
-/// Events between two looks at how far balls have settled.
-const AT_A_TIME: u64 = 20_000;
+/// Events between two checks of how far balls have settled.
+const EVENTS_PER_CHECK: u64 = 20_000;
 
-/// Tries in vain, one after the other, at which dropping is given up.
-const TRIES: usize = 100_000;
+/// Consecutive failed tries after which insertion is given up.
+const MAX_INSERTION_TRIES: usize = 100_000;
 
-/// A little larger than needed, so that what is left of it is an open gap.
-const SPARE: f64 = 1.0 + 1e-11;
+/// Factor on radii, a little above 1, so that a gap remains between balls.
+const RADIUS_MARGIN: f64 = 1.0 + 1e-11;
 
-/// What stands still while others grow, for practical purposes.
-const IMMOVABLE: f64 = 1e30;
+/// Mass of balls that do not move while others grow.
+const IMMOVABLE_MASS: f64 = 1e30;
 
 /// Places the species of one region at random, clear of what is placed already: a list for each.
 pub(super) fn place<const D: usize>(
@@ -74,7 +74,7 @@ pub(super) fn place<const D: usize>(
         .collect();
     let site = Site { setup, region, repeats: setup.repeats(&region), placed };
     let packing = site.packing(&radii);
-    let positions = if packing <= DROPPED[D - 2] { site.drop(&radii, random) } else { None };
+    let positions = if packing <= INSERTION_PACKING[D - 2] { site.drop(&radii, random) } else { None };
     let positions = match positions {
         Some(positions) => positions,
         None => site.grow(&radii, packing, random).map_err(|reached| SetupError::Jammed {
@@ -150,7 +150,7 @@ impl<const D: usize> Site<'_, D> {
                 let before = left.len();
                 left = self.try_once(&left, radii, scale, &mut positions, &mut hash, random);
                 in_vain = if left.len() < before { 0 } else { in_vain + before };
-                if in_vain > TRIES {
+                if in_vain > MAX_INSERTION_TRIES {
                     return None;
                 }
             }
@@ -200,23 +200,23 @@ impl<const D: usize> Site<'_, D> {
     /// Places reached by growing; the packing at which that ended where it jams.
     fn grow(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<Vec<[f64; D]>, f64> {
         let alike = self.obstacles().next().is_none() && radii.iter().all(|&radius| radius == radii[0]);
-        if alike && radii.len() >= MANY && packing > REACHED[D - 2] {
-            return Err(REACHED[D - 2]);
+        if alike && radii.len() >= JAMMING_MIN_COUNT && packing > JAMMING_PACKING[D - 2] {
+            return Err(JAMMING_PACKING[D - 2]);
         }
         let (scale, positions) = self.seeds(radii, packing, random)?;
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
         let field = Field {
             gravity: [0.0; D],
             scale,
-            growth: GROWTH[0] / mean,
+            growth: GROWTH_SPEED[0] / mean,
             period: std::array::from_fn(|axis| if self.repeats[axis] { self.length()[axis] } else { 0.0 }),
         };
         let mut world = self.dilute(radii, positions, field, random);
         world.walls = self.walls();
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         let mut engine = Engine::new(world);
-        let fluid = (FLUID[D - 2] / packing).powf(1.0 / D as f64);
-        for (speed, end) in [(GROWTH[0], fluid.min(SPARE)), (GROWTH[1], SPARE)] {
+        let fluid = (FLUID_PACKING[D - 2] / packing).powf(1.0 / D as f64);
+        for (speed, end) in [(GROWTH_SPEED[0], fluid.min(RADIUS_MARGIN)), (GROWTH_SPEED[1], RADIUS_MARGIN)] {
             set_growth(&mut engine, speed / mean);
             grow_to(&mut engine, end, mean).map_err(|reached| packing * reached.powi(D as i32))?;
         }
@@ -237,7 +237,7 @@ impl<const D: usize> Site<'_, D> {
             let scale = (seed[D - 2] / packing).powf(1.0 / D as f64).min(SEED_RADIUS);
             self.drop_scaled(radii, scale, random).map(|positions| (scale, positions))
         };
-        SEEDS.into_iter().find_map(&mut dropped).ok_or(SEEDS[1][D - 2])
+        SEED_PACKINGS.into_iter().find_map(&mut dropped).ok_or(SEED_PACKINGS[1][D - 2])
     }
 
     /// The balls, small yet, at thermal speeds, and what is in their way.
@@ -256,7 +256,7 @@ impl<const D: usize> Site<'_, D> {
             starts.push(Start { position, velocity, kind: kind(radius, 1.0), species: 0 });
         }
         for placed in self.obstacles() {
-            let kind = kind(placed.radius, IMMOVABLE);
+            let kind = kind(placed.radius, IMMOVABLE_MASS);
             starts.push(Start { position: placed.position, velocity: [0.0; D], kind, species: 0 });
         }
         World::new(self.region[0], self.length(), kinds, &starts, field)
@@ -292,7 +292,7 @@ fn grow_to<const D: usize>(engine: &mut Engine<D>, end: f64, mean: f64) -> Resul
         let flights = 2 * (engine.world.tally.collisions - collisions);
         let free = (engine.world.tally.path - path) / flights.max(1) as f64;
         let left = 2.0 * mean * (end - engine.world.field.scale);
-        let jams = pause == Pause::WindowFull && flights > 0 && left > HOPELESS * free;
+        let jams = pause == Pause::WindowFull && flights > 0 && left > MAX_GAP_IN_FREE_PATHS * free;
         if pause == Pause::Standstill || jams {
             return Err(engine.world.field.scale);
         }
@@ -301,12 +301,12 @@ fn grow_to<const D: usize>(engine: &mut Engine<D>, end: f64, mean: f64) -> Resul
 
 /// Lets balls that are grown collide for a while; an error where they are jammed.
 fn settle<const D: usize>(engine: &mut Engine<D>) -> Result<(), f64> {
-    engine.world.kinds.iter_mut().for_each(|kind| kind.radius *= SPARE);
+    engine.world.kinds.iter_mut().for_each(|kind| kind.radius *= RADIUS_MARGIN);
     (engine.world.field.scale, engine.world.field.growth) = (1.0, 0.0);
     engine.rebuild();
-    let enough = engine.world.tally.collisions + SETTLED * engine.world.balls.len() as u64 / 2;
+    let enough = engine.world.tally.collisions + SETTLING_COLLISIONS * engine.world.balls.len() as u64 / 2;
     while engine.world.tally.collisions < enough {
-        match engine.run(f64::INFINITY, AT_A_TIME) {
+        match engine.run(f64::INFINITY, EVENTS_PER_CHECK) {
             Pause::Worked => {}
             Pause::WindowFull => engine.rebuild(),
             Pause::Reached => break,
@@ -328,7 +328,7 @@ fn set_growth<const D: usize>(engine: &mut Engine<D>, growth: f64) {
 fn cool<const D: usize>(engine: &mut Engine<D>) {
     engine.world.begin_window::<crate::world::Growing>();
     let world = &mut engine.world;
-    let movable: Vec<usize> = (0..world.balls.len()).filter(|&ball| world.mass(ball) < IMMOVABLE).collect();
+    let movable: Vec<usize> = (0..world.balls.len()).filter(|&ball| world.mass(ball) < IMMOVABLE_MASS).collect();
     let energy: f64 = movable.iter().map(|&ball| world.balls[ball].velocity.iter().map(|v| v * v).sum::<f64>()).sum();
     let factor = (D as f64 * movable.len() as f64 / energy).sqrt();
     for ball in movable {

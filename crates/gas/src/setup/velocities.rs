@@ -1,4 +1,4 @@
-//! Velocities at the start: at exactly the temperature asked for, and without momentum but what was asked for.
+//! Initial velocities: at exactly the given temperature, with no momentum but the given one.
 
 use super::{Setup, Side, Species, Speeds};
 use crate::random::{direction, normal};

@@ -23,7 +23,7 @@ pub(crate) struct Ball<const D: usize> {
     pub next: u32,
 }
 
-/// Radius and mass; balls that are alike share a row.
+/// Radius and mass; equal balls share a row.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Kind {
     pub radius: f64,

@@ -1,8 +1,8 @@
 //! When balls meet.
 //!
 //! The moment at which two balls meet is counted from the later of their own times. So it depends only on their two
-//! paths, not on when it is asked for: every method finds the same moments, to the bit. (Where the box repeats, to rounding
-//! errors: a path is told from the image of the box where the ball is.)
+//! paths, not on when it is computed: every method finds the same moments, to the bit. (Where the box repeats, to rounding
+//! errors: a path is measured from the image of the box where the ball is.)
 
 use super::ball::Ball;
 
@@ -38,7 +38,7 @@ impl Mode for Growing {
     const GROWS: bool = true;
 }
 
-/// What acts on all balls alike.
+/// Fields that act on all balls equally.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Field<const D: usize> {
     pub gravity: [f64; D],
@@ -98,7 +98,7 @@ pub(crate) struct Quadratic {
 }
 
 impl Quadratic {
-    /// Of the image of `b` that is `offset` from where `b` is. It must be told: when the counting starts, balls that meet after
+    /// Of the image of `b` that is `offset` from where `b` is. It must be given: when the counting starts, balls that meet after
     /// long ways across a periodic box may be nearest in other images.
     #[inline(always)]
     pub fn new<const D: usize, M: Mode>(

@@ -186,21 +186,21 @@ impl<const D: usize> World<D> {
 
     /// Puts a ball into the next image of a periodic box, above (1) or below (-1).
     #[inline(always)]
-    pub fn wrap(&mut self, ball: usize, axis: usize, way: i32) {
-        self.balls[ball].position[axis] -= f64::from(way) * self.field.period[axis];
-        self.records[ball].image[axis] += way;
+    pub fn wrap(&mut self, ball: usize, axis: usize, direction: i32) {
+        self.balls[ball].position[axis] -= f64::from(direction) * self.field.period[axis];
+        self.records[ball].image[axis] += direction;
         if self.followed.is_some() {
-            self.note_wrap(ball, axis, way);
+            self.note_wrap(ball, axis, direction);
         }
     }
 
     /// A followed path ends at one side of a periodic box and goes on at the other.
     #[cold]
-    fn note_wrap(&mut self, ball: usize, axis: usize, way: i32) {
+    fn note_wrap(&mut self, ball: usize, axis: usize, direction: i32) {
         let (id, time, mut position) = (self.records[ball].id, self.time(), self.state(ball, self.now).0);
         let Some(followed) = self.followed.as_mut().filter(|followed| followed.id == id) else { return };
         let after = position;
-        position[axis] += f64::from(way) * self.field.period[axis];
+        position[axis] += f64::from(direction) * self.field.period[axis];
         followed.bends.extend([(time, position), (time, [f64::NAN; D]), (time, after)]);
     }
 

@@ -17,7 +17,7 @@ crate::declare! {
         const SORT_BLOCK: u32 = BLOCK as u32;
     }
     structs {
-        /// How many there are: the beginning of what the model tells its own kernels.
+        /// Numbers of particles and cells: the beginning of the model's own status.
         struct Sizes {
             /// Particles.
             particles: u32,
@@ -45,7 +45,7 @@ crate::declare! {
     }
 }
 
-/// Memory and kernels for sorting at most so many particles into at most so many cells.
+/// Buffers and kernels that sort particles into cells, up to a number of each.
 #[derive(Debug)]
 pub struct CellSort {
     /// Particles of each cell: `u32`, atomic. Zero before the counting and after the sort.
@@ -68,7 +68,7 @@ struct Tasks {
     tidy: Task,
 }
 
-/// Where the numbers of groups stand in the buffer that tells them: see [`Task::dispatch_indirect`].
+/// Slots of the numbers of groups in the buffer for indirect dispatch: see [`Task::dispatch_indirect`].
 #[derive(Debug, Clone, Copy)]
 pub struct SortSlots {
     /// One thread a particle.

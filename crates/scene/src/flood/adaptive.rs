@@ -14,7 +14,7 @@ pub struct Adaptive {
     /// Whether they are finest too where water ends at dry ground, however level.
     #[serde(default)]
     pub fronts: bool,
-    /// How often the water is looked at, in time steps.
+    /// Time steps between two checks of the resolution.
     #[serde(default = "every_steps")]
     pub every_steps: u32,
 }

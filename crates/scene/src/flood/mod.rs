@@ -69,7 +69,7 @@ pub struct Flood {
     pub time_steps: TimeSteps,
     /// A place counts as wet above this depth, m (maps and extent).
     pub wet_depth_m: f64,
-    /// How often the maps of maxima, arrival and duration look at the water, s. Left out: the gauge period.
+    /// Interval at which the maps of maxima, arrival and duration sample the water, s. Left out: the gauge period.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub map_every_s: Option<f64>,
     /// Parameters of scheme `sph-swe`.
@@ -78,13 +78,13 @@ pub struct Flood {
     pub edges: Edges,
     /// What happens at parts of the sides.
     pub edge_part: Vec<EdgePart>,
-    /// Lines inside the terrain at which water comes or goes as at a side.
+    /// Lines inside the terrain at which water enters or leaves as at a side.
     pub edge_line: Vec<EdgeLine>,
     /// Water that is there at the start.
     pub water: Vec<Water>,
     /// Water that comes in.
     pub inflow: Vec<Inflow>,
-    /// Water that goes out by a rating.
+    /// Outflows by a rating curve.
     pub outflow: Vec<Outflow>,
     /// Water that is held at a level.
     pub stage: Vec<Stage>,
@@ -102,7 +102,7 @@ pub struct Flood {
 }
 
 impl Flood {
-    /// The first key below `[flood]` that asks for what only scheme voronoi has; none where scheme sph-swe has all.
+    /// The first key below `[flood]` that only scheme voronoi has; none where scheme sph-swe has all.
     #[must_use]
     pub fn only_of_voronoi(&self) -> Option<String> {
         let soaks = |class: &LandClass| class.infiltration.is_some();
@@ -112,7 +112,7 @@ impl Flood {
         let of_voronoi = |edge: &Edge| !matches!(edge, Edge::Open | Edge::Wall | Edge::Periodic);
         let side = [("west", west), ("east", east), ("south", south), ("north", north)];
         let side = side.into_iter().find(|(_, edge)| of_voronoi(edge));
-        let asked = [
+        let keys = [
             ("storage", (self.storage != Storage::Mean).then(String::new)),
             ("time_steps", (self.time_steps != TimeSteps::Global).then(String::new)),
             ("finer", first(&self.finer)),
@@ -128,7 +128,7 @@ impl Flood {
             ("link", first(&self.link)),
             ("obstacle", line.map(|row| format!(".{row}.line"))),
         ];
-        asked.into_iter().find_map(|(key, below)| Some(format!("{key}{}", below?)))
+        keys.into_iter().find_map(|(key, below)| Some(format!("{key}{}", below?)))
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// Something rigid that water goes round. Give exactly one of `polygon`, `circle`, `line` and `file`.
+/// A rigid obstacle that water flows around. Give exactly one of `polygon`, `circle`, `line` and `file`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
@@ -22,7 +22,7 @@ pub struct Obstacle {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<PathBuf>,
     /// How high it stands above the ground, m. Water flows over a line that is lower than its level; over others it does not, and water that comes
-    /// higher is told. Left out: high enough.
+    /// higher is reported. Left out: high enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
     /// Level of the crest of a line, m, over which water flows as over a weir.

@@ -3,7 +3,7 @@
 use crate::Series;
 use serde::{Deserialize, Serialize};
 
-/// Water that goes out by a rating. Give exactly one of `at`, `line` and `polygon`.
+/// An outflow by a rating curve. Give exactly one of `at`, `line` and `polygon`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outflow {
@@ -51,7 +51,7 @@ pub struct Link {
     /// Whether water may also go from `to` to `from`.
     #[serde(default = "yes")]
     pub both_ways: bool,
-    /// How much goes through.
+    /// Law of the discharge.
     pub law: LinkLaw,
 }
 

@@ -39,7 +39,7 @@ pub struct Gas {
     /// All velocities are turned round at this time, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversed_at_s: Option<f64>,
-    /// The ball, by its id, whose path is kept. Explicit balls have the first ids, from 0, then those of the file, then the species in order.
+    /// The ball, by its id, whose trajectory is recorded. Explicit balls have the first ids, from 0, then those of the file, then the species in order.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub follow: Option<u64>,
     /// The sides of the box.
@@ -54,10 +54,10 @@ pub struct Gas {
     /// A file of balls that are there at the start, beside those of `ball` and `species`: extended XYZ or CSV.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_file: Option<PathBuf>,
-    /// Balls told one by one.
+    /// Balls given one by one.
     #[serde(default)]
     pub ball: Vec<Ball>,
-    /// Balls told by the crowd.
+    /// Balls given as species.
     #[serde(default)]
     pub species: Vec<Species>,
 }
@@ -122,7 +122,7 @@ pub enum Method {
     },
 }
 
-/// Balls told by the crowd. Give exactly one of `count` and `packing`.
+/// Balls given as a species. Give exactly one of `count` and `packing`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Species {

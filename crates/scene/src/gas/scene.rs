@@ -10,7 +10,7 @@ pub fn colour_of_kind(number: usize) -> &'static str {
     COLOURS[number % COLOURS.len()]
 }
 
-/// Colours that go well together and are told apart by colour-blind eyes too (Okabe & Ito 2008).
+/// Colours that go well together and that colour-blind eyes distinguish too (Okabe & Ito 2008).
 const COLOURS: [&str; 8] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5195", "#4d4d4d"];
 
 impl ModelScene for Gas {

@@ -93,7 +93,7 @@ pub struct Partition {
     pub axis: Axis,
     /// Its place along that axis.
     pub at: f64,
-    /// It is gone from this time on, s. Left out: it stays.
+    /// Time from which it is removed, s. Left out: it stays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lifted_at_s: Option<f64>,
     /// A hole in it.

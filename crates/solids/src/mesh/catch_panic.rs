@@ -8,7 +8,7 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What `read` gives; none where it panics. Panics elsewhere, and of other threads, are told as ever.
+/// The result of `read`; none where it panics. Panics elsewhere, and of other threads, are reported as usual.
 pub(super) fn caught<T>(read: impl FnOnce() -> T + UnwindSafe) -> Option<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {

@@ -22,8 +22,8 @@ pub(super) fn read(content: &[u8], folder: &Path) -> Result<Triangles, String> {
 
 fn read_sound(content: &[u8], folder: &Path) -> Result<Triangles, String> {
     // The reader takes a shorter length than that of the header for granted not to be.
-    let told = content.get(8..12).map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
-    if content.starts_with(b"glTF") && told.is_none_or(|length| length < 12) {
+    let length = content.get(8..12).map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]));
+    if content.starts_with(b"glTF") && length.is_none_or(|length| length < 12) {
         return Err("this is not a GLB that can be read: its header is cut off".into());
     }
     let gltf = Gltf::from_slice(content).map_err(|error| format!("this is not a glTF that can be read: {error}"))?;

@@ -39,7 +39,7 @@ struct Triangles {
 }
 
 impl Mesh {
-    /// Reads a mesh from a file in OBJ, STL, PLY, glTF or GLB, told by its extension, and checks it. `unit` is what 1
+    /// Reads a mesh from a file in OBJ, STL, PLY, glTF or GLB, chosen by its extension, and checks it. `unit` is what 1
     /// means in the file, in m: needed but for glTF and GLB, which are in metres and have y up: they are turned so that
     /// z is up.
     ///

@@ -27,7 +27,7 @@ fn wrong(error: std::io::Error) -> String {
     format!("this is not an STL that can be read: {error}")
 }
 
-/// Number of triangles that the head of a binary STL of so many bytes tells; none where it is no binary STL.
+/// Number of triangles in the header of a binary STL of a given length in bytes; none where it is no binary STL.
 pub(super) fn count_told(head: &[u8], bytes: u64) -> Option<usize> {
     let count = head.get(80..HEAD).map(|bytes| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))?;
     (HEAD as u64 + u64::from(count) * EACH as u64 == bytes).then_some(count as usize)

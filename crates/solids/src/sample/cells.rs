@@ -31,8 +31,8 @@ pub(super) struct Cell {
     pub is_cut: bool,
 }
 
-/// Places along each side of a cell that are tried where its centre of mass is outside the solid.
-const TRIED: u32 = 6;
+/// Samples along each side of a cell that are tested where its centre of mass is outside the solid.
+const CENTRE_SAMPLES_PER_SIDE: u32 = 6;
 
 /// Blocks of more cells than this are divided among threads.
 const SHARED_OUT: u64 = 1 << 12;
@@ -156,10 +156,18 @@ impl<'a> Cells<'a> {
             return;
         }
         let middle = self.middle(cell.index);
-        let places = (0..TRIED.pow(3)).map(|at| [at % TRIED, at / TRIED % TRIED, at / TRIED.pow(2)]).map(|at| {
-            let step = |axis: usize| (f64::from(at[axis]) + 0.5) / f64::from(TRIED) - 0.5;
-            std::array::from_fn(|axis| middle[axis] + step(axis) * self.sides[axis])
-        });
+        let places = (0..CENTRE_SAMPLES_PER_SIDE.pow(3))
+            .map(|at| {
+                [
+                    at % CENTRE_SAMPLES_PER_SIDE,
+                    at / CENTRE_SAMPLES_PER_SIDE % CENTRE_SAMPLES_PER_SIDE,
+                    at / CENTRE_SAMPLES_PER_SIDE.pow(2),
+                ]
+            })
+            .map(|at| {
+                let step = |axis: usize| (f64::from(at[axis]) + 0.5) / f64::from(CENTRE_SAMPLES_PER_SIDE) - 0.5;
+                std::array::from_fn(|axis| middle[axis] + step(axis) * self.sides[axis])
+            });
         let deepest = places.map(|place| (place, distance(place))).min_by(|a, b| a.1.total_cmp(&b.1));
         match deepest {
             Some((place, distance)) if distance < 0.0 => cell.centre = place,

@@ -61,7 +61,7 @@ fn refuse_too_many(solid: &Solid, spacing: f64, depth: Depth) -> Result<(), Soli
     let (volume, area) = (solid.volume(), solid.area());
     let in_layers = match depth {
         Depth::Full => f64::INFINITY,
-        // One more for the cells that are looked at on both sides of the surface.
+        // One more for the cells that are tested on both sides of the surface.
         Depth::Layers(layers) => area * f64::from(layers + 1) / spacing.powi(2),
     };
     let count = (volume / spacing.powi(3)).max(area / spacing.powi(2)).min(in_layers);

@@ -6,7 +6,7 @@ use crate::{Terrain, TerrainError};
 use corpuscle_scene::RoughHills;
 use rayon::prelude::*;
 
-/// Fractal noise from 0 up to the relief asked for.
+/// Fractal noise from 0 up to the given relief.
 pub(crate) fn make(hills: &RoughHills, seed: u64) -> Result<Terrain, TerrainError> {
     let RoughHills { extent, relief_m, hill_size_m, roughness } = hills.clone();
     let bounds = bounds("rough-hills", &extent)?;

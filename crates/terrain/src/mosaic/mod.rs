@@ -15,7 +15,7 @@ const SAME_HEIGHT: f64 = 0.01;
 
 /// Several rasters as one, on the grid of the finest of those in the first one's reference system. Rasters that lie on
 /// that grid go in cell by cell; others are interpolated onto it (bilinear, across the border to the next raster). Where
-/// several have data the one named first counts; where none has, there is none. What a user should know is in the
+/// several have data the one named first counts; where none has, there is none. Warnings are in the
 /// result's warnings. `rasters` are not empty; their names are for messages.
 ///
 /// # Errors

@@ -6,7 +6,7 @@ use crate::{Raster, TerrainError};
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// A raster, and where its cells are looked up on the common grid.
+/// A raster, and the mapping of its cells to the common grid.
 pub(super) struct Tile {
     path: PathBuf,
     raster: Raster,

@@ -7,7 +7,7 @@ use proj4rs::Proj;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A raster, on whatever grid, looked up at model coordinates of a terrain.
+/// A raster on any grid, evaluated at model coordinates of a terrain.
 #[derive(Debug)]
 pub struct RasterField {
     raster: Raster,
@@ -17,7 +17,7 @@ pub struct RasterField {
 }
 
 impl RasterField {
-    /// Reads a raster to be looked up over `terrain`. It is in the terrain's reference system, unless it names
+    /// Reads a raster to be evaluated over `terrain`. It is in the terrain's reference system, unless it names
     /// another one.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl RasterField {
         Ok(Self { raster, frame, other })
     }
 
-    /// What a user should know about the file, in sentences.
+    /// Warnings about the file, in sentences.
     pub fn warnings(&self) -> &[String] {
         &self.raster.warnings
     }

@@ -99,7 +99,7 @@ fn south_first(file: &GeoTiffFile) -> bool {
 /// What is wrong with a file that the library does not read.
 fn refused(path: &Path, error: &ReaderError) -> TerrainError {
     let what = error.to_string();
-    // The library's own error type, which would tell, is not part of its interface.
+    // The library's own error type, which has the cause, is not part of its interface.
     if what.contains("unsupported") {
         return TerrainError::unusable(path, format!("{what}; convert it with `gdal_translate -co COMPRESS=DEFLATE`"));
     }
@@ -177,7 +177,7 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// Its samples, converted by `number`, without those that `is_no_data` tells, from the north row on.
+    /// Its samples, converted by `number`, without those for which `is_no_data` holds, from the north row on.
     fn read<T: TiffSample + Copy>(
         &self,
         number: impl Fn(T) -> f64,

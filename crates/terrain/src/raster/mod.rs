@@ -35,7 +35,7 @@ pub struct Raster {
     pub values: Vec<f64>,
     /// Where it lies.
     pub georeference: Georeference,
-    /// What a user should know about it, in sentences.
+    /// Warnings about it, in sentences.
     pub warnings: Vec<String>,
 }
 

@@ -31,7 +31,7 @@ impl Survey {
 /// Reads what a raster file says of itself, by content, whatever its name and size.
 ///
 /// # Errors
-/// As [`crate::read_raster`], but for what only its values can tell.
+/// As [`crate::read_raster`], without the warnings that depend on its values.
 pub fn survey(path: impl AsRef<Path>) -> Result<Survey, TerrainError> {
     let path = path.as_ref();
     match content(path)? {

@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 const STEEPEST: f64 = 1.5;
 
 /// What is known of the ground at one node, in units of cells: derivatives are differences per cell.
-/// In this order two neighbouring numbers are treated alike, which the compiler turns into vector instructions.
+/// In this order two neighbouring numbers are treated equally, which the compiler turns into vector instructions.
 #[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C)]
 struct Node {
@@ -32,7 +32,7 @@ struct Node {
 /// A smooth surface as the nodes of its bicubic Hermite patches, in single precision.
 #[derive(Debug, Clone)]
 pub struct GroundPatches {
-    /// Height above the level asked for, m, and its derivatives along y, along x and along both, m per cell; row by row from the
+    /// Height above the requested level, m, and its derivatives along y, along x and along both, m per cell; row by row from the
     /// south-west.
     pub nodes: Vec<[f32; 4]>,
     /// Nodes in a row, and rows.

@@ -79,7 +79,7 @@ fn scene(number: f64, spacing: f64) -> Result<Dew, ModelError> {
     );
     let mut dew = dew_of(&text)?;
     dew.wet(0, 998.2 * 2.0 / 3.0 * PI * RADIUS.powi(3) * number);
-    dew.take_over_water();
+    dew.transfer_water_to_drops();
     Ok(dew)
 }
 

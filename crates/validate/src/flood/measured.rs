@@ -23,7 +23,7 @@ impl AdvanceObserver for Watched {
         self.rows.push(row.to_vec());
     }
 
-    fn passed(&mut self, _: ModelProgress) -> bool {
+    fn progressed(&mut self, _: ModelProgress) -> bool {
         true
     }
 }

@@ -1,11 +1,11 @@
-//! Gauges of humid air whose steps the GPU takes: the air stays there, and only what they tell comes back.
+//! Gauges of humid air whose steps the GPU takes: the air stays there, and only their values are downloaded.
 
 use super::{Dew, FrameRequest, GpuError};
 use corpuscle_model::{AdvanceObserver, Model, ModelError, ModelProgress};
 use std::sync::atomic::AtomicBool;
 
 impl Dew {
-    /// [`Model::advance_with`] on the GPU, with frames where they are wanted. Where gauges tell how near the air comes to walls, all of it comes back for them.
+    /// [`Model::advance_with`] on the GPU, with frames on request. Where gauges measure the distance of the air from walls, all of it is downloaded for them.
     pub(crate) fn advance_measured(
         &mut self,
         time: f64,
@@ -29,7 +29,11 @@ impl Dew {
                 }
                 let particles =
                     dew.gpu_solver.as_ref().map_or(0, |solver| solver.filling()[0]) + dew.solids().particles.len();
-                if !observer.passed(ModelProgress { time: next, particles, particle_steps: dew.state.particle_steps }) {
+                if !observer.progressed(ModelProgress {
+                    time: next,
+                    particles,
+                    particle_steps: dew.state.particle_steps,
+                }) {
                     break;
                 }
             }

@@ -13,7 +13,7 @@ use corpuscle_model::{AdvanceObserver, Glance, GpuModel, Model, ModelError};
 use on_device::FrameRequest;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Room for particles that come beside those that there are.
+/// Spare room for particles that enter.
 const SPARE_ROOM: usize = 1024;
 
 fn failed(error: &GpuError) -> ModelError {
@@ -81,7 +81,7 @@ impl Dew {
         all.into_iter().filter_map(|(is_there, what)| is_there.then_some(what)).collect()
     }
 
-    /// Makes room on a GPU for the air that there is, and for more where air comes in, and hands the state over.
+    /// Allocates buffers on a GPU for the air, and for more where there are inlets, and uploads the state.
     fn open_gpu(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let (count, come) = (self.state.air.len(), self.most_in_a_step());
         self.open_gpu_with(gpu, if come == 0 { count } else { count + count / 2 + come + SPARE_ROOM })
@@ -95,7 +95,7 @@ impl Dew {
         Ok(())
     }
 
-    /// Hands the state to the GPU, where there is one. It is set up anew, its shaders compiled again, where settings have changed or there is
+    /// Uploads the state to the GPU, where there is one. It is set up again, its shaders compiled again, where settings have changed or there is
     /// too little room.
     pub(crate) fn upload_to_gpu(&mut self, anew: bool) -> Result<(), ModelError> {
         let needed = self.state.air.len() + self.most_in_a_step();
@@ -189,7 +189,7 @@ impl Dew {
         Ok(None)
     }
 
-    /// Steps until it may be the drops' turn. They are asked at the same steps however often something looks.
+    /// Steps until the next update of the drops. They are updated at the same steps however often the state is read.
     fn steps_to_drops(&self) -> u64 {
         match &self.wetting {
             Some(wetting) => wetting.steps() - wetting.steps_since(self.state.steps) % wetting.steps(),
@@ -206,7 +206,7 @@ impl Dew {
         }
     }
 
-    /// Drops take over what condensed, where it is their turn, and the water is uploaded.
+    /// Transfers condensed water to the drops, where their update is due, and uploads the water.
     fn update_drops_beside_gpu(&mut self) -> Result<(), GpuError> {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         let [air, _] = solver.filling();
@@ -230,7 +230,7 @@ impl Dew {
         let Some(solver) = &mut self.gpu_solver else { return Ok(()) };
         solver.download(&mut self.state)?;
         if self.layers.iter().any(Option::is_some) {
-            // Gauges of layers tell pairs of air and wall.
+            // Gauges of layers need pairs of air and wall.
             self.arrangement.arrange(&mut self.state.air, &self.room, self.scale.h());
             self.contact.update(&self.arrangement, &self.scale);
             self.ghosts.update(&self.arrangement, &self.scale);

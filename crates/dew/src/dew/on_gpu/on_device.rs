@@ -1,4 +1,4 @@
-//! Humid air drawn where it lies: the air as buffers of the GPU that takes the steps.
+//! Frames of humid air whose particles stay in buffers of the GPU that takes the steps.
 
 use super::Dew;
 use crate::wetting::Wetting;
@@ -7,16 +7,16 @@ use corpuscle_model::{Frame, Glance};
 
 /// A request for frames: of the drops, and of the air on the GPU.
 pub(crate) struct FrameRequest<'a> {
-    /// When the next is wanted, s.
+    /// Time of the next frame, s.
     pub wanted: f64,
-    /// Whether the air is seen, or only what the host has.
+    /// Whether the air is drawn, or only what the host has.
     pub sees_air: bool,
-    /// Is called with the drops and, where it is seen, the air on the GPU; returns when the next is wanted, s.
+    /// Called with the drops and, where it is drawn, the air on the GPU; returns the time of the next frame, s.
     pub show: &'a mut dyn FnMut(Glance) -> f64,
 }
 
 impl Dew {
-    /// Shows the state now, where a frame is wanted by now.
+    /// Shows the state now, where a frame is due.
     pub(super) fn show_to(&self, frame_request: &mut Option<FrameRequest<'_>>) -> Result<(), GpuError> {
         let Some(frame_request) = frame_request.as_mut().filter(|frame_request| frame_request.wanted <= self.shown)
         else {

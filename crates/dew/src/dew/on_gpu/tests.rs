@@ -3,7 +3,7 @@
 use super::*;
 use crate::air::{Particle, Properties};
 use crate::dew::Setup;
-use crate::gpu::MANY;
+use crate::gpu::FINE_CELLS_MIN_PARTICLES;
 use crate::room::{Inflow, Room};
 use crate::settings::Settings;
 use crate::solids::Body;
@@ -44,7 +44,7 @@ fn more_room_is_taken_where_air_that_comes_might_find_none() {
     assert!(with_more.state.air == plain.state.air && with_more.state.water == plain.state.water);
 }
 
-/// Sent anew amid a run, numbers are rounded anew.
+/// An upload amid a run rounds all values again.
 #[test]
 fn more_room_is_taken_amid_a_run() {
     let Some(gpu) = require_gpu("more room on the GPU") else { return };
@@ -139,7 +139,7 @@ fn differences(a: &Dew, b: &Dew) -> [f64; 7] {
 fn air_in_cells_of_half_the_reach_goes_as_on_the_cpu() {
     let Some(gpu) = require_gpu("small cells on the GPU") else { return };
     let [mut host, mut device, mut plain] = [(); 3].map(|()| duct_round_a_block());
-    device.open_gpu_with(gpu.clone(), MANY).unwrap();
+    device.open_gpu_with(gpu.clone(), FINE_CELLS_MIN_PARTICLES).unwrap();
     plain.use_gpu(gpu).unwrap();
     let cells = |dew: &Dew| dew.gpu_solver.as_ref().unwrap().cells();
     assert!(cells(&device) > 4 * cells(&plain), "{} and {} cells", cells(&device), cells(&plain));

@@ -13,7 +13,7 @@ const DIVISIONS_IN_SIDE: f64 = 24.0;
 /// Rays are followed in steps of the distance to the surface, or, where that is smaller, of so small a part of what is between rays: what is thinner is not seen.
 const STEPS_BETWEEN_RAYS: f64 = 16.0;
 
-/// Particles are looked for as far as this from their surface, in spacings.
+/// Radius of the search for particles from their surface, in spacings.
 const SEARCHED: f64 = 2.0;
 
 /// Surface areas of a solid, by rays through it.

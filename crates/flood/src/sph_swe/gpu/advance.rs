@@ -1,51 +1,52 @@
-//! Batches of steps, and what they did.
+//! Batches of steps, and their results.
 
 use super::OnGpu;
 use super::batch::{BatchRequest, BatchResult};
-use super::shared::{Birth, Grid, Status};
+use super::shared::{Grid, SpawnRequest, Status};
 use crate::sph_swe::measured::Reading;
 use crate::sph_swe::step::CELL_OVER_H;
 use corpuscle_gpu::{BATCH_START, GpuError, Halt, MOST_STEPS, from_halves, from_pair, read, to_pair};
 
-/// The cells are laid out anew after so many steps; in between the host reads no more than it must.
+/// Steps after which the cells are laid out anew; in between the host reads only the status.
 const LAID_OUT: u64 = MOST_STEPS as u64;
 
 impl OnGpu {
-    /// Whether the room may not do for `births` more until it is time to ask again; none where it is not time to.
-    pub fn lacks_room(&self, births: impl FnOnce(f64) -> usize) -> bool {
+    /// Whether the buffers may lack room for the particles spawned until the next check; false between checks. `max_spawned` bounds their number within
+    /// a time, s.
+    pub fn lacks_room(&self, max_spawned: impl FnOnce(f64) -> usize) -> bool {
         let horizon = LAID_OUT as f64 * f64::from(self.parameters.time_step);
-        self.steps.is_multiple_of(LAID_OUT) && self.particles() + births(horizon) > self.room
+        self.steps.is_multiple_of(LAID_OUT) && self.particles() + max_spawned(horizon) > self.room
     }
 
-    /// Takes some steps, through all of a request at most. Nothing comes back between two steps. Gives what was done, and of the rows of gauges that are due those
-    /// that were passed.
+    /// Takes some steps, through all of a request at most. Nothing is downloaded between two steps. Returns the result, and the rows of gauges that fell
+    /// due.
     pub fn advance(&mut self, request: BatchRequest<'_>) -> Result<(BatchResult, Vec<Reading>), GpuError> {
-        let BatchRequest { until, most, look, looks, looked, births, due } = request;
+        let BatchRequest { until, most, host_sample, map_times, last_sample, spawn_requests, due } = request;
         if self.steps.is_multiple_of(LAID_OUT) {
             self.lay_out()?;
             self.clock_began = self.time();
             self.status.clock = [0.0; 2];
         }
-        let births: Vec<_> = births
+        let spawn_requests: Vec<_> = spawn_requests
             .iter()
-            .map(|birth| Birth {
-                velocity: birth.velocity.map(|along| along as f32),
-                time: (birth.time - self.clock_began) as f32,
-                zone: self.zones[birth.source],
+            .map(|request| SpawnRequest {
+                velocity: request.velocity.map(|along| along as f32),
+                time: (request.time - self.clock_began) as f32,
+                zone: self.zones[request.source],
             })
             .collect();
-        self.gpu().queue.write_buffer(&self.tasks.memory.births, 0, bytemuck::cast_slice(&births));
+        self.gpu().queue.write_buffer(&self.tasks.memory.spawn_requests, 0, bytemuck::cast_slice(&spawn_requests));
         let to_layout = LAID_OUT - self.steps % LAID_OUT;
-        let target = until.min(look);
+        let target = until.min(host_sample);
         let count = self.batches.steps(target - self.time(), f64::from(self.status.step), most.min(to_layout));
         self.status = Status {
             halted: BATCH_START,
             steps: 0,
             particle_steps: [0; 2],
             until: to_pair(until - self.clock_began),
-            look: to_pair(target - self.clock_began),
-            births: births.len() as u32,
-            born: 0,
+            host_sample: to_pair(target - self.clock_began),
+            spawn_requests: spawn_requests.len() as u32,
+            spawned: 0,
             outflow: [0.0; 2],
             inflow: [0.0; 2],
             momentum_lost: [0.0; 2],
@@ -54,7 +55,7 @@ impl OnGpu {
             ..self.status
         };
         self.upload_gauge_times(due);
-        self.upload_map_times(looks, looked);
+        self.upload_map_times(map_times, last_sample);
         let tasks = &self.tasks;
         let (status, words) = self.batches.run(
             count,
@@ -92,10 +93,10 @@ impl OnGpu {
             momentum_gained: from_pair(self.status.momentum_gained),
             external: self.status.outer_force.map(f64::from),
             mean_h: f64::from(mean_h),
-            born: self.status.born as usize,
+            spawned: self.status.spawned as usize,
             next_id: u64::from(self.status.next_id),
-            looks: self.status.looks_taken as usize,
-            looked: self.clock_began + from_pair(self.status.looked),
+            map_samples: self.status.map_times_taken as usize,
+            last_sample: self.clock_began + from_pair(self.status.last_sample),
             broken: Halt::of(halted) == Halt::Broken,
         }
     }
@@ -113,7 +114,7 @@ impl OnGpu {
             (low, high) = ([low[0].min(west), low[1].min(south)], [high[0].max(east), high[1].max(north)]);
             smallest = if any { smallest } else { CELL_OVER_H * f64::from(self.parameters.new_h) };
         }
-        // Water that is nowhere needs no cells.
+        // Cells cover no more than the terrain and its own size beyond each side.
         let within = |value: f64, axis: usize| {
             let [from, to] = [0, 1].map(|side| f64::from(self.parameters.bounds[2 * axis + side]));
             let beyond = to - from;
@@ -121,7 +122,7 @@ impl OnGpu {
         };
         [low, high] = [low, high].map(|corner| [within(corner[0], 0), within(corner[1], 1)]);
         let [width, height] = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0));
-        // Water that has broken down may tell nothing of its reach.
+        // After a breakdown the smoothing lengths may not be finite.
         if !(smallest.is_finite() && smallest > 0.0) {
             smallest = self.bounds.size()[0];
         }

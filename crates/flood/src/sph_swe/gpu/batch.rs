@@ -1,9 +1,9 @@
-//! A batch of steps: what is asked for, and what it did.
+//! Request and result of a batch of steps.
 
-/// A particle that is to come from a source.
+/// A particle that a source releases.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Birth {
-    /// s.
+pub(crate) struct SpawnRequest {
+    /// Release time, s.
     pub time: f64,
     pub source: usize,
     pub velocity: [f64; 2],
@@ -15,18 +15,18 @@ pub(crate) struct BatchRequest<'a> {
     pub until: f64,
     /// Steps at most.
     pub most: u64,
-    /// The first step that ends then or after is the last: the host is to look at the maps.
-    pub look: f64,
-    /// When the GPU is to look at the maps itself, [`MOST_LOOKS`](super::maps::MOST_LOOKS) at most, and when it last did.
-    pub looks: &'a [f64],
-    pub looked: f64,
-    /// The particles that come from sources, the earliest first.
-    pub births: &'a [Birth],
+    /// The first step that ends then or after is the last: the host samples the maps.
+    pub host_sample: f64,
+    /// Times at which the GPU samples the maps itself, [`MAX_MAP_TIMES`](super::maps::MAX_MAP_TIMES) at most, and when it last did.
+    pub map_times: &'a [f64],
+    pub last_sample: f64,
+    /// Particles that sources release, the earliest first.
+    pub spawn_requests: &'a [SpawnRequest],
     /// When rows of gauges are due: [`MOST_ROWS`](super::gauges::MOST_ROWS) at most.
     pub due: &'a [f64],
 }
 
-/// What a batch of steps did.
+/// Result of a batch of steps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BatchResult {
     pub steps: u64,
@@ -42,18 +42,18 @@ pub(crate) struct BatchResult {
     pub momentum_gained: f64,
     pub external: [f64; 2],
     pub mean_h: f64,
-    /// How many of the births have been, and the identity of the next new particle.
-    pub born: usize,
+    /// Number of spawn requests done, and the identity of the next new particle.
+    pub spawned: usize,
     pub next_id: u64,
-    /// How many of the times to look at the maps have passed, and when it was last looked, s.
-    pub looks: usize,
-    pub looked: f64,
-    /// Whether something is no number.
+    /// Number of samples of the maps taken, and the time of the last, s.
+    pub map_samples: usize,
+    pub last_sample: f64,
+    /// Whether a value is not finite.
     pub broken: bool,
 }
 
 impl BatchResult {
-    /// Nothing yet at a time, s; `step` is the next one.
+    /// No steps yet at a time, s; `step` is the next one.
     pub fn none(time: f64, step: f64) -> Self {
         Self {
             steps: 0,
@@ -66,15 +66,15 @@ impl BatchResult {
             momentum_gained: 0.0,
             external: [0.0; 2],
             mean_h: 0.0,
-            born: 0,
+            spawned: 0,
             next_id: 0,
-            looks: 0,
-            looked: 0.0,
+            map_samples: 0,
+            last_sample: 0.0,
             broken: false,
         }
     }
 
-    /// With what was done after it.
+    /// This result followed by a later one.
     pub fn and(self, later: Self) -> Self {
         Self {
             steps: self.steps + later.steps,
@@ -83,8 +83,8 @@ impl BatchResult {
             inflow: self.inflow + later.inflow,
             momentum_lost: self.momentum_lost + later.momentum_lost,
             momentum_gained: self.momentum_gained + later.momentum_gained,
-            born: self.born + later.born,
-            looks: self.looks + later.looks,
+            spawned: self.spawned + later.spawned,
+            map_samples: self.map_samples + later.map_samples,
             ..later
         }
     }

@@ -1,4 +1,4 @@
-//! A flood drawn where it lies: its particles as buffers of the GPU that takes the steps.
+//! Frames whose particles stay in buffers of the GPU that takes the steps.
 
 use super::measured::Observers;
 use crate::sph_swe::SphSweFlood;
@@ -7,14 +7,14 @@ use corpuscle_model::{Frame, Glance};
 
 /// A request for frames of the particles on the GPU.
 pub(crate) struct FrameRequest<'a> {
-    /// When the next is wanted, s: at the end of the next step if that has passed.
+    /// Time of the next frame, s: the end of the next step if that is past.
     pub wanted: f64,
-    /// Is called with the time, s, and the particles; returns when the next is wanted, s.
+    /// Called with the time, s, and the particles; returns the time of the next frame, s.
     pub show: &'a mut dyn FnMut(Glance) -> f64,
 }
 
 impl SphSweFlood {
-    /// Shows the particles, as the GPU has them after a step that ended at `now`, where a frame is wanted before `before`, s.
+    /// Shows the particles on the GPU after a step that ended at `now`, where a frame is due before `before`, s.
     pub(super) fn show_to(&self, observers: &mut Observers<'_>, now: f64, before: f64) -> Result<(), GpuError> {
         let (Some(on_gpu), Some(frame_request)) = (&self.on_gpu, &mut observers.frame_request) else { return Ok(()) };
         let mut is_first = true;

@@ -1,4 +1,4 @@
-//! Gauges that the device reads itself: rows that wait there until the host takes them, together with what it learns of the steps.
+//! Gauges that the device reads itself: rows stay there until the host downloads them together with the status.
 
 use super::OnGpu;
 use super::shared::{GAUGES, Memory, OF_OBSTACLE, OF_PLACE, PLACES, STORED, Status, TOTALS};
@@ -7,10 +7,10 @@ use crate::sampling::Sample;
 use crate::sph_swe::measured::Reading;
 use corpuscle_gpu::{Gpu, GpuError, Pass, Task, from_pair, read_together, storage, to_pair, wgpu};
 
-/// Rows that wait at a time, at most.
+/// Most rows that are stored on the device at a time.
 pub(super) const MOST_ROWS: usize = 64;
 
-/// What sums up the water, what tells of it and of obstacles, and what looks at positions.
+/// Shaders that sum the water, write its totals and those of obstacles, and sample positions.
 pub(super) const SHADERS: [Shader; 3] = [
     ("sph_volumes", include_str!("../sph_volumes.wgsl")),
     ("sph_totals", include_str!("../sph_totals.wgsl")),
@@ -20,7 +20,7 @@ pub(super) const SHADERS: [Shader; 3] = [
 /// The slot of each in the numbers of groups.
 const SLOTS: [u32; 3] = [GAUGES, GAUGES + 1, GAUGES + 2];
 
-/// How much each row tells of.
+/// Number of positions and obstacles in each row.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     places: usize,
@@ -44,28 +44,28 @@ impl Extent {
     }
 }
 
-/// What fills the rows.
+/// The tasks that fill the rows.
 #[derive(Debug)]
 pub(super) struct Gauges {
-    /// The places in model coordinates.
+    /// The positions in model coordinates.
     places: Vec<[f64; 2]>,
     extent: Extent,
     tasks: [Task; 3],
 }
 
 impl Gauges {
-    /// Has what is due taken, if anything is.
+    /// Fills the rows that are due, if any.
     pub fn take(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
         self.tasks.iter().zip(SLOTS).for_each(|(task, slot)| task.dispatch_indirect(pass, groups, slot));
     }
 }
 
 impl Tasks {
-    /// The status after a batch, and the words of `told` rows of gauges.
-    pub(super) fn download(&self, gpu: &Gpu, told: usize) -> Result<(Status, Vec<u32>), GpuError> {
+    /// The status after a batch, and the words of `count` rows of gauges.
+    pub(super) fn download(&self, gpu: &Gpu, count: usize) -> Result<(Status, Vec<u32>), GpuError> {
         let Memory { status, rows, .. } = &self.memory;
-        let extent = self.gauges.as_ref().filter(|_| told > 0).map(|gauges| gauges.extent);
-        let [first, end] = extent.map_or([0; 2], |extent| [extent.first(), extent.first() + told * extent.stride()]);
+        let extent = self.gauges.as_ref().filter(|_| count > 0).map(|gauges| gauges.extent);
+        let [first, end] = extent.map_or([0; 2], |extent| [extent.first(), extent.first() + count * extent.stride()]);
         let parts = [(status, size_of::<Status>()), (rows, 4 * end)];
         let [status, words] = read_together(gpu, parts, bytemuck::pod_collect_to_vec::<u8, u32>)?;
         Ok((bytemuck::pod_read_unaligned(bytemuck::cast_slice(&status)), words[first..].to_vec()))
@@ -73,7 +73,7 @@ impl Tasks {
 }
 
 impl OnGpu {
-    /// Has gauges look at these places from now on.
+    /// Sets the positions of the gauges.
     pub fn measure(&mut self, places: &[[f64; 2]]) -> Result<(), GpuError> {
         if self.tasks.gauges.as_ref().is_some_and(|gauges| gauges.places == places) {
             return Ok(());
@@ -83,24 +83,24 @@ impl OnGpu {
         let rows = storage::<u32>(self.gpu(), "rows of gauges", first + MOST_ROWS * stride)?;
         let header = [first, stride, extent.obstacles].map(|number| number as u32);
         let relative = places.iter().flat_map(|place| self.origin.relative(*place).map(f32::to_bits));
-        let told: Vec<u32> = header.into_iter().chain(relative).collect();
-        self.gpu().queue.write_buffer(&rows, 0, bytemuck::cast_slice(&told));
+        let uploaded: Vec<u32> = header.into_iter().chain(relative).collect();
+        self.gpu().queue.write_buffer(&rows, 0, bytemuck::cast_slice(&uploaded));
         self.tasks.memory.rows = rows;
         let tasks = SHADERS.map(|shader| task(self.gpu(), shader, &self.tasks.memory));
         self.tasks.gauges = Some(Gauges { places: places.to_vec(), extent, tasks });
         Ok(())
     }
 
-    /// Says when rows are due, s.
+    /// Uploads the times at which rows are due, s.
     pub(super) fn upload_gauge_times(&mut self, due: &[f64]) {
         let due: Vec<[f32; 2]> = due.iter().map(|&time| to_pair(time - self.clock_began)).collect();
         self.gpu().queue.write_buffer(&self.tasks.memory.due, 0, bytemuck::cast_slice(&due));
-        self.status.rows_told = due.len() as u32;
+        self.status.rows_uploaded = due.len() as u32;
         (self.status.rows_taken, self.status.rows_due) = (0, 0);
         self.status.gauge_places = self.tasks.gauges.as_ref().map_or(0, |gauges| gauges.places.len() as u32);
     }
 
-    /// The rows of gauges that a batch has taken. What came and went, it did since the batch began.
+    /// The rows of gauges of a batch. Inflow and outflow count from the start of the batch.
     pub(super) fn readings(&self, words: &[u32]) -> Vec<Reading> {
         let Some(gauges) = &self.tasks.gauges else { return Vec::new() };
         let taken = (self.status.rows_taken + self.status.rows_due) as usize;

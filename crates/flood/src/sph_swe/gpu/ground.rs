@@ -7,10 +7,10 @@ use crate::sph_swe::particle::Particle;
 use corpuscle_terrain::{Bounds, Terrain};
 use rayon::prelude::*;
 
-/// Roughness whose raster does not lie along the model's coordinates is met in so many cells along the longer side.
-const CELLS: f64 = 2048.0;
+/// Cells along the longer side into which a roughness raster is resampled that does not lie along the model's coordinates.
+const ROUGHNESS_CELLS: f64 = 2048.0;
 
-/// The nodes of the ground's patches, heights above the origin's; where they lie is told in `parameters`.
+/// The nodes of the ground's patches, heights above the origin's; their grid is in `parameters`.
 pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Parameters) -> Vec<[f32; 4]> {
     let patches = terrain.patches_above(origin.level);
     parameters.ground_corner = origin.relative(patches.corner);
@@ -19,7 +19,7 @@ pub(super) fn nodes(terrain: &Terrain, origin: Origin, parameters: &mut Paramete
     patches.nodes
 }
 
-/// How the ground slows the water, told in `parameters`; the law's coefficient over gravity in cells where it is not one number.
+/// Friction of the ground, whose law is in `parameters`; the law's coefficient over gravity in cells where it is not one number.
 pub(super) fn roughness(
     roughness: &Roughness,
     bounds: Bounds,
@@ -41,7 +41,7 @@ pub(super) fn roughness(
 fn mapped(law: Law, number: &Coefficient, bounds: Bounds, origin: Origin, parameters: &mut Parameters) -> Vec<f32> {
     let low = [bounds.x_min, bounds.y_min];
     let size = bounds.size();
-    let even = size[0].max(size[1]) / CELLS;
+    let even = size[0].max(size[1]) / ROUGHNESS_CELLS;
     let lattice = number.raster().and_then(corpuscle_terrain::RasterField::cells_in_model);
     let (corner, cell) = lattice.unwrap_or((low, [even; 2]));
     let first = [0, 1].map(|axis| ((low[axis] - corner[axis]) / cell[axis]).floor());

@@ -1,4 +1,4 @@
-//! Maps that the device keeps: it looks at the water in each of their cells itself.
+//! Maps that the device keeps: it samples the water in each of their cells itself.
 
 use super::super::maps::{Maps, Record};
 use super::shared::{MAPS, MapCell};
@@ -9,8 +9,8 @@ use crate::sph_swe::obstacles::Obstacles;
 use corpuscle_gpu::{Gpu, GpuError, Pass, Task, read, storage, to_pair, wgpu};
 use corpuscle_terrain::Terrain;
 
-/// Looks that the device can be told of at a time.
-pub(super) const MOST_LOOKS: usize = 64;
+/// Sample times that are uploaded to the device at once, at most.
+pub(super) const MAX_MAP_TIMES: usize = 64;
 
 pub(super) const SHADER: Shader = ("sph_maps", include_str!("../sph_maps.wgsl"));
 
@@ -30,13 +30,13 @@ impl GpuMaps {
         self.numbers.len()
     }
 
-    /// Has the device look, if it is time to.
-    pub fn look(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
+    /// Has the device sample the maps, if it is time to.
+    pub fn sample(&self, pass: &mut Pass<'_>, groups: &wgpu::Buffer) {
         self.task.dispatch_indirect(pass, groups, MAPS);
     }
 
-    /// The cells as the device is to have them.
-    fn begun(&self, maps: &Maps) -> Vec<MapCell> {
+    /// The cells in the device's format.
+    fn packed(&self, maps: &Maps) -> Vec<MapCell> {
         let cell = |(number, place): (&u32, &[f32; 2])| {
             let record = maps.record(*number as usize);
             MapCell {
@@ -44,7 +44,7 @@ impl GpuMaps {
                 max_depth: record.max_depth,
                 max_speed: record.max_speed,
                 hazard: record.hazard,
-                // No device need know what is not a number.
+                // A negative number stands for not-a-number, which shaders need not handle.
                 arrival: if record.arrival.is_nan() { -1.0 } else { record.arrival },
                 duration: record.duration,
                 unused: 0.0,
@@ -80,7 +80,7 @@ fn cells<'a>(
 }
 
 impl OnGpu {
-    /// Keeps maps from now on, where there is room for them and threads enough.
+    /// Keeps maps on the device from now on, if memory and threads suffice.
     pub fn keep_maps(&mut self, terrain: &Terrain, obstacles: &Obstacles, maps: &Maps) -> Result<(), GpuError> {
         let (numbers, places): (Vec<u32>, Vec<[f32; 2]>) = cells(terrain, obstacles, self.origin).unzip();
         let cells = match storage::<MapCell>(self.gpu(), "cells of maps", numbers.len()) {
@@ -96,33 +96,33 @@ impl OnGpu {
         Ok(())
     }
 
-    /// Whether it looks for the maps itself.
+    /// Whether the device samples the maps itself.
     pub fn keeps_maps(&self) -> bool {
         self.tasks.maps.is_some()
     }
 
-    /// Hands over what maps hold so far.
-    pub(super) fn begin_maps(&self, maps: &Maps) {
+    /// Uploads the maps.
+    pub(super) fn upload_maps(&self, maps: &Maps) {
         if let Some(kept) = &self.tasks.maps {
-            let cells = kept.begun(maps);
+            let cells = kept.packed(maps);
             self.gpu().queue.write_buffer(&self.tasks.memory.map_cells, 0, bytemuck::cast_slice(&cells));
         }
     }
 
-    /// Brings that back.
-    pub fn maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
+    /// Downloads the maps.
+    pub fn download_maps(&self, maps: &mut Maps) -> Result<(), GpuError> {
         let cells = &self.tasks.memory.map_cells;
         self.tasks.maps.as_ref().map_or(Ok(()), |kept| kept.download(self.gpu(), cells, maps))
     }
 
-    /// Says when to look, s, and when it was last done.
-    pub(super) fn upload_map_times(&mut self, looks: &[f64], looked: f64) {
-        let times: Vec<[f32; 2]> = looks.iter().map(|&time| to_pair(time - self.clock_began)).collect();
-        self.gpu().queue.write_buffer(&self.tasks.memory.looks, 0, bytemuck::cast_slice(&times));
+    /// Uploads the times of the next samples, s, and that of the last.
+    pub(super) fn upload_map_times(&mut self, map_times: &[f64], last_sample: f64) {
+        let times: Vec<[f32; 2]> = map_times.iter().map(|&time| to_pair(time - self.clock_began)).collect();
+        self.gpu().queue.write_buffer(&self.tasks.memory.map_times, 0, bytemuck::cast_slice(&times));
         let maps = self.tasks.maps.as_ref();
-        self.status.looks_told = times.len() as u32;
-        self.status.looks_taken = 0;
-        self.status.looked = to_pair(looked - self.clock_began);
+        self.status.map_times_uploaded = times.len() as u32;
+        self.status.map_times_taken = 0;
+        self.status.last_sample = to_pair(last_sample - self.clock_began);
         self.status.map_cells = maps.map_or(0, |maps| maps.count() as u32);
         self.status.wet_depth = maps.map_or(0.0, |maps| maps.wet_depth as f32);
     }

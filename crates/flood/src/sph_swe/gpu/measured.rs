@@ -15,8 +15,8 @@ use std::sync::atomic::AtomicBool;
 pub(in crate::sph_swe) struct Observers<'a> {
     pub frame_request: Option<FrameRequest<'a>>,
     pub observer: Option<&'a mut dyn AdvanceObserver>,
-    /// The time of the last row of gauges that was taken, or from which they are to be, s.
-    pub told: f64,
+    /// The time of the last row of gauges recorded, or of the start of the advance, s.
+    pub gauged_until: f64,
     /// Whether the model is to return.
     pub call_back: bool,
 }
@@ -27,8 +27,8 @@ impl<'a> Observers<'a> {
         Self { observer: Some(observer), ..Self::default() }
     }
 
-    /// From `now` until when to go on, s, and how many steps at most, before particles are to be shown, or `until`.
-    pub fn steps_to_look(&self, now: f64, until: f64) -> (f64, u64) {
+    /// The time until which to advance from `now`, s, and the most steps, before the next frame or `until`.
+    pub fn steps_to_frame(&self, now: f64, until: f64) -> (f64, u64) {
         match &self.frame_request {
             Some(frame_request) if frame_request.wanted > now => (until.min(frame_request.wanted), u64::MAX),
             Some(_) => (until, 1),
@@ -38,25 +38,26 @@ impl<'a> Observers<'a> {
 
     /// Whether rows of gauges are to be taken.
     pub fn measure(&self) -> bool {
-        self.observer.as_ref().is_some_and(|observer| observer.gauges_after(self.told).is_some())
+        self.observer.as_ref().is_some_and(|observer| observer.gauges_after(self.gauged_until).is_some())
     }
 
     /// The next rows of gauges up to a time, s.
     pub fn due(&self, until: f64) -> Vec<f64> {
         let Some(observer) = &self.observer else { return Vec::new() };
-        let times = std::iter::successors(observer.gauges_after(self.told), |time| observer.gauges_after(*time));
+        let times =
+            std::iter::successors(observer.gauges_after(self.gauged_until), |time| observer.gauges_after(*time));
         times.take_while(|time| *time <= until).take(MOST_ROWS).collect()
     }
 
-    pub fn tell(&mut self, time: f64, row: &[f64]) {
-        self.told = time;
+    pub fn record_gauges(&mut self, time: f64, row: &[f64]) {
+        self.gauged_until = time;
         if let Some(observer) = &mut self.observer {
             observer.gauges(time, row);
         }
     }
 
-    pub fn pass(&mut self, passed: ModelProgress) {
-        self.call_back = self.observer.as_mut().is_some_and(|observer| !observer.passed(passed));
+    pub fn report_progress(&mut self, progress: ModelProgress) {
+        self.call_back = self.observer.as_mut().is_some_and(|observer| !observer.progressed(progress));
     }
 }
 
@@ -72,13 +73,13 @@ impl SphSweFlood {
         if self.shown < time {
             return Ok(());
         }
-        // The next step ends later: these show the water as it stands here.
+        // The next step ends later: these rows are sampled from the water as it is now.
         while let Some(&due) = observers.due(time).first() {
             self.shown = due;
-            observers.tell(due, &self.row(&self.reading()));
+            observers.record_gauges(due, &self.row(&self.reading()));
         }
         self.shown = time;
-        observers.pass(ModelProgress {
+        observers.report_progress(ModelProgress {
             time,
             particles: self.state.particles.len(),
             particle_steps: self.state.particle_steps,
@@ -86,13 +87,13 @@ impl SphSweFlood {
         Ok(())
     }
 
-    /// Has the GPU look where gauges do.
+    /// Uploads the positions of the gauges.
     pub(super) fn measure_on_gpu(&mut self) -> Result<(), ModelError> {
         let places = self.gauge_places();
         self.on_gpu.as_mut().map_or(Ok(()), |on_gpu| on_gpu.measure(&places)).map_err(|error| failed(&error))
     }
 
-    /// What goes in the columns of what the GPU has read, after `done` since the state that is here.
+    /// The values of the columns from a reading of the GPU, after `done` since the host's state.
     pub(super) fn row_of_gpu(&self, read: &Reading, done: &BatchResult) -> Vec<f64> {
         let held = |[x, y]: [f64; 2]| self.surroundings.obstacles.hold([x, y]);
         let samples = self.gauge_places().into_iter().zip(&read.samples);

@@ -1,6 +1,6 @@
 //! Scheme `sph-swe` on a GPU, in single precision: the water stays there while it takes steps.
 //!
-//! The host says until when to go on and reads a few numbers after some steps. The state comes back when something looks at it. Each pass is a WGSL file beside its
+//! The host says until when to go on and reads a few numbers after some steps. The state is downloaded on demand. Each pass is a WGSL file beside its
 //! CPU code.
 
 mod advance;
@@ -34,15 +34,15 @@ use std::sync::OnceLock;
 use tasks::Tasks;
 use upload::{GpuInputs, Origin};
 
-/// Cells a particle, and at least: what the sort goes through beside the particles.
+/// Cells for each particle, and least number of cells: the sort processes them beside the particles.
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 
 /// More cells are no work for one thread each.
 const MOST_CELLS: usize = (MOST_GROUPS * THREADS) as usize;
 
-/// Births that the GPU can be told of at once.
-const MOST_BIRTHS: usize = 16_384;
+/// Spawn requests that are uploaded to the GPU at once, at most.
+const MAX_SPAWN_REQUESTS: usize = 16_384;
 
 /// Water on a GPU.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ pub(super) struct OnGpu {
     obstacles: GpuObstacles,
     /// The zone of each source.
     zones: Vec<u32>,
-    /// What others draw, where they do.
+    /// The particles for drawing, once they are drawn.
     seen: OnceLock<Seen>,
     parameters: Parameters,
     origin: Origin,
@@ -62,13 +62,13 @@ pub(super) struct OnGpu {
     room: usize,
     room_in_air: usize,
     most_cells: usize,
-    /// Steps in all, to lay the cells out at the same ones however often the host looks.
+    /// Steps in all: the cells are laid out at the same steps however often the host reads the state.
     steps: u64,
     /// What the device's times count from, s.
     clock_began: f64,
-    /// Whether the host has not the state that is here.
+    /// Whether the GPU's state is ahead of the host's.
     ahead: bool,
-    /// As it was when the water was handed over.
+    /// Totals of the obstacles when the water was uploaded.
     totals_before: ObstacleTotals,
 }
 

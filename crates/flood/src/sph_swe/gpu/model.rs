@@ -1,13 +1,13 @@
 //! A flood whose steps a GPU takes.
 
-use super::batch::{BatchRequest, BatchResult, Birth};
+use super::batch::{BatchRequest, BatchResult, SpawnRequest};
 use super::frame_request::FrameRequest;
 use super::gauges::MOST_ROWS;
-use super::maps::MOST_LOOKS;
+use super::maps::MAX_MAP_TIMES;
 use super::measured::Observers;
 use super::state::Water;
 use super::upload::GpuInputs;
-use super::{MOST_BIRTHS, OnGpu};
+use super::{MAX_SPAWN_REQUESTS, OnGpu};
 use crate::sph_swe::measured::Reading;
 use crate::sph_swe::particle::Particle;
 use crate::sph_swe::step::CELL_OVER_H;
@@ -18,7 +18,7 @@ use corpuscle_model::{AdvanceObserver, ExactSum, Glance, GpuModel, Model, ModelE
 use corpuscle_scene::{SmoothingForm, Table};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Births are looked for so many steps beyond the next look at the maps: the step that passes it may be longer than the last.
+/// Spawn requests are computed so many steps beyond the next sample of the maps: the step that passes it may be longer than the last.
 const LONGEST_AHEAD: f64 = 10.0;
 
 pub(in crate::sph_swe) fn failed(error: &GpuError) -> ModelError {
@@ -79,14 +79,14 @@ impl GpuModel for SphSweFlood {
 }
 
 impl SphSweFlood {
-    /// Makes room on a GPU for the particles that there are, and for more where water comes in, and hands the state over.
+    /// Allocates buffers on a GPU for all particles, and for more where there are inflows, and uploads the state.
     pub(in crate::sph_swe) fn open_gpu(&mut self, gpu: Gpu) -> Result<(), GpuError> {
         let (count, falling) = (self.state.particles.len(), self.state.falling.len());
-        let room = falling + if self.sources.is_empty() { count } else { 2 * count + MOST_BIRTHS };
+        let room = falling + if self.sources.is_empty() { count } else { 2 * count + MAX_SPAWN_REQUESTS };
         self.open_gpu_with(gpu, room)
     }
 
-    /// The same with room for so many particles.
+    /// The same with room for `room` particles.
     pub(super) fn open_gpu_with(&mut self, gpu: Gpu, room: usize) -> Result<(), GpuError> {
         let scheme = self.parameters();
         let inputs = GpuInputs {
@@ -103,16 +103,16 @@ impl SphSweFlood {
             spacing: self.spacing,
         };
         let mut on_gpu = OnGpu::new(gpu, room, &inputs)?;
-        if !self.looks_for_overtopping() {
+        if !self.detects_overtopping() {
             on_gpu.keep_maps(&self.surroundings.terrain, &self.surroundings.obstacles, &self.state.maps)?;
         }
         on_gpu.batches = on_gpu.batches.after(self.on_gpu.take().map(|before| before.batches));
         self.on_gpu = Some(on_gpu);
-        self.send_to_gpu()
+        self.upload_to_gpu()
     }
 
-    /// Hands the state to the GPU, and takes more room there if there is too little.
-    pub(in crate::sph_swe) fn send_to_gpu(&mut self) -> Result<(), GpuError> {
+    /// Uploads the state to the GPU, and enlarges the buffers there if they are too small.
+    pub(in crate::sph_swe) fn upload_to_gpu(&mut self) -> Result<(), GpuError> {
         let State { particles, on_obstacles, impulses, .. } = &self.state;
         let water = Water {
             particles,
@@ -139,19 +139,24 @@ impl SphSweFlood {
         }
     }
 
-    /// As many particles as can come from `now` on within `horizon` s, while sources owe `owed`.
-    fn most_births(&self, owed: &[ExactSum], now: f64, horizon: f64) -> usize {
-        let of_one =
-            |(source, owed): (&Source, &ExactSum)| owed.value() + source.discharge.integral(now, now + horizon);
-        let of_sources =
-            self.sources.iter().zip(owed).map(of_one).map(|come| (come / self.volume).max(0.0) as usize + 1);
+    /// Upper bound on the particles spawned within `horizon` s from `now` on; `residual_volume` is that of each source.
+    fn max_spawned(&self, residual_volume: &[ExactSum], now: f64, horizon: f64) -> usize {
+        let of_one = |(source, residual_volume): (&Source, &ExactSum)| {
+            residual_volume.value() + source.discharge.integral(now, now + horizon)
+        };
+        let of_sources = self
+            .sources
+            .iter()
+            .zip(residual_volume)
+            .map(of_one)
+            .map(|inflow| (inflow / self.volume).max(0.0) as usize + 1);
         of_sources.sum()
     }
 
-    /// Takes more room on the GPU where the water that is to come might not find any.
+    /// Enlarges the buffers on the GPU where particles of inflows might not find room.
     fn make_room(&mut self) -> Result<(), GpuError> {
         let Some(on_gpu) = &self.on_gpu else { return Ok(()) };
-        if on_gpu.lacks_room(|horizon| self.most_births(&self.state.owed, self.state.time, horizon)) {
+        if on_gpu.lacks_room(|horizon| self.max_spawned(&self.state.residual_volume, self.state.time, horizon)) {
             let gpu = on_gpu.gpu().clone();
             self.open_gpu(gpu)?;
         }
@@ -164,30 +169,30 @@ impl SphSweFlood {
         stop: &AtomicBool,
         observers: &mut Observers<'_>,
     ) -> Result<(), ModelError> {
-        observers.told = self.shown;
+        observers.gauged_until = self.shown;
         while self.state.time + self.state.time_step <= time {
             if stop.load(Ordering::Relaxed) || observers.call_back {
-                // Who has seen a row of gauges is not to see it again.
-                self.shown = observers.told.max(self.state.time);
+                // No row of gauges is recorded twice.
+                self.shown = observers.gauged_until.max(self.state.time);
                 return Ok(());
             }
             let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
-            let look = if keeps_maps { f64::INFINITY } else { self.state.next_look as f64 * self.map_period };
-            let before = (self.state.steps, observers.told);
+            let host_sample = if keeps_maps { f64::INFINITY } else { self.state.next_sample as f64 * self.map_period };
+            let before = (self.state.steps, observers.gauged_until);
             self.make_room().map_err(|error| failed(&error))?;
             if observers.measure() {
                 self.measure_on_gpu()?;
             }
-            let done = self.advance_to_look(time, look, stop, observers)?;
+            let done = self.advance_to_sample(time, host_sample, stop, observers)?;
             if done.broken {
                 return Err(self.breakdown());
             }
-            if self.state.time >= look {
-                self.look();
+            if self.state.time >= host_sample {
+                self.sample_maps();
             }
-            // To the GPU, which rounds more coarsely, a step that ends at that time may end after it.
+            // In the GPU's coarser rounding a step that ends at that time may end after it.
             let is_stopped = stop.load(Ordering::Relaxed) || observers.call_back;
-            if (self.state.steps, observers.told) == before && !is_stopped {
+            if (self.state.steps, observers.gauged_until) == before && !is_stopped {
                 break;
             }
         }
@@ -196,32 +201,44 @@ impl SphSweFlood {
         Ok(())
     }
 
-    /// Goes on to `time`, or to the first step that ends at `look` or after. What is here changes only when all of it has come back.
-    fn advance_to_look(
+    /// Advances to `time`, or to the first step that ends at `host_sample` or after. The host's state changes only when the download is complete.
+    fn advance_to_sample(
         &mut self,
         time: f64,
-        look: f64,
+        host_sample: f64,
         stop: &AtomicBool,
         observers: &mut Observers<'_>,
     ) -> Result<BatchResult, ModelError> {
         let mut done = BatchResult::none(self.state.time, self.state.time_step);
-        let mut owed = self.state.owed.clone();
-        let mut looked = self.state.maps.last();
-        while done.time + done.step <= time && done.time < look {
+        let mut residual_volume = self.state.residual_volume.clone();
+        let mut last_sample = self.state.maps.last();
+        while done.time + done.step <= time && done.time < host_sample {
             let now = done.time;
             self.show_to(observers, now, now + done.step).map_err(|error| failed(&error))?;
             if stop.load(Ordering::Relaxed) || observers.call_back {
                 break;
             }
             let longest = self.on_gpu.as_ref().map_or(0.0, OnGpu::longest_batch);
-            let births = self.births(&owed, now, time.min(look + LONGEST_AHEAD * done.step).min(now + longest));
-            let looks = self.looks(done.looks);
+            let spawn_requests = self.spawn_requests(
+                &residual_volume,
+                now,
+                time.min(host_sample + LONGEST_AHEAD * done.step).min(now + longest),
+            );
+            let map_times = self.map_times(done.map_samples);
             let due = observers.due(time);
             let until = if due.len() == MOST_ROWS { due[MOST_ROWS - 1] } else { time };
-            let (target, most) = observers.steps_to_look(now, until);
+            let (target, most) = observers.steps_to_frame(now, until);
             let Some(on_gpu) = &mut self.on_gpu else { break };
-            let look = looks.last().copied().unwrap_or(look);
-            let request = BatchRequest { until: target, most, look, looks: &looks, looked, births: &births, due: &due };
+            let host_sample = map_times.last().copied().unwrap_or(host_sample);
+            let request = BatchRequest {
+                until: target,
+                most,
+                host_sample,
+                map_times: &map_times,
+                last_sample,
+                spawn_requests: &spawn_requests,
+                due: &due,
+            };
             let (mut progress, mut readings) = on_gpu.advance(request).map_err(|error| failed(&error))?;
             let particles = on_gpu.particles();
             if !readings.iter().all(Reading::is_sound) {
@@ -229,22 +246,25 @@ impl SphSweFlood {
                 readings.clear();
             }
             for (due, reading) in due.iter().zip(&readings) {
-                observers.tell(*due, &self.row_of_gpu(reading, &done));
+                observers.record_gauges(*due, &self.row_of_gpu(reading, &done));
             }
-            for (source, owed) in self.sources.iter().zip(&mut owed) {
-                owed.add(source.discharge.integral(now, progress.time));
+            for (source, residual_volume) in self.sources.iter().zip(&mut residual_volume) {
+                residual_volume.add(source.discharge.integral(now, progress.time));
             }
-            births[..progress.born].iter().for_each(|birth| owed[birth.source].add(-self.volume));
-            if progress.looks > 0 {
-                looked = progress.looked;
+            spawn_requests[..progress.spawned]
+                .iter()
+                .for_each(|request| residual_volume[request.source].add(-self.volume));
+            if progress.map_samples > 0 {
+                last_sample = progress.last_sample;
             }
             done = done.and(progress);
             let particle_steps = self.state.particle_steps + done.particle_steps;
-            observers.pass(ModelProgress { time: done.time, particles, particle_steps });
-            let lacks_room = |on_gpu: &OnGpu| on_gpu.lacks_room(|horizon| self.most_births(&owed, now, horizon));
+            observers.report_progress(ModelProgress { time: done.time, particles, particle_steps });
+            let lacks_room =
+                |on_gpu: &OnGpu| on_gpu.lacks_room(|horizon| self.max_spawned(&residual_volume, now, horizon));
             let is_held = progress.steps == 0 && readings.is_empty();
             if is_held && target < until && !done.broken {
-                // To the GPU, which rounds more coarsely, a step that ends when somebody looks may end after it.
+                // In the GPU's coarser rounding a step that ends at the time of a frame may end after it.
                 self.show_to(observers, now, target.next_up()).map_err(|error| failed(&error))?;
             } else if is_held || done.broken || self.on_gpu.as_ref().is_some_and(lacks_room) {
                 break;
@@ -257,12 +277,12 @@ impl SphSweFlood {
                 return Err(error);
             }
             self.state.particles = particles;
-            self.take_over(&done, owed, looked).map_err(|error| failed(&error))?;
+            self.download_rest(&done, residual_volume, last_sample).map_err(|error| failed(&error))?;
         }
         Ok(done)
     }
 
-    /// The particles as the GPU has them.
+    /// The particles on the GPU.
     fn downloaded(&mut self) -> Result<Vec<Particle>, GpuError> {
         let mut particles = Vec::new();
         if let Some(on_gpu) = &mut self.on_gpu {
@@ -271,45 +291,50 @@ impl SphSweFlood {
         Ok(particles)
     }
 
-    /// Takes over what else the GPU has, after steps that did what `done` says: sources owe `owed`, and it was last
-    /// looked at the maps at `looked` s.
-    fn take_over(&mut self, done: &BatchResult, owed: Vec<ExactSum>, looked: f64) -> Result<(), GpuError> {
+    /// Downloads the rest of the GPU's state after the steps of `done`: `residual_volume` is that of each source, and the maps were last
+    /// sampled at `last_sample` s.
+    fn download_rest(
+        &mut self,
+        done: &BatchResult,
+        residual_volume: Vec<ExactSum>,
+        last_sample: f64,
+    ) -> Result<(), GpuError> {
         if let Some(on_gpu) = &self.on_gpu {
             let state = &mut self.state;
             on_gpu.falling(&mut state.falling)?;
-            if done.looks > 0 {
-                on_gpu.maps(&mut state.maps)?;
-                state.maps.set_last(looked);
-                state.next_look += done.looks as u64;
+            if done.map_samples > 0 {
+                on_gpu.download_maps(&mut state.maps)?;
+                state.maps.set_last(last_sample);
+                state.next_sample += done.map_samples as u64;
             }
             let pushed = on_gpu.on_obstacles()?;
             (state.on_obstacles, state.impulses, state.put_back) = (pushed.forces, pushed.impulses, pushed.put_back);
-            (self.state.owed, self.state.next_id) = (owed, done.next_id);
+            (self.state.residual_volume, self.state.next_id) = (residual_volume, done.next_id);
             self.book(done);
             self.arrange();
         }
         Ok(())
     }
 
-    /// The next times at which the GPU is to look at the maps, s, when so many have passed; none where the host does.
-    fn looks(&self, passed: usize) -> Vec<f64> {
-        let numbers = self.state.next_look + passed as u64..;
+    /// The next times at which the GPU samples the maps, s, after `taken` of them; none where the host does.
+    fn map_times(&self, taken: usize) -> Vec<f64> {
+        let numbers = self.state.next_sample + taken as u64..;
         let keeps_maps = self.on_gpu.as_ref().is_some_and(OnGpu::keeps_maps);
-        let count = if keeps_maps { MOST_LOOKS } else { 0 };
+        let count = if keeps_maps { MAX_MAP_TIMES } else { 0 };
         numbers.take(count).map(|number| number as f64 * self.map_period).collect()
     }
 
-    /// The particles that the sources bring from `now` to `until`, the earliest first.
-    fn births(&self, owed: &[ExactSum], now: f64, until: f64) -> Vec<Birth> {
-        let sources = self.sources.iter().zip(owed).enumerate();
-        let births = sources.flat_map(|(number, (source, owed))| {
-            let times = times(&source.discharge, owed.value(), self.volume, now, until);
-            times.into_iter().map(move |time| Birth { time, source: number, velocity: source.velocity })
+    /// The particles that the sources release from `now` to `until`, the earliest first.
+    fn spawn_requests(&self, residual_volume: &[ExactSum], now: f64, until: f64) -> Vec<SpawnRequest> {
+        let sources = self.sources.iter().zip(residual_volume).enumerate();
+        let spawn_requests = sources.flat_map(|(number, (source, residual_volume))| {
+            let times = times(&source.discharge, residual_volume.value(), self.volume, now, until);
+            times.into_iter().map(move |time| SpawnRequest { time, source: number, velocity: source.velocity })
         });
-        let mut births: Vec<Birth> = births.collect();
-        births.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
-        births.truncate(MOST_BIRTHS);
-        births
+        let mut spawn_requests: Vec<SpawnRequest> = spawn_requests.collect();
+        spawn_requests.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.source.cmp(&b.source)));
+        spawn_requests.truncate(MAX_SPAWN_REQUESTS);
+        spawn_requests
     }
 
     fn book(&mut self, progress: &BatchResult) {
@@ -327,17 +352,17 @@ impl SphSweFlood {
     }
 }
 
-/// The times from `from` to `until` at which a discharge has brought another `volume` m3, with `owed` m3 at the start.
-fn times(discharge: &Table, owed: f64, volume: f64, from: f64, until: f64) -> Vec<f64> {
-    let come = |time: f64| owed + discharge.integral(from, time);
-    let count = (come(until) / volume).floor().max(0.0) as usize;
+/// The times from `from` to `until` at which a discharge completes another `volume` m3, with `residual_volume` m3 at the start.
+fn times(discharge: &Table, residual_volume: f64, volume: f64, from: f64, until: f64) -> Vec<f64> {
+    let inflow = |time: f64| residual_volume + discharge.integral(from, time);
+    let count = (inflow(until) / volume).floor().max(0.0) as usize;
     let mut earliest = from;
     let time = |number: usize| {
         let (mut low, mut high) = (earliest, until);
         // To a billionth of the request.
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
-            *if come(middle) >= number as f64 * volume { &mut high } else { &mut low } = middle;
+            *if inflow(middle) >= number as f64 * volume { &mut high } else { &mut low } = middle;
         }
         earliest = low;
         high

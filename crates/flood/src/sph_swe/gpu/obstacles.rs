@@ -31,9 +31,9 @@ impl GpuObstacles {
     }
 
     /// As it is where nothing has pushed yet but for the last evaluation, whose forces are `forces`, m4/s2.
-    pub fn begun(&self, forces: &[[f64; 2]]) -> Vec<OnObstacle> {
-        let begun = self.rectangles.iter().zip(forces);
-        begun.map(|(rectangle, force)| OnObstacle { force: force.map(|along| along as f32), ..*rectangle }).collect()
+    pub fn packed(&self, forces: &[[f64; 2]]) -> Vec<OnObstacle> {
+        let packed = self.rectangles.iter().zip(forces);
+        packed.map(|(rectangle, force)| OnObstacle { force: force.map(|along| along as f32), ..*rectangle }).collect()
     }
 }
 
@@ -76,7 +76,7 @@ fn grid(low: [f64; 2], high: [f64; 2], size: f64, origin: Origin) -> Grid {
     Grid { corner: origin.relative(low), cell, per_cell, columns, rows, unused: [0.0; 2] }
 }
 
-/// The outlines as `sph_outlines.wgsl` tells.
+/// The outlines in the format of `sph_outlines.wgsl`.
 fn outlines(obstacles: &Obstacles, origin: Origin) -> (Grid, Vec<u32>) {
     let Some(cells) = obstacles.outlines_by_cell() else { return (Grid::default(), vec![0; 4]) };
     let OutlineCells { corner: low, size, columns, near } = cells;

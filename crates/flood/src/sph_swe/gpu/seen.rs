@@ -28,7 +28,7 @@ impl OnGpu {
     /// The particles as they are seen `since` s after the last step, `spacing` m apart, those in the air `drop_spacing` m, on the device.
     pub fn seen(&self, since: f64, spacing: f64, drop_spacing: f64) -> Result<DeviceParticles, GpuError> {
         if self.seen.get().is_none() {
-            // Nobody else can have been faster and done otherwise.
+            // Another thread that was faster has set the same value.
             let _ = self.seen.set(Seen::new(self)?);
         }
         let seen = self.seen.get().expect("it was set above");

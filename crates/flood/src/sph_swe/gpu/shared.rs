@@ -1,4 +1,4 @@
-//! What the host and the shaders of scheme `sph-swe` share: one declaration, from which the WGSL comes too.
+//! Constants and structures shared by the host and the shaders of scheme `sph-swe`: one declaration, from which the WGSL is generated too.
 
 use corpuscle_gpu::{AtomicI32, AtomicU32, DeviceParticles, Stepping};
 
@@ -9,13 +9,13 @@ corpuscle_gpu::declare! {
         pub const PI: f32 = std::f32::consts::PI;
         /// Normalisation of the cubic spline in two dimensions over h^2.
         pub const SIGMA: f32 = corpuscle_sph::kernel::CubicSpline::<2>::SIGMA as f32;
-        /// Positions drawn for each particle that comes from a source.
-        pub const TRIES: u32 = super::super::inflow::TRIES as u32;
+        /// Random positions for each spawned particle.
+        pub const SPAWN_CANDIDATES: u32 = super::super::inflow::SPAWN_CANDIDATES as u32;
         /// The first slot of [`Memory::groups`] for gauges: a thread for each particle and drop, a group for each row, a thread for each position and row.
         pub const GAUGES: u32 = 5;
         /// The slot for maps: a thread for each of their cells.
         pub const MAPS: u32 = 8;
-        /// Stands for no cell.
+        /// No cell.
         pub const NONE: u32 = u32::MAX;
         /// Water leaves over the side.
         pub const OPEN: u32 = 0;
@@ -39,9 +39,9 @@ corpuscle_gpu::declare! {
         pub const BEFORE_WALL: f32 = super::super::obstacles::BEFORE_WALL as f32;
         /// Most of a kernel that walls are taken to cover.
         pub const MOST_COVERED: f32 = super::super::obstacles::MOST_COVERED as f32;
-        /// How far beyond an edge particles go on, in smoothing lengths.
+        /// Distance beyond an edge at which particles are removed, in smoothing lengths.
         pub const BEYOND: f32 = super::super::exchange::BEYOND as f32;
-        /// The Froude number at which they do at least.
+        /// Lowest Froude number of a particle that has left.
         pub const SLOWEST_LEAVING: f32 = super::super::exchange::SLOWEST_LEAVING as f32;
         /// How far from an edge a particle has an image, in reaches.
         pub const IMAGE_MARGIN: f32 = super::super::arrangement::IMAGE_MARGIN as f32;
@@ -49,7 +49,7 @@ corpuscle_gpu::declare! {
         pub const SAMPLED: f32 = super::super::SAMPLED as f32;
         /// Share of a position's surroundings that water must cover for the position to be wet.
         pub const COVERED: f32 = super::super::sampler::COVERED as f32;
-        /// A position is at most this much deeper than the deepest particle near it.
+        /// Largest depth at a position over that of the deepest particle near it.
         pub const DEEPER: f32 = super::super::sampler::DEEPER as f32;
         /// The word of `rows` with the first word of the first row.
         pub const ROWS: u32 = 0;
@@ -71,7 +71,7 @@ corpuscle_gpu::declare! {
         pub const OF_PLACE: u32 = 3;
     }
     structs {
-        /// Square cells; no columns: there is nothing in them.
+        /// Square cells; empty where there are no columns.
         pub struct Grid {
             /// South-west corner, m.
             pub corner: [f32; 2],
@@ -83,15 +83,15 @@ corpuscle_gpu::declare! {
             pub columns: u32,
             /// Number of rows.
             pub rows: u32,
-            /// Fills up: structures in a uniform begin at a multiple of 16 bytes.
+            /// Padding: structures in a uniform begin at a multiple of 16 bytes.
             pub unused: [f32; 2],
         }
 
-        /// Numbers of the run. Positions are in m from the centre of the ground, heights above that of the ground there.
+        /// Parameters of the run. Positions are in m from the centre of the ground, heights above that of the ground there.
         pub struct Parameters {
             /// West, east, south and north side of the ground.
             pub bounds: [f32; 4],
-            /// What the sides do: [`OPEN`], [`WALL`], [`PERIODIC`].
+            /// Rules of the sides: [`OPEN`], [`WALL`], [`PERIODIC`].
             pub rules: [u32; 4],
             /// Key of the random numbers.
             pub key: [[u32; 4]; 2],
@@ -177,8 +177,8 @@ corpuscle_gpu::declare! {
             pub clock: [f32; 2],
             /// Time at which to halt, s.
             pub until: [f32; 2],
-            /// Time at which the host is to look at the maps, s: the step that passes it is the last.
-            pub look: [f32; 2],
+            /// Time at which the host samples the maps, s: the step that passes it is the last.
+            pub host_sample: [f32; 2],
             /// Water that went out, m3.
             pub outflow: [f32; 2],
             /// Water that came in, m3.
@@ -193,39 +193,39 @@ corpuscle_gpu::declare! {
             pub low: [f32; 2],
             /// North-east corner of the water.
             pub high: [f32; 2],
-            /// When it was last looked at the maps, s.
-            pub looked: [f32; 2],
-            /// For how long it had not been before that, s.
-            pub since_look: f32,
+            /// Time of the last sample of the maps, s.
+            pub last_sample: [f32; 2],
+            /// Time between that sample and the one before, s.
+            pub since_sample: f32,
             /// The next step, s.
             pub step: f32,
             /// Mean smoothing length, m.
             pub mean_h: f32,
-            /// Particles that are to come from sources.
-            pub births: u32,
-            /// How many of them have.
-            pub born: u32,
+            /// Spawn requests uploaded.
+            pub spawn_requests: u32,
+            /// Number of them done.
+            pub spawned: u32,
             /// The identity of the next new particle.
             pub next_id: u32,
             /// Drops in the air.
             pub falling: u32,
-            /// Times of rows of gauges that the host has told of.
-            pub rows_told: u32,
-            /// Rows that were taken before this step.
+            /// Times of rows of gauges uploaded.
+            pub rows_uploaded: u32,
+            /// Rows that were filled before this step.
             pub rows_taken: u32,
             /// Rows that are due in it.
             pub rows_due: u32,
-            /// Positions that each row looks at.
+            /// Positions in each row.
             pub gauge_places: u32,
-            /// Times to look at the maps that the host has told of.
-            pub looks_told: u32,
-            /// How many of them have passed.
-            pub looks_taken: u32,
+            /// Sample times of the maps uploaded.
+            pub map_times_uploaded: u32,
+            /// Number of them taken.
+            pub map_times_taken: u32,
             /// Cells of the maps.
             pub map_cells: u32,
             /// Depth above which one is wet, m.
             pub wet_depth: f32,
-            /// What the clock counts from, s.
+            /// Time at which the clock is 0, s.
             pub clock_began: f32,
         }
 
@@ -284,7 +284,7 @@ corpuscle_gpu::declare! {
         }
 
         /// A particle that is to come.
-        pub struct Birth {
+        pub struct SpawnRequest {
             /// m/s.
             pub velocity: [f32; 2],
             /// By the clock, s.
@@ -359,7 +359,7 @@ corpuscle_gpu::declare! {
             pub unused: f32,
         }
 
-        /// How particles are seen.
+        /// Parameters of drawing.
         pub struct Shown {
             /// Time from the last step to the time shown, s.
             pub since: f32,
@@ -392,9 +392,9 @@ corpuscle_gpu::declare! {
         storage partials: [Partial],
         /// Particles in each cell.
         storage counts: [AtomicU32],
-        /// Cell of each particle, and its number among those there.
+        /// Cell of each particle, and its index within the cell.
         storage places: [[u32; 2]],
-        /// By which particles of a cell are put in order.
+        /// Sort key of each particle within its cell.
         storage keys: [u32],
         /// The first particle of each cell.
         storage start: [u32],
@@ -404,7 +404,7 @@ corpuscle_gpu::declare! {
         storage own_reaches: [f32],
         /// The longest that touches each cell from its own row, m.
         storage reaches_along_rows: [f32],
-        /// How far a particle in each cell must look to find all that reach it, m.
+        /// Search radius in each cell that finds all particles whose support covers a particle there, m.
         storage reaches: [f32],
         /// Numbers of groups: see `sph_finish.wgsl`.
         storage groups: [u32],
@@ -418,29 +418,29 @@ corpuscle_gpu::declare! {
         storage sites: [WallSite],
         /// Outlines of obstacles: see `sph_outlines.wgsl`.
         storage outlines: [u32],
-        /// Impulses of particles put back, east and north for each obstacle, in [`KNOCK`]; and last how many there were.
+        /// Impulses of particles put back, east and north for each obstacle, in units of [`KNOCK`]; and last the number of particles put back.
         storage knocks: [AtomicI32],
         /// Obstacles.
         storage obstacles: [OnObstacle],
-        /// Zones of sources: see `sph_births.wgsl`.
+        /// Zones of sources: see `sph_spawn.wgsl`.
         storage zones: [u32],
-        /// Particles that are to come, the earliest first.
-        storage births: [Birth],
+        /// Spawn requests, the earliest first.
+        storage spawn_requests: [SpawnRequest],
         /// Water in the air.
         storage drops: [Drop],
         /// Times at which rows of gauges are due, s.
         storage due: [[f32; 2]],
-        /// Times at which to look at the maps, s.
-        storage looks: [[f32; 2]],
+        /// Times at which the maps are sampled, s.
+        storage map_times: [[f32; 2]],
         /// Sums of the water of groups, m3.
         storage volumes: [f32],
         /// Rows of gauges: see `sph_rows.wgsl`.
         storage rows: [u32],
         /// Cells of the maps that may become wet.
         storage map_cells: [MapCell],
-        /// How particles are seen.
+        /// Parameters of drawing.
         uniform shown: Shown,
-        /// Particles as they are seen.
+        /// Particles for drawing.
         storage drawn: DeviceParticles,
     }
 }

@@ -1,8 +1,8 @@
-// Sums up a step over the groups, books it, and decides whether there is another step before the time the host waits for.
+// Sums a step over the groups, books it, and decides whether another step ends before the time until which the batch runs.
 //
 // `groups` has slots of three numbers: a thread for each particle, one for each cell, a group for each block of 1024 cells, one group, a thread for each drop in
-// the air; where a row of gauges is due, a thread for each particle and drop, a group for each row, a thread for each position and row; where it is time to look
-// at the maps, a thread for each of their cells.
+// the air; where a row of gauges is due, a thread for each particle and drop, a group for each row, a thread for each position and row; where it is time to sample
+// the maps, a thread for each of their cells.
 #import sph_common
 #import sph_rows
 #import group_reduction
@@ -46,12 +46,12 @@ fn book(all: Partial) {
 }
 
 fn decide() {
-    // Steps are of one length, whatever comes of the particles.
+    // The length of steps does not depend on the particles: they are checked here.
     let is_sound = is_finite(status.mean_h) && is_finite(status.outer_force.x) && is_finite(status.outer_force.y);
     let has_reach = status.particles == 0u || status.mean_h > 0.0;
     if !is_sound || !has_reach {
         status.halted = BROKEN;
-    } else if difference(status.until, status.clock) < status.step || difference(status.look, status.clock) <= 0.0 {
+    } else if difference(status.until, status.clock) < status.step || difference(status.host_sample, status.clock) <= 0.0 {
         status.halted = ARRIVED;
     } else {
         status.halted = GOING;
@@ -67,7 +67,7 @@ fn decide() {
     for (var slot = 0u; slot < GAUGES; slot++) {
         order_groups(slot, select(0u, counts[slot], is_going), 1u);
     }
-    take_gauges();
+    order_gauges();
 }
 
 fn order_groups(slot: u32, along: u32, rows: u32) {
@@ -76,12 +76,12 @@ fn order_groups(slot: u32, along: u32, rows: u32) {
     groups[3u * slot + 2u] = 1u;
 }
 
-// Finds which rows of gauges show the water as it stands now, and has them taken: those due before the next step would end.
-fn take_gauges() {
+// Orders the rows of gauges that are due before the next step would end.
+fn order_gauges() {
     status.rows_taken += status.rows_due;
     var rows_due = 0u;
     if status.halted != BROKEN {
-        for (var k = status.rows_taken; k < status.rows_told && difference(due[k], status.clock) < status.step; k++) {
+        for (var k = status.rows_taken; k < status.rows_uploaded && difference(due[k], status.clock) < status.step; k++) {
             rows_due += 1u;
         }
     }
@@ -91,22 +91,22 @@ fn take_gauges() {
     order_groups(GAUGES + 2u, select(0u, (status.gauge_places + 63u) / 64u, rows_due > 0u), rows_due);
 }
 
-// Has it looked at the maps where the step has passed a time to.
-fn take_looks() {
-    var taken = status.looks_taken;
-    while taken < status.looks_told && difference(looks[taken], status.clock) <= 0.0 {
+// Orders a sample of the maps where the step has passed the time of one.
+fn order_map_sample() {
+    var taken = status.map_times_taken;
+    while taken < status.map_times_uploaded && difference(map_times[taken], status.clock) <= 0.0 {
         taken += 1u;
     }
-    let is_time = taken > status.looks_taken;
+    let is_time = taken > status.map_times_taken;
     if is_time {
-        status.looks_taken = taken;
-        status.since_look = difference(status.clock, status.looked);
-        status.looked = status.clock;
+        status.map_times_taken = taken;
+        status.since_sample = difference(status.clock, status.last_sample);
+        status.last_sample = status.clock;
     }
     order_groups(MAPS, select(0u, (status.map_cells + GROUP - 1u) / GROUP, is_time), 1u);
 }
 
-// Nothing is due any more.
+// Orders neither gauges nor maps.
 fn rest() {
     for (var slot = GAUGES; slot < MAPS; slot++) {
         order_groups(slot, 0u, 0u);
@@ -119,7 +119,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
     if status.halted == GOING {
         for (var group = thread; group < groups[0]; group += GROUP) {
             own = combine(own, partials[group]);
-            // Births may call for more groups than there were in the drift.
+            // Spawned particles may need more groups than the drift had.
             partials[group].knocked = 0.0;
         }
     }
@@ -128,7 +128,7 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         order_groups(MAPS, 0u, 1u);
         if status.halted == GOING {
             book(all);
-            take_looks();
+            order_map_sample();
         }
         if status.halted == GOING || status.halted == BATCH_START {
             decide();

@@ -1,4 +1,4 @@
-//! What is handed to the GPU, and what comes back when something looks.
+//! Upload of the state to the GPU, and its download on demand.
 
 use super::super::maps::Maps;
 use super::shared::{Drop, FALLS, GONE, KNOCK, OnObstacle, Packed, Status};
@@ -8,7 +8,7 @@ use crate::sph_swe::particle::Particle;
 use corpuscle_gpu::{GpuError, from_pair, read};
 use corpuscle_terrain::Terrain;
 
-/// Water to be handed over.
+/// Water to be uploaded.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Water<'a> {
     pub particles: &'a [Particle],
@@ -45,14 +45,14 @@ impl OnGpu {
         let memory = &self.tasks.memory;
         let gpu = self.gpu().clone();
         let write = |buffer, bytes: &[u8]| gpu.queue.write_buffer(buffer, 0, bytes);
-        write(&memory.obstacles, bytemuck::cast_slice(&self.obstacles.begun(on_obstacles)));
+        write(&memory.obstacles, bytemuck::cast_slice(&self.obstacles.packed(on_obstacles)));
         write(&memory.knocks, bytemuck::cast_slice(&vec![0_i32; 2 * self.obstacles.count + 1]));
         let mut drops: Vec<Drop> = falling.iter().map(|drop| self.origin.drop(drop)).collect();
         drops.resize(self.room_in_air, Drop { state: GONE, ..Drop::default() });
         write(&memory.drops, bytemuck::cast_slice(&drops));
         let sent: Vec<Packed> = particles.iter().map(|particle| self.origin.packed(particle)).collect();
         write(&memory.particles, bytemuck::cast_slice(&sent));
-        self.begin_maps(water.maps);
+        self.upload_maps(water.maps);
         self.totals_before = ObstacleTotals { forces: Vec::new(), impulses: impulses.to_vec(), put_back };
         let corners = |pick: fn(f32, f32) -> f32, none: f32| {
             [0, 1].map(|axis| sent.iter().map(|particle| particle.place_and_velocity[axis]).fold(none, pick))
@@ -98,7 +98,7 @@ impl OnGpu {
         Ok(())
     }
 
-    /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the water was handed over, m4/s.
+    /// The sum over time of the force on an obstacle along an axis, of which the GPU has counted `sum` and `knocks` since the upload of the water, m4/s.
     pub(super) fn impulse(&self, number: usize, axis: usize, sum: f64, knocks: i32) -> f64 {
         let knock = f64::from(KNOCK) * f64::from(self.parameters.new_volume);
         self.totals_before.impulses[number][axis] + sum + knock * f64::from(knocks)

@@ -36,7 +36,7 @@ fn pieces_with(kernel: &str) -> Vec<(&str, &str)> {
 pub(super) type Shader = (&'static str, &'static str);
 
 const DRIFT: Shader = ("sph_drift", include_str!("../sph_drift.wgsl"));
-const BIRTHS: Shader = ("sph_births", include_str!("../sph_births.wgsl"));
+const SPAWN: Shader = ("sph_spawn", include_str!("../sph_spawn.wgsl"));
 const LAND: Shader = ("sph_land", include_str!("../sph_land.wgsl"));
 const LANDED: Shader = ("sph_landed", include_str!("../sph_landed.wgsl"));
 const LEAVE: Shader = ("sph_leave", include_str!("../sph_leave.wgsl"));
@@ -63,7 +63,7 @@ pub(super) struct Tasks {
     sort: CellSort,
     drift: Task,
     /// Where water comes in.
-    births: Option<Task>,
+    spawn: Option<Task>,
     /// Where water falls: what falls, and what of it has landed.
     land: Option<[Task; 2]>,
     leave: Task,
@@ -76,9 +76,9 @@ pub(super) struct Tasks {
     obstacles: u32,
     forces: Task,
     finish: Task,
-    /// Where gauges are asked for.
+    /// Where the scene has gauges.
     pub gauges: Option<Gauges>,
-    /// Where it keeps the maps.
+    /// Where the GPU keeps the maps.
     pub maps: Option<GpuMaps>,
 }
 
@@ -96,7 +96,7 @@ impl Tasks {
         let obstacles = inputs.surroundings.obstacles.names.len() as u32;
         Self {
             drift: task(DRIFT),
-            births: (!inputs.sources.is_empty()).then(|| task(BIRTHS)),
+            spawn: (!inputs.sources.is_empty()).then(|| task(SPAWN)),
             land: (inputs.falling > 0).then(|| [LAND, LANDED].map(task)),
             leave: task(LEAVE),
             reorder: task(REORDER),
@@ -121,11 +121,11 @@ impl Tasks {
         }
     }
 
-    /// Decides whether to go on, reads the gauges where a row is due, and looks at the maps where it is time to.
+    /// Decides whether to go on, reads the gauges where a row is due, and samples the maps where it is time to.
     fn end_step(&self, pass: &mut Pass<'_>) {
         self.finish.run(pass, 1);
         let groups = &self.memory.groups;
-        self.maps.iter().for_each(|maps| maps.look(pass, groups));
+        self.maps.iter().for_each(|maps| maps.sample(pass, groups));
         self.gauges.iter().for_each(|gauges| gauges.take(pass, groups));
     }
 
@@ -146,7 +146,7 @@ impl Tasks {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Sorts what has counted itself, and finds how far each cell must look.
+    /// Sorts the particles that were counted, and finds the search radius of each cell.
     fn sort(&self, pass: &mut Pass<'_>) {
         let groups = &self.memory.groups;
         self.sort.sort(pass, groups, SLOTS);
@@ -158,8 +158,8 @@ impl Tasks {
     fn step(&self, pass: &mut Pass<'_>) {
         let groups = &self.memory.groups;
         self.drift.dispatch_indirect(pass, groups, SLOTS.particles);
-        if let Some(births) = &self.births {
-            births.run(pass, 1);
+        if let Some(spawn) = &self.spawn {
+            spawn.run(pass, 1);
         }
         if let Some([land, landed]) = &self.land {
             land.dispatch_indirect(pass, groups, IN_AIR);
@@ -190,7 +190,7 @@ mod tests {
     fn every_shader_is_valid_and_within_the_floor() {
         let passes = [
             DRIFT,
-            BIRTHS,
+            SPAWN,
             LAND,
             LANDED,
             LEAVE,

@@ -1,4 +1,4 @@
-//! Room on the GPU, and what it is told and keeps.
+//! Tests of buffer sizes, and of requests and maps on the GPU.
 
 use crate::sph_swe::{Particle, SphSweFlood};
 use corpuscle_gpu::require_gpu;
@@ -37,12 +37,12 @@ fn opened(scene: &str) -> SphSweFlood {
 }
 
 #[test]
-fn more_room_is_taken_where_births_might_find_none() {
+fn room_grows_where_spawned_particles_might_find_none() {
     let Some(gpu) = require_gpu("room on the GPU") else { return };
     let text = format!("{POOL}inflow = [{{ name = 'pipe', at = [20, 6], discharge_m3_per_s = 10 }}]\n");
     let mut pools = [(); 2].map(|()| opened(&text));
     let count = pools[0].state.particles.len();
-    let scarce = count + 100; // Enough until the next look at it.
+    let scarce = count + 100; // Enough until the next check.
     pools[0].open_gpu_with(gpu.clone(), scarce).unwrap();
     pools[1].use_gpu(gpu).unwrap();
     for pool in &mut pools {
@@ -51,12 +51,12 @@ fn more_room_is_taken_where_births_might_find_none() {
     let [with_more, plain] = &pools;
     let room = with_more.on_gpu.as_ref().unwrap().room();
     assert!(room > scarce, "room for {scarce} for {room}");
-    let born = with_more.state.next_id as usize - count;
-    assert!(born > 250 && with_more.state.next_id == plain.state.next_id, "{born} came to {count}");
+    let spawned = with_more.state.next_id as usize - count;
+    assert!(spawned > 250 && with_more.state.next_id == plain.state.next_id, "{spawned} spawned beside {count}");
     assert!((with_more.stored() / plain.stored() - 1.0).abs() < 1e-6);
 }
 
-/// Water that falls dry and comes back, an obstacle, and looks about as often as steps, and less often.
+/// Water that falls dry and comes back, an obstacle, and map samples about as often as steps, and less often.
 #[test]
 fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
     let Some(gpu) = require_gpu("maps on the GPU") else { return };
@@ -71,7 +71,7 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
             if !by_gpu {
                 on_gpu.forget_maps();
             }
-            // Some steps first, so that what maps hold is handed over.
+            // Some steps first, so that the maps are not empty when they are uploaded.
             for time in [1.3, 4.003] {
                 pool.advance_to(time, &AtomicBool::new(false)).unwrap();
                 let state = pool.save();
@@ -80,7 +80,7 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
             pool
         });
         assert!(by_gpu.state.particles == by_host.state.particles);
-        assert_eq!(by_gpu.state.next_look, by_host.state.next_look);
+        assert_eq!(by_gpu.state.next_sample, by_host.state.next_sample);
         assert!((by_gpu.state.maps.last() - by_host.state.maps.last()).abs() < 1e-6);
         for (one, other) in by_gpu.maps().iter().zip(&by_host.maps()) {
             let pairs = || one.values.iter().zip(&other.values);
@@ -88,13 +88,13 @@ fn maps_that_the_gpu_keeps_are_those_that_the_host_makes() {
             assert!(in_one == 0, "{}, each {period} s: {in_one} cells in one only", one.name);
             let wet = pairs().filter(|(one, _)| !one.is_nan()).count();
             let off = pairs().filter(|(one, other)| (*one - *other).abs() > 2e-5).count();
-            // A cell that falls dry just when it is looked at may do so for the one only.
+            // A cell that falls dry just when it is sampled may do so on one device only.
             assert!(wet > 100 && off <= wet / 100, "{}, each {period} s: {off} of {wet} cells", one.name);
         }
     }
 }
 
-/// What the GPU has of a particle is no number: the water here stays that of before, and the error names the place.
+/// A value of a particle on the GPU is not finite: the host's water stays unchanged, and the error names the position.
 #[test]
 fn a_value_that_is_no_number_does_not_come_back() {
     let Some(gpu) = require_gpu("a value that is no number on the GPU") else { return };
@@ -105,7 +105,7 @@ fn a_value_that_is_no_number_does_not_come_back() {
         pool.advance_to(0.2, &AtomicBool::new(false)).unwrap();
         let before = pool.state.particles.clone();
         *value(&mut pool.state.particles[100]) = f64::NAN;
-        pool.send_to_gpu().unwrap();
+        pool.upload_to_gpu().unwrap();
         pool.state.particles = before.clone();
         let error = pool.advance_to(0.4, &AtomicBool::new(false)).unwrap_err();
         let text = error.to_string();

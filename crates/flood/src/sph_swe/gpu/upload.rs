@@ -1,11 +1,11 @@
 //! Uploads of the data of a run.
 
-use super::MOST_BIRTHS;
+use super::MAX_SPAWN_REQUESTS;
 use super::gauges::MOST_ROWS;
-use super::maps::MOST_LOOKS;
+use super::maps::MAX_MAP_TIMES;
 use super::obstacles::GpuObstacles;
 use super::shared::{
-    Birth, Column, Drop, MapCell, Memory, OPEN, PERIODIC, Packed, Parameters, Partial, Shown, Status, WALL,
+    Column, Drop, MapCell, Memory, OPEN, PERIODIC, Packed, Parameters, Partial, Shown, SpawnRequest, Status, WALL,
 };
 use super::{ground, zones};
 use crate::friction::Roughness;
@@ -53,7 +53,7 @@ pub(super) struct Uploaded {
 }
 
 impl GpuInputs<'_> {
-    /// Numbers of the run: all but the cells of the particles, which change, and what ground and obstacles tell.
+    /// Parameters of the run: all but the cells of the particles, which change, and those of ground and obstacles.
     fn parameters(&self, origin: Origin) -> Parameters {
         let &GpuInputs { surroundings, scheme, .. } = self;
         let bounds = surroundings.edges.bounds;
@@ -132,10 +132,10 @@ impl GpuInputs<'_> {
             knocks: storage::<i32>(gpu, "knocks", 2 * obstacles.count + 1)?,
             obstacles: filled(gpu, "forces on obstacles", &obstacles.rectangles)?,
             zones: filled(gpu, "zones of sources", &words)?,
-            births: storage::<Birth>(gpu, "particles to come", MOST_BIRTHS)?,
+            spawn_requests: storage::<SpawnRequest>(gpu, "spawn requests", MAX_SPAWN_REQUESTS)?,
             drops: storage::<Drop>(gpu, "water in the air", self.falling)?,
             due: storage::<[f32; 2]>(gpu, "times of gauges", MOST_ROWS)?,
-            looks: storage::<[f32; 2]>(gpu, "times of looks", MOST_LOOKS)?,
+            map_times: storage::<[f32; 2]>(gpu, "sample times of maps", MAX_MAP_TIMES)?,
             volumes: storage::<f32>(gpu, "sums of water", groups)?,
             rows: storage::<u32>(gpu, "rows of gauges", 0)?,
             map_cells: storage::<MapCell>(gpu, "cells of maps", 0)?,

@@ -4,7 +4,7 @@ use super::shared::{BAND, DISC};
 use super::upload::Origin;
 use crate::zone::{Source, Zone};
 
-/// The words of all zones, and the first word of that of each source: see `sph_births.wgsl`.
+/// The words of all zones, and the first word of that of each source: see `sph_spawn.wgsl`.
 pub(super) fn words(sources: &[Source], origin: Origin) -> (Vec<u32>, Vec<u32>) {
     let mut words = Vec::new();
     let firsts = sources.iter().map(|source| add(&mut words, &source.zone, origin)).collect();

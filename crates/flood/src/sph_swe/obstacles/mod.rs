@@ -35,7 +35,7 @@ pub(crate) struct Coverage {
     pub slope_in_h: f64,
 }
 
-/// Most of a kernel that walls are taken to cover: in a nook little is left to tell the depth by.
+/// Largest part of a kernel that walls are taken to cover: in a nook little is left from which to estimate the depth.
 pub(super) const MOST_COVERED: f64 = 0.8;
 
 /// A particle that has come into an obstacle is put this far before its wall, over the particles' distance.
@@ -117,8 +117,8 @@ impl Obstacles {
     }
 
     /// Puts particles that have come inside back to the wall; what of their velocity led in is taken off. Gives what that adds to
-    /// each obstacle's impulse, m4/s, in `impulses`, and tells how many.
-    pub fn keep_out(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) -> usize {
+    /// each obstacle's impulse, m4/s, in `impulses`, and returns their number.
+    pub fn resolve_penetration(&self, particles: &mut [Particle], spacing: f64, impulses: &mut [[f64; 2]]) -> usize {
         let put_back = |particle: &mut Particle| {
             let place = [particle.x, particle.y];
             if particle.outside.is_some() || !self.may_reach(place) {

@@ -4,8 +4,8 @@ use crate::obstacles::Outlines;
 use corpuscle_sph::Cells;
 use corpuscle_sph::kernel::{Kernel, SmoothingKernel};
 
-/// Places across a cell that are looked at to find how much of it is inside.
-const ACROSS: usize = 4;
+/// Samples along each side of a cell that find how much of it is inside.
+const CELL_SAMPLES_PER_SIDE: usize = 4;
 
 /// A boundary particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,10 +112,17 @@ impl Sites {
 /// What of a cell of the lattice is inside an outline; none where nothing is.
 fn site(outlines: &Outlines, number: usize, corner: [f64; 2], pitch: f64) -> Option<Site> {
     let outline = &outlines.all[number];
-    let step = pitch / ACROSS as f64;
-    let place =
-        |k: usize| [corner[0] + ((k % ACROSS) as f64 + 0.5) * step, corner[1] + ((k / ACROSS) as f64 + 0.5) * step];
-    let inside: Vec<[f64; 2]> = (0..ACROSS * ACROSS).map(place).filter(|&place| outline.contains(place)).collect();
+    let step = pitch / CELL_SAMPLES_PER_SIDE as f64;
+    let place = |k: usize| {
+        [
+            corner[0] + ((k % CELL_SAMPLES_PER_SIDE) as f64 + 0.5) * step,
+            corner[1] + ((k / CELL_SAMPLES_PER_SIDE) as f64 + 0.5) * step,
+        ]
+    };
+    let inside: Vec<[f64; 2]> = (0..CELL_SAMPLES_PER_SIDE * CELL_SAMPLES_PER_SIDE)
+        .map(place)
+        .filter(|&place| outline.contains(place))
+        .collect();
     let count = inside.len() as f64;
     let [x, y] = [0, 1].map(|axis| inside.iter().map(|place| place[axis]).sum::<f64>() / count);
     (!inside.is_empty()).then(|| Site {

@@ -54,7 +54,7 @@ impl Density {
     pub fn next_h(&self, h: f64, eta: f64) -> f64 {
         let residual = self.number * h * h - eta * eta;
         let slope = self.slope_in_h * h * h + 2.0 * self.number * h;
-        // Alone, a particle's n falls as 1/h^2 and the slope vanishes: it then looks as far as it may.
+        // Without neighbours a particle's n falls as 1/h^2 and the slope vanishes: its smoothing length is then the largest.
         let change = if slope > 1e-6 * self.number * h { -residual / slope } else { h };
         h + change.clamp(-0.2 * h, 0.2 * h)
     }

@@ -18,17 +18,17 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 /// Rounds of relaxation.
-const ROUNDS: usize = 60;
+const RELAXATION_ROUNDS: usize = 60;
 
 /// Smoothing length of the kernel by which particles are arranged over their distance, and the largest over that in water of the depth that goes with their
 /// volume.
 pub const ETA: f64 = 1.25;
-const LARGEST: f64 = 6.0;
+const MAX_H_RATIO: f64 = 6.0;
 
 /// Longest way in one round, in particle distances.
 const LONGEST_SHIFT: f64 = 0.1;
 
-/// Largest volume of a particle over the wanted one. In a pocket with too few neighbours the exact depth would take more,
+/// Largest volume of a particle over the required one. In a pocket with too few neighbours the exact depth would take more,
 /// and such a particle would stand out wherever it goes.
 const LARGEST_VOLUME: f64 = 2.0;
 
@@ -55,7 +55,7 @@ impl Body<'_> {
         let mut particles = self.scatter(edges, seed);
         let mut arrangement = Arrangement::default();
         let mut spare = Vec::new();
-        for _ in 0..ROUNDS {
+        for _ in 0..RELAXATION_ROUNDS {
             self.arrange(&mut arrangement, &mut particles, &mut spare, edges);
             self.relax(&arrangement, &mut particles, edges);
         }
@@ -70,7 +70,7 @@ impl Body<'_> {
 
     /// Largest smoothing length, m.
     fn largest_h(&self) -> f64 {
-        LARGEST * ETA * self.spacing
+        MAX_H_RATIO * ETA * self.spacing
     }
 
     fn smoothing(&self, depth: f64) -> f64 {
@@ -144,7 +144,7 @@ impl Body<'_> {
         lists.search(cells, [x, y], &reach, &mut vec![(); x.len()], &());
     }
 
-    /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where no depth is wanted.
+    /// Moves each particle away from where its neighbours crowd, along -sum V grad W, but not to where the required depth is 0.
     fn relax(&self, arrangement: &Arrangement, particles: &mut [Particle], edges: &EdgeRules) {
         let Arrangement { x, y, reach_squared, real, lists, .. } = arrangement;
         // The area that stands at each place, by the depth wanted there: equal in an even arrangement.

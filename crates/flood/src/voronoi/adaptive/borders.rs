@@ -13,7 +13,7 @@ pub(super) struct Border {
     /// Whether `beyond` is a level, of which the highest counts, and not a mean.
     pub takes_highest: bool,
     pub ends: [[f64; 2]; 2],
-    /// What is known of the water beyond it: see `Boundaries::beyond_at_start`.
+    /// State of the water beyond it: see `Boundaries::beyond_at_start`.
     pub beyond: f64,
 }
 

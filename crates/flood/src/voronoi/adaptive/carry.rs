@@ -1,6 +1,6 @@
 //! Water, and what is known of it, from old cells to new ones.
 //!
-//! Each old cell hands its water out to its pieces. In a lake they have one level; in a sheet on a slope one depth; in between some of each, and all
+//! The water of each old cell is distributed to its pieces. In a lake they have one level; in a sheet on a slope one depth; in between some of each, and all
 //! follow the slopes of the water as far as the cells beside it go. Volume and momentum of the pieces are those of the cell.
 
 use super::super::bed::Bed;
@@ -161,7 +161,7 @@ fn common_level(pieces: &[Piece], raised: &[f64], volume: f64) -> f64 {
     level
 }
 
-/// The momentum over density, m4/s, that each piece has of that of a cell: its volume times the velocity there, all changed alike so that the sum is kept.
+/// The momentum over density, m4/s, of each piece of a cell: its volume times the velocity there, plus the same change of velocity for all, so that the sum is conserved.
 fn carried_along(pieces: &[Piece], within: Option<&Within>, volumes: &[f64], column: &Column) -> Vec<[f64; 2]> {
     let Some(within) = within else { return vec![[0.0; 2]; pieces.len()] };
     let velocity = |piece: &Piece| [0, 1].map(|axis| within.value(EAST + axis, piece.from_centroid));

@@ -1,12 +1,12 @@
 //! Cells that become finer and coarser while the water moves.
 //!
-//! Now and then the water is looked at ([`wanted`]). Where cells should be finer than they are, or many could be coarser, all are made anew, and the
+//! Every some steps the required resolution is evaluated ([`refinement`]). Where cells must be finer than they are, or many could be coarser, all are remade, and the
 //! water and what is known of each cell is carried over ([`carry`]) by what old and new cells have in common ([`overlap`]).
 
 mod borders;
 mod carry;
 mod overlap;
-mod wanted;
+mod refinement;
 
 use super::friction::Slowing;
 use super::local::{HIGHEST, Local};
@@ -21,32 +21,32 @@ use borders::Border;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Adaptive as Settings, TimeSteps};
 
-/// What makes cells follow the water.
+/// Adaptive mesh refinement: its settings and working memory.
 pub(super) struct Adaptive {
     settings: Settings,
     /// How often the spacing is halved at most.
     finest: u8,
     /// How often it is halved everywhere in each block by `[[flood.finer]]`; empty where there is none.
     of_parts: Vec<u8>,
-    /// What each cell asks for: see [`wanted::Asked`].
-    asked: Vec<wanted::Asked>,
+    /// The levels required by each cell.
+    required: Vec<refinement::LevelRange>,
 }
 
-/// Cells as they were, with the water and what is known of them.
+/// Cells before a remake, with their water, records and infiltration.
 pub(super) struct Old {
     solver: Solver,
     records: Vec<Record>,
-    /// What has soaked into each cell, m; empty where nothing does.
+    /// Infiltrated depth of each cell, m; empty where there is no infiltration.
     soaked: Vec<f32>,
     borders: Vec<Border>,
 }
 
 impl Adaptive {
-    /// Cells that follow the water over a layout, as a scene asks.
+    /// Adaptive refinement of a layout by a scene's settings.
     pub fn new(settings: Settings, layout: &Layout, has_parts: bool) -> Self {
         let finest = layout.level_of(settings.finest_m);
-        let of_parts = if has_parts { wanted::levels_of_parts(layout) } else { Vec::new() };
-        Self { settings, finest, of_parts, asked: Vec::new() }
+        let of_parts = if has_parts { refinement::levels_of_parts(layout) } else { Vec::new() };
+        Self { settings, finest, of_parts, required: Vec::new() }
     }
 
     /// Whether blocks may have these levels.
@@ -56,8 +56,8 @@ impl Adaptive {
 }
 
 impl VoronoiFlood {
-    /// Makes the cells anew, finer where a function says how often the spacing is halved at a position in model coordinates, and carries the water
-    /// over. As often as `flood.adaptive.finest_m` allows at most, and until the water itself asks for other cells. A scene without `[flood.adaptive]` keeps
+    /// Remakes the cells, with the spacing halved as often as a function gives at a position in model coordinates, and carries the water
+    /// over. As often as `flood.adaptive.finest_m` allows at most, and until the refinement criteria require other cells. A scene without `[flood.adaptive]` keeps
     /// its cells.
     ///
     /// # Errors
@@ -72,42 +72,42 @@ impl VoronoiFlood {
         self.regrade(blocks)
     }
 
-    /// How often the cells were made anew since the start.
+    /// How often the cells were remade since the start.
     pub fn remakes(&self) -> u64 {
         self.state.remakes
     }
 
-    /// Number of steps from one look at the water to the next; none where cells stay as they are.
-    pub(super) fn steps_between_looks(&self) -> Option<u64> {
+    /// Number of steps between two checks of the resolution; none where cells are not adaptive.
+    pub(super) fn steps_between_checks(&self) -> Option<u64> {
         // A step that is counted may have several of the shortest.
         let parts = if self.settings.time_steps == TimeSteps::Local { 1 << HIGHEST } else { 1 };
         self.adaptive.as_ref().map(|adaptive| u64::from((adaptive.settings.every_steps / parts).max(1)))
     }
 
-    /// Makes cells finer and coarser as the water asks, where it is time to look. At the start of a step: what is shown between two steps has the cells
+    /// Refines and coarsens the cells, where a check is due. At the start of a step: what is shown between two steps has the cells
     /// of both.
     pub(super) fn adapt(&mut self) -> Result<(), ModelError> {
-        let Some(every) = self.steps_between_looks() else { return Ok(()) };
-        // The water at the start was looked at.
+        let Some(every) = self.steps_between_checks() else { return Ok(()) };
+        // The water at the start was checked before.
         if self.state.steps == 0 || !self.state.steps.is_multiple_of(every) {
             return Ok(());
         }
-        self.wanted_blocks().map_or(Ok(()), |blocks| self.regrade(blocks))
+        self.required_blocks().map_or(Ok(()), |blocks| self.regrade(blocks))
     }
 
-    /// Makes the cells finer that the water at the start asks for; whether there were any.
+    /// Refines the cells where the water at the start requires it; returns whether there were any.
     pub(super) fn adapt_to_start(&mut self) -> Result<bool, ModelError> {
-        let Some(blocks) = self.wanted_blocks() else { return Ok(false) };
+        let Some(blocks) = self.required_blocks() else { return Ok(false) };
         self.remake(blocks)?;
         Ok(true)
     }
 
-    /// How often the water at the start is looked at, at most: finer cells see more of the ground.
-    pub(super) fn looks_at_start(&self) -> u8 {
+    /// Most checks of the water at the start: finer cells resolve more of the ground.
+    pub(super) fn checks_at_start(&self) -> u8 {
         self.adaptive.as_ref().map_or(0, |adaptive| adaptive.finest + 1)
     }
 
-    /// Makes all cells anew and carries over what is known of the old ones.
+    /// Remakes all cells and carries the state of the old ones over.
     fn regrade(&mut self, blocks: Blocks) -> Result<(), ModelError> {
         let old = self.remake(blocks)?;
         let carried = carry::carry(&old, &self.solver, &self.bed, &self.terrain);
@@ -118,7 +118,7 @@ impl VoronoiFlood {
         }
         borders::carry(&old.borders, &self.borders(), &mut self.state.beyond);
         self.state.remakes += 1;
-        self.solver.renew_as_they_are();
+        self.solver.refresh_water();
         loop {
             let missing = self.solver.missing_tiles();
             if missing.is_empty() {
@@ -130,11 +130,11 @@ impl VoronoiFlood {
         *self.solver.before_mut() = columns;
         self.state.before = self.state.time;
         let step = self.solver.plan();
-        self.state.time_step = self.limited(step);
+        self.state.time_step = self.limit_time_step(step);
         Ok(())
     }
 
-    /// Makes the cells anew, dry, with the blocks of a state; whether there can be such.
+    /// Remakes the cells, dry, with the blocks of a state; returns whether they are valid.
     pub(super) fn restore_blocks(&mut self, levels: &[(u32, u8)]) -> Result<bool, ModelError> {
         let present = self.solver.mesh.layout.blocks();
         if present.finer() == levels {
@@ -146,7 +146,7 @@ impl VoronoiFlood {
         Ok(true)
     }
 
-    /// Makes the cells of all tiles that are made anew, with other blocks, dry; what the old ones were.
+    /// Remakes the cells of all tiles, with other blocks, dry; returns the old ones.
     pub(super) fn remake(&mut self, blocks: Blocks) -> Result<Old, ModelError> {
         let tiles: Vec<usize> = self.solver.mesh.made.iter().map(|tile| *tile as usize).collect();
         let layout = self.solver.mesh.layout.with(blocks);
@@ -172,7 +172,7 @@ impl VoronoiFlood {
         Ok(old)
     }
 
-    /// Clears what was looked up for each cell and each border face.
+    /// Clears the values cached for each cell and each border face.
     fn forget_cells(&mut self) {
         self.state.beyond.clear();
         self.obstacle_of.clear();

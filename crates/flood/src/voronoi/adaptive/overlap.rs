@@ -59,7 +59,7 @@ pub(super) struct Overlap<'a> {
     bed: &'a Bed,
     /// The new cell that each old one is still, to the bit; [`NONE`] where there is none.
     pub same: Vec<u32>,
-    /// Polygons of the new cells, made when they are first asked for.
+    /// Polygons of the new cells, made on first use.
     polygons: Vec<OnceLock<Polygons>>,
 }
 

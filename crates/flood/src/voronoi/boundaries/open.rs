@@ -164,7 +164,7 @@ impl Boundaries {
         if water.depth > 0.0 { water.level } else { f64::NEG_INFINITY }
     }
 
-    /// Finds what each border face does in a step of `step` s from `time` on; `beyond` is what is known of the water there (see
+    /// Finds the boundary condition of each border face in a step of `step` s from `time` on; `beyond` is the state of the water there (see
     /// [`Boundaries::beyond_at_start`]).
     pub fn prepare(&mut self, solver: &Solver, time: f64, step: f64, beyond: &[f64]) {
         for number in 0..self.rules.len() {

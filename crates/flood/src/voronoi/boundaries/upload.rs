@@ -47,7 +47,7 @@ fn velocity(motion: &Table) -> Vec<[f64; 2]> {
 }
 
 impl Boundaries {
-    /// What a GPU needs of them; `known` is what is known of the water beyond each border face (see [`Boundaries::beyond_at_start`]).
+    /// Packs them for a GPU; `known` is the state of the water beyond each border face (see [`Boundaries::beyond_at_start`]).
     pub fn upload(&self, solver: &Solver, known: &[f64], obstacle_of: &[u32], tables: &mut Tables) -> Uploaded {
         let mut uploaded =
             Uploaded { borders: Vec::new(), beyond: Vec::new(), discharges: Vec::new(), parts: Vec::new() };
@@ -155,8 +155,8 @@ impl Boundaries {
         }
     }
 
-    /// Takes over what a GPU came to know of the water beyond held levels.
-    pub fn take_over(&self, beyond: &[f32], known: &mut [f64]) {
+    /// Sets the state of the water beyond prescribed levels from a GPU's.
+    pub fn set_beyond(&self, beyond: &[f32], known: &mut [f64]) {
         for (border, (known, beyond)) in known.iter_mut().zip(beyond).enumerate() {
             let rule = self.rule_of(border).map(|rule| &self.rules[usize::from(rule)]);
             if let Some(Boundary::Level(_)) = rule {

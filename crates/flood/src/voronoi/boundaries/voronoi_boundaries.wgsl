@@ -1,4 +1,4 @@
-// What passes border faces: see `boundaries/mod.rs` and `boundaries/state.rs`. Levels are above the bed that the cell sees under its level. `IS_SECOND` comes with the stage.
+// Fluxes through border faces: see `boundaries/mod.rs` and `boundaries/state.rs`. Levels are above the bed that the cell sees under its level. `IS_SECOND` comes with the stage.
 #import declared
 #import stage
 #import voronoi_faces
@@ -140,7 +140,7 @@ fn before_paddle(inwards: f32, depth: f32, outgoing: f32) -> vec2f {
     return vec2f(celerity, -inwards);
 }
 
-// What a table comes to in the stage.
+// The value of a table in the stage.
 fn in_stage(table: u32) -> f32 {
     return in_step(table, AT_BEGINNING + u32(IS_SECOND));
 }
@@ -212,7 +212,7 @@ fn depth_of(celerity: f32, own_depth: f32) -> f32 {
     return own_depth * ratio * ratio;
 }
 
-// A border as it is seen where the level stands `shift` above mean bed and depth.
+// A border where the level is `shift` above mean bed plus depth.
 fn as_seen(border: Border, shift: f32) -> Border {
     var own = border;
     own.datum -= shift;

@@ -1,4 +1,4 @@
-// The velocity of the water beyond held levels after a step: see `follow` in `boundaries/open.rs`.
+// The velocity of the water beyond prescribed levels after a step: see `follow` in `boundaries/open.rs`.
 #import declared
 #import stage
 #import voronoi_boundaries

@@ -27,7 +27,7 @@ pub(crate) struct Crossing {
     pub volume: f64,
     /// Momentum across and along the face that goes with it, over density, m3/s2.
     pub carried: [f64; 2],
-    /// Thrust across the face, over density, m3/s2: the hydrostatic thrust, less the cell's own, which comes to nothing round the cell.
+    /// Thrust across the face, over density, m3/s2: the hydrostatic thrust, less the cell's own, whose sum round the cell is 0.
     pub thrust: f64,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Crossings<S: Simd> {
     /// Momentum across and along the faces that goes with it, over density, m3/s2.
     pub carried: [Lanes<S>; 2],
     /// Thrust across the faces on the first cells and on the second, over density, m3/s2: the mean hydrostatic thrust, the ground's, and the cell's
-    /// own, which comes to nothing round the cell.
+    /// own, whose sum round the cell is 0.
     pub thrust: [Lanes<S>; 2],
 }
 

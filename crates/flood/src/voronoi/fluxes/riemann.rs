@@ -3,7 +3,7 @@
 use crate::voronoi::water::THIN;
 use corpuscle_simd::{Lanes, Select, Simd, SimdBase, SimdFloat};
 
-/// Waves slower than this carry nothing, m/s: without it the inverse of their speed may be no number.
+/// Speed below which waves carry nothing, m/s: the inverse of a lower one may not be finite.
 const SLOWEST: f64 = 1e-100;
 
 /// Depth, m, and velocity across the face, m/s, on one side of eight faces.

@@ -1,4 +1,4 @@
-// What passes each face, as if every cell had the water for it: see `fluxes/mod.rs`. What cells lack is told by `voronoi_kept.wgsl`.
+// Flux through each face, as if every cell had the water for it: see `fluxes/mod.rs`. `voronoi_kept.wgsl` bounds it by the water of the cells.
 #import declared
 #import voronoi_differences
 #import voronoi_faces

@@ -57,7 +57,7 @@ impl Slowing {
         }
     }
 
-    /// Looks up the roughness of cells that were added, by their centroids.
+    /// Sets the roughness of cells that were added, by their centroids.
     pub fn extend(&mut self, roughness: &Roughness, gravity: f64, centroids: &[[f64; 2]]) {
         if let OfCells::Each(of_cells) = &mut self.coefficient {
             let new = centroids[of_cells.len()..]

@@ -1,5 +1,5 @@
 //! Steps of scheme `voronoi` on a GPU, in single precision: the cells are made on the CPU and uploaded, the passes of a step run one after another, and nothing
-//! comes back between the steps of a batch.
+//! is downloaded between the steps of a batch.
 //!
 //! Each pass is a WGSL file in the folder of its CPU code: slopes, fluxes through faces (stored, so that both cells gain and lose the same), the part of its outflow that
 //! each cell has the water for, new columns; twice, then the records of the maps and the length of the next step, and `voronoi_finish.wgsl` decides whether there is one.
@@ -64,21 +64,21 @@ enum Stage {
     First,
     /// The second.
     Second,
-    /// The end of a step after the water was looked at, before structures work.
-    LookedAt,
+    /// The end of a step with structures: the water was surveyed before they changed it.
+    Surveyed,
 }
 
 impl Stage {
-    /// The pieces in which the versions of a shader for the stages differ: the stage itself, and whether water comes and goes beside its motion.
+    /// The pieces in which the versions of a shader for the stages differ: the stage itself, and whether there is rain, infiltration or inflow.
     fn pieces(self) -> [(&'static str, &'static str); 2] {
         let exchange = ("exchange", include_str!("../rain/voronoi_exchange.wgsl"));
         match self {
             Self::First => [
-                ("stage", "const IS_SECOND = false;\nconst IS_LOOKED_AT = false;\n"),
+                ("stage", "const IS_SECOND = false;\nconst IS_SURVEYED = false;\n"),
                 ("exchange", "fn exchange(cell: u32, own: ptr<function, Found>) {}\n"),
             ],
-            Self::Second => [("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = false;\n"), exchange],
-            Self::LookedAt => [("stage", "const IS_SECOND = true;\nconst IS_LOOKED_AT = true;\n"), exchange],
+            Self::Second => [("stage", "const IS_SECOND = true;\nconst IS_SURVEYED = false;\n"), exchange],
+            Self::Surveyed => [("stage", "const IS_SECOND = true;\nconst IS_SURVEYED = true;\n"), exchange],
         }
     }
 }
@@ -115,13 +115,13 @@ enum Name {
     Shift,
     Share,
     Follow,
-    Look,
+    Survey,
     Crests,
     Overtop,
     Structures,
     End,
     EndWithExchange,
-    EndOfWorks,
+    EndWithStructures,
     Finish,
     // Where cells take steps of their own.
     Part,
@@ -150,13 +150,13 @@ const SHADERS: [(Name, &str, &str, Stage); 30] = [
     (Name::Shift, "voronoi_shift", include_str!("../voronoi_shift.wgsl"), Stage::First),
     (Name::Share, "voronoi_share", include_str!("../boundaries/voronoi_share.wgsl"), Stage::First),
     (Name::Follow, "voronoi_follow", include_str!("../boundaries/voronoi_follow.wgsl"), Stage::Second),
-    (Name::Look, "voronoi_look", include_str!("voronoi_look.wgsl"), Stage::Second),
+    (Name::Survey, "voronoi_survey", include_str!("voronoi_survey.wgsl"), Stage::Second),
     (Name::Crests, "voronoi_crests", include_str!("../walls/voronoi_crests.wgsl"), Stage::Second),
     (Name::Overtop, "voronoi_overtop", include_str!("../walls/voronoi_overtop.wgsl"), Stage::Second),
     (Name::Structures, "voronoi_structures", include_str!("../structures/voronoi_structures.wgsl"), Stage::Second),
     (Name::End, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::First),
     (Name::EndWithExchange, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::Second),
-    (Name::EndOfWorks, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::LookedAt),
+    (Name::EndWithStructures, "voronoi_end", include_str!("voronoi_end.wgsl"), Stage::Surveyed),
     (Name::Finish, "voronoi_finish", include_str!("voronoi_finish.wgsl"), Stage::First),
     (Name::Part, "voronoi_part", include_str!("../local/voronoi_part.wgsl"), Stage::First),
     (Name::ShowFirst, "voronoi_show", include_str!("../local/voronoi_show.wgsl"), Stage::First),
@@ -173,7 +173,7 @@ const SHADERS: [(Name, &str, &str, Stage); 30] = [
 /// Parts of a step at most, where cells take steps of their own.
 const MOST_PARTS: usize = 1 << HIGHEST;
 
-/// How often distances go on to neighbours, there and back: at least as often as the farthest that counts, two neighbours beyond those near which stages are repeated.
+/// How often distances spread to neighbours, there and back: at least as often as the farthest that counts, two neighbours beyond those near which stages are repeated.
 const SPREADS: usize = (WIDENED[0] as usize + REPEATED + 3).div_ceil(2);
 
 /// The kernels of a flood, in the order of [`SHADERS`]; the last only where cells take steps of their own.
@@ -192,19 +192,19 @@ pub(crate) struct GpuSolver {
     pub batches: Batches,
     kernels: Vec<Kernel<Memory>>,
     memory: Memory,
-    /// The kernels with what they work on.
+    /// The kernels with their buffers.
     tasks: Vec<Task>,
     cells: usize,
     sides: Sides,
     status: Status,
-    /// The water as it is drawn, once somebody has looked.
+    /// The water for drawing, once it is drawn.
     seen: OnceLock<Seen>,
 }
 
-/// What a flood has beside the motion of its water.
+/// Parts of a flood beside the motion of its water.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sides {
-    /// Whether water comes and goes beside its motion.
+    /// Whether there is rain, infiltration or inflow.
     exchanges: bool,
     /// Whether there are obstacles, whose forces are measured.
     has_obstacles: bool,
@@ -215,7 +215,7 @@ pub(super) struct Sides {
     has_crests: bool,
     /// Whether the heights of the ground within cells count.
     has_heights: bool,
-    /// Whether the water beyond some border is held at a level.
+    /// Whether a level is prescribed beyond some border.
     holds_levels: bool,
     /// Whether discharges are shared out over border faces.
     shares_discharges: bool,
@@ -223,22 +223,22 @@ pub(super) struct Sides {
     are_steps_local: bool,
 }
 
-/// The state of a flood as it came back.
+/// The state of a flood as downloaded.
 pub(super) struct Downloaded {
     /// Columns now, and before the last step.
     pub columns: [Vec<ColumnOfCpu>; 2],
     pub records: Vec<super::maps::Record>,
-    /// What has soaked into each cell, m; empty where nothing comes or goes.
+    /// Infiltrated depth of each cell, m; empty where there is no rain, infiltration or inflow.
     pub soaked: Vec<f32>,
     /// Impulse over density at each border face since the upload, and in the last step, m4/s; empty where there are no obstacles.
     pub pushes: Vec<[[f64; 2]; 2]>,
-    /// What is known of the water beyond each border face; empty where no level is held.
+    /// State of the water beyond each border face; empty where no level is prescribed.
     pub beyond: Vec<f32>,
     /// Discharge of each structure, m3/s.
     pub discharges: Vec<f32>,
 }
 
-/// What passed since the flood is on the device.
+/// Totals since the flood was uploaded.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Totals {
     pub time: f64,
@@ -254,7 +254,7 @@ pub(super) struct Totals {
     pub momentum: [f64; 2],
     pub rained: f64,
     pub infiltrated: f64,
-    /// Time since the ground drank, s.
+    /// Time since water last soaked into the ground, s.
     pub since_draught: f64,
 }
 
@@ -282,7 +282,7 @@ impl GpuSolver {
         Ok(solver)
     }
 
-    /// Uploads a flood whose cells are others now, or whose water was changed; what passed is counted from 0.
+    /// Uploads a flood whose cells are others now, or whose water was changed; totals start at 0.
     ///
     /// # Errors
     /// As [`GpuSolver::new`].
@@ -320,7 +320,7 @@ impl GpuSolver {
         Ok((u64::from(self.status.steps), Halt::of(self.status.halted)))
     }
 
-    /// What passed so far, of both values each in and out.
+    /// Totals so far; of pairs the first is in, the second out.
     pub fn totals(&self) -> Totals {
         let Status {
             clock, step, last_step, outflow, inflow, energy_out, energy_in, momentum_out, momentum_in, ..
@@ -384,7 +384,7 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Takes so many steps, or fewer.
+    /// Takes `count` steps, or fewer.
     fn take(&self, pass: &mut Pass<'_>, count: u32) {
         self.finish(pass);
         for _ in 0..count {
@@ -431,9 +431,9 @@ impl Steps<'_> {
         if sides.holds_levels {
             self.run(pass, Name::Follow, BORDER_SLOT);
         }
-        let has_works = sides.has_crests || sides.structures > 0;
-        if has_works {
-            self.run(pass, Name::Look, CELL_SLOT);
+        let has_structures = sides.has_crests || sides.structures > 0;
+        if has_structures {
+            self.run(pass, Name::Survey, CELL_SLOT);
         }
         if sides.has_crests {
             self.run(pass, Name::Crests, CREST_SLOT);
@@ -443,7 +443,7 @@ impl Steps<'_> {
             self.run(pass, Name::Structures, STRUCTURE_SLOT);
         }
         let end = match sides.exchanges {
-            _ if has_works => Name::EndOfWorks,
+            _ if has_structures => Name::EndWithStructures,
             true => Name::EndWithExchange,
             false => Name::End,
         };

@@ -4,7 +4,7 @@ use super::{Downloaded, GpuSolver, Input, Totals};
 use crate::voronoi::model::SHOWN;
 use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
-use crate::voronoi::structures::upload::take_over;
+use crate::voronoi::structures::upload::set_flows;
 use crate::voronoi::{DENSITY, VoronoiFlood};
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Halt, PassTiming};
 use corpuscle_model::{
@@ -18,13 +18,13 @@ pub(crate) struct OnGpu {
     start: Start,
     /// Whether water, time or what acts on it was changed on the CPU since it was uploaded.
     is_stale: bool,
-    /// Whether it has taken steps that are not taken over yet.
+    /// Whether it has taken steps whose state is not downloaded yet.
     is_ahead: bool,
-    /// The step before which it was last looked at whether cells should be finer or coarser.
-    looked_before: Option<u64>,
+    /// The step before which the cells' resolution was last checked.
+    checked_before: Option<u64>,
 }
 
-/// What the books said when the flood was uploaded.
+/// The accounts when the flood was uploaded.
 struct Start {
     /// Accounts of water, momentum and energy.
     accounts: [Account; 3],
@@ -52,7 +52,7 @@ impl GpuModel for VoronoiFlood {
             start: self.start(),
             is_stale: false,
             is_ahead: false,
-            looked_before: None,
+            checked_before: None,
         }));
         Ok(())
     }
@@ -77,7 +77,7 @@ impl GpuModel for VoronoiFlood {
         show: &mut dyn FnMut(Glance) -> f64,
     ) -> Result<(), ModelError> {
         while self.on_gpu.is_some() && !stop.load(Ordering::Relaxed) {
-            // A time that has passed stands for the end of the next step.
+            // A past time stands for the end of the next step.
             let is_step = next <= self.shown;
             let until = if is_step { self.end_of_next_step() } else { next };
             if until > time {
@@ -99,7 +99,7 @@ impl GpuModel for VoronoiFlood {
                 return self.with_gpu(Self::download);
             }
             next = show(self.glance()?);
-            if !observer.passed(self.passed()) {
+            if !observer.progressed(self.progress()) {
                 return self.with_gpu(Self::download);
             }
         }
@@ -127,7 +127,7 @@ impl GpuModel for VoronoiFlood {
 }
 
 impl VoronoiFlood {
-    /// What of the scene the GPU does not compute yet, and what to do; none where it computes all.
+    /// The part of the scene that the GPU does not compute, and the remedy; none where it computes all.
     pub(in crate::voronoi) fn on_cpu_only(&self) -> Option<CpuOnly> {
         let weather = self.weather.as_ref();
         let falls_by_function = weather.is_some_and(|weather| matches!(weather.intensity, Intensity::Function(_)));
@@ -137,14 +137,14 @@ impl VoronoiFlood {
         })
     }
 
-    /// The GPU takes the state anew before its next step.
+    /// Marks the state on the GPU as stale: it is uploaded before the next step.
     pub(in crate::voronoi) fn mark_stale_on_gpu(&mut self) {
         if let Some(on_gpu) = &mut self.on_gpu {
-            (on_gpu.is_stale, on_gpu.is_ahead, on_gpu.looked_before) = (true, false, None);
+            (on_gpu.is_stale, on_gpu.is_ahead, on_gpu.checked_before) = (true, false, None);
         }
     }
 
-    /// Advances on the GPU, and takes over what it came to.
+    /// Advances on the GPU, and downloads the state.
     pub(in crate::voronoi) fn advance_on_gpu(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         self.with_gpu(|flood, on_gpu| {
             flood.step_to(on_gpu, time, stop)?;
@@ -152,7 +152,7 @@ impl VoronoiFlood {
         })
     }
 
-    /// Does something with the GPU where there is one.
+    /// Calls `work` with the GPU where there is one.
     fn with_gpu(
         &mut self,
         work: impl FnOnce(&mut Self, &mut OnGpu) -> Result<(), ModelError>,
@@ -163,7 +163,7 @@ impl VoronoiFlood {
         done
     }
 
-    /// Takes steps up to a time, s. What the GPU came to stays there: see [`VoronoiFlood::download`].
+    /// Takes steps up to a time, s. The new state stays on the GPU: see [`VoronoiFlood::download`].
     fn step_to(&mut self, on_gpu: &mut OnGpu, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         // Water in the air falls on the CPU.
         while !self.state.falling.is_empty() && self.state.time < time && !stop.load(Ordering::Relaxed) {
@@ -201,7 +201,7 @@ impl VoronoiFlood {
         if std::mem::take(&mut on_gpu.is_stale) {
             self.upload(on_gpu)?;
         }
-        let most = self.look_at_cells(on_gpu)?.min(most);
+        let most = self.adapt_cells(on_gpu)?.min(most);
         let (steps, halt) = on_gpu.solver.advance(time, most).map_err(|error| device(&error))?;
         on_gpu.is_ahead = true;
         self.state.steps += steps;
@@ -213,9 +213,9 @@ impl VoronoiFlood {
         }
     }
 
-    /// Takes over what the GPU came to, where it is ahead.
+    /// Downloads the state of the GPU, where it is ahead.
     fn download(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
-        if on_gpu.is_ahead { self.take_over(on_gpu) } else { Ok(()) }
+        if on_gpu.is_ahead { self.download_state(on_gpu) } else { Ok(()) }
     }
 
     /// Time at the end of the last step, s.
@@ -228,8 +228,8 @@ impl VoronoiFlood {
         ahead.map_or(self.state.time + self.state.time_step, |totals| totals.time + totals.step)
     }
 
-    /// How far it is, by what the GPU tells without what stays there.
-    fn passed(&self) -> ModelProgress {
+    /// Progress, by the totals of the GPU where it is ahead.
+    fn progress(&self) -> ModelProgress {
         let here = (self.particles(), self.particle_steps());
         let ahead = self.on_gpu.as_ref().filter(|on_gpu| on_gpu.is_ahead);
         let (particles, particle_steps) = ahead.map_or(here, |on_gpu| {
@@ -239,7 +239,7 @@ impl VoronoiFlood {
         ModelProgress { time: self.shown, particles, particle_steps }
     }
 
-    /// What is shown while the GPU goes on: the particles where they lie, or the frame while water is in the air.
+    /// What is shown while the GPU goes on: its own buffer of particles, or the frame while water is in the air.
     fn glance(&mut self) -> Result<Glance, ModelError> {
         if let Some(particles) = self.particles_on_gpu()? {
             return Ok(Glance { frame: Frame { time: self.shown, sets: Vec::new() }, on_device: Some(particles) });
@@ -248,13 +248,13 @@ impl VoronoiFlood {
         Ok(Glance { frame: self.frame(), on_device: None })
     }
 
-    /// Makes cells finer and coarser as the water asks, where it is time to look. The number of steps to the next look.
-    fn look_at_cells(&mut self, on_gpu: &mut OnGpu) -> Result<u64, ModelError> {
-        let Some(every) = self.steps_between_looks() else { return Ok(u64::MAX) };
+    /// Refines and coarsens the cells, where a check is due. Returns the number of steps to the next check.
+    fn adapt_cells(&mut self, on_gpu: &mut OnGpu) -> Result<u64, ModelError> {
+        let Some(every) = self.steps_between_checks() else { return Ok(u64::MAX) };
         let steps = self.state.steps;
-        if steps.is_multiple_of(every) && on_gpu.looked_before != Some(steps) {
-            on_gpu.looked_before = Some(steps);
-            self.take_over(on_gpu)?;
+        if steps.is_multiple_of(every) && on_gpu.checked_before != Some(steps) {
+            on_gpu.checked_before = Some(steps);
+            self.download_state(on_gpu)?;
             let remakes = self.state.remakes;
             self.adapt()?;
             if self.state.remakes > remakes {
@@ -264,9 +264,9 @@ impl VoronoiFlood {
         Ok(every - steps % every)
     }
 
-    /// Makes the tiles that water stands beside.
+    /// Makes the missing tiles beside wet cells.
     fn go_beyond_rim(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
-        self.take_over(on_gpu)?;
+        self.download_state(on_gpu)?;
         let missing = self.solver.missing_tiles();
         self.make_tiles(missing)?;
         if self.solver.local.is_some() {
@@ -281,8 +281,8 @@ impl VoronoiFlood {
         on_gpu.solver.renew(&self.input()).map_err(|error| device(&error))
     }
 
-    /// Takes the state of the GPU over: water, records, time and books.
-    fn take_over(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
+    /// Downloads the state of the GPU: water, records, time and accounts.
+    fn download_state(&mut self, on_gpu: &mut OnGpu) -> Result<(), ModelError> {
         let Downloaded { columns: [now, before], records, soaked, pushes, beyond, discharges } =
             on_gpu.solver.download().map_err(|error| device(&error))?;
         on_gpu.is_ahead = false;
@@ -291,10 +291,10 @@ impl VoronoiFlood {
         let is_new = time > self.state.time;
         self.solver.columns = now;
         *self.solver.before_mut() = before;
-        self.solver.renew_as_they_are();
+        self.solver.refresh_water();
         self.state.records = records;
-        take_over(&discharges, &self.structures, &mut self.state.flows);
-        self.boundaries.take_over(&beyond, &mut self.state.beyond);
+        set_flows(&discharges, &self.structures, &mut self.state.flows);
+        self.boundaries.set_beyond(&beyond, &mut self.state.beyond);
         if is_new {
             (self.state.before, self.state.time) = (time - last_step, time);
         }
@@ -312,7 +312,7 @@ impl VoronoiFlood {
         Ok(())
     }
 
-    /// Books what passed since the flood was uploaded.
+    /// Books the exchange since the flood was uploaded.
     fn book(&mut self, on_gpu: &OnGpu, totals: &Totals) {
         let state = &mut self.state;
         [state.water, state.momentum, state.energy] = on_gpu.start.accounts;
@@ -331,9 +331,9 @@ impl VoronoiFlood {
         }
     }
 
-    /// Says where the computation came to no number, and goes back to the state before.
+    /// The error that says where a value is not finite; goes back to the state before.
     fn broken_on_gpu(&mut self, on_gpu: &mut OnGpu) -> ModelError {
-        if let Err(error) = self.take_over(on_gpu) {
+        if let Err(error) = self.download_state(on_gpu) {
             return error;
         }
         let is_broken = |column: &crate::voronoi::water::Column| {
@@ -361,7 +361,7 @@ impl VoronoiFlood {
         }
     }
 
-    /// Books what the water pushed obstacles with, by the impulse at each border face since the upload and in the last step.
+    /// Books the forces of the water on obstacles, by the impulse at each border face since the upload and in the last step.
     fn book_pushes(&mut self, start: &Start, pushes: &[[[f64; 2]; 2]], last_step: f64) {
         self.state.impulses.clone_from(&start.impulses);
         self.state.forces.fill([0.0; 2]);

@@ -1,11 +1,11 @@
-//! The water as particles on the device, for whoever draws them there.
+//! The water as particles on the device, for drawing.
 
 use super::shared::{Memory, Place, Shown};
 use super::{GpuSolver, LIBRARY};
 use crate::voronoi::mesh::Mesh;
 use corpuscle_gpu::{DeviceParticles, Gpu, GpuError, Kernel, THREADS, Task, filled, submit, uniform};
 
-/// The water as it is seen, and what writes it.
+/// Buffers of the particles for drawing, and the task that fills them.
 pub(super) struct Seen {
     particles: DeviceParticles,
     memory: Memory,
@@ -36,7 +36,7 @@ impl Seen {
         Ok(Self { particles, memory, task })
     }
 
-    /// Has the device write the particles as they are seen.
+    /// Has the device write the particles for drawing.
     fn write(&self, gpu: &Gpu, shown: Shown) {
         gpu.queue.write_buffer(&self.memory.shown, 0, bytemuck::bytes_of(&shown));
         let groups = (self.particles.room as u32).div_ceil(THREADS);
@@ -58,7 +58,7 @@ impl GpuSolver {
     /// [`GpuError::Memory`].
     pub fn seen(&self, mesh: &Mesh, time: f64, least_depth: f64) -> Result<DeviceParticles, GpuError> {
         if self.seen.get().is_none() {
-            // Nobody else can have been faster and done otherwise.
+            // Another thread that was faster has set the same value.
             let _ = self.seen.set(Seen::new(self, mesh)?);
         }
         let seen = self.seen.get().expect("it was set above");

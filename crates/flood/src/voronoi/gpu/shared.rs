@@ -32,7 +32,7 @@ corpuscle_gpu::declare! {
         pub const PLAN_FACE_SLOT: u32 = 11;
         /// Slot with one group where steps of cells are planned.
         pub const PLAN_SLOT: u32 = 12;
-        /// Cells with the shortest step are so many neighbours away at most from those that need it.
+        /// Largest distance, in neighbours, of cells with the shortest step from those that need it.
         pub const WIDENED_SHORTEST: u32 = local::WIDENED[0];
         /// The same of twice the shortest step.
         pub const WIDENED_TWICE: u32 = local::WIDENED[1];
@@ -71,7 +71,7 @@ corpuscle_gpu::declare! {
         /// A link that leads by a table over the difference of levels.
         pub const RATING: u32 = 2;
         /// Most of the volume between the levels on both sides of a crest that flows over in a step.
-        pub const MOST_OVER_CREST: f32 = super::super::walls::MOST_OVER_CREST as f32;
+        pub const MAX_CREST_SHARE: f32 = super::super::walls::MAX_CREST_SHARE as f32;
         /// Coefficient of an orifice: see `structures/hydraulics.rs`.
         pub const ORIFICE: f32 = super::super::structures::hydraulics::ORIFICE as f32;
         /// Depth over the height of a culvert from which on it is submerged.
@@ -96,9 +96,9 @@ corpuscle_gpu::declare! {
         pub const STILL_ON_BED: f32 = friction::STILL as f32;
         /// The part of the outflow that a cell without enough water for it keeps back, for rounding.
         pub const OUTFLOW_MARGIN: f32 = 1e-6;
-        /// The ground drinks once in so many steps.
+        /// Steps between two evaluations of infiltration.
         pub const STEPS_A_DRAUGHT: u32 = super::super::rain::STEPS_A_DRAUGHT as u32;
-        /// Words of `tables` that each table has at their beginning: first row, number of rows, then what it comes to in the step.
+        /// Words of `tables` that each table has at their beginning: first row, number of rows, then its value in the step.
         pub const TABLE: u32 = 6;
         /// The word with the integral over the step.
         pub const INTEGRAL: u32 = 2;
@@ -156,11 +156,11 @@ corpuscle_gpu::declare! {
             pub crest_coefficient: f32,
         }
 
-        /// How far the device is. Pairs are compensated sums: the value and what it lacks, to be added.
+        /// Progress of the device. Pairs are compensated (Kahan) sums: value and error term, to be added.
         pub struct Status {
             /// Time, s.
             pub clock: [f32; 2],
-            /// The time asked for, s.
+            /// The requested time, s.
             pub until: [f32; 2],
             /// Volume that left over borders, m3.
             pub outflow: [f32; 2],
@@ -176,7 +176,7 @@ corpuscle_gpu::declare! {
             pub momentum_in: [f32; 2],
             /// Rain, m3.
             pub rained: [f32; 2],
-            /// What soaked in, m3.
+            /// Infiltration, m3.
             pub infiltrated: [f32; 2],
             /// Steps of wet cells: low and high part.
             pub cell_steps: [u32; 2],
@@ -188,9 +188,9 @@ corpuscle_gpu::declare! {
             pub step: f32,
             /// Number of wet cells.
             pub wet: u32,
-            /// Whether water stands beside tiles that are not made yet.
+            /// Whether there is water beside tiles that are not made yet.
             pub at_rim: u32,
-            /// Whether something came to no number.
+            /// Whether a value is not finite.
             pub is_broken: u32,
             /// Last time step, s.
             pub last_step: f32,
@@ -198,7 +198,7 @@ corpuscle_gpu::declare! {
             pub since_draught: f32,
             /// Steps since the start of the run.
             pub all_steps: u32,
-            /// The part of the step that is gone through, where cells take steps of their own.
+            /// The current part of the step, where cells take steps of their own.
             pub part: u32,
             /// Number of the shortest steps in a step: 1 where all cells take the same; 0 where that is still to be planned.
             pub parts: u32,
@@ -206,7 +206,7 @@ corpuscle_gpu::declare! {
             pub now: u32,
             /// The shortest step, s.
             pub shortest: f32,
-            /// Fills up.
+            /// Padding.
             pub unused: u32,
         }
 
@@ -230,7 +230,7 @@ corpuscle_gpu::declare! {
             pub paces: u32,
         }
 
-        /// A face as one of its cells sees it.
+        /// A face from the side of one of its cells.
         pub struct Link {
             /// What the difference to the neighbour is multiplied by in the least-squares gradient, 1/m.
             pub gradient: [f32; 2],
@@ -360,7 +360,7 @@ corpuscle_gpu::declare! {
             pub law: u32,
             /// Where in `tables` the numbers of the law stand.
             pub numbers: u32,
-            /// Fills up.
+            /// Padding.
             pub unused: u32,
         }
 
@@ -392,7 +392,7 @@ corpuscle_gpu::declare! {
             pub share: f32,
             /// Water less deep than this is not shown, m.
             pub least_depth: f32,
-            /// Fills up.
+            /// Padding.
             pub unused: [f32; 2],
         }
 
@@ -444,7 +444,7 @@ corpuscle_gpu::declare! {
             pub near: u32,
         }
 
-        /// What the steps of a group of cells come to.
+        /// Plan of the local time steps of a group of cells.
         pub struct Plan {
             /// The highest level of a cell.
             pub highest: u32,
@@ -454,7 +454,7 @@ corpuscle_gpu::declare! {
             pub quarters: u32,
         }
 
-        /// What happened in a cell: see the maps.
+        /// Record of a cell: see the maps.
         pub struct Record {
             /// Velocity at the highest speed, m/s.
             pub fastest: [f32; 2],
@@ -468,8 +468,8 @@ corpuscle_gpu::declare! {
             pub duration: f32,
         }
 
-        /// What passed the borders of a group of cells in a step.
-        pub struct Passed {
+        /// Totals over the borders of a group of cells in a step.
+        pub struct BorderTotals {
             /// Volume that left, m3.
             pub outflow: [f32; 2],
             /// Volume that came in, m3.
@@ -478,33 +478,33 @@ corpuscle_gpu::declare! {
             pub energy: [f32; 2],
             /// Momentum over density that ground, borders and friction gave, sum of both components, m4/s.
             pub momentum: f32,
-            /// Whether something came to no number.
+            /// Whether a value is not finite.
             pub is_broken: u32,
         }
 
-        /// What comes into a cell and goes out of it beside the motion of the water.
+        /// Rain, infiltration and inflow of a cell.
         pub struct Supply {
-            /// What has soaked in, m.
+            /// Infiltrated depth, m.
             pub soaked: f32,
             /// Area that rain runs into the cell from, times its factor, m2.
             pub rain_area: f32,
-            /// Where in `tables` the law stands by which water soaks in; [`NONE`] where none does.
+            /// Index of the law of infiltration in `tables`; [`NONE`] where there is none.
             pub law: u32,
             /// Where in `tables` its sources begin.
             pub first_source: u32,
             /// Where they end.
             pub end_source: u32,
-            /// Fills up.
+            /// Padding.
             pub unused: u32,
         }
 
-        /// What a group of cells looks like after a step, and what came in and went out beside the motion of the water.
+        /// Totals of a group of cells after a step: stable time step, wet cells, and rain, infiltration and inflow.
         pub struct Found {
             /// Rain, m3.
             pub rained: [f32; 2],
-            /// What soaked in, m3.
+            /// Infiltration, m3.
             pub infiltrated: [f32; 2],
-            /// What sources brought, m3.
+            /// Inflow of sources, m3.
             pub supplied: [f32; 2],
             /// Energy that all of these brought, over density, m5/s2.
             pub energy: f32,
@@ -514,18 +514,18 @@ corpuscle_gpu::declare! {
             pub step: f32,
             /// Number of wet cells.
             pub wet: u32,
-            /// Whether water stands beside tiles that are not made yet.
+            /// Whether there is water beside tiles that are not made yet.
             pub at_rim: u32,
-            /// Fills up.
+            /// Padding.
             pub unused: u32,
         }
     }
 
-    /// What the device holds of a flood.
+    /// The buffers of a flood on the device.
     pub buffers Memory {
-        /// Numbers that stay as they are.
+        /// Constant parameters.
         uniform parameters: Parameters,
-        /// How far it is.
+        /// Progress.
         storage status: Status,
         /// Numbers of groups for cells, for faces, for border faces, for discharges that are shared out, for crests, for cells beside them, for structures, and for parts
         /// of a step and their plan: 3 each.
@@ -538,20 +538,20 @@ corpuscle_gpu::declare! {
         storage faces: [Face],
         /// Each border face.
         storage borders: [Border],
-        /// What is known of the water beyond each border face: at open ones the level above the bed of the cell, m; at held ones the velocity outwards, m/s; where a
+        /// State of the water beyond each border face: at open ones the level above the bed of the cell, m; at held ones the velocity outwards, m/s; where a
         /// discharge passes that inwards per length, m2/s.
         storage beyond: [f32],
         /// Discharges that are shared out.
         storage discharges: [SharedDischarge],
         /// The parts of border faces in them.
         storage parts: [Part],
-        /// Columns now, then columns before the step; where cells take steps of their own then those at the start of these, and the sums of what they come to.
+        /// Columns now, then columns before the step; where cells take steps of their own then those at the start of these, and the sums of their results.
         storage columns: [Column],
         /// Water of each cell; where cells take steps of their own then that in their second stages.
         storage water: [Water],
         /// Slopes of each cell.
         storage slopes: [Slopes],
-        /// What passes each face.
+        /// Flux through each face.
         storage fluxes: [Flux],
         /// The part of its outflow that each cell has the water for.
         storage kept: [f32],
@@ -559,10 +559,10 @@ corpuscle_gpu::declare! {
         storage distances: [u32],
         /// For each group of cells.
         storage plans: [Plan],
-        /// What happened in each cell.
+        /// Record of each cell.
         storage records: [Record],
         /// For each group of cells, and for structures.
-        storage passed: [Passed],
+        storage border_totals: [BorderTotals],
         /// For each group of cells.
         storage found: [Found],
         /// For each border face.
@@ -579,13 +579,13 @@ corpuscle_gpu::declare! {
         storage in_patches: [InPatch],
         /// Discharge of each structure in the last step, m3/s.
         storage structure_discharges: [f32],
-        /// Where each cell is drawn; empty where nobody looks.
+        /// Position of each cell for drawing; empty where nothing is drawn.
         storage places: [Place],
         /// The time that is shown.
         uniform shown: Shown,
-        /// The water as it is drawn.
+        /// Particles for drawing.
         storage drawn: DeviceParticles,
-        /// What each cell is supplied with; empty where nothing comes in or soaks in.
+        /// Rain, infiltration and inflow of each cell; empty where there are none.
         storage supplies: [Supply],
         /// Tables over time, sources and laws of infiltration: see [`TABLE`].
         storage tables: [u32],

@@ -1,4 +1,4 @@
-//! What comes into cells and goes out of them beside the motion of the water, as it is uploaded.
+//! Upload of rain, infiltration and inflows of cells.
 
 use super::super::rain::infiltration::{Law, MM_PER_H};
 use super::shared::{NONE, Supply};
@@ -7,7 +7,7 @@ use super::upload::Input;
 use crate::voronoi::rain::Intensity;
 use crate::voronoi::rain::Weather;
 
-/// The tables of what is supplied.
+/// The tables of inflows and rain, by number.
 pub(super) struct SupplyTables {
     /// The table of each inflow.
     inflows: Vec<u32>,
@@ -25,7 +25,7 @@ pub(super) fn supply_tables(input: &Input<'_>, tables: &mut Tables) -> SupplyTab
     SupplyTables { inflows, rain }
 }
 
-/// The supplies of a flood: none of any cell where nothing comes or goes. Sources and laws are added to `words`, after the tables.
+/// The supplies of a flood: empty where there is no rain, infiltration or inflow. Sources and laws are added to `words`, after the tables.
 pub(super) fn supplies(input: &Input<'_>, tables: &SupplyTables, words: &mut Vec<u32>) -> Vec<Supply> {
     if !input.exchanges() {
         return Vec::new();

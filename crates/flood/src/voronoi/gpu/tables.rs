@@ -1,4 +1,4 @@
-//! Tables over time, or over a level, as they are uploaded.
+//! Upload of tables over time or over a level.
 
 use super::shared::TABLE;
 use corpuscle_gpu::to_pair;
@@ -11,7 +11,7 @@ pub(in crate::voronoi) struct Tables {
 }
 
 impl Tables {
-    /// Takes a table in; its number.
+    /// Adds a table; returns its number.
     pub fn add(&mut self, rows: impl IntoIterator<Item = [f64; 2]>) -> u32 {
         self.all.push(rows.into_iter().collect());
         self.all.len() as u32 - 1
@@ -21,7 +21,7 @@ impl Tables {
         self.all.len() as u32
     }
 
-    /// As the device has them: what stands at the beginning for each, then all rows.
+    /// The words on the device: a header for each table, then all rows.
     pub fn words(&self) -> Vec<u32> {
         let mut words = vec![0; TABLE as usize * self.all.len()];
         for (number, rows) in self.all.iter().enumerate() {

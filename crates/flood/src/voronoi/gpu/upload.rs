@@ -1,10 +1,10 @@
-//! A flood as it is uploaded.
+//! Upload of a flood.
 
 use super::super::structures::{Flows, Structures};
 use super::Sides;
 use super::shared::{
-    Column, Face, Flux, Found, Ground, Link, Memory, NONE, PLAN_SLOT, Parameters, Passed, Place, Plan, Push, Record,
-    Shown, Slopes, Status, Water,
+    BorderTotals, Column, Face, Flux, Found, Ground, Link, Memory, NONE, PLAN_SLOT, Parameters, Place, Plan, Push,
+    Record, Shown, Slopes, Status, Water,
 };
 use super::supplies::{supplies, supply_tables};
 use super::tables::Tables;
@@ -19,11 +19,11 @@ use crate::voronoi::structures::Patches;
 use crate::voronoi::{walls, water};
 use corpuscle_gpu::{BATCH_START, Gpu, GpuError, MOST_GROUPS, THREADS, filled, storage, to_pair, uniform};
 
-/// What is uploaded.
+/// The parts of a flood that are uploaded.
 pub(crate) struct Input<'a> {
     pub solver: &'a Solver,
     pub boundaries: &'a Boundaries,
-    /// What is known of the water beyond each border face: see [`Boundaries::beyond_at_start`].
+    /// State of the water beyond each border face: see [`Boundaries::beyond_at_start`].
     pub beyond: &'a [f64],
     pub records: &'a [maps::Record],
     pub time: f64,
@@ -47,13 +47,13 @@ impl Input<'_> {
         self.solver.mesh.len()
     }
 
-    /// Whether water comes and goes beside its motion.
+    /// Whether there is rain, infiltration or inflow.
     pub fn exchanges(&self) -> bool {
-        !self.inflows.is_empty() || self.weather.is_some() || self.has_works()
+        !self.inflows.is_empty() || self.weather.is_some() || self.has_structures()
     }
 
     /// Whether there are structures, or crests that water flows over.
-    fn has_works(&self) -> bool {
+    fn has_structures(&self) -> bool {
         !self.structures.is_empty() || !self.solver.crests.is_empty()
     }
 
@@ -62,7 +62,7 @@ impl Input<'_> {
         self.solver.local.is_some()
     }
 
-    /// What there is beside the motion of the water.
+    /// The parts of the flood beside the motion of the water.
     pub fn sides(&self) -> Sides {
         Sides {
             exchanges: self.exchanges(),
@@ -77,7 +77,7 @@ impl Input<'_> {
         }
     }
 
-    /// Makes the memory on the device and fills it.
+    /// Allocates the buffers on the device and fills them.
     ///
     /// # Errors
     /// [`GpuError::Memory`], [`GpuError::TooMany`].
@@ -129,7 +129,7 @@ impl Input<'_> {
             distances: storage::<u32>(gpu, "distances of cells", if self.are_steps_local() { 2 * cells } else { 0 })?,
             plans: storage::<Plan>(gpu, "plans of groups", if self.are_steps_local() { groups } else { 0 })?,
             records: filled(gpu, "records", &self.records.iter().map(record_of).collect::<Vec<_>>())?,
-            passed: storage::<Passed>(gpu, "sums of groups", groups + 1)?,
+            border_totals: storage::<BorderTotals>(gpu, "sums of groups", groups + 1)?,
             found: storage::<Found>(gpu, "steps of groups", groups)?,
             pushes: storage::<Push>(gpu, "pushes", sides.borders.len())?,
             crests: filled(gpu, "crests", &over.crests)?,
@@ -236,7 +236,7 @@ fn single(pair: [f64; 2]) -> [f32; 2] {
     pair.map(|value| value as f32)
 }
 
-/// How much higher the bed of the second cell stands, seen from the first, m.
+/// Bed of the second cell above that of the first, m.
 fn rise(mesh: &Mesh, [first, second]: [u32; 2], lift: f64) -> f32 {
     (mesh.bed[second as usize] + lift - mesh.bed[first as usize]) as f32
 }
@@ -252,7 +252,7 @@ fn links(mesh: &Mesh, cell: usize) -> impl Iterator<Item = Link> + '_ {
     })
 }
 
-/// Adds the heights of the parts of all cells, where they count; where they begin.
+/// Adds the heights of the parts of all cells, where they count; returns the index of the first.
 fn add_heights(mesh: &Mesh, words: &mut Vec<u32>) -> u32 {
     let Some(heights) = mesh.heights() else { return NONE };
     let first = words.len() as u32;

@@ -1,4 +1,4 @@
-// Water that is added to columns and taken from them beside the motion.
+// Changes of columns by other than the motion of the water.
 #import declared
 #import compensated_sums
 #import voronoi_storage
@@ -10,7 +10,7 @@ fn kinetic(column: Column) -> f32 {
     return 0.5 * dot(column.momentum, column.momentum) / column.volume.x;
 }
 
-// How much energy over density above the level 0 a column over a bed has more than another in the same cell.
+// Energy over density above the level 0 of a column over a bed less that of another in the same cell.
 fn energy_gained(cell: u32, before: Column, now: Column, area: f32, bed: f32) -> f32 {
     let gained = (now.volume.x - before.volume.x) + (now.volume.y - before.volume.y);
     let level = 0.5 * (level_over(cell, before.volume.x / area) + level_over(cell, now.volume.x / area));

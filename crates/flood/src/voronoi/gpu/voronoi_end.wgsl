@@ -1,5 +1,5 @@
-// The end of a step: records what the water did in each cell, has water come and go beside its motion, and finds how long the next step may be. The piece
-// `exchange` is empty where nothing comes or goes; `IS_LOOKED_AT` comes with the stage, and holds where `voronoi_look.wgsl` has recorded the water.
+// The end of a step: updates the records of the maps, adds rain, infiltration and inflow, and finds the largest stable time step (CFL). The piece
+// `exchange` is empty where there are none; `IS_SURVEYED` comes with the stage, and holds where `voronoi_survey.wgsl` has recorded the water.
 #import declared
 #import compensated_sums
 #import stage
@@ -24,16 +24,16 @@ fn combine(a: Found, b: Found) -> Found {
     );
 }
 
-// Takes a cell through the end of the step; what it finds.
+// Ends the step of a cell; returns its totals.
 fn end_step(cell: u32) -> Found {
     var own = Found();
     var before = FAR;
-    if !IS_LOOKED_AT {
+    if !IS_SURVEYED {
         record_step(cell);
         before = stable_step(cell);
     }
     exchange(cell, &own);
-    // As on the CPU both count.
+    // As on the CPU the smaller of both counts.
     own.step = min(before, stable_step(cell));
     if water[cell].depth > 0.0 {
         own.wet = 1u;
@@ -55,7 +55,7 @@ fn main(
     }
     var all = reduce_group(thread, own);
     if thread == 0u {
-        if IS_LOOKED_AT {
+        if IS_SURVEYED {
             all.step = min(all.step, found[group.x].step);
         }
         found[group.x] = all;

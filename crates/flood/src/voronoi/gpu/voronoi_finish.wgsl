@@ -1,11 +1,11 @@
-// Books a step, and decides whether there is another before the time that the host waits for.
+// Books a step, and decides whether another starts before the end of the batch.
 #import declared
 #import compensated_sums
 #import next
 #import voronoi_groups
 #import group_reduction
 
-// What happened in a step: see `Passed` and `Found`. Energy is what left and what came in, of both.
+// Totals of a step: see `BorderTotals` and `Found`. Energy is a pair of out and in.
 struct Sums {
     outflow: vec2f,
     inflow: vec2f,
@@ -36,9 +36,9 @@ fn combine(a: Sums, b: Sums) -> Sums {
     );
 }
 
-// What motion and end of the step did in a group of cells.
+// Totals of motion and end of the step in a group of cells.
 fn of_group(group: u32) -> Sums {
-    let moved = passed[group];
+    let moved = border_totals[group];
     let ended = found[group];
     let energy = moved.energy + vec2f(max(-ended.energy, 0.0), max(ended.energy, 0.0));
     return Sums(
@@ -55,13 +55,13 @@ fn of_group(group: u32) -> Sums {
     );
 }
 
-// What a thread finds of all groups of cells, and the first of structures.
+// Totals of a thread's groups of cells; the first thread adds those of structures.
 fn collected(thread: u32) -> Sums {
     var own = Sums();
     own.step = FAR;
     let all = groups_for(parameters.cells);
     if thread == 0u {
-        let by_structures = passed[all];
+        let by_structures = border_totals[all];
         own.outflow = by_structures.outflow;
         own.inflow = by_structures.inflow;
         own.energy = by_structures.energy;
@@ -100,7 +100,7 @@ fn decide() -> u32 {
         return BROKEN;
     }
     if status.at_rim != 0u {
-        // Water stands beside tiles that are not made yet.
+        // There is water beside tiles that are not made yet.
         return NEEDS_HOST;
     }
     return select(ARRIVED, GOING, difference(status.until, status.clock) > 0.0);

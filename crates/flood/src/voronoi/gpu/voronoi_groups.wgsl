@@ -1,4 +1,4 @@
-// Groups of threads with a thread for each of so many.
+// Number of groups with a thread for each of `count` elements.
 #import declared
 
 fn groups_for(count: u32) -> u32 {

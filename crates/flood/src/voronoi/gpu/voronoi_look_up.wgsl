@@ -1,4 +1,4 @@
-// What all tables come to in the next step.
+// Evaluates all tables for the next step.
 #import declared
 #import compensated_sums
 #import voronoi_tables

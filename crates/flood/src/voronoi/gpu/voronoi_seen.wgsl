@@ -1,4 +1,4 @@
-// The water of each cell as a particle to be drawn, at the time shown: see `frame` in `model.rs`.
+// Writes the water of each cell as a particle for drawing, at the time shown: see `frame` in `model.rs`.
 #import declared
 #import voronoi_storage
 

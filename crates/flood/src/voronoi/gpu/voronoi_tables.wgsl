@@ -1,16 +1,16 @@
-// Tables over time or over a level: linear between their rows, and as they are at the first and the last before and after.
+// Tables over time or over a level: linear between their rows, constant before the first and after the last.
 #import declared
 
 fn number(word: u32) -> f32 {
     return bitcast<f32>(tables[word]);
 }
 
-// What a table came to in the step, by the number of the word.
+// The value of a table in the step, by the number of the word.
 fn in_step(table: u32, word: u32) -> f32 {
     return number(TABLE * table + word);
 }
 
-// How far a row stands after a place.
+// Distance from an abscissa to that of a row.
 fn after(row: u32, place: vec2f) -> f32 {
     return (number(row) - place.x) + (number(row + 1u) - place.y);
 }
@@ -19,7 +19,7 @@ fn value_of(row: u32) -> f32 {
     return number(row + 2u);
 }
 
-// The number of rows of a table up to a place, by halving.
+// The number of rows of a table up to an abscissa, by bisection.
 fn rows_up_to(table: u32, place: vec2f) -> u32 {
     let first = tables[TABLE * table];
     var low = 0u;
@@ -35,7 +35,7 @@ fn rows_up_to(table: u32, place: vec2f) -> u32 {
     return low;
 }
 
-// The value at a place; at a jump the one after it.
+// The value at an abscissa; at a jump the one after it.
 fn value_at(table: u32, place: vec2f) -> f32 {
     let first = tables[TABLE * table];
     let count = tables[TABLE * table + 1u];
@@ -49,7 +49,7 @@ fn value_at(table: u32, place: vec2f) -> f32 {
     return value_of(left) + part * (value_of(right) - value_of(left));
 }
 
-// The integral from a place on.
+// The integral from an abscissa on.
 fn integral(table: u32, place: vec2f, length: f32) -> f32 {
     let first = tables[TABLE * table];
     let count = tables[TABLE * table + 1u];

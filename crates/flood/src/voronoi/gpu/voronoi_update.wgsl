@@ -8,9 +8,9 @@
 #import voronoi_water
 #import group_reduction
 
-alias Reduced = Passed;
+alias Reduced = BorderTotals;
 
-// What faces brought a cell in a step: volume, momentum that volume carries, momentum of thrusts, and what passed borders.
+// Sums over the faces of a cell in a step: volume, momentum that volume carries, momentum of thrusts, and totals over borders.
 struct Gathered {
     volume: vec2f,
     carried: vec2f,
@@ -22,7 +22,7 @@ struct Gathered {
     beyond: vec2f,
 }
 
-// The part of what passes a face that the cell which it leaves has the water for.
+// The part of the flux through a face that the upstream cell has the water for.
 fn kept_of(cell: u32, link: Link, outwards: f32) -> f32 {
     if outwards > 0.0 {
         return kept[cell];
@@ -92,7 +92,7 @@ fn next_column(cell: u32, base: Column, all: Gathered, gained: ptr<function, vec
     return Column(volume, momentum);
 }
 
-// Gives a cell its new column; `gained` as in `next_column`.
+// Sets the new column of a cell; `gained` as in `next_column`.
 fn take_on(cell: u32, next: Column, gained: ptr<function, vec2f>) {
     let area = ground[cell].area;
     let bounded = bounded_momentum(next.momentum, next.volume.x, area);
@@ -102,8 +102,8 @@ fn take_on(cell: u32, next: Column, gained: ptr<function, vec2f>) {
     water[cell] = water_of(own, area);
 }
 
-// Takes a cell on by the stage; what passed.
-fn go_on(cell: u32) -> Passed {
+// Advances a cell by the stage; returns its totals over borders.
+fn go_on(cell: u32) -> BorderTotals {
     let base = base_of(cell);
     let all = gather(cell, base);
     var gained = vec2f(0.0);
@@ -116,11 +116,11 @@ fn go_on(cell: u32) -> Passed {
     }
     let change = all.carried + all.thrust;
     let is_sound = is_finite(all.volume.x) && is_finite(change.x) && is_finite(change.y);
-    return Passed(all.outflow, all.inflow, all.energy, gained.x + gained.y, select(1u, 0u, is_sound));
+    return BorderTotals(all.outflow, all.inflow, all.energy, gained.x + gained.y, select(1u, 0u, is_sound));
 }
 
-fn combine(a: Passed, b: Passed) -> Passed {
-    return Passed(
+fn combine(a: BorderTotals, b: BorderTotals) -> BorderTotals {
+    return BorderTotals(
         add_pair(a.outflow, b.outflow),
         add_pair(a.inflow, b.inflow),
         a.energy + b.energy,
@@ -135,16 +135,16 @@ fn main(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) thread: u32,
 ) {
-    var own = Passed();
+    var own = BorderTotals();
     if id.x < parameters.cells && is_in_step(id.x) {
         own = go_on(id.x);
     }
     let all = reduce_group(thread, own);
     if thread == 0u {
         if begins() {
-            passed[group.x] = all;
+            border_totals[group.x] = all;
         } else {
-            passed[group.x] = combine(all, passed[group.x]);
+            border_totals[group.x] = combine(all, border_totals[group.x]);
         }
     }
 }

@@ -44,7 +44,7 @@ pub(crate) struct Local {
     start: Vec<(Column, Water)>,
     /// Water of each cell in its second stage.
     second: Vec<Water>,
-    /// What the repetitions so far came to.
+    /// Sums over the repetitions so far.
     pub sum: Vec<Column>,
     /// The highest level of a cell.
     highest: u8,

@@ -32,7 +32,7 @@ fn share_of(cell: u32) -> f32 {
     return 1.0;
 }
 
-// Volume in a cell as its neighbours see it, m3.
+// Volume in a cell for its neighbours, m3.
 fn volume_of(cell: u32) -> f32 {
     return columns[cell].volume.x;
 }

@@ -1,5 +1,5 @@
 // What `voronoi_finish.wgsl` does for the next step where cells may take steps of their own: they are planned after each step, and once after an upload that left
-// it open; where that was done before, tables are looked up.
+// it open; where that was done before, tables are evaluated.
 #import declared
 #import voronoi_groups
 #import voronoi_look_up

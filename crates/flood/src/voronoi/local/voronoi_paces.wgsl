@@ -1,4 +1,4 @@
-// How often each cell goes through its stages, and what that comes to: see `plan` in `local/mod.rs`.
+// Level and pace of each cell (how often it repeats its stages), and the plan of each group: see `plan` in `local/mod.rs`.
 #import declared
 #import voronoi_plans
 

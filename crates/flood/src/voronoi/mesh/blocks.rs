@@ -1,4 +1,4 @@
-//! Squares of the terrain, each with a level: how often the spacing is halved there, as the water asks.
+//! Squares of the terrain, each with a level: how often the spacing is halved there for the water.
 
 use super::grading::BAND;
 use super::layout::Layout;
@@ -107,7 +107,7 @@ impl Blocks {
         0.5 * BAND * self.spacing
     }
 
-    /// The highest level asked for within `reach` m of a position. Round a block it falls by one after each [`BAND`] spacings.
+    /// The highest level required within `reach` m of a position. Round a block it falls by one after each [`BAND`] spacings.
     pub fn level_within(&self, at: [f64; 2], reach: f64) -> u8 {
         if self.levels.is_empty() {
             return 0;
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
     use corpuscle_terrain::Bounds;
 
-    /// Where the level falls, and that no band is missed at the side of the blocks that are looked at.
+    /// Where the level falls, and that no band is missed at the side of the blocks that are tested.
     #[test]
     fn levels_fall_by_one_at_a_time() {
         let bounds = Bounds { x_min: -3.0, x_max: 97.0, y_min: 5.0, y_max: 45.0 };

@@ -9,15 +9,15 @@ use crate::voronoi::walls::{Wall, WallKind, Walls};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Pieces with less than this part of the area of a whole cell are joined to the neighbour behind their longest open faces: they would set the time step (cell
+/// Area over that of a whole cell below which pieces are joined to the neighbour behind their longest open faces: they would set the time step (cell
 /// merging: Quirk 1994, "An alternative to unstructured grids", section 3).
-const SMALL: f64 = 0.3;
+const MIN_AREA_RATIO: f64 = 0.3;
 
-/// How far from a wall points may be whose cells it cuts, in spacings.
-const REACH: f64 = 1.5;
+/// Largest distance from a wall of points whose cells it cuts, in spacings.
+const CUT_RADIUS: f64 = 1.5;
 
-/// Overlaps of edges shorter than this part of the spacing are no faces.
-const SHORTEST: f64 = 1e-11;
+/// Least length of a face between overlapping edges, over the spacing.
+const MIN_OVERLAP: f64 = 1e-11;
 
 /// [`Layout::rim`] of cells near walls over that of others: pieces that are joined to them lie farther out than their points.
 const RIM: f64 = 2.0;
@@ -74,7 +74,7 @@ struct Rim {
 enum Outside {
     Border(u8),
     Wall(Option<u32>),
-    /// A line at which water comes or goes.
+    /// A line at which water enters or leaves.
     Line(u32),
     /// Behind an edge that no wall reaches.
     Point(u64, [f64; 2]),
@@ -117,7 +117,7 @@ impl Cuts {
 
 /// The Voronoi cells that walls cut and those beside them, in the order of their points.
 fn entries(layout: &Layout, walls: &Walls, ground: &impl Ground) -> Vec<Entry> {
-    let reach = REACH * layout.spacing();
+    let reach = CUT_RADIUS * layout.spacing();
     let boxes = walls.boxes().into_par_iter();
     let near = boxes.flat_map_iter(|[low, high]| layout.points_within(low.map(|x| x - reach), high.map(|x| x + reach)));
     let mut near: Vec<u64> = near.collect();
@@ -295,7 +295,7 @@ impl<'a> Build<'a> {
         let along = [-normal[1], normal[0]];
         let ours = self.stretches(number, edge, along);
         let theirs = back.map_or(Vec::new(), |back| self.stretches(other, back, along));
-        let shortest = SHORTEST * self.layout.spacing();
+        let shortest = MIN_OVERLAP * self.layout.spacing();
         let rim = |from: f64, to: f64, sign: f64, beyond: Outside| {
             let middle = 0.5 * (from + to);
             let middle = [0, 1].map(|axis| sign * 0.5 * distance * normal[axis] + middle * along[axis]);
@@ -346,7 +346,7 @@ impl<'a> Build<'a> {
     /// The area below which a piece is small, m2.
     fn small(&self, piece: usize) -> f64 {
         let (tile, k) = self.layout.place(self.entries[self.entry_of[piece]].point);
-        SMALL * self.layout.spacing_at(tile, k).powi(2)
+        MIN_AREA_RATIO * self.layout.spacing_at(tile, k).powi(2)
     }
 
     /// Joins small pieces to neighbours, the smallest first, until they are no longer small or have none.
@@ -473,7 +473,7 @@ impl<'a> Build<'a> {
             }
             for edge in &self.edges[number] {
                 let length = edge.normal[0].hypot(edge.normal[1]);
-                if length <= SHORTEST * self.layout.spacing() {
+                if length <= MIN_OVERLAP * self.layout.spacing() {
                     continue;
                 }
                 let Some(beyond) = self.beyond(edge, seen, own, home, root, ground) else { continue };

@@ -1,7 +1,7 @@
 //! Where cells are finer, and the points there.
 //!
 //! The spacing is halved a whole number of times, its level. Round a part with finer cells it grows again by a level at a time, so that neighbours
-//! differ by a factor of two at most. The points of a level are the pattern of a tile made smaller; each is there where its level is asked for.
+//! differ by a factor of two at most. The points of a level are the pattern of a tile made smaller; each is present where its level is required.
 
 use super::blocks::{Blocks, lowered};
 use super::layout::Points;
@@ -10,14 +10,14 @@ use crate::voronoi::walls::{Wall, WallKind, Walls};
 use corpuscle_terrain::{Bounds, Polygon};
 use std::sync::Arc;
 
-/// The spacing is halved so often at most.
-const DEEPEST: u8 = 6;
+/// Most halvings of the spacing.
+const MAX_LEVEL: u8 = 6;
 
 /// Width of the band over which a level lasts, in spacings of the finer level next to it.
 pub(super) const BAND: f64 = 8.0;
 
-/// Points of a level are left out that are nearer than this, in their spacings, to a point of the coarser level beside it.
-const NEAREST: f64 = 0.8;
+/// Least distance of the points of a level from those of the coarser level beside it, in their spacings; nearer ones are left out.
+const MIN_POINT_DISTANCE: f64 = 0.8;
 
 /// A part of the terrain with finer cells.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ struct Part {
 #[derive(Debug, Default)]
 pub(crate) struct Grading {
     parts: Arc<Vec<Part>>,
-    /// What the water asks for beside the parts.
+    /// Levels that the water requires beside the parts.
     blocks: Blocks,
     spacing: f64,
 }
@@ -90,7 +90,7 @@ impl Grading {
 
     /// How often the spacing is halved for about `spacing` m.
     pub fn level_of(&self, spacing: f64) -> u8 {
-        (self.spacing / spacing).log2().round().clamp(0.0, f64::from(DEEPEST)) as u8
+        (self.spacing / spacing).log2().round().clamp(0.0, f64::from(MAX_LEVEL)) as u8
     }
 
     /// The blocks.
@@ -224,7 +224,7 @@ impl<F: Fn([f64; 2], f64) -> u8> Found<'_, F> {
             return false;
         }
         let coarser = level - 1;
-        let reach = NEAREST * self.pattern.spacing / f64::from(1 << level);
+        let reach = MIN_POINT_DISTANCE * self.pattern.spacing / f64::from(1 << level);
         self.pattern.any_near(coarser, at, reach, |point| (self.level_at)(point, 0.0) == coarser)
     }
 }

@@ -27,10 +27,10 @@ const JITTER: f64 = 0.5;
 /// Rounds in which each point moves to the centroid of its cell (Lloyd 1982).
 const ROUNDS: usize = 10;
 
-/// Positions along each side of a tile at which it is looked at how fine its cells are.
-const LOOKS: usize = 16;
+/// Samples of the cells' level along each side of a tile.
+const TILE_SAMPLES_PER_SIDE: usize = 16;
 
-/// How far neighbours are looked for at first, in spacings; one spacing farther each time that this was not enough.
+/// Radius in which neighbours are searched first, in spacings; one spacing more each time that this is not enough.
 const FIRST_RING: f64 = 2.5;
 
 /// So often at most: nothing is farther than the finest cells beside the coarsest.
@@ -50,7 +50,7 @@ pub(crate) struct Layout {
     pattern: Points,
     /// Where cells are finer.
     grading: Grading,
-    /// The points of the tiles with finer cells, found when they are first asked for.
+    /// The points of the tiles with finer cells, found on first use.
     graded: HashMap<u32, OnceLock<Points>>,
     /// The tiles in which parts of the terrain have finer cells, whatever the blocks.
     of_parts: Vec<u32>,
@@ -273,10 +273,16 @@ impl Layout {
             return count;
         }
         let corner = self.corner(tile);
-        let at = |look: usize, axis: usize| corner[axis] + (look as f64 + 0.5) / LOOKS as f64 * self.tile[axis];
-        let level = |k: usize| self.grading.finest_within(self.images([at(k % LOOKS, 0), at(k / LOOKS, 1)]), 0.0);
-        let finer: f64 = (0..LOOKS * LOOKS).map(|k| f64::from(1 << (2 * level(k)))).sum();
-        count * finer / (LOOKS * LOOKS) as f64
+        let at = |sample: usize, axis: usize| {
+            corner[axis] + (sample as f64 + 0.5) / TILE_SAMPLES_PER_SIDE as f64 * self.tile[axis]
+        };
+        let level = |k: usize| {
+            self.grading
+                .finest_within(self.images([at(k % TILE_SAMPLES_PER_SIDE, 0), at(k / TILE_SAMPLES_PER_SIDE, 1)]), 0.0)
+        };
+        let finer: f64 =
+            (0..TILE_SAMPLES_PER_SIDE * TILE_SAMPLES_PER_SIDE).map(|k| f64::from(1 << (2 * level(k)))).sum();
+        count * finer / (TILE_SAMPLES_PER_SIDE * TILE_SAMPLES_PER_SIDE) as f64
     }
 
     /// South-west corner of a tile, m.
@@ -468,7 +474,7 @@ impl Layout {
                     best = (squared, (there, k));
                 }
             });
-            // All points nearer than this have been looked at.
+            // All points nearer than this have been tested.
             if best.0 <= reach * reach || reach > widest {
                 return best.1;
             }
@@ -531,7 +537,7 @@ mod tests {
         }
     }
 
-    /// As fine as asked for where asked for, as coarse as ever elsewhere, and no cell much narrower than those on its level.
+    /// As fine as required where required, as coarse as before elsewhere, and no cell much narrower than those on its level.
     #[test]
     fn cells_are_finer_where_asked() {
         let layout = graded([true, false]);

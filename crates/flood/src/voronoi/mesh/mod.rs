@@ -32,7 +32,7 @@ const FIRST_BORDER: u32 = u32::MAX - 8;
 /// A face to a place without data or a solid is like one to a side with this number.
 pub(crate) const SOLID: u8 = 4;
 
-/// A face to a line inside the terrain, at which water comes or goes, is like one to a side with this number.
+/// A face to a line inside the terrain, at which water enters or leaves, is like one to a side with this number.
 pub(crate) const LINE: u8 = 5;
 
 /// Edges shorter than this part of the spacing are no faces.
@@ -65,7 +65,7 @@ impl Face {
     }
 }
 
-/// A face as one of its cells sees it.
+/// A face from the side of one of its cells.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Link {
     /// The cell on the other side, a border's number, or [`NONE`] where its tile is not made yet.
@@ -90,7 +90,7 @@ impl Link {
     }
 }
 
-/// What a mesh needs to know of the ground.
+/// Properties of the ground that a mesh needs.
 pub(crate) trait Ground: Sync {
     /// Mean height of the ground over a polygon, m.
     fn mean(&self, polygon: &[[f64; 2]]) -> f64;
@@ -149,7 +149,7 @@ pub(crate) struct Mesh {
     cut_cells: HashMap<u64, u32>,
     /// Faces at obstacles, in order, and the obstacle.
     pub obstacle_faces: Vec<(u32, u32)>,
-    /// Faces at lines at which water comes or goes, in order, and the line.
+    /// Faces at lines at which water enters or leaves, in order, and the line.
     pub line_faces: Vec<(u32, u32)>,
 }
 
@@ -196,7 +196,7 @@ enum NewBeyond {
     Border(u8),
     /// A wall, and the obstacle that it belongs to.
     Wall(Option<u32>),
-    /// A line at which water comes or goes, by its number.
+    /// A line at which water enters or leaves, by its number.
     Line(u32),
 }
 
@@ -494,7 +494,7 @@ impl Mesh {
         Water::of(column, self.area[cell], |depth| self.level(cell, depth))
     }
 
-    /// The same of a column whose momentum was looked at before: see [`Water::as_it_is`].
+    /// The same of a column whose momentum was bounded before: see [`Water::as_it_is`].
     pub fn water_as_it_is(&self, cell: usize, column: &Column) -> Water {
         Water::as_it_is(column, self.area[cell], |depth| self.level(cell, depth))
     }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// The ground drinks once in so many steps: the laws of infiltration hold for any step of time.
+/// Steps between two evaluations of infiltration: its laws hold for any step of time.
 pub(crate) const STEPS_A_DRAUGHT: u64 = 8;
 
 /// Where and when it rains: intensity, m/s, over x, y, and time.
@@ -127,7 +127,7 @@ impl Weather {
         }
     }
 
-    /// Looks up rain and soils of cells that were added.
+    /// Sets rain and soils of cells that were added.
     ///
     /// # Errors
     /// Where the raster of factors is negative.
@@ -154,7 +154,7 @@ impl Weather {
         Ok(())
     }
 
-    /// Clears what was looked up for each cell.
+    /// Clears the values cached for each cell.
     pub fn forget_cells(&mut self) {
         self.factors.clear();
         self.law.clear();

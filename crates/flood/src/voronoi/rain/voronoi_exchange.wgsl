@@ -1,4 +1,4 @@
-// Water that comes into a cell and goes out of it beside its motion: sources, rain, infiltration. See `patch.rs` and `rain/mod.rs`.
+// Sources, rain and infiltration of a cell. See `patch.rs` and `rain/mod.rs`.
 #import declared
 #import compensated_sums
 #import voronoi_tables

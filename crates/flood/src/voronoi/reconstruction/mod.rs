@@ -10,7 +10,7 @@ use corpuscle_simd::{Lanes, Select, Simd, SimdBase, SimdFrom};
 /// A neighbour whose bed stands above the level here counts the less, the thinner its water: in full from this part of the depth here on.
 pub(crate) const FILM: f64 = 4.0;
 
-/// Water at a face as one side sees it: depth and level, m, velocity across and along the face, m/s.
+/// Water at a face, reconstructed from one side: depth and level, m, velocity across and along the face, m/s.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct AtFace {
     pub depth: f64,
@@ -91,7 +91,7 @@ fn limit<S: Simd>(simd: S, a: Lanes<S>, b: Lanes<S>) -> Lanes<S> {
     (a * b).simd_gt(zero).select(signed, zero)
 }
 
-/// Eight faces between cells, a lane each, and the cells on both sides. The second is as the first sees it.
+/// Eight faces between cells, a lane each, and the cells on both sides. The second is relative to the first.
 pub(crate) struct Faces<S: Simd> {
     /// Depth and level, m, and velocity east- and northwards, m/s, of the cells.
     pub water: [[Lanes<S>; 4]; 2],
@@ -107,7 +107,7 @@ pub(crate) struct Faces<S: Simd> {
     pub offset: [Lanes<S>; 2],
 }
 
-/// Water at eight faces as one side sees it: see [`AtFace`].
+/// Water at eight faces, reconstructed from one side: see [`AtFace`].
 #[derive(Clone, Copy)]
 pub(crate) struct AtFaces<S: Simd> {
     pub depth: Lanes<S>,
@@ -117,7 +117,7 @@ pub(crate) struct AtFaces<S: Simd> {
 }
 
 impl<S: Simd> Faces<S> {
-    /// The water at the faces as each side sees it.
+    /// The water at the faces, reconstructed from each side.
     #[inline(always)]
     pub fn at(&self, simd: S) -> [AtFaces<S>; 2] {
         let thick = |side: usize| (self.water[side][DEPTH] * (1.0 / THIN)).min(1.0);
@@ -126,7 +126,7 @@ impl<S: Simd> Faces<S> {
         [self.seen_from(simd, 0, thick[0], both), self.seen_from(simd, 1, thick[1], both)]
     }
 
-    /// What one side sees. Next to no water has neither slopes nor a velocity that count: `thick` is 1 where it has more, `both` where both have, and less
+    /// Reconstruction from one side. Next to no water has neither slopes nor a velocity that count: `thick` is 1 where it has more, `both` where both have, and less
     /// elsewhere.
     #[inline(always)]
     fn seen_from(&self, simd: S, side: usize, thick: Lanes<S>, both: Lanes<S>) -> AtFaces<S> {
@@ -160,7 +160,7 @@ fn bounded<S: Simd>(own: &[Lanes<S>; 4], deeper: Lanes<S>, higher: Lanes<S>) -> 
     [(own[DEPTH] + kept).max(0.0), own[LEVEL] + (higher - share * (deeper - kept))]
 }
 
-/// The water at a wall as its cell sees it: level and depth are the cell's, the velocity goes towards that of its mirror image.
+/// The water at a wall, reconstructed from its cell: level and depth are the cell's, the velocity tends to that of its mirror image.
 #[inline(always)]
 pub(crate) fn at_wall<S: Simd>(simd: S, here: &Water, slopes: &Slopes, face: &Face, [nx, ny]: [f64; 2]) -> AtFace {
     let across = here.velocity[0] * nx + here.velocity[1] * ny;
@@ -183,7 +183,7 @@ pub(crate) fn at_wall<S: Simd>(simd: S, here: &Water, slopes: &Slopes, face: &Fa
     }
 }
 
-/// The water at a side of the terrain as its cell sees it: the cell's own. Slopes are not followed there: with next to nothing beyond to hold it, a lake
+/// The water at a side of the terrain: the cell's own. Slopes are not followed there: with next to nothing beyond to hold it, a lake
 /// at an open side grows waves from rounding then (seen: 0.2 m/s within 20 s).
 #[inline(always)]
 pub(crate) fn at_side(here: &Water, [nx, ny]: [f64; 2]) -> AtFace {

@@ -1,7 +1,7 @@
 // Values at faces: see `reconstruction/mod.rs`.
 #import declared
 
-// Water at a face as one side sees it: depth and level, m, velocity across and along the face, m/s, and how much higher than the cell's own the level is, m.
+// Water at a face, reconstructed from one side: depth and level, m, velocity across and along the face, m/s, and how much higher than the cell's own the level is, m.
 struct AtFace {
     depth: f32,
     level: f32,
@@ -31,7 +31,7 @@ fn turned(velocity: vec2f, normal: vec2f) -> vec2f {
     return vec2f(dot(velocity, normal), velocity.y * normal.x - velocity.x * normal.y);
 }
 
-// What one side sees. `level` is its own level above that of the first cell, `between` goes to the other centroid, `differences` are those of depth and level.
+// Reconstruction from one side. `level` is its own level above that of the first cell, `between` goes to the other centroid, `differences` are those of depth and level.
 fn seen(
     own: Water, other: Water, level: f32, slope: Slopes, differences: vec2f, between: vec2f, offset: vec2f, normal: vec2f
 ) -> AtFace {
@@ -57,7 +57,7 @@ fn seen(
     return AtFace(max(own.depth + kept, 0.0), level + bounded, at.x, at.y, bounded);
 }
 
-// The water at a wall as its cell sees it: level and depth are the cell's, the velocity goes towards that of its mirror image.
+// The water at a wall, reconstructed from its cell: level and depth are the cell's, the velocity tends to that of its mirror image.
 fn at_wall(own: Water, slope: Slopes, between: vec2f, offset: vec2f, normal: vec2f) -> AtFace {
     let mirrored = -2.0 * dot(own.velocity, normal) * normal;
     let whole = slope.x.zw * between.x + slope.y.zw * between.y;
@@ -67,7 +67,7 @@ fn at_wall(own: Water, slope: Slopes, between: vec2f, offset: vec2f, normal: vec
     return AtFace(own.depth, 0.0, at.x, at.y, 0.0);
 }
 
-// The water at a side of the terrain as its cell sees it: the cell's own.
+// The water at a side of the terrain: the cell's own.
 fn at_side(own: Water, normal: vec2f) -> AtFace {
     let at = turned(own.velocity, normal);
     return AtFace(own.depth, 0.0, at.x, at.y, 0.0);

@@ -1,4 +1,4 @@
-//! How much water goes through culverts and over weirs.
+//! Discharge through culverts and over weirs.
 
 use corpuscle_scene::{Culvert as CulvertScene, Table, Weir as WeirScene};
 

@@ -1,4 +1,4 @@
-// How much water goes through culverts and over weirs: see `hydraulics.rs`, which names the sources.
+// Discharge through culverts and over weirs: see `hydraulics.rs`, which names the sources.
 #import declared
 
 // Of a level where there is no water.

@@ -131,7 +131,7 @@ impl Structures {
 }
 
 impl Flows {
-    /// What goes in the columns.
+    /// The values of the columns.
     pub fn row(&self) -> impl Iterator<Item = f64> + '_ {
         self.outflows.iter().chain(&self.links).copied()
     }

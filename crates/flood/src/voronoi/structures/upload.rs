@@ -87,8 +87,8 @@ impl Uploaded {
     }
 }
 
-/// Takes the discharges of structures over from a GPU, which has them in the order of [`Uploaded::structures`].
-pub(in crate::voronoi) fn take_over(discharges: &[f32], structures: &Structures, flows: &mut Flows) {
+/// Sets the flows from a GPU's discharges of structures, which are in the order of [`Uploaded::structures`].
+pub(in crate::voronoi) fn set_flows(discharges: &[f32], structures: &Structures, flows: &mut Flows) {
     let held = structures.outflows.len()..structures.outflows.len() + structures.held.len();
     let of_flows = discharges.iter().enumerate().filter(|(k, _)| !held.contains(k));
     for (flow, (_, discharge)) in flows.outflows.iter_mut().chain(&mut flows.links).zip(of_flows) {

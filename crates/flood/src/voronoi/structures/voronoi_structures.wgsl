@@ -115,7 +115,7 @@ fn by_law(own: Structure, upper: f32, lower: f32, forward: bool) -> f32 {
     return value_at(own.table, vec2f(select(upper - lower, 0.0, lower == DRY), 0.0));
 }
 
-// Discharge wanted, positive from the first end to the second: see `Link::discharge`.
+// Discharge required, positive from the first end to the second: see `Link::discharge`.
 fn of_link(own: Structure, first: f32, second: f32) -> f32 {
     if first >= second {
         return select(by_law(own, first, second, true), 0.0, first == DRY);
@@ -150,7 +150,7 @@ fn let_out(thread: u32, number: u32, own: Structure) -> vec4f {
     return change;
 }
 
-fn book(books: ptr<function, Passed>, change: vec4f) {
+fn book(books: ptr<function, BorderTotals>, change: vec4f) {
     if change.x > 0.0 {
         (*books).inflow = add_pair((*books).inflow, change.xy);
     } else {
@@ -162,7 +162,7 @@ fn book(books: ptr<function, Passed>, change: vec4f) {
 
 @compute @workgroup_size(GROUP)
 fn main(@builtin(local_invocation_index) thread: u32) {
-    var books = Passed();
+    var books = BorderTotals();
     for (var k = 0u; k < parameters.structures; k++) {
         let own = structures[k];
         if own.kind == OUTFLOW {
@@ -175,6 +175,6 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         storageBarrier();
     }
     if thread == 0u {
-        passed[(parameters.cells + GROUP - 1u) / GROUP] = books;
+        border_totals[(parameters.cells + GROUP - 1u) / GROUP] = books;
     }
 }

@@ -10,7 +10,7 @@ pub(super) mod upload;
 
 pub(crate) use outlines::{no_data, of_lines, of_outlines, of_sides};
 #[cfg(feature = "gpu")]
-pub(crate) use overtopping::{MOST as MOST_OVER_CREST, coefficient as crest_coefficient};
+pub(crate) use overtopping::{MAX_CREST_SHARE, coefficient as crest_coefficient};
 pub(crate) use overtopping::{OverCrest, crests, overtop};
 pub(crate) use roofs::{areas, collect};
 
@@ -34,7 +34,7 @@ pub(crate) enum WallKind {
     Plain,
     /// The obstacle with a number.
     Obstacle(u32),
-    /// The line inside the terrain with a number, at which water comes or goes on its right.
+    /// The line inside the terrain with a number, at which water enters or leaves on its right.
     Side(u32),
 }
 
@@ -162,7 +162,7 @@ fn clipped(wall: Wall, bounds: Bounds) -> Option<Wall> {
     }
     let at = |part: f64| [0, 1].map(|axis| a[axis] + part * (b[axis] - a[axis]));
     let [first, last] = wall.crest;
-    // Where a crest is infinite a difference would be no number.
+    // Where a crest is infinite a difference would not be finite.
     let crest = |part: f64| if first == last { first } else { first + part * (last - first) };
     let ends = [if from > 0.0 { at(from) } else { a }, if to < 1.0 { at(to) } else { b }];
     Some(Wall { ends, crest: [crest(from), crest(to)], ..wall })

@@ -53,7 +53,7 @@ pub(crate) fn of_lines(scene: &Settings, terrain: &Terrain, spacing: f64) -> Res
     Ok(walls)
 }
 
-/// The lines inside the terrain at which water comes or goes.
+/// The lines inside the terrain at which water enters or leaves.
 ///
 /// # Errors
 /// [`ModelError::Setup`] for one that lies outside the terrain.

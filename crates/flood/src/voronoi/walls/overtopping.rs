@@ -8,8 +8,8 @@ use crate::voronoi::water::Column;
 use corpuscle_scene::Weir;
 use std::collections::HashMap;
 
-/// Most of the volume between the levels on both sides that flows over in a step.
-pub(crate) const MOST: f64 = 0.5;
+/// Largest part of the volume between the levels on both sides that flows over in a step.
+pub(crate) const MAX_CREST_SHARE: f64 = 0.5;
 
 /// A wall between two cells that water may flow over.
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +77,7 @@ impl OverCrest {
             (upper - self.level) * own
         };
         let Column { volume: held, momentum } = solver.columns[cells[from]];
-        let volume = wanted.min(self.parts[from] * (MOST * most).min(held));
+        let volume = wanted.min(self.parts[from] * (MAX_CREST_SHARE * most).min(held));
         if volume <= 0.0 {
             return none;
         }

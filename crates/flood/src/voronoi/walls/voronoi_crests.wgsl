@@ -1,4 +1,4 @@
-// What flows over each crest in a step, from the water before: see `walls/overtopping.rs`. Levels are above the bed of the first cell.
+// Flow over each crest in a step, from the water before: see `walls/overtopping.rs`. Levels are above the bed of the first cell.
 #import declared
 #import hydraulics
 
@@ -25,7 +25,7 @@ fn flow_over(crest: Crest) -> vec3f {
     let most = select((upper - crest.above) * own, (upper - lower) * own * other / (own + other), lower > crest.above);
     let held = columns[giver].volume.x;
     let part = select(crest.parts.x, crest.parts.y, is_back);
-    let volume = min(wanted, part * min(MOST_OVER_CREST * most, held));
+    let volume = min(wanted, part * min(MAX_CREST_SHARE * most, held));
     if volume <= 0.0 {
         return vec3f(0.0);
     }

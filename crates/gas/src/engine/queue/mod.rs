@@ -3,7 +3,7 @@
 //! A bounded increasing priority queue (G. Paul, J. Comput. Phys. 221, 2007, 615): a ring of buckets, each for a short
 //! span of time. Only the bucket at the front is kept in order. An entry names a ball and the number of its event; the
 //! time is in the ball's own record. Entries are not taken out when a ball's event is replaced: their number no longer
-//! fits, and they are passed over when their bucket comes up.
+//! fits, and they are skipped when their bucket comes up.
 
 mod mail;
 
@@ -12,7 +12,7 @@ use crate::memory;
 use crate::world::NONE;
 use mail::Mail;
 
-/// How many entries a bucket has when it comes up, about: with few balls; and with many, where the buckets to come are looked into
+/// How many entries a bucket has when it comes up, about: with few balls; and with many, where coming buckets are prefetched
 /// one by one.
 const PER_BUCKET: [f64; 2] = [8.0, 3.0];
 
@@ -224,7 +224,7 @@ impl Queue {
         self.front_bucket
     }
 
-    /// Asks for the memory of the last chunk of a bucket in the ring.
+    /// Prefetches the memory of the last chunk of a bucket in the ring.
     #[inline(always)]
     pub fn ask_for_chunk(&self, bucket: u64) {
         let place = self.ring[bucket as usize & (self.ring.len() - 1)];
@@ -233,13 +233,13 @@ impl Queue {
         }
     }
 
-    /// Tells ball and number of the entries in a bucket of the ring.
+    /// Calls `visit` with ball and number of the entries in a bucket of the ring.
     #[inline(always)]
-    pub fn each_in(&self, bucket: u64, mut tell: impl FnMut(u32, u32)) {
+    pub fn each_in(&self, bucket: u64, mut visit: impl FnMut(u32, u32)) {
         let mut place = self.ring[bucket as usize & (self.ring.len() - 1)];
         while place != NONE {
             let chunk = &self.chunks[(place >> BITS) as usize];
-            chunk.slips[..(place & FULL) as usize].iter().for_each(|slip| tell(slip.ball, slip.stamp));
+            chunk.slips[..(place & FULL) as usize].iter().for_each(|slip| visit(slip.ball, slip.stamp));
             place = chunk.next;
         }
     }

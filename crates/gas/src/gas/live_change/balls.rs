@@ -8,11 +8,11 @@ use corpuscle_model::ModelError;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Places drawn in vain for one ball, at which it is said that there is no room.
-const TRIES: u32 = 20_000;
+/// Random positions tried for one ball before it is reported that there is no room.
+const MAX_PLACEMENT_TRIES: u32 = 20_000;
 
-/// A little larger than needed, so that what is left of it is an open gap.
-const SPARE: f64 = 1.0 + 1e-9;
+/// Factor on radii, a little above 1, so that a gap remains between balls.
+const RADIUS_MARGIN: f64 = 1.0 + 1e-9;
 
 /// Random numbers of what is put in are another stream for each time; the first few are taken.
 const FIRST_STREAM: u64 = 16;
@@ -97,7 +97,7 @@ impl<const D: usize> Gas<D> {
         found.ok_or_else(|| ModelError::Setup(format!("there is no set {set} of balls")))
     }
 
-    /// Books energy and momentum of a ball that comes (1) or goes (-1).
+    /// Books energy and momentum of a ball that is added (1) or removed (-1).
     fn book_ball(&mut self, ball: usize, sign: f64) {
         let world = self.mover.world();
         let (mass, gravity) = (world.mass(ball), world.field.gravity);
@@ -119,25 +119,25 @@ impl<const D: usize> Gas<D> {
         let balls = world.balls.len() + count;
         let extent: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, self.now()));
         let (low, length) = (extent.map(|[low, _]| low), extent.map(|[low, high]| high - low));
-        let mut hash = Hash::new(low, length, world.field.period, 2.0 * SPARE * largest, balls);
+        let mut hash = Hash::new(low, length, world.field.period, 2.0 * RADIUS_MARGIN * largest, balls);
         for number in 0..world.balls.len() {
             hash.add(world.state(number, self.now()).0, world.radius(number));
         }
         let anywhere = |random: &mut ChaCha8Rng| -> [f64; D] {
             std::array::from_fn(|axis| {
-                let margin = if world.field.period[axis] > 0.0 { 0.0 } else { SPARE * radius };
+                let margin = if world.field.period[axis] > 0.0 { 0.0 } else { RADIUS_MARGIN * radius };
                 low[axis] + margin + (length[axis] - 2.0 * margin).max(0.0) * random.random::<f64>()
             })
         };
         let divides = world.walls.iter().filter(|wall| wall.present && wall.facing == Facing::Both);
         let divides: Vec<_> = divides.map(|wall| (wall.axis, wall.place)).collect();
         let is_free = |place: &[f64; D], hash: &Hash<D>| {
-            divides.iter().all(|&(axis, at)| (place[axis] - at).abs() > SPARE * radius)
-                && hash.is_clear(place, SPARE * radius)
+            divides.iter().all(|&(axis, at)| (place[axis] - at).abs() > RADIUS_MARGIN * radius)
+                && hash.is_clear(place, RADIUS_MARGIN * radius)
         };
         let mut places = Vec::with_capacity(count);
         for _ in 0..count {
-            let place = (0..TRIES).map(|_| anywhere(random)).find(|place| is_free(place, &hash));
+            let place = (0..MAX_PLACEMENT_TRIES).map(|_| anywhere(random)).find(|place| is_free(place, &hash));
             let none = || ModelError::Setup(format!("there is no room for {count} more balls"));
             let place = place.ok_or_else(none)?;
             hash.add(place, radius);

@@ -66,7 +66,7 @@ pub enum LiveChange {
 }
 
 impl LiveChange {
-    /// Changes a model that is a gas, at the time it shows. Averages over time begin anew.
+    /// Changes a model that is a gas, at the time shown. Averages over time start again.
     ///
     /// # Errors
     /// [`ModelError::Setup`] where it is none, has no such wall or partition, or the number is out of range: nothing has changed then.
@@ -81,7 +81,7 @@ impl LiveChange {
     }
 }
 
-/// What live changes added and removed, and what they hold.
+/// Energy and momentum that live changes added and removed, and the values that they hold.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LiveTally {
     pub gained: ExactSum,
@@ -107,7 +107,7 @@ impl LiveTally {
         self.momentum.add(momentum);
     }
 
-    /// What is held has to be seen to next, and when.
+    /// The next updates of held values, with their times.
     pub fn due(&self) -> impl Iterator<Item = (f64, Due)> {
         let grips = self.grips.iter().enumerate().map(|(held, grip)| (grip.arrives, Due::Arrive(held)));
         grips.chain(self.thermostat.map(|thermostat| (thermostat.next, Due::Regulate)))
@@ -178,7 +178,7 @@ impl<const D: usize> Gas<D> {
         }
     }
 
-    /// All velocities are scaled now, so that the kinetic energy is so many times what it was.
+    /// Scales all velocities now, so that the kinetic energy is multiplied by a factor.
     fn scale_energy(&mut self, factor: f64) {
         // All balls are brought to the beginning of a window, and what is to come of them is found anew after it.
         self.mover.begin_window();
@@ -209,7 +209,7 @@ impl<const D: usize> Gas<D> {
         let speed = wall.speed_at(now);
         wall.bend(now, speed);
         wall.acceleration = inward * pressure * area / wall.mass.unwrap_or(f64::INFINITY);
-        self.mover.wall_bent(number);
+        self.mover.wall_changed(number);
     }
 
     /// Counts of speeds, profile and pairs are of what comes now.

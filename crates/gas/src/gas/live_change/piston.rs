@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Speed at which a piston is dragged, over the thermal speed of the balls: slow enough that the gas follows.
-const DRAG: f64 = 0.3;
+const DRAG_SPEED: f64 = 0.3;
 
 /// Packing up to which a gas is compressed by dragging, in two and three dimensions: well below where balls jam.
-const PRESSED: [f64; 2] = [0.6, 0.45];
+const MAX_DRAG_PACKING: [f64; 2] = [0.6, 0.45];
 
 /// A piston that is held.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -36,18 +36,18 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world_mut();
         let (now, time) = (world.now, world.time());
         let wall = &mut world.walls[number];
-        let way = to - wall.place_at(now);
-        let speed = (DRAG * energy.sqrt()).copysign(way);
+        let displacement = to - wall.place_at(now);
+        let speed = (DRAG_SPEED * energy.sqrt()).copysign(displacement);
         let held = self.live.grips.iter().position(|grip| grip.wall == number);
         let free = held.map(|held| self.live.grips.swap_remove(held));
         let mass = wall.mass.or(free.map(|free| free.mass)).unwrap_or(f64::INFINITY);
         let acceleration = free.map_or(wall.acceleration, |free| free.acceleration);
-        let moves = speed != 0.0 && way != 0.0;
+        let moves = speed != 0.0 && displacement != 0.0;
         wall.bend(now, if moves { speed } else { 0.0 });
         (wall.mass, wall.acceleration) = (None, 0.0);
-        let arrives = if moves { time + way / speed } else { f64::INFINITY };
+        let arrives = if moves { time + displacement / speed } else { f64::INFINITY };
         self.live.grips.push(Grip { wall: number, mass, acceleration, arrives, to });
-        self.mover.wall_bent(number);
+        self.mover.wall_changed(number);
         Ok(())
     }
 
@@ -64,7 +64,7 @@ impl<const D: usize> Gas<D> {
         let wall = &mut world.walls[number];
         wall.bend(now, 0.0);
         (wall.mass, wall.acceleration) = (Some(grip.mass), grip.acceleration);
-        self.mover.wall_bent(number);
+        self.mover.wall_changed(number);
         Ok(())
     }
 
@@ -81,7 +81,7 @@ impl<const D: usize> Gas<D> {
         if (wall.place - to).abs() < 1e-9 * to.abs().max(1e-300) && wall.facing == Facing::Up {
             wall.place = wall.place.min(to);
         }
-        self.mover.wall_bent(number);
+        self.mover.wall_changed(number);
     }
 
     /// The pressure from outside of a piston that is held, for when it is let go; false where it is not.
@@ -114,7 +114,7 @@ impl<const D: usize> Gas<D> {
         let ball = |radius: f64| if D == 2 { PI * radius * radius } else { 4.0 / 3.0 * PI * radius.powi(3) };
         let filled: f64 = (0..world.balls.len()).map(|number| ball(world.radius(number))).sum();
         let widest = world.kinds.iter().map(|kind| 3.0 * kind.radius).fold(0.0, f64::max);
-        let least = (filled / (PRESSED[D - 2] * self.area_across(axis))).max(widest);
+        let least = (filled / (MAX_DRAG_PACKING[D - 2] * self.area_across(axis))).max(widest);
         if to.is_finite() && length >= least {
             return Ok(());
         }

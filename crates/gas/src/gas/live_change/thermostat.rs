@@ -5,7 +5,7 @@ use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
 
 /// Time between two scalings, over that in which a ball at thermal speed crosses the shortest side of the box.
-const OFTEN: f64 = 0.1;
+const SCALING_PERIOD: f64 = 0.1;
 
 /// What holds the temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -30,7 +30,7 @@ impl<const D: usize> Gas<D> {
         let lightest = self.sets.iter().map(|set| set.mass).fold(f64::INFINITY, f64::min);
         let thermal = (self.setup.boltzmann * temperature / lightest).sqrt();
         let shortest = self.setup.size.iter().copied().fold(f64::INFINITY, f64::min);
-        let every = OFTEN * shortest / thermal;
+        let every = SCALING_PERIOD * shortest / thermal;
         self.come_to_now();
         let next = self.mover.world().time() + every;
         self.live.thermostat = Some(Thermostat { temperature, every, next });

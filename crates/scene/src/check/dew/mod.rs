@@ -136,7 +136,7 @@ impl Check {
         self.humidity(key, celsius, humidity)
     }
 
-    /// A fan stands in the box, is no thinner than air can be told apart, and blows.
+    /// A fan stands in the box, is no thinner than the spacing resolves, and blows.
     fn fan(&self, key: &str, fan: &Fan, dew: &Dew) -> Checked {
         for axis in 0..3 {
             let size = fan.size_m[axis];

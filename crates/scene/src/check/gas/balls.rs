@@ -52,7 +52,7 @@ impl Check {
         })
     }
 
-    /// No two balls overlap, across periodic sides neither. In order along x, so that few pairs are looked at.
+    /// No two balls overlap, across periodic sides neither. In order along x, so that few pairs are tested.
     fn no_overlap(&self, gas: &Gas) -> Checked {
         let largest = gas.ball.iter().map(|ball| ball.radius).fold(0.0, f64::max);
         let mut order: Vec<usize> = (0..gas.ball.len()).collect();

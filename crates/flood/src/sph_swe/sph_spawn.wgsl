@@ -1,8 +1,8 @@
-// Lets in the particles that are due by the end of the step, one after another, each where of some places drawn at random the surface stands lowest. Twin of
-// `Nursery` in `inflow.rs` and of `Zone::any`; the random numbers are those of ChaCha with 8 rounds (Bernstein 2008), as on the CPU, one stream for each new
+// Spawns the particles of inflows that are due by the end of the step, one after another, each at the lowest surface of some positions drawn at random. Twin of
+// `ParticleSpawner` in `inflow.rs` and of `Zone::any`; the random numbers are those of ChaCha with 8 rounds (Bernstein 2008), as on the CPU, one stream for each new
 // particle. One group.
 //
-// A zone takes so many words of `zones`: disc or band; first corner and how many; radius or half width, m; middle; length of a band, m.
+// Words of a zone in `zones`: disc or band; first corner and how many; radius or half width, m; middle; length of a band, m.
 #import sph_common
 #import sph_neighbours
 #import sph_spline
@@ -10,11 +10,11 @@
 
 const THREADS = 64u;
 
-// At most so many in a step: the rest comes in the next.
-const MOST = 256u;
+// Most particles spawned in a step; the rest follows in the next.
+const MAX_SPAWNED = 256u;
 
-var<workgroup> tried: array<vec2f, TRIES>;
-var<workgroup> surfaces: array<f32, TRIES>;
+var<workgroup> tried: array<vec2f, SPAWN_CANDIDATES>;
+var<workgroup> surfaces: array<f32, SPAWN_CANDIDATES>;
 
 fn value(at: u32) -> f32 {
     return bitcast<f32>(zones[at]);
@@ -59,7 +59,7 @@ fn random_pair(stream: vec2u, pair: u32) -> vec2f {
         quarter_round(&state, 2u, 7u, 8u, 13u);
         quarter_round(&state, 3u, 4u, 9u, 14u);
     }
-    // The host draws 64 bits for each; the upper half tells as much as single precision holds.
+    // The host draws 64 bits for each; the upper half has all bits of single precision.
     let first = 4u * (pair % 4u) + 1u;
     let bits = vec2u(state[first] + word(begin, first), state[first + 2u] + word(begin, first + 2u));
     return vec2f(bits >> vec2u(8u)) * exp2(-24.0);
@@ -70,13 +70,13 @@ fn word(words: array<u32, 16>, number: u32) -> u32 {
     return copy[number];
 }
 
-// A place on both sides of a line between two points.
+// A position beside a line between two points.
 fn in_band(a: vec2f, b: vec2f, part: f32, beside: f32) -> vec2f {
     let direction = (b - a) / distance(a, b);
     return a + part * (b - a) + beside * vec2f(-direction.y, direction.x);
 }
 
-// The `number`th place in a zone of those drawn for a stream.
+// The `number`th random position in a zone for a stream.
 fn any_place(zone: u32, stream: vec2u, number: u32) -> vec2f {
     let draw = random_pair(stream, number);
     if zones[zone] == DISC {
@@ -106,8 +106,8 @@ fn deep(particle: Particle, place: vec2f) -> f32 {
     return particle.volume * spline(distance(place, particle.place), 1.0 / parameters.new_h);
 }
 
-// Height of the surface by the plain kernel sum: low where particles leave a gap. `born` are the numbers of those that are new.
-fn surface_height(place: vec2f, born: vec2u) -> f32 {
+// Height of the surface by the plain kernel sum: low where particles leave a gap. `spawned` is the range of new particles.
+fn surface_height(place: vec2f, spawned: vec2u) -> f32 {
     var height = ground_at(place).x;
     let cells = cells_round(parameters.grid, place, 2.0 * parameters.new_h);
     // The particles stand in the order of the last sort, in cells that they have drifted away from but little.
@@ -117,20 +117,20 @@ fn surface_height(place: vec2f, born: vec2u) -> f32 {
             height += deep(unpacked(particles[j]), place);
         }
     }
-    for (var j = born.x; j < born.y; j++) {
+    for (var j = spawned.x; j < spawned.y; j++) {
         height += deep(unpacked(particles[j]), place);
     }
     return height;
 }
 
-// Of the places that the first threads of the group have tried the one where the surface stands lowest.
-fn lowest(thread: u32, born: vec2u) -> vec2f {
-    if thread < TRIES {
-        surfaces[thread] = surface_height(tried[thread], born);
+// The position, of those of the first threads of the group, with the lowest surface.
+fn lowest(thread: u32, spawned: vec2u) -> vec2f {
+    if thread < SPAWN_CANDIDATES {
+        surfaces[thread] = surface_height(tried[thread], spawned);
     }
     workgroupBarrier();
     var best = 0u;
-    for (var k = 1u; k < TRIES; k++) {
+    for (var k = 1u; k < SPAWN_CANDIDATES; k++) {
         if surfaces[k] < surfaces[best] {
             best = k;
         }
@@ -140,8 +140,8 @@ fn lowest(thread: u32, born: vec2u) -> vec2f {
     return place;
 }
 
-// A new particle; the caller has seen that there is room for it.
-fn appear(number: u32, place: vec2f, velocity: vec2f) {
+// Adds a new particle; the caller has checked that there is room for it.
+fn spawn(number: u32, place: vec2f, velocity: vec2f) {
     var particle: Particle;
     particle.place = place;
     particle.velocity = velocity;
@@ -155,11 +155,11 @@ fn appear(number: u32, place: vec2f, velocity: vec2f) {
     book_momentum(particle.volume * sum(velocity));
 }
 
-// What the group knows together: particles now, those of them that are older than this pass, and the birth that is due, if any.
+// State shared by the group: number of particles, number before this pass, and the next request and whether it is due.
 struct Turn {
     particles: u32,
     older: u32,
-    birth: u32,
+    request: u32,
     is_due: u32,
 }
 
@@ -168,15 +168,15 @@ var<workgroup> turn: Turn;
 @compute @workgroup_size(THREADS)
 fn main(@builtin(local_invocation_index) thread: u32) {
     if thread == 0u {
-        turn = Turn(status.particles, status.particles, status.born, 0u);
+        turn = Turn(status.particles, status.particles, status.spawned, 0u);
     }
     workgroupBarrier();
-    for (var count = 0u; count < MOST; count++) {
+    for (var count = 0u; count < MAX_SPAWNED; count++) {
         if thread == 0u {
-            let is_told = status.halted == GOING && turn.birth < status.births;
+            let is_pending = status.halted == GOING && turn.request < status.spawn_requests;
             let has_room = turn.particles < arrayLength(&particles);
             turn.is_due = 0u;
-            if is_told && has_room && births[turn.birth].time <= total(status.clock) + status.step {
+            if is_pending && has_room && spawn_requests[turn.request].time <= total(status.clock) + status.step {
                 turn.is_due = 1u;
             }
         }
@@ -184,20 +184,20 @@ fn main(@builtin(local_invocation_index) thread: u32) {
         if now.is_due == 0u {
             break;
         }
-        if thread < TRIES {
-            tried[thread] = within_bounds(any_place(births[now.birth].zone, vec2u(status.next_id, 0u), thread));
+        if thread < SPAWN_CANDIDATES {
+            tried[thread] = within_bounds(any_place(spawn_requests[now.request].zone, vec2u(status.next_id, 0u), thread));
         }
         let place = lowest(thread, vec2u(now.older, now.particles));
         if thread == 0u {
-            appear(now.particles, place, births[now.birth].velocity);
+            spawn(now.particles, place, spawn_requests[now.request].velocity);
             turn.particles += 1u;
-            turn.birth += 1u;
+            turn.request += 1u;
         }
         storageBarrier();
     }
     if thread == 0u && status.halted == GOING {
         status.particles = turn.particles;
-        status.born = turn.birth;
+        status.spawned = turn.request;
         groups[0] = (turn.particles + GROUP - 1u) / GROUP;
     }
 }

@@ -1,4 +1,4 @@
-// Looks at the water after its motion, before structures work: records of the maps, and how long the next step may be.
+// Surveys the water after its motion, before structures change it: records of the maps, and the largest stable time step (CFL).
 #import declared
 #import record_step
 #import voronoi_stable
