@@ -24,7 +24,7 @@ pub fn text(folder: &Path, name: &str, ending: &str, text: &str) -> io::Result<P
 /// Writes a picture as a PNG file; gives the file.
 pub fn picture(folder: &Path, name: &str, image: &corpuscle::gpu::Image) -> Result<PathBuf, corpuscle::Error> {
     let path = free(folder, name, "png");
-    corpuscle::record::write_picture(&path, [image.width, image.height], &image.rgba)?;
+    corpuscle::output::write_picture(&path, [image.width, image.height], &image.rgba)?;
     Ok(path)
 }
 

@@ -1,7 +1,7 @@
 //! The command line's words.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use corpuscle::record::FrameFormat;
+use corpuscle::output::FrameFormat;
 use corpuscle::terrain::MapBox;
 use std::path::PathBuf;
 

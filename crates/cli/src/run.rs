@@ -9,7 +9,7 @@ use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
-use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
+use corpuscle::output::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
 use corpuscle::{Choice, Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
@@ -114,7 +114,7 @@ fn came_to_grief(error: &corpuscle::Error, simulation: &Simulation, recorder: &R
         corpuscle::Error::Model(ModelError::Device(error)) if recorder.can_resume() => {
             anyhow!("{ended}: {error}; go on on the CPU with `corpuscle run --resume {folder} --backend cpu`")
         }
-        corpuscle::Error::Record(error) if recorder.can_resume() => {
+        corpuscle::Error::Output(error) if recorder.can_resume() => {
             anyhow!("{ended}: {error}; then go on with `corpuscle run --resume {folder}`")
         }
         error => anyhow!("{ended}; what was written up to there stays readable in {folder}: {error}"),

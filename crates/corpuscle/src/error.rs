@@ -1,7 +1,7 @@
 //! What can go wrong between a scene and the end of its run.
 
 use corpuscle_model::ModelError;
-use corpuscle_output::RecordError;
+use corpuscle_output::OutputError;
 use corpuscle_scene::SceneError;
 use corpuscle_terrain::TerrainError;
 
@@ -23,7 +23,7 @@ pub enum Error {
     Model(#[from] ModelError),
     /// The run's folder.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Output(#[from] OutputError),
     /// The GPU that was to compute.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
@@ -67,11 +67,11 @@ impl Error {
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. } | ModelError::Device(_)),
             #[cfg(feature = "gpu")]
             Self::Gpu(_) => true,
-            Self::Record(error) => !matches!(
+            Self::Output(error) => !matches!(
                 error,
-                RecordError::Write { .. }
-                    | RecordError::GaugeCount { .. }
-                    | RecordError::Map(TerrainError::Write { .. })
+                OutputError::Write { .. }
+                    | OutputError::GaugeCount { .. }
+                    | OutputError::Map(TerrainError::Write { .. })
             ),
         }
     }

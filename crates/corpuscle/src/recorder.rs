@@ -20,7 +20,7 @@ impl Recorder {
     /// Starts the folder of a run.
     ///
     /// # Errors
-    /// [`corpuscle_output::RecordError`] where the folder holds anything or cannot be written.
+    /// [`corpuscle_output::OutputError`] where the folder holds anything or cannot be written.
     pub fn create(path: &Path, simulation: &Simulation, frames: FrameFormat) -> Result<Self, Error> {
         let scene_text = simulation.scene().to_toml()?;
         let folder = RunFolder::create(path, &scene_text, &simulation.model().gauge_columns(), frames)?;

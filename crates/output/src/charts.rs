@@ -1,13 +1,13 @@
 //! `charts/`: what was measured, as tables; `path.csv`: where followed particles went.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::number::Shortest;
 use crate::whole::write_bytes;
 use corpuscle_model::{Chart, ChartSeries, Path as Way};
 use std::path::Path;
 
 /// Writes a chart: one row for each point, `series,x,y,error`; the last is empty where there is none.
-pub(crate) fn write_chart(folder: &Path, chart: &Chart) -> Result<(), RecordError> {
+pub(crate) fn write_chart(folder: &Path, chart: &Chart) -> Result<(), OutputError> {
     let rows = |series: &ChartSeries| {
         let error =
             |index: usize| series.errors.get(index).map_or_else(String::new, |error| Shortest(*error).to_string());
@@ -21,7 +21,7 @@ pub(crate) fn write_chart(folder: &Path, chart: &Chart) -> Result<(), RecordErro
 }
 
 /// Writes `path.csv`: `path,time_s,x,y,z`, one row for each point.
-pub(crate) fn write_paths(folder: &Path, ways: &[Way]) -> Result<(), RecordError> {
+pub(crate) fn write_paths(folder: &Path, ways: &[Way]) -> Result<(), OutputError> {
     let rows = |way: &Way| {
         let row = |(time, [x, y, z]): (&f64, &[f64; 3])| {
             let [time, x, y, z] = [time, x, y, z].map(|value| Shortest(*value).to_string());
@@ -36,7 +36,7 @@ fn write_table<const N: usize>(
     path: &Path,
     head: [&str; N],
     rows: impl Iterator<Item = [String; N]>,
-) -> Result<(), RecordError> {
+) -> Result<(), OutputError> {
     let table = || {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.write_record(head)?;
@@ -45,16 +45,16 @@ fn write_table<const N: usize>(
         }
         writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
     };
-    write_bytes(path, &table().map_err(|error| RecordError::content(path, error))?)
+    write_bytes(path, &table().map_err(|error| OutputError::content(path, error))?)
 }
 
 /// Reads the paths that a run wrote, `path.csv`; none where there is no such file.
-pub(crate) fn read_paths(folder: &Path) -> Result<Vec<Way>, RecordError> {
+pub(crate) fn read_paths(folder: &Path) -> Result<Vec<Way>, OutputError> {
     let path = folder.join("path.csv");
     if !path.exists() {
         return Ok(Vec::new());
     }
-    let wrong = |what: String| RecordError::content(&path, what);
+    let wrong = |what: String| OutputError::content(&path, what);
     let mut reader = csv::Reader::from_path(&path).map_err(|error| wrong(error.to_string()))?;
     let mut ways: Vec<Way> = Vec::new();
     for row in reader.deserialize::<(String, f64, f64, f64, f64)>() {

@@ -2,7 +2,7 @@
 //!
 //! One file, written whole: a line with a checksum of all that follows, a line of JSON, the state's bytes.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::frames::FrameFormat;
 use crate::whole::write_whole;
 use serde::{Deserialize, Serialize};
@@ -43,8 +43,8 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Writes the checkpoint, whole or not at all.
-    pub(crate) fn write(&self, path: &Path, state: &[u8]) -> Result<(), RecordError> {
-        let line = serde_json::to_string(self).map_err(|error| RecordError::content(path, error))? + "\n";
+    pub(crate) fn write(&self, path: &Path, state: &[u8]) -> Result<(), OutputError> {
+        let line = serde_json::to_string(self).map_err(|error| OutputError::content(path, error))? + "\n";
         let digest = checksum(&[line.as_bytes(), state]);
         write_whole(path, |file| {
             writeln!(file, "{MAGIC}{digest}")?;
@@ -54,9 +54,9 @@ impl Progress {
     }
 
     /// Reads a checkpoint and its state, and checks that it is sound, of this version and of this scene.
-    pub(crate) fn read(path: &Path, scene_text: &str) -> Result<(Self, Vec<u8>), RecordError> {
-        let refuse = |what: String| RecordError::Checkpoint { path: path.to_owned(), what };
-        let mut bytes = fs::read(path).map_err(RecordError::read(path))?;
+    pub(crate) fn read(path: &Path, scene_text: &str) -> Result<(Self, Vec<u8>), OutputError> {
+        let refuse = |what: String| OutputError::Checkpoint { path: path.to_owned(), what };
+        let mut bytes = fs::read(path).map_err(OutputError::read(path))?;
         let (digest, rest) = split_line(&bytes)
             .and_then(|(line, rest)| Some((line.strip_prefix(MAGIC)?, rest)))
             .ok_or_else(|| refuse("it does not begin as a checkpoint of this version does".into()))?;

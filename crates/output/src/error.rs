@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a run's folder cannot be written or read. The text says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-pub enum RecordError {
+pub enum OutputError {
     /// A file or folder cannot be written.
     #[error("cannot write {}: {source}; {}; what was written before is whole and stays readable", path.display(), advice(source))]
     Write {
@@ -79,7 +79,7 @@ pub enum RecordError {
     },
 }
 
-impl RecordError {
+impl OutputError {
     /// Makes an [`io::Error`] met while writing `path` into an error that names it.
     pub(crate) fn write(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Write { path: path.to_owned(), source }

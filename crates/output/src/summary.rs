@@ -1,6 +1,6 @@
 //! `summary.json`: what a run was and what came of it.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::extent::ExtentScores;
 use crate::whole::write_whole;
 use corpuscle_model::Ledger;
@@ -93,17 +93,17 @@ impl Summary {
     /// Reads the `summary.json` of a run's folder.
     ///
     /// # Errors
-    /// [`RecordError::Read`] or [`RecordError::Content`].
-    pub fn read(folder: &Path) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`] or [`OutputError::Content`].
+    pub fn read(folder: &Path) -> Result<Self, OutputError> {
         let path = folder.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(RecordError::read(&path))?;
-        serde_json::from_str(&text).map_err(|error| RecordError::content(&path, error))
+        let text = fs::read_to_string(&path).map_err(OutputError::read(&path))?;
+        serde_json::from_str(&text).map_err(|error| OutputError::content(&path, error))
     }
 
     /// Writes `summary.json` into a run's folder.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), RecordError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let path = folder.join("summary.json");
-        let text = serde_json::to_string_pretty(self).map_err(|error| RecordError::content(&path, error))?;
+        let text = serde_json::to_string_pretty(self).map_err(|error| OutputError::content(&path, error))?;
         write_whole(&path, |file| writeln!(file, "{text}"))
     }
 }

@@ -1,6 +1,6 @@
 //! Where the walls of a box were over a run.
 
-use crate::{GaugeTable, RecordError};
+use crate::{GaugeTable, OutputError};
 use corpuscle_model::Container;
 use std::path::Path;
 
@@ -23,8 +23,8 @@ impl WallPlaces {
     /// Those of a run, from its gauges; of none where no wall moves.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Content`] where `gauges.csv` cannot be used.
-    pub fn read(run: &Path) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Content`] where `gauges.csv` cannot be used.
+    pub fn read(run: &Path) -> Result<Self, OutputError> {
         Ok(Self::of(&GaugeTable::read(&run.join("gauges.csv"))?))
     }
 

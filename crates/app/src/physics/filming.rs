@@ -3,9 +3,9 @@
 use super::subject::Subject;
 use crate::view_state::ViewState;
 use corpuscle::Error;
-use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Gpu;
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
+use corpuscle::video::{Film, Format};
 use std::path::{Path, PathBuf};
 
 /// Size of its pictures, pixels, and how many there are in a second.

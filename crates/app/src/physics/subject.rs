@@ -4,7 +4,7 @@ use super::{Backend, Change};
 use crate::snapshot::Measures;
 use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
 use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
-use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
+use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
 use corpuscle::{Choice, Error, Sample, Simulation};
 use std::path::Path;

@@ -15,7 +15,7 @@ mod validation;
 use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
@@ -100,11 +100,11 @@ impl Report {
     /// Maps that are not there are left out of the report.
     ///
     /// # Errors
-    /// [`RecordError::Read`] or [`RecordError::Content`], naming the file.
-    pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`] or [`OutputError::Content`], naming the file.
+    pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, OutputError> {
         let scene_path = folder.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
-        let no_flood = || RecordError::content(&scene_path, "it is not the scene of a flood");
+        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let no_flood = || OutputError::content(&scene_path, "it is not the scene of a flood");
         let flood = scene.flood().ok_or_else(no_flood)?;
         let grid = terrain.map_grid();
         let cells = grid.columns * grid.rows;
@@ -138,11 +138,11 @@ impl Report {
     /// Writes `pictures/*.png` and `report.html` into the folder. The same folder always gives the same bytes.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
-        let drawing = |what: String| RecordError::content(&pictures, what);
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))?;
+        let drawing = |what: String| OutputError::content(&pictures, what);
         let figures = Figures::draw(self).map_err(drawing)?;
         for (name, png) in figures.pngs().map_err(drawing)? {
             write_bytes(&pictures.join(format!("{name}.png")), &png)?;
@@ -187,12 +187,12 @@ fn folder_name(folder: &Path) -> String {
     folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, RecordError> {
+fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, OutputError> {
     let values = read_map(path)?;
     if values.len() != cells {
         let what =
             format!("it has {} cells where the scene's terrain has {cells}; it belongs to another", values.len());
-        return Err(RecordError::content(path, what));
+        return Err(OutputError::content(path, what));
     }
     Ok(values)
 }

@@ -4,7 +4,7 @@ use super::parts::{self, KeyFigure, how_it_ended};
 use super::{folder_name, title_or_folder};
 use crate::picture::{Figure, number, plot, svg_to_png, time};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn, Model};
 use corpuscle_scene::Scene;
 use std::fs;
@@ -35,20 +35,20 @@ impl<'a> PlainReport<'a> {
     /// Writes `pictures/*.png` and `report.html`.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a chart that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Write`]; [`OutputError::Content`] for a chart that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let scene = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let mut charts = over_time(&self.model.gauge_columns(), &table, self.time_unit);
         charts.extend(self.model.charts());
         let charts: Vec<(String, Figure)> =
             charts.iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect();
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))?;
         for (name, figure) in &charts {
-            let drawing = |what: String| RecordError::content(&pictures, what);
+            let drawing = |what: String| OutputError::content(&pictures, what);
             let png = svg_to_png(&figure.with_margin(16.0)).map_err(drawing)?;
             write_bytes(&pictures.join(format!("{name}.png")), &png)?;
         }
