@@ -9,7 +9,7 @@ const ROWS: [(&str, &str); 16] = [
     ("R", "restart, with the parameters as they are set"),
     ("F, or double click", "show all again"),
     ("T", "from above and back (not for flat gases)"),
-    ("1, 2, 3", "look: by itself, simple, full"),
+    ("1, 2, 3", "quality: automatic, simple, full"),
     ("S", "save a still, as large as films are"),
     ("V", "record a film of what goes on, and end it"),
     ("G", "scenes"),

@@ -2,15 +2,15 @@
 
 use corpuscle::pictures::Shown;
 use corpuscle_drawing::svg::Anchor;
-use corpuscle_render::{Border, ColourTable, Key, LineLook, Mark};
+use corpuscle_render::{Border, ColourTable, Key, LineStyle, Mark};
 use egui::{Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 /// Ink on light and on dark ground, and what is round letters on a lit picture.
 const INK: [Color32; 2] = [Color32::from_rgb(0x3c, 0x46, 0x50), Color32::from_rgb(0xb8, 0xc2, 0xcc)];
 const HALO: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
 /// Walls: plain, at a temperature, of a piston.
-const HOT: Color32 = Color32::from_rgb(0xe0, 0x6a, 0x10);
-const WAY: Color32 = Color32::from_rgb(0xc2, 0x18, 0x5b);
+const THERMAL_WALL: Color32 = Color32::from_rgb(0xe0, 0x6a, 0x10);
+const TRAJECTORY: Color32 = Color32::from_rgb(0xc2, 0x18, 0x5b);
 const PISTON: [Color32; 2] = [Color32::from_rgb(0x6b, 0x78, 0x85), Color32::from_rgb(0x7d, 0x89, 0x96)];
 /// Thickness of a piston and its rod, points.
 const BLOCK: f32 = 14.0;
@@ -96,22 +96,22 @@ impl Over<'_> {
         }
     }
 
-    fn line_of(&self, look: LineLook) -> Stroke {
+    fn line_of(&self, style: LineStyle) -> Stroke {
         let wall =
             if self.is_dark() { Color32::from_rgb(0xd6, 0xdd, 0xe4) } else { Color32::from_rgb(0x17, 0x21, 0x2b) };
-        match look {
-            LineLook::Wall => Stroke::new(2.0, wall),
-            LineLook::HotWall => Stroke::new(3.5, HOT),
-            LineLook::Open => Stroke::new(1.2, self.ink()),
-            LineLook::Partition => Stroke::new(2.5, wall),
-            LineLook::Way => Stroke::new(1.7, WAY),
+        match style {
+            LineStyle::Wall => Stroke::new(2.0, wall),
+            LineStyle::ThermalWall => Stroke::new(3.5, THERMAL_WALL),
+            LineStyle::Periodic => Stroke::new(1.2, self.ink()),
+            LineStyle::Partition => Stroke::new(2.5, wall),
+            LineStyle::Trajectory => Stroke::new(1.7, TRAJECTORY),
         }
     }
 
-    fn stroke(&self, ends: [Pos2; 2], look: LineLook) {
-        let stroke = self.line_of(look);
-        match look {
-            LineLook::Open => self.painter.extend(Shape::dashed_line(&ends, stroke, 5.0, 4.0)),
+    fn stroke(&self, ends: [Pos2; 2], style: LineStyle) {
+        let stroke = self.line_of(style);
+        match style {
+            LineStyle::Periodic => self.painter.extend(Shape::dashed_line(&ends, stroke, 5.0, 4.0)),
             _ => {
                 self.painter.line_segment(ends, stroke);
             }
@@ -123,10 +123,10 @@ impl Over<'_> {
         // y is up in the world and down in the window.
         let out = |[x, y]: [f64; 2]| vec2(x as f32, -y as f32);
         match border {
-            Border::Line { look, ends, outwards } => {
-                let ([Some(one), Some(other)], stroke) = (ends.map(at), self.line_of(*look)) else { return };
+            Border::Line { style, ends, outwards } => {
+                let ([Some(one), Some(other)], stroke) = (ends.map(at), self.line_of(*style)) else { return };
                 let beyond = out(*outwards) * 0.5 * stroke.width;
-                self.stroke([one + beyond, other + beyond], *look);
+                self.stroke([one + beyond, other + beyond], *style);
             }
             Border::Piston { ends, outwards, rod } => {
                 let [Some(one), Some(other)] = ends.map(at) else { return };
@@ -151,9 +151,9 @@ impl Over<'_> {
         match mark {
             Mark::Start(place) => {
                 let Some(at) = self.place(*place) else { return };
-                self.painter.circle(at, 4.0, Color32::WHITE, Stroke::new(2.0, WAY));
+                self.painter.circle(at, 4.0, Color32::WHITE, Stroke::new(2.0, TRAJECTORY));
             }
-            Mark::Ring(place, radius) => ring(self, *place, *radius, WAY),
+            Mark::Ring(place, radius) => ring(self, *place, *radius, TRAJECTORY),
         }
     }
 
@@ -167,7 +167,7 @@ impl Over<'_> {
             }
             None => Vec::new(),
         };
-        rows.extend(overlay.lines.iter().map(|(look, name)| (name.clone(), Row::Line(*look))));
+        rows.extend(overlay.lines.iter().map(|(style, name)| (name.clone(), Row::Line(*style))));
         if rows.is_empty() {
             return 0.0;
         }
@@ -221,8 +221,8 @@ impl Over<'_> {
                 self.painter.circle_filled(at + vec2(6.0, 0.5 * ROW), 5.5, *colour);
                 text(17.0, name);
             }
-            Row::Line(look) => {
-                self.stroke([at + vec2(0.0, 0.5 * ROW), at + vec2(18.0, 0.5 * ROW)], *look);
+            Row::Line(style) => {
+                self.stroke([at + vec2(0.0, 0.5 * ROW), at + vec2(18.0, 0.5 * ROW)], *style);
                 text(25.0, name);
             }
         }
@@ -249,7 +249,7 @@ pub fn place(shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
 enum Row<'a> {
     Bar(&'a ColourTable),
     Dot(Color32),
-    Line(LineLook),
+    Line(LineStyle),
 }
 
 impl Row<'_> {

@@ -21,7 +21,7 @@ pub struct Picked {
     /// Its identity.
     id: u64,
     /// Where it was since.
-    way: Vec<[f64; 3]>,
+    trajectory: Vec<[f64; 3]>,
     time: f64,
 }
 
@@ -41,7 +41,7 @@ impl Picked {
                 // A few points beside each other count as one: the nearer to the eye is meant.
                 let step = (off / 4.0).floor();
                 if best.as_ref().is_none_or(|(other, away, _)| (step, far) < (*other, *away)) {
-                    let picked = Self { set: set.name.clone(), id: set.id[at], way: Vec::new(), time: f64::NAN };
+                    let picked = Self { set: set.name.clone(), id: set.id[at], trajectory: Vec::new(), time: f64::NAN };
                     best = Some((step, far, picked));
                 }
             }
@@ -66,13 +66,13 @@ impl Picked {
             return;
         }
         if frame.time < self.time {
-            self.way.clear();
+            self.trajectory.clear();
         }
         self.time = frame.time;
-        self.way.push(set.position[at]);
-        if self.way.len() > MOST {
+        self.trajectory.push(set.position[at]);
+        if self.trajectory.len() > MOST {
             let mut number = 0;
-            self.way.retain(|_| {
+            self.trajectory.retain(|_| {
                 number += 1;
                 number % 2 == 1
             });
@@ -82,7 +82,7 @@ impl Picked {
     /// Draws its way and a ring round it.
     pub fn paint(&self, over: &Over<'_>, frame: &Frame, box_size: f64) {
         let Some((set, at)) = self.find(frame) else { return };
-        for pair in self.way.windows(2) {
+        for pair in self.trajectory.windows(2) {
             // Where a periodic side is crossed the way is not drawn across the box.
             let far = (0..3).map(|k| (pair[1][k] - pair[0][k]).abs()).fold(0.0, f64::max);
             if let (Some(from), Some(to)) = (over.place(pair[0]), over.place(pair[1]))

@@ -3,13 +3,13 @@
 use crate::snapshot::Snapshot;
 use corpuscle::Error;
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{Hand, Moment, Pictures};
+use corpuscle::pictures::{CameraOffset, Moment, Pictures};
 
 /// The camera and the partition as the user set them, for pictures drawn elsewhere.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ViewState {
     /// How the camera was moved.
-    pub hand: Hand,
+    pub camera_offset: CameraOffset,
     /// When the partition of a gas was lifted by hand, s.
     pub lifted: Option<f64>,
 }
@@ -18,7 +18,7 @@ impl ViewState {
     /// A still of a moment seen so, with its title and axes.
     pub(crate) fn still(&self, pictures: &mut Pictures, moment: &Moment<'_>) -> Result<Image, Error> {
         self.lift(pictures);
-        pictures.still(moment, &self.hand)
+        pictures.still(moment, &self.camera_offset)
     }
 
     /// Pictures from now on are without the partition, where it was lifted.

@@ -58,14 +58,14 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// What a case gave.
+/// The results of a case.
 struct Done {
     rows: Vec<Row>,
     charts: Vec<Chart>,
     took: Duration,
 }
 
-/// Runs cases beside each other and takes what they gave in their order: most are so small that two of them on a thread each are done sooner than
+/// Runs cases in parallel and takes their results in order: most are so small that two of them on a thread each are done sooner than
 /// one after the other on both. A GPU takes one after the other.
 fn each(
     cases: &[&Case],
@@ -108,13 +108,13 @@ fn each(
     })
 }
 
-/// The next of the cases that nobody has begun.
+/// The next case that has not begun.
 fn next_of<'a>(cases: &[&'a Case], next: &AtomicUsize) -> Option<(usize, &'a Case)> {
     let index = next.fetch_add(1, Ordering::Relaxed);
     cases.get(index).map(|case| (index, *case))
 }
 
-/// A row as the report has it.
+/// A row in the form of the report.
 fn measure(row: &Row) -> ValidatedMeasure {
     ValidatedMeasure {
         name: row.measure.clone(),
@@ -127,7 +127,7 @@ fn measure(row: &Row) -> ValidatedMeasure {
     }
 }
 
-/// A row as people read it: verdict, case, measure, value and bound.
+/// A row as text: verdict, case, measure, value and bound.
 fn line(row: &Row) -> String {
     let verdict = match row.pass {
         Some(true) => "pass",

@@ -43,7 +43,7 @@ pub use floor::Floor;
 pub use fluid::{DeviceWater, Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use inlay::{Inlay, InlayPainter};
 pub use light::{Backdrop, Light};
-pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineLook, Mark, Overlay};
+pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineStyle, Mark, Overlay};
 pub use renderer::Renderer;
 pub use solids::{Solid, SolidStyle};
 pub use stage::Stage;

@@ -6,7 +6,7 @@ use crate::background_device::BackgroundDevice;
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{Look, Scenery, Shown};
+use corpuscle::pictures::{Quality, Scenery, Shown};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
@@ -28,7 +28,7 @@ pub struct RenderJob {
 #[derive(Debug, Clone, Copy)]
 pub struct PausedSettings {
     /// How much work it may be.
-    pub look: Look,
+    pub quality: Quality,
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel.

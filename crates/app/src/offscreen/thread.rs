@@ -89,7 +89,8 @@ impl Thread<'_> {
     fn paused(&mut self, job: &RenderJob, settings: &PausedSettings) -> Result<Box<(Shown, Image)>, Error> {
         let pictures = self.pictures(job, settings.size, settings.samples)?;
         job.view_state.lift(pictures);
-        let shown = pictures.show(&moment(&job.snapshot), &job.view_state.hand, settings.look, settings.paper)?;
+        let shown =
+            pictures.show(&moment(&job.snapshot), &job.view_state.camera_offset, settings.quality, settings.paper)?;
         Ok(Box::new((shown, pictures.read()?)))
     }
 

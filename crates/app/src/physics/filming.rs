@@ -32,11 +32,11 @@ impl Filming {
     }
 
     /// Adds a picture, seen as it is seen in the window now, if one is due.
-    pub fn look(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
+    pub fn add_if_due(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
         if subject.time() < self.next {
             return Ok(());
         }
-        let (frame, paths, container) = subject.look();
+        let (frame, paths, container) = subject.current();
         self.add(&Moment { frame: &frame, on_device: None, paths: &paths, container }, view_state)
     }
 
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use crate::physics::Backend;
     use corpuscle::gpu::require_gpu;
-    use corpuscle::pictures::Hand;
+    use corpuscle::pictures::CameraOffset;
     use corpuscle::scene::{Scene, builtin};
 
     #[test]
@@ -72,11 +72,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();
-        let near = ViewState { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
+        let near = ViewState { camera_offset: CameraOffset { zoom: 2.0, ..CameraOffset::default() }, lifted: None };
         let lifted = ViewState { lifted: Some(0.0), ..near };
         for view_state in [ViewState::default(), near, near, lifted] {
             filming.next = 0.0;
-            filming.look(&subject, &view_state).unwrap();
+            filming.add_if_due(&subject, &view_state).unwrap();
         }
         let film = filming.finish().unwrap();
         let mut files: Vec<_> = std::fs::read_dir(film).unwrap().map(|entry| entry.unwrap().path()).collect();

@@ -34,7 +34,7 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         probed: *probed,
         particles: simulation.model().particles(),
         work: simulation.model().particle_steps(),
-        look_at: (*measure_at, probe.is_some()),
+        release_at: (*measure_at, probe.is_some()),
         slice: Slice { from, began: Instant::now(), before: Duration::ZERO, has_stepped: false },
         pace,
         measured,
@@ -72,7 +72,7 @@ struct Glide<'a> {
     /// Particles moved so far.
     work: u64,
     /// From when on particles may be called back, and whether somebody asks for the water somewhere.
-    look_at: (Instant, bool),
+    release_at: (Instant, bool),
     slice: Slice,
     pace: &'a mut Pace,
     measured: &'a mut Arc<Measures>,
@@ -155,7 +155,7 @@ impl AdvanceObserver for GlideObserver<'_, '_> {
         glide.slice.has_stepped |= passed.particle_steps > glide.work;
         glide.work = passed.particle_steps;
         glide.rate.note(passed.particle_steps);
-        let (from, probes) = glide.look_at;
+        let (from, probes) = glide.release_at;
         let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);
         if is_looked_at && Instant::now() >= from {
             glide.recalled = Some(Instant::now());

@@ -3,7 +3,7 @@
 use super::{Backend, Change};
 use crate::snapshot::Measures;
 use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
-use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
+use corpuscle::model::{Container, Frame, GaugeColumn, Path as Trajectory};
 use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
 use corpuscle::{Choice, Error, Sample, Simulation};
@@ -21,7 +21,7 @@ pub(super) struct Recorded {
     /// The scene at its start: ground, solids and box.
     simulation: Simulation,
     files: FrameFiles,
-    paths: Vec<Way>,
+    paths: Vec<Trajectory>,
     walls: WallPlaces,
     gauges: GaugeTable,
     /// Number of the frame that is shown, and the frame.
@@ -181,7 +181,7 @@ impl Subject {
     }
 
     /// What is seen now.
-    pub fn look(&self) -> (Frame, Vec<Way>, Option<Container>) {
+    pub fn current(&self) -> (Frame, Vec<Trajectory>, Option<Container>) {
         match self {
             Self::Live(simulation, _) => {
                 let model = simulation.model();

@@ -294,7 +294,7 @@ impl Thread<'_> {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
         let view_state = self.shared.view_state();
-        if let Err(error) = filming.look(&running.subject, &view_state) {
+        if let Err(error) = filming.add_if_due(&running.subject, &view_state) {
             running.filming = None;
             self.tell(Event::Filmed(Err(error.to_string())));
         }
@@ -332,7 +332,7 @@ impl Running {
             self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
         }
         self.rate.note(self.subject.work());
-        let (frame, paths, container) = self.subject.look();
+        let (frame, paths, container) = self.subject.current();
         self.known = Arc::new(frame);
         self.probed = self.probe.and_then(|place| self.subject.water_at(place));
         Ok(Snapshot {

@@ -9,7 +9,7 @@ use crate::snapshot::Snapshot;
 use crate::view_state::moment;
 use crate::{Screen, style};
 use corpuscle::gpu::GpuKind;
-use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
+use corpuscle::pictures::{CameraOffset, Pictures, Quality, Scenery, Shown};
 use corpuscle_render::Lens;
 use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
@@ -25,7 +25,7 @@ const STILL: Duration = Duration::from_millis(350);
 
 /// How much work pictures are, as the user wants it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Quality {
+pub enum QualitySetting {
     /// All there is on a GPU and of what stands still; what moves simply where there is no GPU.
     #[default]
     Auto,
@@ -47,11 +47,11 @@ pub struct Picture {
     /// The full-quality picture requested since something last changed, with the number of the request.
     requested: Option<(u64, Drawn)>,
     /// How the camera was moved.
-    pub hand: Hand,
+    pub camera_offset: CameraOffset,
     /// When the partition was lifted, s.
     lifted: Option<f64>,
     /// How much work it may be.
-    pub quality: Quality,
+    pub quality: QualitySetting,
     /// When something last changed.
     changed: Instant,
     /// How much of its top the key takes, points.
@@ -65,8 +65,8 @@ pub struct Picture {
 struct Drawn {
     /// The snapshot, by where it lies.
     of: usize,
-    hand: Hand,
-    look: Look,
+    camera_offset: CameraOffset,
+    quality: Quality,
     size: [u32; 2],
     samples: u32,
     paper: Color32,
@@ -83,9 +83,9 @@ impl Picture {
             shown: None,
             drawn: None,
             requested: None,
-            hand: Hand::default(),
+            camera_offset: CameraOffset::default(),
             lifted: None,
-            quality: Quality::Auto,
+            quality: QualitySetting::Auto,
             changed: Instant::now(),
             key_height: 0.0,
             fault: None,
@@ -94,7 +94,7 @@ impl Picture {
 
     /// Shows all again from where the model shows best.
     pub fn reset(&mut self) {
-        self.hand = Hand { plan: self.hand.plan, ..Hand::default() };
+        self.camera_offset = CameraOffset { plan: self.camera_offset.plan, ..CameraOffset::default() };
     }
 
     /// What was drawn last.
@@ -107,8 +107,9 @@ impl Picture {
     pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
         let (paper, linear) = style::paper(visuals);
         let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
-        let (look, samples) = self.work(false);
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, samples, ..last };
+        let (quality, samples) = self.work(false);
+        let drawn =
+            Drawn { of: Arc::as_ptr(snapshot) as usize, camera_offset: self.camera_offset, quality, samples, ..last };
         self.draw_as(snapshot, drawn, linear);
     }
 
@@ -140,8 +141,15 @@ impl Picture {
         let (paper, linear) = style::paper(ui.visuals());
         let still = self.note_change(ui, snapshot, moves, size, paper);
         let [quick, best] = [false, true].map(|still| {
-            let (look, samples) = self.work(still);
-            Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper }
+            let (quality, samples) = self.work(still);
+            Drawn {
+                of: Arc::as_ptr(snapshot) as usize,
+                camera_offset: self.camera_offset,
+                quality,
+                size,
+                samples,
+                paper,
+            }
         });
         if !still {
             self.requested = None;
@@ -178,7 +186,7 @@ impl Picture {
     fn note_change(&mut self, ui: &Ui, snapshot: &Arc<Snapshot>, moves: bool, size: [u32; 2], paper: Color32) -> bool {
         let same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.of == Arc::as_ptr(snapshot) as usize
-                && (drawn.hand, drawn.size, drawn.paper) == (self.hand, size, paper)
+                && (drawn.camera_offset, drawn.size, drawn.paper) == (self.camera_offset, size, paper)
         });
         if !same || moves {
             self.changed = Instant::now();
@@ -191,20 +199,21 @@ impl Picture {
     }
 
     /// The look, and samples each way in a pixel.
-    fn work(&self, still: bool) -> (Look, u32) {
+    fn work(&self, still: bool) -> (Quality, u32) {
         let is_hardware = self.screen.gpu.kind == GpuKind::Hardware;
         match self.quality {
-            Quality::Simple => (Look::Simple, if is_hardware || still { 2 } else { 1 }),
-            Quality::Full => (Look::Full, if is_hardware || still { 2 } else { 1 }),
-            Quality::Auto => {
-                (if is_hardware || still { Look::Full } else { Look::Simple }, if is_hardware || still { 2 } else { 1 })
-            }
+            QualitySetting::Simple => (Quality::Simple, if is_hardware || still { 2 } else { 1 }),
+            QualitySetting::Full => (Quality::Full, if is_hardware || still { 2 } else { 1 }),
+            QualitySetting::Auto => (
+                if is_hardware || still { Quality::Full } else { Quality::Simple },
+                if is_hardware || still { 2 } else { 1 },
+            ),
         }
     }
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let shown = self.pictures.show(&moment(snapshot), &self.hand, drawn.look, paper)?;
+        let shown = self.pictures.show(&moment(snapshot), &self.camera_offset, drawn.quality, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         self.shown = Some(shown);
         Ok(())
@@ -243,8 +252,8 @@ impl Picture {
         let point = height(shown) / f64::from(rect.height());
         if turns {
             let away = shown.camera.eye - shown.camera.target;
-            let own = (away.z / away.length()).asin() - self.hand.turn[1];
-            self.hand.turn_by(own, [-f64::from(moved.x) * TURN, f64::from(moved.y) * TURN]);
+            let own = (away.z / away.length()).asin() - self.camera_offset.turn[1];
+            self.camera_offset.turn_by(own, [-f64::from(moved.x) * TURN, f64::from(moved.y) * TURN]);
         }
         if shifts {
             self.shift_by(point * (f64::from(moved.y) * up - f64::from(moved.x) * right));
@@ -253,18 +262,18 @@ impl Picture {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let times = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
             if let Some(pointer) = response.hover_pos().filter(|_| times != 1.0) {
-                let zoom = (self.hand.zoom * times).clamp(ZOOM[0], ZOOM[1]);
+                let zoom = (self.camera_offset.zoom * times).clamp(ZOOM[0], ZOOM[1]);
                 let off = pointer - rect.center();
                 let towards = point * (f64::from(off.x) * right - f64::from(off.y) * up);
-                let part = 1.0 - self.hand.zoom / zoom;
-                self.hand.zoom = zoom;
+                let part = 1.0 - self.camera_offset.zoom / zoom;
+                self.camera_offset.zoom = zoom;
                 self.shift_by(part * towards);
             }
         }
     }
 
     fn shift_by(&mut self, by: DVec3) {
-        self.hand.shift = (DVec3::from(self.hand.shift) + by).into();
+        self.camera_offset.shift = (DVec3::from(self.camera_offset.shift) + by).into();
     }
 }
 

@@ -40,7 +40,7 @@ impl Window {
             open.picture.reset();
         }
         if pressed(Key::T) && !open.is_flat() {
-            open.picture.hand.plan = !open.picture.hand.plan;
+            open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
         }
         if pressed(Key::Escape) {
             (open.picked, open.spot, open.clicked) = (None, None, None);

@@ -213,7 +213,7 @@ impl Window {
         let mut times = 1.0;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
             // Who changes a scene wants to see it from where it was seen.
-            (picture.hand, picture.quality) = (before.picture.hand, before.picture.quality);
+            (picture.camera_offset, picture.quality) = (before.picture.camera_offset, before.picture.quality);
             times = before.times;
         }
         self.physics.ask(Command::Pace(times * default_pace(end)));

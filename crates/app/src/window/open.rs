@@ -4,7 +4,7 @@ use super::Source;
 use crate::overlay::Over;
 use crate::parameters::Parameters;
 use crate::pick::Picked;
-use crate::picture::{Picture, Quality};
+use crate::picture::{Picture, QualitySetting};
 use crate::plots::Plots;
 use crate::snapshot::Snapshot;
 use crate::spot::Spot;
@@ -48,10 +48,10 @@ pub(super) struct Open {
 }
 
 /// Looks: how they are called, and what they mean.
-pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
-    (Quality::Auto, "By itself", "Full on a GPU; without one full where it stands still, simple where it moves"),
-    (Quality::Simple, "Simple", "Without shadows, water as its particles: quick"),
-    (Quality::Full, "Full", "Shadows, and water that looks like water: slow without a GPU"),
+pub(super) const QUALITIES: [(QualitySetting, &str, &str); 3] = [
+    (QualitySetting::Auto, "Automatic", "Full on a GPU; without one full where it stands still, simple where it moves"),
+    (QualitySetting::Simple, "Simple", "Without shadows, water as its particles: quick"),
+    (QualitySetting::Full, "Full", "Shadows, and water that looks like water: slow without a GPU"),
 ];
 
 /// The parameters of a scene as it is written.
@@ -71,13 +71,13 @@ impl Open {
     pub(super) fn quality(&mut self, ui: &mut Ui) {
         let now =
             QUALITIES.iter().find(|(quality, ..)| *quality == self.picture.quality).map_or("", |(_, name, _)| *name);
-        let combo = egui::ComboBox::from_id_salt("look").selected_text(format!("Look: {}", now.to_lowercase()));
+        let combo = egui::ComboBox::from_id_salt("quality").selected_text(format!("Quality: {}", now.to_lowercase()));
         let shown = combo.show_ui(ui, |ui| {
             for (quality, name, hint) in QUALITIES {
                 ui.selectable_value(&mut self.picture.quality, quality, name).on_hover_text(hint);
             }
         });
-        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Look"));
+        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Quality"));
     }
 
     /// Picks what was clicked on, and draws what is picked.

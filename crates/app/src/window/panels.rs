@@ -138,9 +138,10 @@ impl Window {
                 let name = if open.filming { "End the film" } else { "Record a film" };
                 film = icons::toggle(ui, Icon::Film, name, "V", open.filming).clicked();
                 still = icons::button(ui, Icon::Still, "Save a still", "S").clicked();
-                if !open.is_flat() && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.hand.plan).clicked()
+                if !open.is_flat()
+                    && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.camera_offset.plan).clicked()
                 {
-                    open.picture.hand.plan = !open.picture.hand.plan;
+                    open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
                 }
                 if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
                     open.picture.reset();

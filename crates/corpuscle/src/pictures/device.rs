@@ -100,7 +100,7 @@ fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
-    use crate::pictures::{GroundLook, Hand, Look, PictureSettings};
+    use crate::pictures::{CameraOffset, GroundStyle, PictureSettings, Quality};
     use corpuscle_gpu::require_gpu;
     use corpuscle_scene::{Scene, builtin};
     use std::path::Path;
@@ -135,10 +135,10 @@ mod tests {
             ground,
             ..PictureSettings::default()
         };
-        let mut pictures = Pictures::open(&simulation, settings(GroundLook::Natural)).unwrap();
+        let mut pictures = Pictures::open(&simulation, settings(GroundStyle::Natural)).unwrap();
         assert!(pictures.gpu().is_same(&gpu) && pictures.on_device(simulation.model()).unwrap().is_some());
         let image = pictures.draw_model(simulation.model()).unwrap();
-        let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundLook::Natural)).unwrap();
+        let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundStyle::Natural)).unwrap();
         let apart = difference(&image, &by_frame(&mut others, simulation.model()));
         println!("{apart} of 255");
         assert!(apart < SAME, "{apart}");
@@ -150,10 +150,10 @@ mod tests {
         let frame = simulation.model().frame();
         let mut simple = |on_device| {
             let moment = Moment { frame: &frame, on_device, paths: &[], container: None };
-            let shown = others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            let shown = others.show(&moment, &CameraOffset::default(), Quality::Simple, [1.0; 3]).unwrap();
             assert!(!shown.finished);
             others.resize([480, 270], 2).unwrap();
-            others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            others.show(&moment, &CameraOffset::default(), Quality::Simple, [1.0; 3]).unwrap();
             let image = others.read().unwrap();
             others.resize([480, 270], 1).unwrap();
             image
@@ -161,7 +161,7 @@ mod tests {
         let apart = difference(&simple(Some(&device)), &simple(None));
         assert!(apart < SAME, "{apart}");
         // What the ground shows of the water is the host's to draw.
-        let mut of_depth = Pictures::open(&simulation, settings(GroundLook::Depth)).unwrap();
+        let mut of_depth = Pictures::open(&simulation, settings(GroundStyle::Depth)).unwrap();
         assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
         assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);
     }

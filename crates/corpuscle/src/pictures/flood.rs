@@ -1,9 +1,9 @@
 //! Pictures of a flood: water on the block of ground.
 
+use super::ground_style::{self, DepthClasses};
 use super::lines::plates;
-use super::look::{self, DepthClasses};
 use super::times::Times;
-use super::{GroundLook, Look, Moment, OwnView, Shown, Studio, Subject};
+use super::{GroundStyle, Moment, OwnView, Quality, Shown, Studio, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::split;
 use corpuscle_drawing::text;
@@ -81,14 +81,15 @@ impl Subject for FloodPicture {
         if let Some(depth) = &self.depth {
             self.ground.drape(gpu, &depth.drape(&self.field, sets.iter()))?;
         }
-        let mut discs: Vec<Balls> = match (studio.look, moment.on_device) {
-            (Look::Full, _) => Vec::new(),
+        let mut discs: Vec<Balls> = match (studio.quality, moment.on_device) {
+            (Quality::Full, _) => Vec::new(),
             _ if self.depth.is_some() => Vec::new(),
-            (Look::Simple, Some(particles)) => vec![self.discs_of_device(studio, particles)?],
-            (Look::Simple, None) => sets.iter().map(|set| self.discs(studio, set)).collect(),
+            (Quality::Simple, Some(particles)) => vec![self.discs_of_device(studio, particles)?],
+            (Quality::Simple, None) => sets.iter().map(|set| self.discs(studio, set)).collect(),
         };
-        let is_wet = self.depth.is_none() && studio.look == Look::Full && self.fill_water(studio, moment, &sets)?;
-        let quick = studio.look == Look::Simple;
+        let is_wet =
+            self.depth.is_none() && studio.quality == Quality::Full && self.fill_water(studio, moment, &sets)?;
+        let quick = studio.quality == Quality::Simple;
         self.ground.draw_quickly(quick);
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.ground];
         if !is_plan && !quick {
@@ -131,7 +132,7 @@ impl FloodPicture {
         studio: &Studio,
         settings: &Settings,
         ground: &Ground,
-        look: GroundLook,
+        ground_style: GroundStyle,
         heights: f64,
     ) -> Result<Self, Error> {
         let bounds = ground.bounds();
@@ -158,8 +159,8 @@ impl FloodPicture {
             buildings.push(Solid::of_corners(&studio.renderer, &stage, &corners, SolidStyle::Opaque(WALLS, 0.1)));
         }
         let mut mesh = Terrain::new(&studio.renderer, &stage, field.clone(), &colours, base)?;
-        if let GroundLook::Picture(path) = &look {
-            mesh.drape(studio.renderer.gpu(), &look::picture(path)?)?;
+        if let GroundStyle::Picture(path) = &ground_style {
+            mesh.drape(studio.renderer.gpu(), &ground_style::picture(path)?)?;
         }
         let depth = usual_depth(settings, ground, Path::new(""))?;
         Ok(Self {
@@ -175,7 +176,7 @@ impl FloodPicture {
             fluid: None,
             splats: false,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
-            depth: (look == GroundLook::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
+            depth: (ground_style == GroundStyle::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
             blues: ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() },
             heights,
         })
@@ -241,7 +242,7 @@ impl FloodPicture {
         }
         let axes = || Axes { from, to, unit: "m".into(), heights: self.heights };
         let blues = || Key::Values("Depth, m".into(), self.blues.clone());
-        let simple = (studio.look == Look::Simple).then(blues);
+        let simple = (studio.quality == Quality::Simple).then(blues);
         let key = self.depth.as_ref().map(|depth| Key::Kinds(depth.key())).or(simple);
         Overlay {
             title: title.into(),

@@ -1,12 +1,12 @@
 //! Pictures of a run's moments: what is shown of each model, from where, in which colours.
 
+mod camera_offset;
 mod device;
 pub(crate) mod dew;
 pub(crate) mod flood;
 pub(crate) mod gas;
-mod hand;
+mod ground_style;
 mod lines;
-mod look;
 mod particles;
 mod scenery;
 mod show;
@@ -15,6 +15,7 @@ mod times;
 mod viewpoint;
 
 use crate::{Error, Simulation, models};
+pub use camera_offset::CameraOffset;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
@@ -25,11 +26,10 @@ use corpuscle_render::{
 use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 use flood::FloodPicture;
-pub use hand::Hand;
-pub use look::GroundLook;
+pub use ground_style::GroundStyle;
 pub use particles::Particles;
 pub use scenery::Scenery;
-pub use show::{Look, Shown};
+pub use show::{Quality, Shown};
 pub use subject::Subject;
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
@@ -45,14 +45,14 @@ pub struct PictureSettings {
     /// choice.
     pub viewpoints: Vec<(f64, Viewpoint)>,
     /// What lies on the ground of a flood.
-    pub ground: GroundLook,
+    pub ground: GroundStyle,
     /// How many times higher than they are heights of a flood are drawn.
     pub heights: f64,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundLook::Natural, heights: 1.0 }
+        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundStyle::Natural, heights: 1.0 }
     }
 }
 
@@ -86,8 +86,8 @@ pub struct Studio {
     target: Target,
     stations: Vec<Station>,
     /// How the camera was moved by hand.
-    hand: Hand,
-    look: Look,
+    camera_offset: CameraOffset,
+    quality: Quality,
     /// What a drawing lies on, linear light.
     paper: [f32; 3],
     /// True where texts and lines are drawn into the picture; false where whoever shows it draws them.
@@ -143,7 +143,7 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the device was lost.
     pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
-        self.still(moment, &Hand::default())
+        self.still(moment, &CameraOffset::default())
     }
 }
 
@@ -159,8 +159,8 @@ impl Studio {
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
         let fluids = FluidPainter::new(&renderer);
-        let (hand, look, paper, overlaid) = (Hand::default(), Look::Full, [1.0; 3], true);
-        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid })
+        let (camera_offset, quality, paper, overlaid) = (CameraOffset::default(), Quality::Full, [1.0; 3], true);
+        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, camera_offset, quality, paper, overlaid })
     }
 
     /// Width of a picture over its height.
@@ -171,7 +171,7 @@ impl Studio {
 
     /// Light as the look has it.
     fn lit(&self, light: Light) -> Light {
-        if self.look == Look::Full { light } else { light.without_shadows() }
+        if self.quality == Quality::Full { light } else { light.without_shadows() }
     }
 
     /// Draws things, with their overlay if it is wanted in the picture.
@@ -183,7 +183,7 @@ impl Studio {
         things: &mut [&mut dyn Drawable],
         overlay: Overlay,
     ) -> Result<Shown, Error> {
-        let quick = !self.overlaid && self.look == Look::Simple && self.target.samples == 1;
+        let quick = !self.overlaid && self.quality == Quality::Simple && self.target.samples == 1;
         if quick {
             self.renderer.draw_light(&self.target, stage, camera, light, things);
         } else {

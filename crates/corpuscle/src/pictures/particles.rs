@@ -1,6 +1,6 @@
 //! Pictures of particles in a box, for models that have none of their own: in a bright room, or on paper where all lie in one plane.
 
-use super::{Look, Moment, OwnView, Scenery, Shown, Studio, Subject};
+use super::{Moment, OwnView, Quality, Scenery, Shown, Studio, Subject};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_model::{Container, Frame, ParticleSet};
@@ -63,10 +63,10 @@ impl Subject for Particles {
             false => studio.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
         let camera = studio.seen(&stage, &OWN_VIEW, moment.frame.time, is_flat);
-        let shading = match (is_flat, studio.look) {
+        let shading = match (is_flat, studio.quality) {
             (true, _) => Shading::Discs,
-            (false, Look::Simple) => Shading::Matt,
-            (false, Look::Full) => Shading::Full,
+            (false, Quality::Simple) => Shading::Matt,
+            (false, Quality::Full) => Shading::Full,
         };
         let samples = f64::from(studio.target.size[1] * studio.target.samples);
         let balls = |(set, colour): (&ParticleSet, &[u8; 3])| {
@@ -78,7 +78,7 @@ impl Subject for Particles {
         let mut sets: Vec<Balls> = moment.frame.sets.iter().zip(COLOURS.iter().cycle()).map(balls).collect();
         let overlay = self.overlay(title, moment.frame, &stage);
         let mut things: Vec<&mut dyn Drawable> = sets.iter_mut().map(|set| set as &mut dyn Drawable).collect();
-        if !is_flat && studio.look == Look::Full {
+        if !is_flat && studio.quality == Quality::Full {
             things.push(self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z)));
         }
         studio.take(&stage, &camera, &light, &mut things, overlay)

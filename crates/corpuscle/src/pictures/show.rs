@@ -1,13 +1,13 @@
 //! Pictures that are shown where they are drawn, again and again, seen from where a hand moves the camera to.
 
-use super::{Hand, Moment, Pictures};
+use super::{CameraOffset, Moment, Pictures};
 use crate::Error;
 use corpuscle_gpu::{Gpu, Image};
 use corpuscle_render::{Camera, Inlay, InlayPainter, Overlay, Stage, Target};
 
 /// How much work a picture may be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Look {
+pub enum Quality {
     /// All there is: shadows, water that looks like water.
     #[default]
     Full,
@@ -41,9 +41,15 @@ impl Pictures {
     ///
     /// # Errors
     /// [`Error::Render`] where something cannot be drawn.
-    pub fn show(&mut self, moment: &Moment<'_>, hand: &Hand, look: Look, paper: [f32; 3]) -> Result<Shown, Error> {
+    pub fn show(
+        &mut self,
+        moment: &Moment<'_>,
+        camera_offset: &CameraOffset,
+        quality: Quality,
+        paper: [f32; 3],
+    ) -> Result<Shown, Error> {
         let studio = &mut self.studio;
-        (studio.overlaid, studio.look, studio.hand, studio.paper) = (false, look, *hand, paper);
+        (studio.overlaid, studio.quality, studio.camera_offset, studio.paper) = (false, quality, *camera_offset, paper);
         self.subject.draw(studio, &self.title, moment)
     }
 
@@ -51,9 +57,10 @@ impl Pictures {
     ///
     /// # Errors
     /// [`Error::Render`] where the device was lost.
-    pub fn still(&mut self, moment: &Moment<'_>, hand: &Hand) -> Result<Image, Error> {
+    pub fn still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Image, Error> {
         let studio = &mut self.studio;
-        (studio.overlaid, studio.look, studio.hand, studio.paper) = (true, Look::Full, *hand, [1.0; 3]);
+        (studio.overlaid, studio.quality, studio.camera_offset, studio.paper) =
+            (true, Quality::Full, *camera_offset, [1.0; 3]);
         self.subject.draw(studio, &self.title, moment)?;
         self.read()
     }

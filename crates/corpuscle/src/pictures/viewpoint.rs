@@ -14,14 +14,14 @@ pub struct Viewpoint {
     /// the horizon, degrees.
     pub from_deg: Option<[f64; 2]>,
     /// The place in the middle of the picture, in the scene's own coordinates.
-    pub look_at: Option<[f64; 2]>,
+    pub centre: Option<[f64; 2]>,
     /// How many times nearer than where all is seen.
     pub zoom: f64,
 }
 
 impl Default for Viewpoint {
     fn default() -> Self {
-        Self { plan: false, from_deg: None, look_at: None, zoom: 1.0 }
+        Self { plan: false, from_deg: None, centre: None, zoom: 1.0 }
     }
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Station {
 impl Station {
     /// Of a flood, whose scene has coordinates of its own, with heights drawn so many times higher than they are.
     pub(super) fn on_ground((time, viewpoint): (f64, Viewpoint), ground: &Terrain, heights: f64) -> Self {
-        let target = viewpoint.look_at.map(|own| {
+        let target = viewpoint.centre.map(|own| {
             let [x, y] = ground.to_model(own);
             ([x, y], Some(heights * ground.height(x, y)))
         });
@@ -45,7 +45,7 @@ impl Station {
 
     /// Of any other model.
     pub(super) fn plain((time, viewpoint): (f64, Viewpoint)) -> Self {
-        Self { time, viewpoint, target: viewpoint.look_at.map(|at| (at, None)) }
+        Self { time, viewpoint, target: viewpoint.centre.map(|at| (at, None)) }
     }
 }
 
@@ -66,13 +66,13 @@ impl Studio {
     pub(super) fn camera(&self, stage: &Stage, own: &OwnView, time: f64) -> Camera {
         let stations = self.stations.iter().map(|station| (station.time, self.seen_from(stage, own, station)));
         let still = || self.seen_from(stage, own, &Station::plain((0.0, Viewpoint::default())));
-        self.hand.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
+        self.camera_offset.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
     }
 
     /// The camera of a time; straight from above where all lies in one plane.
     pub(super) fn seen(&self, stage: &Stage, own: &OwnView, time: f64, is_flat: bool) -> Camera {
         match is_flat {
-            true => self.hand.moved(Camera::plan(stage, self.aspect(), own.margins)),
+            true => self.camera_offset.moved(Camera::plan(stage, self.aspect(), own.margins)),
             false => self.camera(stage, own, time),
         }
     }
@@ -80,7 +80,7 @@ impl Studio {
     /// True where the whole stage is in the picture whatever the time, so that axes along its edges are.
     pub(super) fn shows_all(&self) -> bool {
         let whole = |station: &Station| station.viewpoint.zoom <= 1.0 && station.target.is_none();
-        self.hand.zoom <= 1.5 && self.stations.iter().all(whole)
+        self.camera_offset.zoom <= 1.5 && self.stations.iter().all(whole)
     }
 
     fn seen_from(&self, stage: &Stage, own: &OwnView, station: &Station) -> Camera {
@@ -89,7 +89,7 @@ impl Studio {
             Some([bearing, height]) => [(90.0 - bearing).to_radians(), height.to_radians()],
             None => own.direction,
         };
-        let whole = match viewpoint.plan || self.hand.plan {
+        let whole = match viewpoint.plan || self.camera_offset.plan {
             true => Camera::plan(stage, self.aspect(), own.margins),
             false => Camera::orbit(stage, direction, own.field_of_view, self.aspect(), own.margin),
         };

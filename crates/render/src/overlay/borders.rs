@@ -1,6 +1,6 @@
 //! The sides of a flat box, what stands in it, and marked places.
 
-use super::{Border, LineLook, Mark, Page};
+use super::{Border, LineStyle, Mark, Page};
 
 /// Thickness of a piston, width of its rod, and how far that reaches beyond its length, CSS pixels.
 const PISTON: f64 = 16.0;
@@ -10,15 +10,15 @@ const GRIP: f64 = 10.0;
 const MARK: f64 = 4.5;
 const RING: f64 = 2.0;
 
-impl LineLook {
+impl LineStyle {
     /// Name of its style.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Wall => "wall",
-            Self::HotWall => "wall-hot",
-            Self::Open => "wall-open",
+            Self::ThermalWall => "wall-hot",
+            Self::Periodic => "wall-open",
             Self::Partition => "partition",
-            Self::Way => "way",
+            Self::Trajectory => "trajectory",
         }
     }
 
@@ -26,8 +26,8 @@ impl LineLook {
     fn half_width(self) -> f64 {
         match self {
             Self::Wall => 1.5,
-            Self::HotWall => 2.0,
-            Self::Open | Self::Partition | Self::Way => 0.0,
+            Self::ThermalWall => 2.0,
+            Self::Periodic | Self::Partition | Self::Trajectory => 0.0,
         }
     }
 }
@@ -40,10 +40,10 @@ pub(super) fn draw(page: &mut Page<'_>, borders: &[Border]) {
         }
     }
     for border in borders {
-        if let Border::Line { look, ends, outwards } = border {
+        if let Border::Line { style, ends, outwards } = border {
             let Some(ends) = places(page, *ends) else { continue };
-            let moved = ends.map(|end| beyond(end, *outwards, look.half_width()));
-            page.svg.line(moved[0], moved[1], look.class());
+            let moved = ends.map(|end| beyond(end, *outwards, style.half_width()));
+            page.svg.line(moved[0], moved[1], style.class());
         }
     }
 }
@@ -67,14 +67,14 @@ pub(super) fn draw_mark(page: &mut Page<'_>, mark: &Mark) {
     match mark {
         Mark::Start(place) => {
             if let Some(place) = page.place(*place) {
-                page.svg.circle(place, MARK, "way-start");
+                page.svg.circle(place, MARK, "trajectory-start");
             }
         }
         Mark::Ring(place, radius) => {
             let beside = [place[0] + radius, place[1], place[2]];
             if let (Some(place), Some(beside)) = (page.place(*place), page.place(beside)) {
                 let radius = (beside[0] - place[0]).hypot(beside[1] - place[1]);
-                page.svg.circle(place, (radius + RING).max(MARK), "way-end");
+                page.svg.circle(place, (radius + RING).max(MARK), "trajectory-end");
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What colours and lines mean.
 
-use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineLook, MARGIN, Overlay, Page};
+use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineStyle, MARGIN, Overlay, Page};
 use crate::ColourTable;
 use corpuscle_drawing::bars::value_bar;
 use corpuscle_drawing::colour::hex;
@@ -22,7 +22,7 @@ const TO_NAME: f64 = 9.0;
 enum Entry<'a> {
     Values(&'a str, &'a ColourTable),
     Kind(&'a str, [u8; 3]),
-    Line(LineLook, &'a str),
+    Line(LineStyle, &'a str),
 }
 
 impl Overlay {
@@ -32,7 +32,7 @@ impl Overlay {
             Some(Key::Kinds(kinds)) => kinds.iter().map(|(name, colour)| Entry::Kind(name, *colour)).collect(),
             None => Vec::new(),
         };
-        entries.extend(self.lines.iter().map(|(look, name)| Entry::Line(*look, name)));
+        entries.extend(self.lines.iter().map(|(style, name)| Entry::Line(*style, name)));
         if entries.is_empty() {
             return;
         }
@@ -103,8 +103,8 @@ impl Entry<'_> {
                 page.svg.circles([([left + 7.0, top + 8.0], 7.0)], &hex(*colour), "balls");
                 page.svg.text(name_at(left + 14.0), Anchor::Start, "over", name);
             }
-            Self::Line(look, name) => {
-                page.svg.line([left, top + 8.0], [left + SAMPLE, top + 8.0], look.class());
+            Self::Line(style, name) => {
+                page.svg.line([left, top + 8.0], [left + SAMPLE, top + 8.0], style.class());
                 page.svg.text(name_at(left + SAMPLE), Anchor::Start, "over", name);
             }
         }

@@ -31,7 +31,7 @@ pub struct Overlay {
     /// Where that is told.
     pub key_place: KeyPlace,
     /// What lines mean, told with the colours.
-    pub lines: Vec<(LineLook, String)>,
+    pub lines: Vec<(LineStyle, String)>,
     /// Something to know about the picture, in small letters in its lower right corner.
     pub remark: String,
     /// The sides of a flat box, and what stands in it.
@@ -69,17 +69,17 @@ pub enum KeyPlace {
 
 /// How a line looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineLook {
+pub enum LineStyle {
     /// A wall.
     Wall,
     /// A wall at a temperature.
-    HotWall,
+    ThermalWall,
     /// No wall: a dashed line.
-    Open,
+    Periodic,
     /// A thin wall inside.
     Partition,
     /// A way.
-    Way,
+    Trajectory,
 }
 
 /// A side of a flat box, or what stands in it.
@@ -88,7 +88,7 @@ pub enum Border {
     /// A line between two places, m, moved out of the box by half its width.
     Line {
         /// How it looks.
-        look: LineLook,
+        style: LineStyle,
         /// Where it begins and ends, m.
         ends: [[f64; 2]; 2],
         /// The way out of the box, of length 1; 0 inside.

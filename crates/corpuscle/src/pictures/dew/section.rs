@@ -2,7 +2,7 @@
 
 use super::{MATT, caps};
 use crate::Error;
-use crate::pictures::{Look, Moment, Shown, Studio};
+use crate::pictures::{Moment, Quality, Shown, Studio};
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
@@ -49,9 +49,9 @@ impl Section {
     pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let gpu = studio.renderer.gpu();
         let stage = self.stage;
-        let camera = studio.hand.moved(Camera::front(&stage, studio.aspect(), MARGINS));
+        let camera = studio.camera_offset.moved(Camera::front(&stage, studio.aspect(), MARGINS));
         let sets = |name: &'static str| moment.frame.sets.iter().filter(move |set| set.name == name);
-        let shading = if studio.look == Look::Simple { Shading::Matt } else { Shading::Full };
+        let shading = if studio.quality == Quality::Simple { Shading::Matt } else { Shading::Full };
         let style = BallStyle { gloss: 0.4, shading, ..BallStyle::new(self.colours.clone()) };
         let mut air = match moment.on_device {
             Some(air) => {

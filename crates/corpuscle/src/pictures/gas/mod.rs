@@ -3,7 +3,7 @@
 mod page;
 mod sides;
 
-use super::{Look, Moment, OwnView, Shown, Studio, Subject};
+use super::{Moment, OwnView, Quality, Shown, Studio, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_model::{Container, Frame, ParticleSet};
@@ -35,7 +35,7 @@ const LEAST_OF_ALL: f64 = 1.2;
 const CLOSEST: f64 = 0.2;
 /// Ink of edges, and the colour of a ball's way.
 const INK: [u8; 3] = [0x46, 0x52, 0x5e];
-const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
+const TRAJECTORY: [u8; 3] = [0xc2, 0x18, 0x5b];
 
 /// Draws a gas.
 pub(crate) struct GasPicture {
@@ -71,17 +71,17 @@ impl Subject for GasPicture {
         let overlay = self.overlay(studio, title, moment, &key, &view);
         let stage = &view.stage;
         let mut balls = self.balls(studio, &view, moment, &key);
-        let ways = moment.paths.iter().map(|path| {
+        let trajectories = moment.paths.iter().map(|path| {
             let so_far = path.times.partition_point(|time| *time <= moment.frame.time);
             &path.points[..so_far.min(path.points.len())]
         });
-        let mut ways = tubes(studio, stage, WAY, [2.2, 0.002], ways);
+        let mut trajectories = tubes(studio, stage, TRAJECTORY, [2.2, 0.002], trajectories);
         let mut things: Vec<&mut dyn Drawable> = Vec::new();
         let mut edges = sides::edges(&self.gas, studio, &view);
         things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
-        things.push(&mut ways);
+        things.push(&mut trajectories);
         if !flat {
-            if studio.look == Look::Full {
+            if studio.quality == Quality::Full {
                 let floor = self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z));
                 floor.lay_at(stage.from.z);
                 things.push(floor);
@@ -112,13 +112,13 @@ impl GasPicture {
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
         if !studio.overlaid {
-            let camera = studio.hand.moved(Camera::plan(&stage, aspect, IN_WINDOW));
+            let camera = studio.camera_offset.moved(Camera::plan(&stage, aspect, IN_WINDOW));
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
         let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];
         let [below, beside] = places.map(|(key_place, margins)| View {
             stage,
-            camera: studio.hand.moved(Camera::plan(&stage, aspect, margins)),
+            camera: studio.camera_offset.moved(Camera::plan(&stage, aspect, margins)),
             container,
             key_place,
         });
@@ -128,10 +128,10 @@ impl GasPicture {
 
     /// The sets of balls, each in its colours.
     fn balls(&self, studio: &Studio, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
-        let shading = match (self.gas.dimensions(), studio.look) {
+        let shading = match (self.gas.dimensions(), studio.quality) {
             (2, _) => Shading::Discs,
-            (_, Look::Simple) => Shading::Matt,
-            (_, Look::Full) => Shading::Full,
+            (_, Quality::Simple) => Shading::Matt,
+            (_, Quality::Full) => Shading::Full,
         };
         let style = |number: usize| BallStyle {
             shading,

@@ -4,7 +4,7 @@ use super::{GasPicture, View, sides, speeds};
 use crate::pictures::{Moment, Studio};
 use corpuscle_drawing::text;
 use corpuscle_output::GasKey;
-use corpuscle_render::{Axes, Key, LineLook, Mark, Overlay};
+use corpuscle_render::{Axes, Key, LineStyle, Mark, Overlay};
 use corpuscle_scene::{Axis, Units, Wall};
 
 /// Balls that are drawn larger than they are by no more than this need no remark.
@@ -50,17 +50,21 @@ impl GasPicture {
     }
 
     /// The lines that are in the picture, in words.
-    fn lines(&self, moment: &Moment<'_>) -> Vec<(LineLook, String)> {
+    fn lines(&self, moment: &Moment<'_>) -> Vec<(LineStyle, String)> {
         let axes = Axis::ALL.into_iter().take(self.gas.dimensions());
         let walls: Vec<&Wall> = axes.flat_map(|axis| self.gas.walls.along(axis)).collect();
         let flat = self.gas.dimensions() == 2;
         let followed = moment.paths.iter().any(|path| !path.points.is_empty());
         let found = [
-            (followed, LineLook::Way, "way of one ball"),
-            (walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })), LineLook::HotWall, "wall at a temperature"),
-            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineLook::Open, "periodic side"),
+            (followed, LineStyle::Trajectory, "trajectory of one ball"),
+            (
+                walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })),
+                LineStyle::ThermalWall,
+                "wall at a temperature",
+            ),
+            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineStyle::Periodic, "periodic side"),
         ];
-        found.into_iter().filter(|(there, ..)| *there).map(|(_, look, name)| (look, name.into())).collect()
+        found.into_iter().filter(|(there, ..)| *there).map(|(_, style, name)| (style, name.into())).collect()
     }
 
     fn remark(&self, studio: &Studio, moment: &Moment<'_>, view: &View) -> String {

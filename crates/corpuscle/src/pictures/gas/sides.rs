@@ -3,14 +3,14 @@
 use super::{INK, View, tubes};
 use crate::pictures::Studio;
 use corpuscle_model::SolidShape;
-use corpuscle_render::{Border, Drawable, LineLook, Solid, SolidStyle, Tubes, box_edges};
+use corpuscle_render::{Border, Drawable, LineStyle, Solid, SolidStyle, Tubes, box_edges};
 use corpuscle_scene::{Axis, Gas, Partition, Wall};
 use std::sync::Arc;
 
 /// Width of edges, pixels of a picture 1080 pixels high.
 const EDGE: f64 = 2.0;
 /// Colour of what is held at a temperature, and what plates let through.
-const HOT: [u8; 3] = [0xd5, 0x5e, 0x00];
+const THERMAL_WALL: [u8; 3] = [0xd5, 0x5e, 0x00];
 const PLATE: [u8; 3] = [214, 223, 234];
 /// Thickness of a plate, part of the stage.
 const THICK: f64 = 0.012;
@@ -37,11 +37,11 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
             let ends = [place(span[0][along]), place(span[1][along])];
             let mut outwards = [0.0; 2];
             outwards[across] = if end == 0 { -1.0 } else { 1.0 };
-            let line = |look| Border::Line { look, ends, outwards };
+            let line = |style| Border::Line { style, ends, outwards };
             borders.push(match wall {
-                Wall::Fixed => line(LineLook::Wall),
-                Wall::Periodic => line(LineLook::Open),
-                Wall::Thermal { .. } => line(LineLook::HotWall),
+                Wall::Fixed => line(LineStyle::Wall),
+                Wall::Periodic => line(LineStyle::Periodic),
+                Wall::Thermal { .. } => line(LineStyle::ThermalWall),
                 Wall::Moving { .. } | Wall::Motion(_) | Wall::Piston { .. } => {
                     Border::Piston { ends, outwards, rod: (stage[end][across] - container[end][across]).abs() }
                 }
@@ -55,7 +55,7 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
         let stretches = hole.map_or(vec![[low, high]], |[from, to]| vec![[low, from], [to, high]]);
         let place = |at: f64| if across == 0 { [partition.at, at] } else { [at, partition.at] };
         borders.extend(stretches.into_iter().map(|stretch| Border::Line {
-            look: LineLook::Partition,
+            style: LineStyle::Partition,
             ends: stretch.map(place),
             outwards: [0.0; 2],
         }));
@@ -76,7 +76,7 @@ pub(super) fn edges(gas: &Gas, studio: &Studio, view: &View) -> Vec<Tubes> {
         })
     };
     let (hot, cold): (Vec<_>, Vec<_>) = box_edges(from, to).into_iter().partition(is_hot);
-    [(INK, EDGE, cold), (HOT, 2.0 * EDGE, hot)]
+    [(INK, EDGE, cold), (THERMAL_WALL, 2.0 * EDGE, hot)]
         .map(|(colour, width, edges)| tubes(studio, &view.stage, colour, [width, 0.0], edges.iter().map(Vec::as_slice)))
         .into()
 }

@@ -29,8 +29,8 @@ impl Balls {
             svg.text([x + 29.0, top + 4.0], Anchor::Start, "small", text);
             x += 47.0 + text.chars().count() as f64 * SPACE_OF_LETTER;
         };
-        if !self.way.is_empty() {
-            mark(svg, "way", "way of one ball");
+        if !self.trajectory.is_empty() {
+            mark(svg, "trajectory", "trajectory of one ball");
         }
         if has(Side::Open) {
             mark(svg, "wall-open", "periodic: what leaves comes in opposite");

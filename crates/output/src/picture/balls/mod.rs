@@ -69,7 +69,7 @@ pub(crate) struct Balls {
     pub partition: Option<Across>,
     pub discs: Vec<Disc>,
     /// The way of one ball, and which it is.
-    pub way: Vec<[f64; 3]>,
+    pub trajectory: Vec<[f64; 3]>,
     pub followed: Option<Disc>,
     pub key: Key,
     /// Unit of lengths, for the scale bar; empty in reduced units.

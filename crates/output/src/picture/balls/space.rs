@@ -92,9 +92,9 @@ pub(super) fn picture(balls: &Balls, shown_at: f64) -> Result<Figure, String> {
     svg.image([0.0, 0.0], eye.size, &url, 1.0);
     draw_faces(&mut svg, balls, &eye);
     draw_edges(&mut svg, balls, &eye, true);
-    if !balls.way.is_empty() {
-        for class in ["way-under", "way"] {
-            svg.path(balls.way.iter().map(|point| eye.see(*point).place), false, class);
+    if !balls.trajectory.is_empty() {
+        for class in ["trajectory-under", "trajectory"] {
+            svg.path(balls.trajectory.iter().map(|point| eye.see(*point).place), false, class);
         }
     }
     Ok(svg.finish(eye.size, "Balls in their box"))

@@ -54,7 +54,7 @@ pub(super) fn slice(dew: &Dew, model: &dyn Model) -> Result<Option<Figure>, Stri
         sides,
         partition: None,
         discs,
-        way: Vec::new(),
+        trajectory: Vec::new(),
         followed: None,
         key: Key::Speed { most, unit: "m/s" },
         unit: "m",

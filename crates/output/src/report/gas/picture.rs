@@ -28,7 +28,7 @@ pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
         sides: Axis::ALL.map(|axis| gas.walls.along(axis).map(side)),
         partition: partition(gas, model.time()),
         discs: frame.sets.iter().enumerate().flat_map(|(kind, set)| discs(gas, kind, set, &key)).collect(),
-        way: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
+        trajectory: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
         followed: gas.follow.and_then(|id| followed(gas, &frame, id, &key)),
         key,
         unit: match gas.units {

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// What lies on the ground of a flood.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub enum GroundLook {
+pub enum GroundStyle {
     /// Meadow, dry grass, rock, with water that looks like water.
     #[default]
     Natural,

@@ -9,7 +9,7 @@ const LOWEST: f64 = -0.35;
 
 /// How a camera was moved by hand from where the model shows best.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hand {
+pub struct CameraOffset {
     /// True for straight from above and to scale, north up.
     pub plan: bool,
     /// How far the eye was turned round what it looks at: azimuth (from east over north) and height, radians.
@@ -20,13 +20,13 @@ pub struct Hand {
     pub zoom: f64,
 }
 
-impl Default for Hand {
+impl Default for CameraOffset {
     fn default() -> Self {
         Self { plan: false, turn: [0.0; 2], shift: [0.0; 3], zoom: 1.0 }
     }
 }
 
-impl Hand {
+impl CameraOffset {
     /// The camera moved so.
     pub(super) fn moved(&self, camera: Camera) -> Camera {
         let camera = if matches!(camera.lens, Lens::Perspective { .. }) { self.turned(camera) } else { camera };
@@ -55,19 +55,19 @@ mod tests {
     use corpuscle_render::Stage;
 
     #[test]
-    fn a_hand_turns_shifts_and_comes_nearer() {
+    fn an_offset_turns_shifts_and_comes_nearer() {
         let stage = Stage::new([0.0; 3], [4.0, 4.0, 2.0]);
         let camera = Camera::orbit(&stage, [0.3, 0.4], 0.5, 1.5, 0.1);
         let far = (camera.eye - camera.target).length();
-        let hand = Hand { turn: [1.0, 0.2], shift: [1.0, 0.0, 0.0], zoom: 2.0, plan: false };
-        let moved = hand.moved(camera);
+        let offset = CameraOffset { turn: [1.0, 0.2], shift: [1.0, 0.0, 0.0], zoom: 2.0, plan: false };
+        let moved = offset.moved(camera);
         let away = moved.eye - moved.target;
         assert!((away.length() - 0.5 * far).abs() < 1e-9);
         assert!((away.y.atan2(away.x) - 1.3).abs() < 1e-9 && ((away.z / away.length()).asin() - 0.6).abs() < 1e-9);
         assert_eq!(moved.target, camera.target + DVec3::X);
-        assert!(Hand::default().moved(camera).eye.distance(camera.eye) < 1e-9);
+        assert!(CameraOffset::default().moved(camera).eye.distance(camera.eye) < 1e-9);
         // Never over the top.
-        let over = Hand { turn: [0.0, 9.0], ..Hand::default() }.moved(camera);
+        let over = CameraOffset { turn: [0.0, 9.0], ..CameraOffset::default() }.moved(camera);
         assert!(over.eye.z < over.target.z + far && over.eye.is_finite());
     }
 }
