@@ -71,8 +71,8 @@ pub fn sized(ui: &mut Ui, icon: Icon, name: &str, hint: &str, size: f32, on: boo
         };
         paint(ui, icon, rect.shrink(size * 0.23), colour);
     }
-    let told = if hint.is_empty() { name.to_owned() } else { format!("{name} ({hint})") };
-    response.on_hover_text(told)
+    let text = if hint.is_empty() { name.to_owned() } else { format!("{name} ({hint})") };
+    response.on_hover_text(text)
 }
 
 /// Draws a sign.

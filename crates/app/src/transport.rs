@@ -66,7 +66,7 @@ impl Transport<'_> {
                 .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
                 .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
             ui.spacing_mut().slider_width = 90.0;
-            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's own");
+            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
             slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
             press(slider.changed(), Pressed::Pace(times));
             ui.add_space(6.0);
@@ -91,21 +91,21 @@ impl Transport<'_> {
         let (called, work) = models::of(self.scene).map_or(("", ""), |kind| (kind.particles(), kind.work()));
         let words = format!("{particles} {called}");
         let count = ui.label(RichText::new(words).small().weak());
-        let told = |response: egui::Response| match self.computed_on {
+        let hint = |response: egui::Response| match self.computed_on {
             Some(computed_on) => response.on_hover_text(computed_on),
             None => response,
         };
-        told(count);
+        hint(count);
         let rate = if snapshot.playing {
             format!("{:.0} pictures/s  ·  {} {work}/s", self.pictures, text::short_number(snapshot.rate))
         } else {
             String::new()
         };
-        let quick = told(ui.label(RichText::new(rate).small().weak()));
+        let quick = hint(ui.label(RichText::new(rate).small().weak()));
         if snapshot.behind {
-            let told = "This machine cannot compute the scene at this speed: it goes as fast as it can.";
+            let hint = "This machine cannot compute the scene at this speed: it runs as fast as it can.";
             let mark = ui.label(RichText::new("as fast as it can").small().color(ui.visuals().warn_fg_color));
-            mark.union(quick).on_hover_text(told);
+            mark.union(quick).on_hover_text(hint);
         }
     }
 

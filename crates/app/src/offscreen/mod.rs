@@ -90,10 +90,10 @@ impl OffscreenRenderer {
     /// # Errors
     /// Where the system gives no thread.
     pub fn start(device: BackgroundDevice, wake: Wake) -> std::io::Result<Self> {
-        let (tell, results) = channel();
+        let (sender, results) = channel();
         let shared = Arc::<SharedQueue>::default();
         let own = shared.clone();
-        let run = move || thread::run(&own, &tell, &wake, &device);
+        let run = move || thread::run(&own, &sender, &wake, &device);
         let thread = std::thread::Builder::new().name("offscreen".into()).spawn(run)?;
         Ok(Self { shared, results, thread: Some(thread) })
     }

@@ -16,14 +16,14 @@ use std::sync::mpsc::Sender;
 
 /// Size of a still, pixels.
 const STILL_SIZE: [u32; 2] = [1920, 1080];
-const FAULT: &str = "a fault in the program stopped the picture";
+const FAULT: &str = "an internal error stopped the picture";
 
 /// Draws what is requested until the queue is closed.
-pub(super) fn run(shared: &SharedQueue, tell: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
+pub(super) fn run(shared: &SharedQueue, results: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
     let mut thread = Thread { device, scene: None };
     while let Some(request) = next(shared) {
         // Nobody listens where the window is closing.
-        let _ = tell.send(thread.print(request));
+        let _ = results.send(thread.render(request));
         wake();
     }
 }
@@ -58,7 +58,7 @@ struct Thread<'a> {
 }
 
 impl Thread<'_> {
-    fn print(&mut self, request: Request) -> RenderResult {
+    fn render(&mut self, request: Request) -> RenderResult {
         match request {
             Request::Still(job, folder, name) => {
                 RenderResult::Still(self.guarded(|thread| thread.still(&job, &folder, &name)))

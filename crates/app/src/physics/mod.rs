@@ -1,7 +1,7 @@
 //! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
 
 mod filming;
-mod glide;
+mod gpu_advance;
 mod pace;
 mod subject;
 mod thread;
@@ -166,18 +166,18 @@ impl Physics {
         wake: Wake,
     ) -> std::io::Result<Self> {
         let (commands, taken) = channel();
-        let (tell, events) = channel();
+        let (sender, events) = channel();
         let (newest, view_state) = (Mutex::default(), Mutex::default());
         let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
         let shared = Arc::new(Shared { newest, view_state, follows, stop, wake });
         let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &tell, &own, Devices { gpu: &gpu, background: &background, backend });
+        let run = move || thread::run(&taken, &sender, &own, Devices { gpu: &gpu, background: &background, backend });
         let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
     }
 
     /// Asks for something. Never waits.
-    pub fn ask(&self, command: Command) {
+    pub fn send(&self, command: Command) {
         if let Some(commands) = &self.commands {
             // Before the command can be taken: it must not break itself off.
             self.shared.stop.store(true, Ordering::Relaxed);

@@ -16,8 +16,8 @@ const NEWEST: f64 = 0.2;
 /// Keeps simulated time in step with the wall clock, or as near as can be computed.
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
-    /// Simulated seconds in a second, as asked for.
-    pub asked: f64,
+    /// Simulated seconds in a second, as requested for.
+    pub requested: f64,
     /// Wall-clock seconds that a simulated second takes; none before the first slice.
     cost: Option<f64>,
     /// How far a slice goes at most on a device that draws as well, s; none before the first.
@@ -27,13 +27,13 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    pub fn new(asked: f64) -> Self {
-        Self { asked, cost: None, most: None, real: 0.0 }
+    pub fn new(requested: f64) -> Self {
+        Self { requested, cost: None, most: None, real: 0.0 }
     }
 
     /// How far to go, s, when the last slice began so long ago. The first slice is a try.
     pub fn next(&self, since: Duration) -> f64 {
-        let wanted = self.asked * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         match self.cost {
             Some(cost) => wanted.min(LONGEST / cost.max(1e-300)),
             None => 0.02 * wanted,
@@ -42,7 +42,7 @@ impl Pace {
 
     /// The same on a device that draws as well, after a slice that went so far, s, and worked so long; one without a step only waited.
     pub fn next_beside_pictures(&mut self, since: Duration, far: f64, worked: Duration, has_stepped: bool) -> f64 {
-        let wanted = self.asked * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         let most = self.most.get_or_insert(wanted);
         let [short, long] = BESIDE_PICTURES;
         let (worked, is_most) = (worked.as_secs_f64(), far > 0.9 * *most);
@@ -68,7 +68,7 @@ impl Pace {
 
     /// True where it is too much to compute.
     pub fn is_behind(&self) -> bool {
-        self.real > 0.0 && self.real < 0.9 * self.asked && self.cost.is_some_and(|cost| cost * self.asked > 0.7)
+        self.real > 0.0 && self.real < 0.9 * self.requested && self.cost.is_some_and(|cost| cost * self.requested > 0.7)
     }
 
     /// Nothing goes on.
@@ -104,8 +104,8 @@ mod tests {
 
     /// Goes on for ten seconds of the wall clock where steps of so many simulated seconds cost so much work each, and each slice waits besides;
     /// gives how far it went, and the mean length of a slice.
-    fn beside_pictures(asked: f64, step: f64, cost: f64, wait: f64) -> (f64, f64) {
-        let mut pace = Pace::new(asked);
+    fn beside_pictures(requested: f64, step: f64, cost: f64, wait: f64) -> (f64, f64) {
+        let mut pace = Pace::new(requested);
         let (mut clock, mut time, mut stepped, mut slices) = (0.0, 0.0, 0.0, 0.0);
         let (mut far, mut worked, mut has_stepped, mut since) = (0.0, 0.0, false, 0.016);
         while clock < 10.0 {

@@ -34,21 +34,21 @@ impl Subject {
     /// A scene at its start, on a backend, with the device of the window.
     pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: &Gpu) -> Result<Self, Error> {
         let mut simulation = Simulation::open(scene, folder)?;
-        let asked = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
+        let choice = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
         let choice = match backend {
             Backend::Auto => simulation.use_best_on(gpu),
-            Backend::Gpu if simulation.model().on_gpu().is_none() => asked(false, "this model computes nowhere else"),
+            Backend::Gpu if simulation.model().on_gpu().is_none() => choice(false, "this model runs on the CPU only"),
             Backend::Gpu => {
                 simulation.use_this_gpu(gpu.clone())?;
-                asked(true, &gpu.name)
+                choice(true, &gpu.name)
             }
-            Backend::Cpu => asked(false, "as asked for"),
+            Backend::Cpu => choice(false, "as requested"),
         };
         Ok(Self::Live(Box::new(simulation), choice))
     }
 
     /// What is computed where it is drawn, by a GPU; elsewhere particles come to the host for every picture.
-    pub fn gliding(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
+    pub fn drawn_in_place(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
         match self {
             Self::Live(simulation, _) if gpu.kind == GpuKind::Hardware && simulation.is_seen_on(gpu) => {
                 Some(simulation)

@@ -161,7 +161,7 @@ impl Plots {
         match &chart {
             Some(chart) => draw::chart(ui, ("chart", slot), chart),
             None => {
-                ui.label(RichText::new("Nothing has been measured yet.").weak());
+                ui.label(RichText::new("No measurements yet.").weak());
             }
         }
         chart.filter(|_| save).map(|chart| (chart.name.clone(), table(&chart)))

@@ -1,4 +1,4 @@
-//! Keys, and what is pressed in the strip.
+//! Handling of keys and of the controls of the strip.
 
 use super::open::QUALITIES;
 use super::{Source, Window};
@@ -61,18 +61,18 @@ impl Window {
             }
             Pressed::Step => {
                 open.playing = false;
-                self.physics.ask(Command::Step(open.times * default_pace(open.end) / 30.0));
+                self.physics.send(Command::Step(open.times * default_pace(open.end) / 30.0));
             }
-            Pressed::Restart if open.recorded => self.physics.ask(Command::Seek(0.0)),
+            Pressed::Restart if open.recorded => self.physics.send(Command::Seek(0.0)),
             Pressed::Restart => {
                 let changes = open.parameters.changes().to_vec();
                 let source = Source { changes, ..open.source.clone() };
                 self.open(source);
             }
-            Pressed::Seek(time) => self.physics.ask(Command::Seek(time)),
+            Pressed::Seek(time) => self.physics.send(Command::Seek(time)),
             Pressed::Pace(times) => {
                 open.times = times;
-                self.physics.ask(Command::Pace(times * default_pace(open.end)));
+                self.physics.send(Command::Pace(times * default_pace(open.end)));
             }
         }
     }

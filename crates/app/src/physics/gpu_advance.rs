@@ -22,11 +22,16 @@ pub(super) enum Fault {
 
 /// Goes on until it is told to stop, comes to where it waits next, or its particles are to be looked at; gives when they were called back,
 /// if they were.
-pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u64) -> Result<Option<Instant>, Fault> {
+pub(super) fn advance(
+    running: &mut Running,
+    shared: &Shared,
+    gpu: &Gpu,
+    number: u64,
+) -> Result<Option<Instant>, Fault> {
     let Running { subject, until, pace, measured, measure_at, rate, probe, probed, filming, known, .. } = running;
     let (from, container) = (subject.time(), subject.simulation().model().container());
-    let Some(simulation) = subject.gliding(gpu) else { return Ok(None) };
-    let glide = RefCell::new(Glide {
+    let Some(simulation) = subject.drawn_in_place(gpu) else { return Ok(None) };
+    let state = RefCell::new(GpuAdvance {
         shared,
         number,
         container,
@@ -43,9 +48,9 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         film_fault: None,
         recalled: None,
     });
-    let mut show = |glance| glide.borrow_mut().show(glance);
-    let gone = simulation.advance_shown(*until, &shared.stop, &mut GlideObserver(&glide), from, &mut show);
-    let Glide { film_fault, recalled, .. } = glide.into_inner();
+    let mut show = |glance| state.borrow_mut().show(glance);
+    let gone = simulation.advance_shown(*until, &shared.stop, &mut GpuAdvanceObserver(&state), from, &mut show);
+    let GpuAdvance { film_fault, recalled, .. } = state.into_inner();
     gone.map_err(Fault::OfModel)?;
     film_fault.map_or(Ok(recalled), |error| Err(Fault::OfFilm(error)))
 }
@@ -61,7 +66,7 @@ struct Slice {
     has_stepped: bool,
 }
 
-struct Glide<'a> {
+struct GpuAdvance<'a> {
     shared: &'a Shared,
     number: u64,
     container: Option<Container>,
@@ -83,7 +88,7 @@ struct Glide<'a> {
     recalled: Option<Instant>,
 }
 
-impl Glide<'_> {
+impl GpuAdvance<'_> {
     /// Shows the scene as it stands, and waits until it is time to go on; gives up to when, s.
     fn show(&mut self, glance: Glance) -> f64 {
         let Slice { from, began, before, has_stepped } = self.slice;
@@ -129,37 +134,37 @@ impl Glide<'_> {
 
     /// Simulated time between two rows of gauges, s.
     fn every(&self) -> f64 {
-        let pace = if self.pace.is_behind() { self.pace.real } else { self.pace.asked };
+        let pace = if self.pace.is_behind() { self.pace.real } else { self.pace.requested };
         pace * MEASURE.as_secs_f64()
     }
 }
 
-/// The observer of a glide.
-struct GlideObserver<'a, 'b>(&'a RefCell<Glide<'b>>);
+/// The observer of a state.
+struct GpuAdvanceObserver<'a, 'b>(&'a RefCell<GpuAdvance<'b>>);
 
-impl AdvanceObserver for GlideObserver<'_, '_> {
+impl AdvanceObserver for GpuAdvanceObserver<'_, '_> {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         let every = self.0.borrow().every();
         (every > 0.0).then(|| ((time / every).floor() + 1.0) * every).filter(|next| *next > time)
     }
 
     fn gauges(&mut self, time: f64, row: &[f64]) {
-        let mut glide = self.0.borrow_mut();
-        let measured = Measures { time, gauges: row.to_vec(), ..(**glide.measured).clone() };
-        *glide.measured = Arc::new(measured);
+        let mut state = self.0.borrow_mut();
+        let measured = Measures { time, gauges: row.to_vec(), ..(**state.measured).clone() };
+        *state.measured = Arc::new(measured);
     }
 
     fn passed(&mut self, passed: ModelProgress) -> bool {
-        let mut glide = self.0.borrow_mut();
-        glide.particles = passed.particles;
-        glide.slice.has_stepped |= passed.particle_steps > glide.work;
-        glide.work = passed.particle_steps;
-        glide.rate.note(passed.particle_steps);
-        let (from, probes) = glide.release_at;
-        let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);
-        if is_looked_at && Instant::now() >= from {
-            glide.recalled = Some(Instant::now());
+        let mut state = self.0.borrow_mut();
+        state.particles = passed.particles;
+        state.slice.has_stepped |= passed.particle_steps > state.work;
+        state.work = passed.particle_steps;
+        state.rate.note(passed.particle_steps);
+        let (from, probes) = state.release_at;
+        let is_needed = probes || state.shared.follows.load(Ordering::Relaxed);
+        if is_needed && Instant::now() >= from {
+            state.recalled = Some(Instant::now());
         }
-        glide.recalled.is_none()
+        state.recalled.is_none()
     }
 }
