@@ -20,20 +20,20 @@ pub struct RenderJob {
     pub scenery: Arc<Scenery>,
     /// The scene at one time.
     pub snapshot: Arc<Snapshot>,
-    /// How it is seen.
+    /// The camera and the partition.
     pub view_state: ViewState,
 }
 
 /// How the window's picture of a paused scene is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct PausedSettings {
-    /// How much work it may be.
+    /// The quality.
     pub quality: Quality,
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel.
     pub samples: u32,
-    /// What a drawing lies on, linear light.
+    /// Background of a drawing, linear light.
     pub paper: [f32; 3],
 }
 
@@ -88,7 +88,7 @@ impl OffscreenRenderer {
     /// Starts the thread.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// Where the thread cannot be started.
     pub fn start(device: BackgroundDevice, wake: Wake) -> std::io::Result<Self> {
         let (sender, results) = channel();
         let shared = Arc::<SharedQueue>::default();

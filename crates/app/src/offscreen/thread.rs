@@ -22,7 +22,7 @@ const FAULT: &str = "an internal error stopped the picture";
 pub(super) fn run(shared: &SharedQueue, results: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
     let mut thread = Thread { device, scene: None };
     while let Some(request) = next(shared) {
-        // Nobody listens where the window is closing.
+        // The receiver is gone when the window closes.
         let _ = results.send(thread.render(request));
         wake();
     }
@@ -53,7 +53,7 @@ fn next(shared: &SharedQueue) -> Option<Request> {
 
 struct Thread<'a> {
     device: &'a BackgroundDevice,
-    /// The scene that was drawn last, by its number, and what draws it.
+    /// The scene that was drawn last, by its number, and its pictures.
     scene: Option<(u64, Pictures)>,
 }
 
@@ -69,7 +69,7 @@ impl Thread<'_> {
         }
     }
 
-    /// A fault of the program must not take the window's pictures with it.
+    /// Draws and turns a panic into an error, so that it does not end the thread.
     fn guarded<T>(&mut self, draw: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, String> {
         match catch_unwind(AssertUnwindSafe(|| draw(self))) {
             Ok(done) => done.map_err(|error| error.to_string()),

@@ -1,4 +1,4 @@
-//! A film of what goes on, drawn in its thread: the physics waits for the pictures, the window does not.
+//! A film of the scene in the window, drawn in the physics thread: the physics waits for the pictures, the window does not.
 
 use super::subject::Subject;
 use crate::view_state::ViewState;
@@ -23,7 +23,7 @@ pub(super) struct Filming {
 }
 
 impl Filming {
-    /// Begins a film from now on; `pace` simulated seconds go by in a second of it.
+    /// Starts a film; `pace` is its simulated seconds per second.
     pub fn begin(gpu: &Gpu, subject: &Subject, path: &Path, pace: f64) -> Result<Self, Error> {
         let settings = PictureSettings { size: SIZE, ..PictureSettings::default() };
         let pictures = Pictures::open_on(gpu, subject.simulation(), settings)?;
@@ -31,7 +31,7 @@ impl Filming {
         Ok(Self { pictures, film, path: path.to_owned(), every: pace / RATE, next: subject.time() })
     }
 
-    /// Adds a picture, seen as it is seen in the window now, if one is due.
+    /// Adds a picture with the camera of the window, if one is due.
     pub fn add_if_due(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
         if subject.time() < self.next {
             return Ok(());
@@ -48,7 +48,7 @@ impl Filming {
         Ok(())
     }
 
-    /// Puts the film in its place; gives its file.
+    /// Finishes the film; returns its path.
     pub fn finish(self) -> Result<PathBuf, Error> {
         self.film.finish()?;
         Ok(self.path)

@@ -1,4 +1,4 @@
-//! A scene that steps where it is drawn: while it goes on its particles stay there, and rows of gauges come by themselves.
+//! A scene that is stepped and drawn on one GPU: while it plays its particles stay there, and only rows of gauges are read back.
 
 use super::Shared;
 use super::filming::Filming;
@@ -14,13 +14,13 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// What went wrong.
+/// An error of the model or of the film.
 pub(super) enum Fault {
     OfModel(Error),
     OfFilm(Error),
 }
 
-/// Goes on until it is told to stop, comes to where it waits next, or its particles are to be looked at; gives when they were called back,
+/// Advances until it is stopped, reaches the next pause, or its particles are needed on the host; returns when they were requested,
 /// if they were.
 pub(super) fn advance(
     running: &mut Running,
@@ -60,7 +60,7 @@ struct Slice {
     /// The time of the last picture, s, and when the steps since began.
     from: f64,
     began: Instant,
-    /// How long before the last ones had.
+    /// The duration of the slice before.
     before: Duration,
     /// Whether any of them is done.
     has_stepped: bool,
@@ -71,12 +71,12 @@ struct GpuAdvance<'a> {
     number: u64,
     container: Option<Container>,
     known: Arc<Frame>,
-    /// The water where it was asked for, as it was when the particles last came.
+    /// The water sampled when the particles were last read back.
     probed: Option<Sample>,
     particles: usize,
     /// Particles moved so far.
     work: u64,
-    /// From when on particles may be called back, and whether somebody asks for the water somewhere.
+    /// When particles may be read back next, and whether the water is sampled.
     release_at: (Instant, bool),
     slice: Slice,
     pace: &'a mut Pace,
@@ -84,12 +84,12 @@ struct GpuAdvance<'a> {
     rate: &'a mut Rate,
     filming: Option<&'a mut Filming>,
     film_fault: Option<Error>,
-    /// When the particles were called back.
+    /// When the particles were requested.
     recalled: Option<Instant>,
 }
 
 impl GpuAdvance<'_> {
-    /// Shows the scene as it stands, and waits until it is time to go on; gives up to when, s.
+    /// Publishes a snapshot and waits until the next slice is due; returns up to what time, s.
     fn show(&mut self, glance: Glance) -> f64 {
         let Slice { from, began, before, has_stepped } = self.slice;
         let (time, worked) = (glance.frame.time, began.elapsed());
@@ -139,7 +139,7 @@ impl GpuAdvance<'_> {
     }
 }
 
-/// The observer of a state.
+/// The observer of the advance.
 struct GpuAdvanceObserver<'a, 'b>(&'a RefCell<GpuAdvance<'b>>);
 
 impl AdvanceObserver for GpuAdvanceObserver<'_, '_> {

@@ -1,28 +1,28 @@
-//! How far to go in a slice of wall-clock time.
+//! Control of the pace: how far to advance in a slice of wall-clock time.
 
 use std::time::Duration;
 
-/// Longest that a slice may take, s: each gives a picture, and commands are taken between them.
+/// Longest duration of a slice, s: each gives a picture, and commands are taken between them.
 const LONGEST: f64 = 0.015;
-/// A slice that was waited for longer than this is not made up for, s.
+/// Longest delay that the next slice makes up for, s.
 const MOST_OWED: f64 = 0.1;
 /// A slice on a device that draws as well waits for pictures besides, which makes it no use to have it as short as may be: it may take from
 /// so long to so long, s, and goes farther or less far by this factor where it does not.
 const BESIDE_PICTURES: [f64; 2] = [0.03, 0.04];
 const FARTHER: f64 = 1.25;
-/// Weight of the newest slice in what a slice costs, and in the pace that is told.
+/// Weight of the newest slice in the mean cost, and in the pace reported.
 const NEWEST: f64 = 0.2;
 
-/// Keeps simulated time in step with the wall clock, or as near as can be computed.
+/// Keeps simulated time in step with the wall clock, as far as the computation is fast enough.
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
-    /// Simulated seconds in a second, as requested for.
+    /// Requested pace, simulated seconds per second.
     pub requested: f64,
     /// Wall-clock seconds that a simulated second takes; none before the first slice.
     cost: Option<f64>,
-    /// How far a slice goes at most on a device that draws as well, s; none before the first.
+    /// Largest advance of a slice on a device that also draws, s; none before the first.
     most: Option<f64>,
-    /// Simulated seconds in a second, as it goes.
+    /// Pace reached, simulated seconds per second.
     pub real: f64,
 }
 
@@ -31,7 +31,7 @@ impl Pace {
         Self { requested, cost: None, most: None, real: 0.0 }
     }
 
-    /// How far to go, s, when the last slice began so long ago. The first slice is a try.
+    /// The advance of the next slice, s, when the last one began so long ago. The first slice is a trial.
     pub fn next(&self, since: Duration) -> f64 {
         let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         match self.cost {
@@ -40,7 +40,7 @@ impl Pace {
         }
     }
 
-    /// The same on a device that draws as well, after a slice that went so far, s, and worked so long; one without a step only waited.
+    /// The same on a device that also draws, after a slice that advanced so far, s, and worked so long; one without a step only waited.
     pub fn next_beside_pictures(&mut self, since: Duration, far: f64, worked: Duration, has_stepped: bool) -> f64 {
         let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         let most = self.most.get_or_insert(wanted);
@@ -54,7 +54,7 @@ impl Pace {
         wanted.min(*most)
     }
 
-    /// A slice went so far, s; it took `worked`, and with waiting `whole`.
+    /// Records a slice: its advance, s, its work `worked`, and with waiting `whole`.
     pub fn went(&mut self, far: f64, worked: Duration, whole: Duration) {
         if far <= 0.0 {
             return;
@@ -66,12 +66,12 @@ impl Pace {
         self.real = if self.real == 0.0 { real } else { mix(self.real, real) };
     }
 
-    /// True where it is too much to compute.
+    /// True where the requested pace is not reached.
     pub fn is_behind(&self) -> bool {
         self.real > 0.0 && self.real < 0.9 * self.requested && self.cost.is_some_and(|cost| cost * self.requested > 0.7)
     }
 
-    /// Nothing goes on.
+    /// Resets the pace on pause.
     pub fn rest(&mut self) {
         self.real = 0.0;
     }

@@ -1,4 +1,4 @@
-//! The thread itself.
+//! The physics thread.
 
 use super::filming::Filming;
 use super::gpu_advance::{self, Fault};
@@ -23,10 +23,10 @@ pub(super) const PICTURES: f64 = 60.0;
 /// Time between two measurements at least, and how many times longer than one takes.
 pub(super) const MEASURE: Duration = Duration::from_millis(120);
 const MEASURE_SHARE: u32 = 10;
-/// Size that pictures are opened with; whoever shows them makes them larger.
+/// Initial size of pictures; the window resizes them.
 const SMALL: [u32; 2] = [16, 16];
 
-/// Takes commands and goes on until there is nobody to give commands.
+/// Takes commands and advances until the sender of commands is dropped.
 pub(super) fn run(commands: &Receiver<Command>, events: &Sender<Event>, shared: &Arc<Shared>, devices: Devices<'_>) {
     let mut thread = Thread { events, shared, devices, number: 0, running: None };
     loop {
@@ -35,7 +35,7 @@ pub(super) fn run(commands: &Receiver<Command>, events: &Sender<Event>, shared: 
             Some(left) => commands.recv_timeout(left),
         };
         shared.stop.store(false, Ordering::Relaxed);
-        // A fault of the program must not take the window with it.
+        // A panic must not end the window.
         let done = catch_unwind(AssertUnwindSafe(|| match next {
             Ok(command) => {
                 thread.take(command);
@@ -71,7 +71,7 @@ struct Thread<'a> {
 pub(super) struct Running {
     pub subject: Subject,
     playing: bool,
-    /// Where it waits next, s.
+    /// Time of the next pause, s.
     pub until: f64,
     pub pace: Pace,
     /// When the last slice began.
@@ -80,24 +80,24 @@ pub(super) struct Running {
     /// When it may be measured again.
     pub measure_at: Instant,
     pub rate: Rate,
-    /// Where to tell of the water.
+    /// Position at which the water is sampled.
     pub probe: Option<[f64; 2]>,
     pub filming: Option<Filming>,
-    /// The water there, and all particles, as they last came.
+    /// The water there, and all particles, as last read back.
     pub probed: Option<Sample>,
     pub known: Arc<Frame>,
 }
 
-/// Work done in a second.
+/// Rate of work.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rate {
-    /// Work done, and when, as it was last told.
+    /// Work done at the last update, and when that was.
     noted: (u64, Instant),
     pub now: f64,
 }
 
 impl Rate {
-    /// So much work is done by now.
+    /// Updates the rate with the work done so far.
     pub fn note(&mut self, work: u64) {
         let (before, when) = self.noted;
         let since = when.elapsed().as_secs_f64();
@@ -110,14 +110,14 @@ impl Rate {
 }
 
 impl Thread<'_> {
-    /// How long to wait for a command before the next slice; none where there is nothing to go on with.
+    /// How long to wait for a command before the next slice; none while paused.
     fn time_left(&self) -> Option<Duration> {
         let running = self.running.as_ref().filter(|running| running.playing)?;
         Some(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(running.began.elapsed()))
     }
 
     fn send(&self, event: Event) {
-        // Nobody listens where the window is closing.
+        // The receiver is gone when the window closes.
         let _ = self.events.send(event);
         (self.shared.wake)();
     }
@@ -170,7 +170,7 @@ impl Thread<'_> {
         }
     }
 
-    /// Makes ready what was opened.
+    /// Sets up the opened scene.
     fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
         let simulation = subject.simulation();
         let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
@@ -232,7 +232,7 @@ impl Thread<'_> {
         self.add_film_picture();
     }
 
-    /// Goes on for a slice of wall-clock time.
+    /// Advances for a slice of wall-clock time.
     fn slice(&mut self) {
         let Some(running) = &mut self.running else { return };
         let begun = Instant::now();
@@ -242,7 +242,7 @@ impl Thread<'_> {
         }
         let from = running.subject.time();
         let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
-        // A film has its pictures at their times.
+        // The pictures of a film are due at fixed times.
         let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
         let whole = running.began.elapsed();
         running.began = begun;
@@ -253,7 +253,7 @@ impl Thread<'_> {
         self.went(gone);
     }
 
-    /// Goes on where it is drawn until something is asked for, or looks at its particles.
+    /// Advances on the GPU that draws, until a command arrives or the particles are needed.
     fn advance_on_gpu(&mut self) {
         let Some(running) = &mut self.running else { return };
         match gpu_advance::advance(running, self.shared, self.devices.gpu, self.number) {
@@ -272,7 +272,7 @@ impl Thread<'_> {
         }
     }
 
-    /// Shows what it came to, and waits where it came to an end.
+    /// Publishes the result of a slice, and pauses at the end or after an error.
     fn went(&mut self, gone: Result<(), Error>) {
         let Some(running) = &mut self.running else { return };
         let event = match gone {
@@ -289,7 +289,7 @@ impl Thread<'_> {
         }
     }
 
-    /// Adds a picture to the film, where one is made and it is due.
+    /// Adds a picture to the film, where one is recorded and a picture is due.
     fn add_film_picture(&mut self) {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
@@ -307,7 +307,7 @@ impl Thread<'_> {
         }
     }
 
-    /// Shows how it stands now.
+    /// Publishes a snapshot.
     fn publish(&mut self) {
         let Some(running) = &mut self.running else { return };
         match running.snapshot(self.number, self.devices.gpu) {
@@ -321,7 +321,7 @@ impl Running {
     fn wait(&mut self) {
         self.playing = false;
         self.pace.rest();
-        // What stands still is shown with its newest measures.
+        // A paused scene shows its newest measurements.
         self.measure_at = Instant::now();
     }
 

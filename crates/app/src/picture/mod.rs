@@ -1,4 +1,4 @@
-//! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
+//! The picture in the middle: drawn on the window's device, with a camera that the user rotates, pans and zooms.
 
 mod paused;
 
@@ -16,22 +16,22 @@ use glam::DVec3;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How far a point that the pointer goes turns the eye, radians.
+/// Rotation of the camera per point of pointer motion, radians.
 const TURN: f64 = 0.008;
-/// How far it may be zoomed.
+/// Smallest and largest zoom.
 const ZOOM: [f64; 2] = [0.3, 200.0];
-/// After so long without change what stands still is drawn with all there is.
+/// Time without change after which a paused scene is drawn with full quality.
 const STILL: Duration = Duration::from_millis(350);
 
-/// How much work pictures are, as the user wants it.
+/// The quality that the user chose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum QualitySetting {
-    /// All there is on a GPU and of what stands still; what moves simply where there is no GPU.
+    /// Full with a GPU and at rest; simple in motion without a GPU.
     #[default]
     Auto,
     /// Always simple.
     Simple,
-    /// Always all there is.
+    /// Always full.
     Full,
 }
 
@@ -46,24 +46,24 @@ pub struct Picture {
     drawn: Option<Drawn>,
     /// The full-quality picture requested since something last changed, with the number of the request.
     requested: Option<(u64, Drawn)>,
-    /// How the camera was moved.
+    /// How the user moved the camera.
     pub camera_offset: CameraOffset,
     /// When the partition was lifted, s.
     lifted: Option<f64>,
-    /// How much work it may be.
+    /// The quality chosen.
     pub quality: QualitySetting,
     /// When something last changed.
     changed: Instant,
-    /// How much of its top the key takes, points.
+    /// Height of the legend, points.
     key_height: f32,
-    /// What went wrong with it.
+    /// The last error of drawing.
     fault: Option<String>,
 }
 
 /// What a picture was drawn from.
 #[derive(Clone, PartialEq)]
 struct Drawn {
-    /// The snapshot, by where it lies.
+    /// The snapshot, by its address.
     of: usize,
     camera_offset: CameraOffset,
     quality: Quality,
@@ -92,7 +92,7 @@ impl Picture {
         }
     }
 
-    /// Shows all again from where the model shows best.
+    /// Resets the camera.
     pub fn reset(&mut self) {
         self.camera_offset = CameraOffset { plan: self.camera_offset.plan, ..CameraOffset::default() };
     }
@@ -102,8 +102,8 @@ impl Picture {
         self.shown.as_ref()
     }
 
-    /// Begins the picture of a snapshot as the last one was seen, so that the device draws while the rest of the window is thought out.
-    /// Where it is seen otherwise after all, it is drawn again.
+    /// Begins the picture of a snapshot with the last camera, so that the device draws while the rest of the window is laid out.
+    /// If the camera has changed after all, it is drawn again.
     pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
         let (paper, linear) = style::paper(visuals);
         let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
@@ -124,7 +124,7 @@ impl Picture {
         }
     }
 
-    /// Fills what is left of the window with the picture of a snapshot; returns where it is and what was done to it. The full-quality
+    /// Fills the rest of the window with the picture of a snapshot; returns the response of its area. The full-quality
     /// picture of a paused scene is drawn by the offscreen renderer.
     pub fn ui(
         &mut self,
@@ -165,17 +165,17 @@ impl Picture {
         response
     }
 
-    /// How much of the picture's top its key takes, points.
+    /// Height of the legend over the picture, points.
     pub fn key_height(&self) -> f32 {
         self.key_height
     }
 
-    /// True where what was drawn last has all there is to its look.
+    /// True where the last picture has full quality.
     pub fn is_complete(&self) -> bool {
         self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1)
     }
 
-    /// The partition of a gas was lifted.
+    /// Records that the partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
         self.lifted = Some(time);
         self.view_state().lift(&mut self.pictures);
@@ -198,7 +198,7 @@ impl Picture {
         since >= STILL
     }
 
-    /// The look, and samples each way in a pixel.
+    /// The quality, and samples each way in a pixel.
     fn work(&self, still: bool) -> (Quality, u32) {
         let is_hardware = self.screen.gpu.kind == GpuKind::Hardware;
         match self.quality {
@@ -233,7 +233,7 @@ impl Picture {
         key_height
     }
 
-    /// Turns, shifts and zooms.
+    /// Rotates, pans and zooms.
     fn follow_hand(&mut self, ui: &Ui, rect: Rect, response: &Response) {
         if response.double_clicked() {
             self.reset();
