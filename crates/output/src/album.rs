@@ -10,15 +10,15 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Around what is put into the page.
+/// Markers round the section in the page.
 const START: &str = "<!-- pictures -->\n";
 const END: &str = "<!-- /pictures -->\n";
-/// Pictures in the page at most, and their width at most, pixels.
+/// Most pictures in the page, and their largest width, pixels.
 const MOST: usize = 6;
 const WIDTH: usize = 800;
 /// Quality of the JPEG files in the page, of 100.
 const QUALITY: u8 = 85;
-/// A film of at most so many bytes is in the page; a larger one stands beside it.
+/// Largest film embedded in the page, bytes; a larger one is linked.
 const LARGEST_FILM: u64 = 4 << 20;
 
 /// Puts the pictures of a run (`pictures/picture_*.png`, six of them at most, smaller than they are) and its film (`film.mp4`) into its
@@ -165,7 +165,7 @@ mod tests {
         );
         assert!(page.find("Pictures") < page.find("<section>B"));
         assert_eq!(without_album(&page), PAGE);
-        // A picture that is cut is told of, and the page stays.
+        // A truncated picture is an error, and the page stays.
         fs::write(at("pictures/picture_000000.png"), "cut").unwrap();
         assert!(put_into_report(folder.path()).unwrap_err().to_string().contains("picture_000000.png"));
         assert_eq!(fs::read_to_string(at("report.html")).unwrap(), page);

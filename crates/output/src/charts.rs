@@ -1,4 +1,4 @@
-//! `charts/`: what was measured, as tables; `path.csv`: where followed particles went.
+//! `charts/`: charts as tables; `path.csv`: trajectories of followed particles.
 
 use crate::OutputError;
 use crate::number::Shortest;
@@ -48,7 +48,7 @@ fn write_table<const N: usize>(
     write_bytes(path, &table().map_err(|error| OutputError::content(path, error))?)
 }
 
-/// Reads the paths that a run wrote, `path.csv`; none where there is no such file.
+/// Reads the trajectories of a run, `path.csv`; none where there is no such file.
 pub(crate) fn read_paths(folder: &Path) -> Result<Vec<Trajectory>, OutputError> {
     let path = folder.join("path.csv");
     if !path.exists() {

@@ -1,4 +1,4 @@
-//! The checkpoint: a model's state and how far the folder had been written.
+//! The checkpoint: a model's state, and the output written so far.
 //!
 //! One file, written whole: a line with a checksum of all that follows, a line of JSON, the state's bytes.
 
@@ -13,7 +13,7 @@ use std::path::Path;
 
 const MAGIC: &str = "corpuscle checkpoint 1 sha256:";
 
-/// How far a run has come.
+/// Times of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Simulated time, s.
@@ -22,16 +22,16 @@ pub struct Clock {
     pub wall_time_s: f64,
 }
 
-/// What stands in a checkpoint beside the state.
+/// The header of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// Version of Corpuscle that wrote it.
     pub version: String,
     /// Checksum of the scene's text.
     pub scene_sha256: String,
-    /// How far the run had come.
+    /// The times of the run.
     pub clock: Clock,
-    /// How particles are written.
+    /// Format of the particle files.
     pub frame_format: FrameFormat,
     /// Times of the frames written, s.
     pub frame_times: Vec<f64>,

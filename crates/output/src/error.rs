@@ -1,4 +1,4 @@
-//! What can go wrong with a run's folder.
+//! Errors of a run's folder.
 
 use corpuscle_terrain::TerrainError;
 use std::io;
@@ -56,7 +56,7 @@ pub enum OutputError {
         /// What is wrong with it.
         what: String,
     },
-    /// A file does not hold what it should.
+    /// A file has wrong content.
     #[error("{} cannot be understood: {what}", path.display())]
     Content {
         /// The file.
@@ -96,7 +96,7 @@ impl OutputError {
     }
 }
 
-/// What to do about a failed write.
+/// Advice for a failed write.
 fn advice(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space there",

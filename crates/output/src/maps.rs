@@ -9,10 +9,10 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What stands in cells without data: less than any depth, level, velocity or time.
+/// Value of cells without data: less than any depth, level, velocity or time.
 const NO_DATA: f32 = -9999.0;
 
-/// The map that is kept for each frame; of the others the last one stands for the whole run.
+/// The map that is written for each frame; of the others only the last, which covers the whole run.
 pub(crate) const SNAPSHOT: &str = "depth";
 
 /// Writes a map (not-a-number where there is nothing).

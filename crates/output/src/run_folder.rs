@@ -36,7 +36,7 @@ pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, OutputErro
     let mut number = 1;
     loop {
         let path = parent.join(format!("{scene}-{number}"));
-        // Made here and now, so that of two runs started together each gets its own.
+        // Made at once, so that two runs started together get different folders.
         match fs::create_dir(&path) {
             Ok(()) => return Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
@@ -45,7 +45,7 @@ pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, OutputErro
     }
 }
 
-/// The ways of the particles that a run followed, from its folder; none where it followed none.
+/// Trajectories of the particles that a run followed, from its folder; none where it followed none.
 ///
 /// # Errors
 /// [`OutputError::Content`] where `path.csv` is damaged.
@@ -86,8 +86,8 @@ impl RunFolder {
         })
     }
 
-    /// Takes up the folder of an interrupted run at its checkpoint: gives the folder, cut back to what had been
-    /// written then, how far the run had come, and the model's state.
+    /// Opens the folder of an interrupted run at its checkpoint: returns the folder, truncated to what had been
+    /// written then, the progress of the run, and the model's state.
     ///
     /// # Errors
     /// [`OutputError::NoCheckpoint`], [`OutputError::Checkpoint`] where it is damaged or the scene was changed,
@@ -109,7 +109,7 @@ impl RunFolder {
             map_times: progress.map_times,
             log: open_log(path)?,
         };
-        folder.cut_back()?;
+        folder.truncate()?;
         Ok((folder, progress.clock, state))
     }
 
@@ -118,12 +118,12 @@ impl RunFolder {
         &self.path
     }
 
-    /// True where there is a checkpoint to go on from.
+    /// True where there is a checkpoint to resume from.
     pub fn has_checkpoint(&self) -> bool {
         checkpoint_path(&self.path).exists()
     }
 
-    /// How particles are written.
+    /// Format of the particle files.
     pub fn frame_format(&self) -> FrameFormat {
         self.frame_format
     }
@@ -191,7 +191,7 @@ impl RunFolder {
         }
     }
 
-    /// Writes what is known of the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
+    /// Writes the values on the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
     /// writes none.
     ///
     /// # Errors
@@ -266,8 +266,8 @@ impl RunFolder {
         }
     }
 
-    /// Takes away what was written after the checkpoint.
-    fn cut_back(&self) -> Result<(), OutputError> {
+    /// Removes what was written after the checkpoint.
+    fn truncate(&self) -> Result<(), OutputError> {
         for folder in FOLDERS.map(|name| self.path.join(name)) {
             clear_unfinished(&folder).map_err(OutputError::write(&folder))?;
         }
@@ -296,7 +296,7 @@ fn checkpoint_path(folder: &Path) -> PathBuf {
     folder.join("checkpoint").join("state")
 }
 
-/// Takes away what a run wrote that could not begin, so that it can be tried again into the same folder.
+/// Removes the files of a run that could not begin, so that it can be started again in the same folder.
 fn clear_beginning(folder: &Path) {
     for name in ["scene.toml", "gauges.csv", "log.txt"] {
         let _ = fs::remove_file(folder.join(name));

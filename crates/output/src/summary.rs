@@ -1,4 +1,4 @@
-//! `summary.json`: what a run was and what came of it.
+//! `summary.json`: the summary of a run.
 
 use crate::OutputError;
 use crate::extent::ExtentScores;
@@ -10,12 +10,12 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-/// What a run was and what came of it.
+/// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The model: `flood`.
     pub model: String,
-    /// Where it ran: `cpu` or `gpu`.
+    /// The backend: `cpu` or `gpu`.
     pub backend: String,
     /// Version of Corpuscle.
     pub version: String,
@@ -38,7 +38,7 @@ pub struct Summary {
     /// Collisions per second of wall-clock time (of a gas).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collisions_per_s: Option<f64>,
-    /// Things a user should know, in sentences.
+    /// Warnings to the user, in sentences.
     pub warnings: Vec<String>,
     /// The balances, by quantity: `water_m3`.
     pub ledger: BTreeMap<String, LedgerEntry>,
@@ -51,7 +51,7 @@ pub struct Summary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It came to its end.
+    /// It reached its end.
     Done,
     /// It was stopped before its end and can be continued.
     Stopped,

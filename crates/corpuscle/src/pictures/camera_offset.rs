@@ -1,22 +1,22 @@
-//! A camera that is moved by hand.
+//! The user's changes of the camera.
 
 use corpuscle_render::{Camera, Lens};
 use glam::DVec3;
 
-/// How high above and how low below the horizon a hand takes the eye, radians.
-const HIGHEST: f64 = 1.54;
-const LOWEST: f64 = -0.35;
+/// Highest and lowest elevation of the camera, radians.
+const MAX_ELEVATION: f64 = 1.54;
+const MIN_ELEVATION: f64 = -0.35;
 
-/// How a camera was moved by hand from where the model shows best.
+/// The user's changes of a camera, relative to the model's default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CameraOffset {
-    /// True for straight from above and to scale, north up.
+    /// True for a plan from above, to scale, north up.
     pub plan: bool,
-    /// How far the eye was turned round what it looks at: azimuth (from east over north) and height, radians.
+    /// Rotation of the camera round its target: azimuth (from east over north) and elevation, radians.
     pub turn: [f64; 2],
-    /// How far what it looks at was moved, m.
+    /// Shift of the target, m.
     pub shift: [f64; 3],
-    /// How many times nearer it was brought.
+    /// Magnification.
     pub zoom: f64,
 }
 
@@ -27,7 +27,7 @@ impl Default for CameraOffset {
 }
 
 impl CameraOffset {
-    /// The camera moved so.
+    /// A camera with these changes.
     pub(super) fn moved(&self, camera: Camera) -> Camera {
         let camera = if matches!(camera.lens, Lens::Perspective { .. }) { self.turned(camera) } else { camera };
         camera.looking_at(camera.target + DVec3::from(self.shift)).nearer(self.zoom)
@@ -37,15 +37,15 @@ impl CameraOffset {
         let away = camera.eye - camera.target;
         let distance = away.length();
         let azimuth = away.y.atan2(away.x) + self.turn[0];
-        let height = ((away.z / distance).asin() + self.turn[1]).clamp(LOWEST, HIGHEST);
+        let height = ((away.z / distance).asin() + self.turn[1]).clamp(MIN_ELEVATION, MAX_ELEVATION);
         let direction = DVec3::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin());
         Camera { eye: camera.target + distance * direction, ..camera }
     }
 
-    /// The same turned on by these angles, radians, from where it was turned to at most.
+    /// Adds a rotation by these angles, radians, within the range of elevations; `own_height` is the default elevation.
     pub fn turn_by(&mut self, own_height: f64, [azimuth, height]: [f64; 2]) {
         self.turn[0] += azimuth;
-        self.turn[1] = (self.turn[1] + height).clamp(LOWEST - own_height, HIGHEST - own_height);
+        self.turn[1] = (self.turn[1] + height).clamp(MIN_ELEVATION - own_height, MAX_ELEVATION - own_height);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Pictures of a model that steps on the device that draws: its particles stay there.
+//! Pictures of a model that steps on the GPU that draws: its particles stay there.
 
 use super::{Moment, Pictures};
 use crate::{Error, Simulation, models};
@@ -7,12 +7,12 @@ use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
 
 impl Simulation {
-    /// The GPU that takes the steps, where one does.
+    /// The GPU that takes the steps, if one does.
     pub(super) fn stepping_gpu(&self) -> Option<Gpu> {
         gpu_of(self.model())
     }
 
-    /// The particles that pictures show as they stand, where the model steps on a device and is drawn there; else none.
+    /// The particles in GPU memory, where the model steps on the device that draws it; else none.
     ///
     /// # Errors
     /// [`Error::Model`] where the device has too little memory.
@@ -20,12 +20,12 @@ impl Simulation {
         if self.is_seen_on(gpu) && self.shows_particles() { particles_of(self.model()) } else { Ok(None) }
     }
 
-    /// Whether the model steps on a device and can be drawn there without its particles coming back.
+    /// True where the model steps on this device and can be drawn there without reading its particles back.
     pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
         self.stepping_gpu().is_some_and(|device| device.is_same(gpu))
     }
 
-    /// Whether pictures show the particles that lie on the GPU.
+    /// True where pictures show particles in GPU memory.
     fn shows_particles(&self) -> bool {
         models::of(self.scene()).is_ok_and(|kind| kind.shows_particles(self.scene()))
     }
@@ -54,7 +54,7 @@ impl Simulation {
 }
 
 impl Pictures {
-    /// The picture of a model as it is now. Where it steps on the device that draws, its particles are drawn from where they lie.
+    /// The picture of a model in its current state. Where it steps on the device that draws, its particles are drawn from its memory.
     ///
     /// # Errors
     /// [`Error::Model`] where that device has too little memory, [`Error::Render`] where it was lost.
@@ -77,7 +77,7 @@ impl Pictures {
         self.draw(&Moment { frame, on_device: on_device.as_ref(), paths: &[], container: None })
     }
 
-    /// Whether pictures show all that there is by a glance: not where the ground shows the water's depth.
+    /// True where a glance suffices for a picture: not where the terrain shows a map of the depth.
     pub fn show_glances(&self) -> bool {
         self.subject.shows_glances()
     }
@@ -145,7 +145,7 @@ mod tests {
         let nothing = Frame { time: 4.0, sets: Vec::new() };
         let dry = others.draw(&Moment { frame: &nothing, on_device: None, paths: &[], container: None }).unwrap();
         assert!(difference(&image, &dry) > 100.0 * SAME, "{}", difference(&image, &dry));
-        // So it is in the simple look.
+        // The same at simple quality.
         let device = simulation.seen_on(&gpu).unwrap().unwrap();
         let frame = simulation.model().frame();
         let mut simple = |on_device| {
@@ -160,7 +160,7 @@ mod tests {
         };
         let apart = difference(&simple(Some(&device)), &simple(None));
         assert!(apart < SAME, "{apart}");
-        // What the ground shows of the water is the host's to draw.
+        // The host draws the map of the depth.
         let mut of_depth = Pictures::open(&simulation, settings(GroundStyle::Depth)).unwrap();
         assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
         assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);

@@ -1,4 +1,4 @@
-//! Pictures of a run's moments: what is shown of each model, from where, in which colours.
+//! Pictures of a run: what is drawn of each model, with which camera and colours.
 
 mod camera_offset;
 mod device;
@@ -34,19 +34,19 @@ pub use subject::Subject;
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
 
-/// How pictures are taken.
+/// Settings of pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureSettings {
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel: 2 for stills; 1 is fast.
     pub samples: u32,
-    /// From where, at times, s: one entry is a camera that stands, several are stations of one that moves; none is the model's own
-    /// choice.
+    /// Viewpoints at times, s: one is a fixed camera, several are stations of a moving one; none is the model's default
+    /// camera.
     pub viewpoints: Vec<(f64, Viewpoint)>,
-    /// What lies on the ground of a flood.
+    /// Surface style of the terrain of a flood.
     pub ground: GroundStyle,
-    /// How many times higher than they are heights of a flood are drawn.
+    /// Exaggeration of the heights of a flood.
     pub heights: f64,
 }
 
@@ -56,14 +56,14 @@ impl Default for PictureSettings {
     }
 }
 
-/// What a picture shows: a model at one time.
+/// A model at one time, as a picture shows it.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment<'a> {
     /// The particles.
     pub frame: &'a Frame,
-    /// Those of a flood, or the air, as buffers of the device that draws: drawn in place of the frame's, but where the ground shows depth.
+    /// The water of a flood, or the air, in memory of the device that draws: drawn instead of the frame's, except with [`GroundStyle::Depth`].
     pub on_device: Option<&'a DeviceParticles>,
-    /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
+    /// Trajectories of followed particles; only the part before the frame's time is drawn.
     pub paths: &'a [Path],
     /// The box round the particles.
     pub container: Option<Container>,
@@ -71,13 +71,13 @@ pub struct Moment<'a> {
 
 /// Draws pictures of one run.
 pub struct Pictures {
-    studio: Studio,
+    context: DrawContext,
     title: String,
     subject: Box<dyn Subject>,
 }
 
-/// What all subjects draw with.
-pub struct Studio {
+/// Renderer, painters, target and camera settings that all subjects draw with.
+pub struct DrawContext {
     renderer: Renderer,
     balls: BallPainter,
     tubes: TubePainter,
@@ -85,17 +85,17 @@ pub struct Studio {
     fluids: FluidPainter,
     target: Target,
     stations: Vec<Station>,
-    /// How the camera was moved by hand.
+    /// How the user moved the camera.
     camera_offset: CameraOffset,
     quality: Quality,
-    /// What a drawing lies on, linear light.
+    /// Background of a drawing, linear light.
     paper: [f32; 3],
-    /// True where texts and lines are drawn into the picture; false where whoever shows it draws them.
+    /// True where text and lines are drawn into the picture; false where the caller draws them.
     overlaid: bool,
 }
 
 impl Pictures {
-    /// Makes ready to draw a scene: on the GPU that takes the steps, else on the best device.
+    /// Opens pictures of a scene: on the GPU that takes the steps, else on the best device.
     ///
     /// # Errors
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
@@ -118,24 +118,24 @@ impl Pictures {
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
         let Scenery { scene, terrain, .. } = scenery;
-        let studio = Studio::new(gpu, &settings, terrain.as_deref())?;
-        let subject = models::of(scene)?.pictures(&studio, scenery, &settings)?;
-        Ok(Self { studio, title: scene.title.clone(), subject })
+        let context = DrawContext::new(gpu, &settings, terrain.as_deref())?;
+        let subject = models::of(scene)?.pictures(&context, scenery, &settings)?;
+        Ok(Self { context, title: scene.title.clone(), subject })
     }
 
-    /// Makes ready to draw a flood that is of no scene, on a device that is open already.
+    /// Opens pictures of a flood without scene, on a device that is open already.
     ///
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
-        let studio = Studio::new(gpu, &settings, Some(ground))?;
-        let flood = FloodPicture::new(&studio, flood, ground, settings.ground, settings.heights)?;
-        Ok(Self { studio, title: String::new(), subject: Box::new(flood) })
+        let context = DrawContext::new(gpu, &settings, Some(ground))?;
+        let flood = FloodPicture::new(&context, flood, ground, settings.ground, settings.heights)?;
+        Ok(Self { context, title: String::new(), subject: Box::new(flood) })
     }
 
     /// The device that draws, by its name.
     pub fn device(&self) -> &str {
-        &self.studio.renderer.gpu().name
+        &self.context.renderer.gpu().name
     }
 
     /// The picture of a moment.
@@ -147,7 +147,7 @@ impl Pictures {
     }
 }
 
-impl Studio {
+impl DrawContext {
     fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
         let renderer = Renderer::new(gpu);
         let target = Target::new(gpu, settings.size, settings.samples)?;
@@ -169,7 +169,7 @@ impl Studio {
         f64::from(width) / f64::from(height)
     }
 
-    /// Light as the look has it.
+    /// The light at the current quality.
     fn lit(&self, light: Light) -> Light {
         if self.quality == Quality::Full { light } else { light.without_shadows() }
     }

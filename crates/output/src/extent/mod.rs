@@ -65,7 +65,7 @@ pub(crate) fn wet_area(terrain: &Terrain, wet: &[bool]) -> f64 {
 
 fn polygon(outline: &Outline, place: impl Fn([usize; 2]) -> [f64; 2]) -> Value {
     let ring = |ring: &Vec<[usize; 2]>| -> Vec<[f64; 2]> {
-        // GeoJSON repeats the first place at the end.
+        // GeoJSON repeats the first position at the end.
         ring.iter().chain(ring.first()).map(|vertex| place(*vertex)).collect()
     };
     json!(std::iter::once(&outline.outer).chain(&outline.holes).map(ring).collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-//! The run-up line: how far the water came, where ground goes on beyond it.
+//! The run-up line: the limit of the wet cells, where the terrain continues beyond it.
 
 use super::outline::outlines;
 use super::{feature_collection, has_system, note_of_system, place_of};

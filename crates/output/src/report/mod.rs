@@ -1,4 +1,4 @@
-//! The report of a run: of a flood what a planner would show, of a gas what a teacher would, of dew where the water is.
+//! The reports of runs, one for each model.
 
 mod dew;
 mod facts;
@@ -29,7 +29,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 pub use validation::{ValidatedCase, ValidatedMeasure, ValidationReport};
 
-/// A finished flood as its report needs it.
+/// The report of a flood.
 #[derive(Debug)]
 pub struct Report {
     folder: PathBuf,
@@ -38,7 +38,7 @@ pub struct Report {
     scene_text: String,
     summary: Summary,
     gauges: GaugeTable,
-    /// The ground in the window.
+    /// The terrain in the window.
     ground: Ground,
     /// The part of the terrain that maps show.
     window: Window,
@@ -57,7 +57,7 @@ struct Whole {
     grid: [usize; 2],
     /// Size of a cell `[east, north]`, m.
     cell: [f64; 2],
-    /// Lowest and highest ground, m.
+    /// Lowest and highest elevation, m.
     heights: [f64; 2],
 }
 
@@ -73,7 +73,7 @@ impl Whole {
         Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: range }
     }
 
-    /// Round the cells with a value and the places but obstacles.
+    /// The window round the cells with a value and the marked positions except obstacles.
     fn window(&self, field: Option<&Field>, places: &[Place], terrain: &Terrain) -> Window {
         let [columns, _] = self.grid;
         let values = field.map_or(&[][..], |field| &field.values).iter().enumerate();
@@ -86,7 +86,7 @@ impl Whole {
     }
 }
 
-/// A field that stands for the whole run.
+/// A field of the whole run.
 #[derive(Debug)]
 struct Field {
     kind: &'static FieldKind,
@@ -197,7 +197,7 @@ fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, OutputError> {
     Ok(values)
 }
 
-/// What the scene names on the ground, in the terrain's own coordinates.
+/// Gauges, inflows, sections and obstacles of the scene, in the terrain's own coordinates.
 fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
     let sections = flood.section.iter().map(|section| Place {
         kind: PlaceKind::Section,

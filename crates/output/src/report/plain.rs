@@ -1,4 +1,4 @@
-//! The report of a model that has none of its own: its gauges and charts, its balances, and how to run it again.
+//! The report of a model without its own: gauges, charts, balances, and the command that repeats the run.
 
 use super::parts::{self, KeyFigure, how_it_ended};
 use super::{folder_name, title_or_folder};
@@ -76,7 +76,7 @@ impl<'a> PlainReport<'a> {
         parts::document(&format!("{title} – report"), "", &sections.concat())
     }
 
-    /// The handful of numbers that come first.
+    /// The key figures.
     fn key_figures(&self, summary: &Summary) -> Vec<KeyFigure> {
         let figure = |label, value: String, remark: &str| KeyFigure { label, value, remark: remark.into() };
         let worst = summary.ledger.values().map(|entry| entry.relative_error.abs()).reduce(f64::max);
@@ -89,7 +89,7 @@ impl<'a> PlainReport<'a> {
         figures
     }
 
-    /// Name and value of what was run.
+    /// Names and values of the facts of the run.
     fn run_facts(&self, summary: &Summary) -> Vec<(&'static str, String)> {
         vec![
             ("Model", summary.model.clone()),

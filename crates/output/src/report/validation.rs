@@ -1,4 +1,4 @@
-//! What cases with known answers gave, as one page of tables and charts.
+//! The report of the validation: results of cases with known answers, as one page of tables and charts.
 
 use super::parts::{self, Table};
 use crate::OutputError;
@@ -38,7 +38,7 @@ pub struct ValidatedCase {
     pub about: &'static str,
     /// What was measured.
     pub measures: Vec<ValidatedMeasure>,
-    /// What was drawn.
+    /// Its charts.
     pub charts: Vec<Chart>,
 }
 
@@ -47,12 +47,12 @@ pub struct ValidatedCase {
 pub struct ValidationReport {
     path: PathBuf,
     sections: String,
-    /// Measures that kept their bounds, missed them, and those of which neither can be said.
+    /// Numbers of measures within their bounds, beyond them, and without verdict.
     counts: [usize; 3],
 }
 
 impl ValidationReport {
-    /// Begins the page in a file, which is written at once: what cannot be written is told before anything is run.
+    /// Begins the page in a file, which is written at once, so that an error is found before anything is run.
     ///
     /// # Errors
     /// [`OutputError`] where the file cannot be written.

@@ -8,7 +8,7 @@ use super::view::{Vector, dot, normalised};
 pub(crate) struct Cap {
     /// Middle of the covered disk, m.
     pub position: Vector,
-    /// The way out of the solid.
+    /// The outward normal of the solid.
     pub normal: Vector,
     /// Radius of the covered disk, m.
     pub radius: f64,

@@ -1,8 +1,8 @@
-//! From where solids are seen.
+//! Views of solids.
 
 use corpuscle_model::Surface;
 
-/// A place or direction in space.
+/// A position or direction in space.
 pub(crate) type Vector = [f64; 3];
 
 pub(super) fn dot(a: Vector, b: Vector) -> f64 {
@@ -32,7 +32,7 @@ pub(crate) struct View {
     pub ahead: Vector,
 }
 
-/// Water on one side of a solid, over all of it, from which on it is seen square on.
+/// Fraction of the water that one side must have for a view square to it.
 const MOSTLY: f64 = 0.6;
 
 impl View {

@@ -1,4 +1,4 @@
-//! The report of dew: how much water is where, in what drops, and since when.
+//! The report of dew: amounts of water, sizes of drops and times of wetting.
 
 mod air;
 mod charts;
@@ -28,7 +28,7 @@ pub struct DewReport<'a> {
 /// Figures with the names of their files.
 type Figures = Vec<(String, Figure)>;
 
-/// What is drawn for the report.
+/// The figures of the report.
 struct Drawn {
     drops: Option<Figure>,
     air: Option<Figure>,

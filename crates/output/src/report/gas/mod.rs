@@ -1,4 +1,4 @@
-//! The report of balls in a box: what a teacher would put on a slide.
+//! The report of a gas.
 
 mod charts;
 mod facts;
@@ -28,7 +28,7 @@ pub struct GasReport<'a> {
     model: &'a dyn Model,
 }
 
-/// What is drawn for the report.
+/// The figures of the report.
 struct Drawn {
     balls: Figure,
     charts: Vec<(String, Figure)>,
