@@ -4,7 +4,7 @@
 //! read back. It knows no physics and no files.
 //!
 //! Things are drawn in the coordinates of a [`Stage`]: relative to the middle of what is shown, its half diagonal 1. So a gas of
-//! nanometres and a valley of kilometres look alike to single precision.
+//! nanometres and a valley of kilometres have the same relative error in single precision.
 
 mod balls;
 mod buffer;

@@ -92,7 +92,7 @@ impl Renderer {
         let shadows = static_layer.shadows(gpu, light);
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size(), shadows);
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
-        let static_use = static_layer.look(view.bytes(), light, things);
+        let static_use = static_layer.decide(view.bytes(), light, things);
         if light.throws_shadows() && static_use != StaticUse::Kept {
             draw_shadows(encoder, &view, things);
         }

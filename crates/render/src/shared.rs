@@ -1,4 +1,4 @@
-//! What the host and the shaders of this crate share: structures and constants, declared once. Shaders take them in by `#import declared`; the bindings stand in the shaders.
+//! Structures and constants shared by the host and the shaders of this crate, declared once. Shaders take them in by `#import declared`; the bindings stand in the shaders.
 
 use corpuscle_gpu::{Layout, SharedPiece, wgpu};
 

@@ -60,7 +60,7 @@ impl Subject for Particles {
         let is_flat = stage.from.z == stage.to.z;
         let light = match is_flat {
             true => Light::paper_of(context.paper),
-            false => context.lit(Light::context().from_azimuth(DIRECTION[0] + SUN)),
+            false => context.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
         let camera = context.seen(&stage, &OWN_VIEW, moment.frame.time, is_flat);
         let shading = match (is_flat, context.quality) {

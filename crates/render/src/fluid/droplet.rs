@@ -1,4 +1,4 @@
-//! A particle of a fluid, as it is drawn.
+//! Particles of a fluid, as they are drawn.
 
 use crate::Stage;
 use crate::buffer::{filled, storage};
@@ -24,7 +24,7 @@ pub struct Droplet {
     pub reach: f64,
     /// Foam on it: 0 none, 1 white.
     pub foam: f64,
-    /// A number of its own, which tells its pattern of foam from others'.
+    /// Seed of its pattern of foam.
     pub id: u64,
 }
 

@@ -1,4 +1,4 @@
-//! What all fluids share: pipelines, layouts.
+//! The painter of fluids: pipelines and layouts.
 
 use super::bindings::{CHANGED, DEPTH, MIXED, PLAIN, READ, SAMPLER, UNIFORM, WHOLE, layout, written};
 use super::layers::{DISTANCE, NORMAL, SHADED, THICKNESS};
@@ -9,7 +9,7 @@ use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use wgpu::ShaderStages;
 
-/// Draws fluids; holds what all of them share.
+/// Draws fluids; holds the pipelines of all.
 #[derive(Debug, Clone)]
 pub struct FluidPainter {
     pub(super) depth: wgpu::RenderPipeline,

@@ -1,4 +1,4 @@
-//! The sides of a flat box, what stands in it, and marked places.
+//! The sides of a flat box, pistons, and marks.
 
 use super::{Border, LineStyle, Mark, Page};
 
@@ -11,7 +11,7 @@ const MARK: f64 = 4.5;
 const RING: f64 = 2.0;
 
 impl LineStyle {
-    /// Name of its style.
+    /// Its class in the style sheet.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Wall => "wall",
@@ -22,7 +22,7 @@ impl LineStyle {
         }
     }
 
-    /// Half its width, CSS pixels: what lies at a wall touches its edge.
+    /// Half its width, CSS pixels: balls at a wall touch its inner edge.
     fn half_width(self) -> f64 {
         match self {
             Self::Wall => 1.5,
@@ -80,13 +80,13 @@ pub(super) fn draw_mark(page: &mut Page<'_>, mark: &Mark) {
     }
 }
 
-/// Two places, m, on the page.
+/// Two points, m, on the page.
 fn places(page: &Page<'_>, ends: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     let [one, other] = ends.map(|[x, y]| page.place([x, y, 0.0]));
     Some([one?, other?])
 }
 
-/// A place on the page moved along a direction of the world, whose y is up.
+/// A position on the page moved along a direction of the world, whose y is up.
 fn beyond([x, y]: [f64; 2], [right, up]: [f64; 2], far: f64) -> [f64; 2] {
     [x + far * right, y - far * up]
 }

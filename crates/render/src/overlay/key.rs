@@ -1,4 +1,4 @@
-//! What colours and lines mean.
+//! The legend of colours and lines.
 
 use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineStyle, MARGIN, Overlay, Page};
 use crate::ColourTable;
@@ -6,9 +6,9 @@ use corpuscle_drawing::bars::value_bar;
 use corpuscle_drawing::colour::hex;
 use corpuscle_drawing::svg::Anchor;
 
-/// Width of a bar of colours.
+/// Width of a colour bar.
 const BAR: f64 = 230.0;
-/// Height of a row, and space between two things in one.
+/// Height of a row, and space between two entries in one.
 const ROW: f64 = 23.0;
 const GAP: f64 = 30.0;
 /// Where a column begins to the right of the axes, and a row below them.
@@ -18,7 +18,7 @@ const BELOW: f64 = 66.0;
 const SAMPLE: f64 = 24.0;
 const TO_NAME: f64 = 9.0;
 
-/// One thing that is told.
+/// An entry of the legend.
 enum Entry<'a> {
     Values(&'a str, &'a ColourTable),
     Kind(&'a str, [u8; 3]),
@@ -88,7 +88,7 @@ impl Entry<'_> {
         }
     }
 
-    /// Draws it from a place on; in a row the name of values stands before their bar, in a column above it.
+    /// Draws it from a position on; in a row the name of values stands before their bar, in a column above it.
     fn draw(&self, page: &mut Page<'_>, [left, top]: [f64; 2], in_a_row: bool) {
         let name_at = |from: f64| [from + TO_NAME, top + 13.0];
         match self {

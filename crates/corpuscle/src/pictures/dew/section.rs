@@ -77,7 +77,7 @@ impl Section {
         let mut things: Vec<&mut dyn Drawable> = vec![&mut air];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut drops);
-        context.take(&stage, &camera, &context.lit(Light::context().from_azimuth(-2.2)), &mut things, overlay)
+        context.take(&stage, &camera, &context.lit(Light::studio().from_azimuth(-2.2)), &mut things, overlay)
     }
 }
 

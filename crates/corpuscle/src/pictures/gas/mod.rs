@@ -66,7 +66,7 @@ impl Subject for GasPicture {
         let flat = self.gas.dimensions() == 2;
         let light = match flat {
             true => Light::paper_of(context.paper),
-            false => context.lit(Light::context().from_azimuth(DIRECTION[0] + SUN)),
+            false => context.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
         let overlay = self.overlay(context, title, moment, &key, &view);
         let stage = &view.stage;
