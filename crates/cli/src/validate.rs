@@ -75,27 +75,27 @@ fn each(
     let threads = rayon::current_num_threads();
     let beside = if with.gpu.is_some() { 1 } else { ((threads as f64).sqrt().ceil() as usize).min(cases.len()).max(1) };
     let next = AtomicUsize::new(0);
-    let (tell, told) = channel();
+    let (sender, receiver) = channel();
     std::thread::scope(|scope| {
         for _ in 0..beside {
             let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / beside).max(1)).build()?;
-            let (tell, with, next) = (tell.clone(), with.clone(), &next);
+            let (sender, with, next) = (sender.clone(), with.clone(), &next);
             let work = move || {
                 while let Some((index, case)) = next_of(cases, next) {
                     let start = Instant::now();
                     let rows = case.rows(&with);
                     let done = Done { rows, charts: with.take_charts(), took: start.elapsed() };
-                    if tell.send((index, done)).is_err() {
+                    if sender.send((index, done)).is_err() {
                         break;
                     }
                 }
             };
             scope.spawn(move || pool.install(work));
         }
-        drop(tell);
+        drop(sender);
         let mut waiting = BTreeMap::new();
         let mut taken = 0;
-        for (ended, (index, done)) in told.into_iter().enumerate() {
+        for (ended, (index, done)) in receiver.into_iter().enumerate() {
             let (name, seconds) = (cases[index].name, done.took.as_secs_f64());
             eprintln!("{name} took {seconds:.1} s ({} of {} cases)", ended + 1, cases.len());
             waiting.insert(index, done);

@@ -7,7 +7,7 @@ use corpuscle_model::{CpuOnly, Model, ModelError};
 use corpuscle_scene::Scene;
 use std::path::Path;
 
-/// The error of a model that runs on the CPU only, where a GPU was asked for.
+/// The error of a model that runs on the CPU only, where a GPU was requested.
 #[cfg(feature = "gpu")]
 fn refused(model: &dyn Model) -> Error {
     let why = model.cpu_only().map(|CpuOnly { what, remedy }| format!("{what}: {remedy}"));

@@ -5,7 +5,7 @@ use corpuscle_atomic_file::WholeFile;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a file: whoever reads `path` sees the old content or the new, never a part.
+/// Writes a file atomically: a reader of `path` sees the old content or the new, never a part.
 ///
 /// # Errors
 /// [`OutputError::Write`], naming `path`; the old content, if there was any, is untouched.

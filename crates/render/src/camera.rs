@@ -58,7 +58,7 @@ impl Camera {
         Self { eye, target, up, lens: Lens::Orthographic { height } }
     }
 
-    /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
+    /// A camera with its target in the middle of the stage, from `azimuth` (radians, from east over north, where the camera stands)
     /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`
     /// but for a `margin` (part of the picture, 0 for none).
     pub fn orbit(stage: &Stage, [azimuth, elevation]: [f64; 2], field_of_view: f64, aspect: f64, margin: f64) -> Self {

@@ -1,7 +1,7 @@
 //! Pictures of a model's frames on the GPU, off screen or on.
 //!
 //! A [`Renderer`] draws [`Drawable`] things, seen by a [`Camera`] under a [`Light`], into a [`Target`], from which a picture is
-//! read back. It knows no physics and no files.
+//! read back. It depends on no physics and no files.
 //!
 //! Things are drawn in the coordinates of a [`Stage`]: relative to the middle of what is shown, its half diagonal 1. So a gas of
 //! nanometres and a valley of kilometres have the same relative error in single precision.

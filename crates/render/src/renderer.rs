@@ -1,4 +1,4 @@
-//! Draws pictures, pass by pass.
+//! The renderer: draws pictures pass by pass.
 
 use crate::pipeline::PipelineDescriptor;
 use crate::static_layer::{StaticLayer, StaticUse};
@@ -7,7 +7,7 @@ use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through
 use corpuscle_gpu::{Gpu, Image, read_rgba8, wgpu};
 use std::sync::PoisonError;
 
-/// Draws pictures. Holds what does not change from one to the next.
+/// The renderer of pictures; holds pipelines and layouts.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,

@@ -155,9 +155,9 @@ impl Picture {
             self.requested = None;
         }
         if !still || self.drawn.as_ref() != Some(&best) {
-            let asks = still && quick != best;
+            let needs_full = still && quick != best;
             self.draw_as(snapshot, quick, linear);
-            if asks {
+            if needs_full {
                 self.request(snapshot, best, linear, offscreen);
             }
         }
@@ -182,7 +182,7 @@ impl Picture {
         (self.drawn, self.requested) = (None, None);
     }
 
-    /// True where nothing has changed for a while; asks to be called again where that is yet to come.
+    /// True where nothing has changed for a while; else requests a repaint for when that may be.
     fn note_change(&mut self, ui: &Ui, snapshot: &Arc<Snapshot>, moves: bool, size: [u32; 2], paper: Color32) -> bool {
         let same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.of == Arc::as_ptr(snapshot) as usize
@@ -284,7 +284,7 @@ fn axes(shown: &Shown) -> [DVec3; 2] {
     [right, right.cross(forward)]
 }
 
-/// Height of the world in the picture at what it looks at, m.
+/// Height of the world in the picture at the camera's target, m.
 fn height(shown: &Shown) -> f64 {
     match shown.camera.lens {
         Lens::Orthographic { height } => height,

@@ -33,8 +33,8 @@ impl Window {
         if pressed(Key::S) {
             self.save_still();
         }
-        let asks = ui.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::Questionmark));
-        self.help |= asks;
+        let help = ui.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::Questionmark));
+        self.help |= help;
         let Some(open) = &mut self.open else { return };
         if pressed(Key::F) {
             open.picture.reset();

@@ -1,6 +1,6 @@
 //! The models of the workbench: how the scenes of each are opened, recorded, shown and changed.
 //!
-//! [`ModelKind`] is all that the workbench asks of a model beside its physics; [`register`] adds one.
+//! [`ModelKind`] is what the workbench needs of a model beside its physics; [`register`] adds one.
 
 pub(crate) mod dew;
 pub(crate) mod flood;

@@ -17,7 +17,7 @@ const SUN: f64 = -0.9;
 const LEAST_RADIUS: f64 = 0.004;
 /// Margin round particles without a box, fraction of their extent.
 const ROOM: f64 = 0.1;
-/// The colours of sets, told apart by colour-blind eyes too (Okabe & Ito 2008).
+/// The colours of sets, distinct without full colour vision too (Okabe & Ito 2008).
 const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 

@@ -73,8 +73,8 @@ impl Fluid {
             .droplets
             .iter()
             .map(|batch| {
-                let [instances, told] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
-                let bound = [self.settings.as_entire_binding(), instances, told, numbers.as_entire_binding()];
+                let [instances, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
+                let bound = [self.settings.as_entire_binding(), instances, draw_args, numbers.as_entire_binding()];
                 group(frame.gpu, "splats", &splat.layout, &bound)
             })
             .collect();

@@ -26,7 +26,7 @@ pub struct FluidStyle {
     pub range: f64,
     /// Depth difference to which larger ones are clamped, m: roundness of edges.
     pub rounding: f64,
-    /// The most pixels that smoothing looks to each side.
+    /// Largest radius of the smoothing, pixels.
     pub most_pixels: u32,
     /// Absorption of red, green and blue light, 1/m.
     pub absorption: [f32; 3],

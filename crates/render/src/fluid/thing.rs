@@ -110,7 +110,7 @@ impl Fluid {
         let next = frame.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let encoder = std::mem::replace(frame.encoder, next);
         frame.gpu.queue.submit([encoder.finish()]);
-        // A lost device is told of where the picture is read.
+        // A lost device is an error where the picture is read.
         let _ = frame.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
 }

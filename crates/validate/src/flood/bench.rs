@@ -134,7 +134,7 @@ fn ground(particles: usize) -> Arc<Terrain> {
     Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()))
 }
 
-/// Water between walls with particles 1 m apart, without friction. Its maps are never looked at.
+/// Water between walls with particles 1 m apart, without friction. Its maps are not used.
 fn basin(scheme: Scheme) -> Settings {
     Settings {
         scheme,

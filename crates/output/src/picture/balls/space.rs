@@ -6,7 +6,7 @@ use crate::picture::colour::mix;
 use crate::picture::png::data_url;
 use crate::picture::svg::{Figure, Svg};
 
-/// The eye looks from this direction: turned to the right of the front, and raised, in radians.
+/// Azimuth of the camera to the right of the front, and its elevation, radians.
 const TURNED: f64 = 0.55;
 const RAISED: f64 = 0.33;
 

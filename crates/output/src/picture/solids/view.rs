@@ -55,7 +55,7 @@ impl View {
         Self::looking(Self::fullest(std::slice::from_ref(surface), |_| amount.to_vec()).0)
     }
 
-    /// The direction in which the fullest side is looked at, and its part of all.
+    /// The view direction to the side with most water, and its fraction of all water.
     fn fullest(surfaces: &[Surface], amount: impl Fn(&Surface) -> Vec<f64>) -> (Vector, f64) {
         let (mut sides, mut all) = ([[0.0; 2]; 3], 0.0);
         for surface in surfaces {

@@ -4,7 +4,7 @@
 //! ```text
 //! begin    how many particles there are                             water_begin.wgsl
 //! count    into cells, by the device's sort                         water_count.wgsl
-//! told     how many are drawn                                       water_told.wgsl
+//! draw     arguments of indirect draws and dispatches               water_draw_arguments.wgsl
 //! columns  in the order of the cells, with the ground's slope       water_columns.wgsl
 //! settle   slopes are limited, until none is too steep              water_settle.wgsl, water_settled.wgsl
 //! calm     heights and velocities of planes through neighbours      water_calm.wgsl
@@ -113,7 +113,12 @@ impl DeviceWater {
     pub(super) fn droplets(&self) -> Option<Batch> {
         let (_, tasks) = self.drawn.as_ref()?;
         let shared::Memory { instances, groups, .. } = tasks.memory.clone();
-        Some(Batch::Told { instances, told: groups, at: (BYTES * DRAW).into(), splats: (BYTES * SPLATS).into() })
+        Some(Batch::Indirect {
+            instances,
+            draw_args: groups,
+            at: (BYTES * DRAW).into(),
+            splats: (BYTES * SPLATS).into(),
+        })
     }
 
     /// The faces of water at the borders, corner by corner, and how many corners; nothing before the first update.
@@ -152,7 +157,7 @@ fn most_cells(particles: &DeviceParticles) -> usize {
     (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS).min(most)
 }
 
-/// Columns and rows of cells over twice `half` m, and their size, m: as wide as a particle looks, or wider where there would be too many.
+/// Columns and rows of cells over twice `half` m, and their size, m: as wide as the radius of the neighbour search, or wider where there would be too many.
 fn cells(half: DVec2, particles: &DeviceParticles) -> [f64; 3] {
     let most = most_cells(particles) as f64;
     let mut cell = REACH * particles.spacing;

@@ -127,7 +127,7 @@ fn file(path: &Path) -> Result<Arc<Terrain>, ModelError> {
     terrain.map(Arc::new).map_err(|error| ModelError::Setup(error.to_string()))
 }
 
-/// Times within a run at which its energy is looked at.
+/// Samples of the energy within a run.
 const SAMPLES: usize = 60;
 
 struct Lake {
