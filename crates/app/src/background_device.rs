@@ -1,13 +1,13 @@
-//! The device of pictures that take long.
+//! The GPU device for pictures that take long.
 
 use corpuscle::gpu::{Gpu, GpuError, GpuKind};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How much less urgent its threads are than the window's, of 19 steps.
+/// Niceness added to its threads, of 19 steps.
 #[cfg(target_os = "linux")]
-const LESS_URGENT: i32 = 10;
+const ADDED_NICENESS: i32 = 10;
 
-/// The device of pictures that take long: a GPU draws them between two pictures of the window; software that stands in for one has a
+/// The GPU device for pictures that take long: a GPU draws them between two pictures of the window; software in place of one has a
 /// single queue, in which the window would wait for them, so that there is a second device then. It is opened when it is first needed.
 #[derive(Clone)]
 pub struct BackgroundDevice {
@@ -16,7 +16,7 @@ pub struct BackgroundDevice {
 }
 
 impl BackgroundDevice {
-    /// The one beside a window's device.
+    /// The background device that goes with a window's device.
     pub fn beside(window: &Gpu) -> Self {
         Self { window: window.clone(), second: Arc::default() }
     }
@@ -37,20 +37,20 @@ impl BackgroundDevice {
     }
 }
 
-/// Opens a second device whose threads give way to the window's.
+/// Opens a second device whose threads have a lower priority than the window's.
 fn open() -> Result<Gpu, GpuError> {
-    // A device's threads are as urgent as the thread that opens it: one that does nothing else.
+    // A device's threads inherit the priority of the thread that opens it: one that does nothing else.
     let opened = std::thread::spawn(|| {
-        give_way();
+        lower_priority();
         Gpu::open()
     });
     opened.join().unwrap_or(Err(GpuError::NoDevice))
 }
 
-/// Makes this thread, and those that it starts, less urgent. Other systems than Linux have no such call for a single thread, or none that
+/// Lowers the priority of this thread and of those that it starts. Other systems than Linux have no such call for a single thread, or none that
 /// is safe.
-fn give_way() {
+fn lower_priority() {
     // Where the system refuses, pictures of the window come a little later.
     #[cfg(target_os = "linux")]
-    let _ = rustix::process::nice(LESS_URGENT);
+    let _ = rustix::process::nice(ADDED_NICENESS);
 }

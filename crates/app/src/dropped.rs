@@ -1,4 +1,4 @@
-//! What is dropped on the window: terrain to be flooded, a scene, or a finished run.
+//! Files dropped on the window: terrain to be flooded, a scene, or a finished run.
 
 use crate::{Source, Start};
 use corpuscle::scene::{Scene, Terrain as Written, TerrainFile};
@@ -7,19 +7,19 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Particles that have come in by the end.
+/// Particles that the inflow adds by the end.
 const PARTICLES: f64 = 6000.0;
-/// Part of the ground that the water would cover a metre deep.
+/// Fraction of the terrain that the water would cover a metre deep.
 const COVERED: f64 = 0.1;
-/// Speed at which a flood crosses the ground, m/s, to say how long it is to be watched.
+/// Speed at which a flood crosses the terrain, m/s, from which the duration follows.
 const SPEED: f64 = 1.5;
-/// How far from its edge the water comes in, over the length of the side.
+/// Distance of the inflow from the side, over the length of the side.
 const INSET: f64 = 0.03;
 /// Frames and rows of gauges in a run.
 const FRAMES: f64 = 60.0;
 const ROWS: f64 = 240.0;
 
-/// What to open of a file or folder that was dropped. Takes as long as it takes to read it.
+/// The scene or run of a dropped file or folder. Returns when it has been read.
 ///
 /// # Errors
 /// A text that says what is wrong with it.
@@ -36,7 +36,7 @@ pub fn open(path: &Path) -> Result<Start, String> {
     flood(path).map(Start::Scene)
 }
 
-/// A flood over the terrain in a file: water comes in at the head of the ground and leaves over its edges.
+/// A flood over the terrain in a file: water flows in at the head of its valley and leaves over its sides.
 fn flood(path: &Path) -> Result<Source, String> {
     let path = fs::canonicalize(path).map_err(|error| format!("{}: {error}", path.display()))?;
     let file = Written::File(TerrainFile { path: path.clone(), crs: None, no_data: Default::default() });
@@ -72,7 +72,7 @@ fn text(terrain: &Terrain, path: &Path, name: &str) -> String {
     scene
 }
 
-/// The lowest place along the side that is highest on average, a little inside, in model coordinates: there a valley begins.
+/// The lowest position along the side that is highest on average, a little inside, in model coordinates: there a valley begins.
 fn head(terrain: &Terrain) -> [f64; 2] {
     let bounds = terrain.bounds();
     let [width, height] = bounds.size();
@@ -95,11 +95,11 @@ fn head(terrain: &Terrain) -> [f64; 2] {
     let mean = |heights: &[(f64, [f64; 2])]| heights.iter().map(|(z, _)| z).sum::<f64>() / heights.len() as f64;
     let highest = sides.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
     let lowest = highest.and_then(|side| side.iter().min_by(|a, b| a.0.total_cmp(&b.0)));
-    // Ground without data along all its edges is flooded from its middle.
+    // Terrain without data along all its sides is flooded from its centre.
     lowest.map_or([bounds.x_min + 0.5 * width, bounds.y_min + 0.5 * height], |(_, place)| *place)
 }
 
-/// A number with two figures, as people write it.
+/// A number rounded to two significant digits.
 fn two_figures(number: f64) -> f64 {
     let text = format!("{number:.1e}");
     text.parse().unwrap_or(number)
@@ -109,7 +109,7 @@ fn two_figures(number: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Ground of 60 by 40 cells of 10 m that falls to the east, with a valley along its middle row, without data in a corner.
+    /// Terrain of 60 by 40 cells of 10 m that falls to the east, with a valley along its middle row, without data in a corner.
     fn grid(folder: &Path) -> PathBuf {
         let mut text =
             String::from("ncols 60\nnrows 40\nxllcorner 1000\nyllcorner 2000\ncellsize 10\nNODATA_value -9999\n");

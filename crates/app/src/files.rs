@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A file in a folder that is not there yet: `gas-maxwell.png`, then `gas-maxwell-2.png`.
+/// A path in a folder where there is no file yet: `gas-maxwell.png`, then `gas-maxwell-2.png`.
 pub fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
     let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
     let stem = stem.trim_matches('-');
@@ -14,17 +14,17 @@ pub fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
     (1..).map(numbered).find(|path| !path.exists()).unwrap_or_else(|| numbered(1))
 }
 
-/// Writes a text; gives the file.
+/// Writes a text; returns the path.
 pub fn text(folder: &Path, name: &str, ending: &str, text: &str) -> io::Result<PathBuf> {
     let path = free(folder, name, ending);
     corpuscle_atomic_file::write_whole(&path, |file| io::Write::write_all(file, text.as_bytes()))?;
     Ok(path)
 }
 
-/// Writes a picture as a PNG file; gives the file.
+/// Writes a picture as a PNG file; returns the path.
 pub fn picture(folder: &Path, name: &str, image: &corpuscle::gpu::Image) -> Result<PathBuf, corpuscle::Error> {
     let path = free(folder, name, "png");
-    corpuscle::record::write_picture(&path, [image.width, image.height], &image.rgba)?;
+    corpuscle::output::write_picture(&path, [image.width, image.height], &image.rgba)?;
     Ok(path)
 }
 

@@ -16,11 +16,11 @@ const SMALL: Vec2 = vec2(72.0, 44.0);
 
 /// A scene in the gallery.
 pub struct Entry {
-    /// What it is called on the command line.
+    /// The built-in scene.
     pub scene: Builtin,
     /// Its title.
     pub title: String,
-    /// What is seen, in a sentence.
+    /// The first sentence of its description.
     pub sentence: String,
     texture: Option<TextureHandle>,
 }
@@ -28,11 +28,11 @@ pub struct Entry {
 /// The scenes.
 pub struct Gallery {
     entries: Vec<Entry>,
-    /// The scene that the list was last brought to.
-    brought_to: String,
+    /// The scene that the list was last scrolled to.
+    scrolled_to: String,
 }
 
-/// The models that have scenes, as they are named and as they stand in the list.
+/// The models that have scenes: names in files, and headings in the list.
 fn models() -> impl Iterator<Item = (&'static str, String)> {
     kinds().into_iter().filter(|kind| !kind.scenes.is_empty()).map(|kind| {
         let (first, rest) = kind.name.split_at(1);
@@ -48,7 +48,7 @@ impl Gallery {
             let (title, description) = read.map_or_else(|_| Default::default(), |read| (read.title, read.description));
             Entry { scene, title, sentence: first_sentence(&description), texture: None }
         };
-        Self { entries: scenes().map(entry).collect(), brought_to: String::new() }
+        Self { entries: scenes().map(entry).collect(), scrolled_to: String::new() }
     }
 
     /// The scenes of a model.
@@ -56,10 +56,10 @@ impl Gallery {
         self.entries.iter_mut().filter(move |entry| entry.scene.name.split('/').next() == Some(model))
     }
 
-    /// The list at the side; gives the scene that was chosen.
+    /// Shows the list at the side; returns the scene chosen.
     pub fn list(&mut self, ui: &mut Ui, open: &str) -> Option<Builtin> {
         let mut chosen = None;
-        let is_new = self.brought_to != open;
+        let is_new = self.scrolled_to != open;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for (model, name) in models() {
                 ui.add_space(6.0);
@@ -77,12 +77,12 @@ impl Gallery {
             ui.add_space(10.0);
         });
         if is_new {
-            open.clone_into(&mut self.brought_to);
+            open.clone_into(&mut self.scrolled_to);
         }
         chosen
     }
 
-    /// The cards of the first page; gives the scene that was chosen.
+    /// Shows the cards of the first page; returns the scene chosen.
     pub fn cards(&mut self, ui: &mut Ui) -> Option<Builtin> {
         let mut chosen = None;
         let gap = 14.0;
@@ -123,7 +123,7 @@ impl Entry {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, open, &self.title));
         if ui.is_rect_visible(rect) {
-            self.ground(ui, rect, &response, open);
+            self.background(ui, rect, &response, open);
             let image = Rect::from_min_size(rect.min + Vec2::splat(6.0), SMALL);
             let id = self.texture(ui).id();
             rounded(ui, image, id, 5);
@@ -140,7 +140,7 @@ impl Entry {
         let (rect, response) = ui.allocate_exact_size(vec2(width, tall + 84.0), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &self.title));
         if ui.is_rect_visible(rect) {
-            self.ground(ui, rect, &response, false);
+            self.background(ui, rect, &response, false);
             let image = Rect::from_min_size(rect.min, vec2(width, tall));
             let id = self.texture(ui).id();
             rounded(ui, image, id, 9);
@@ -155,20 +155,20 @@ impl Entry {
         response
     }
 
-    fn ground(&self, ui: &Ui, rect: Rect, response: &Response, open: bool) {
+    fn background(&self, ui: &Ui, rect: Rect, response: &Response, open: bool) {
         let visuals = ui.visuals();
-        let ground = if open {
+        let background = if open {
             visuals.selection.bg_fill.gamma_multiply(0.18)
         } else if response.hovered() || response.has_focus() {
             visuals.widgets.inactive.bg_fill
         } else {
             Color32::TRANSPARENT
         };
-        ui.painter().rect_filled(rect, CornerRadius::same(9), ground);
+        ui.painter().rect_filled(rect, CornerRadius::same(9), background);
     }
 }
 
-/// Words in lines of a width, so many at most; they are told by what they stand in.
+/// Lays out a text in lines of a width, so many at most.
 fn lines(ui: &Ui, words: &str, font: FontId, colour: Color32, width: f32, most: usize) -> Arc<Galley> {
     let mut job = LayoutJob::simple(words.into(), font, colour, width);
     job.wrap.max_rows = most;
@@ -195,7 +195,7 @@ macro_rules! pictures {
     };
 }
 
-/// The pictures of the guide's gallery, made small.
+/// The pictures of the guide's gallery, at a small size.
 const PICTURES: &[(&str, &[u8])] = pictures![
     "flood-valley",
     "flood-rough-terrain",

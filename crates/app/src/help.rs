@@ -1,29 +1,29 @@
-//! The sheet of keys.
+//! The list of keys.
 
 use egui::{Context, Grid, Modal, RichText};
 
-/// What keys and the pointer do.
+/// Keys and pointer actions, each with its effect.
 const ROWS: [(&str, &str); 16] = [
     ("Space", "play and pause"),
     ("Right arrow", "one step"),
-    ("R", "restart, with the parameters as they are set"),
-    ("F, or double click", "show all again"),
-    ("T", "from above and back (not for flat gases)"),
-    ("1, 2, 3", "look: by itself, simple, full"),
-    ("S", "save a still, as large as films are"),
-    ("V", "record a film of what goes on, and end it"),
+    ("R", "restart with the parameters as set"),
+    ("F, or double click", "show everything"),
+    ("T", "view from above, and back (not for two-dimensional gases)"),
+    ("1, 2, 3", "quality: automatic, simple, full"),
+    ("S", "save a still of 1920 x 1080 pixels"),
+    ("V", "start and end a film"),
     ("G", "scenes"),
     ("P", "parameters"),
     ("L", "plots"),
-    ("Drag", "turn; shift a flat picture"),
-    ("Drag with the right button, or Shift", "shift"),
-    ("Wheel", "nearer and farther"),
-    ("Click", "pick a particle or a spot of ground, see its values, follow its way; Esc to end"),
-    ("F1 or ?", "this sheet"),
+    ("Drag", "rotate; pan a two-dimensional gas"),
+    ("Drag with the right button, or Shift", "pan"),
+    ("Wheel", "zoom"),
+    ("Click", "pick a particle or a position on the terrain, show its values and trajectory; Esc releases it"),
+    ("F1 or ?", "this list"),
 ];
 
-/// Shows the sheet; true where it is to be put away.
-pub fn sheet(context: &Context) -> bool {
+/// Shows the list; true where it was closed.
+pub fn list(context: &Context) -> bool {
     let modal = Modal::new(egui::Id::unique("help")).show(context, |ui| {
         ui.set_width(520.0);
         ui.label(RichText::new("Keys and pointer").heading());

@@ -1,21 +1,21 @@
-//! Buttons with drawn signs, so that no font of signs is needed.
+//! Buttons with drawn icons, so that no icon font is needed.
 
 use egui::{Color32, CornerRadius, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
-/// A sign.
+/// An icon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Icon {
-    /// Go on.
+    /// Play.
     Play,
-    /// Wait.
+    /// Pause.
     Pause,
     /// One step.
     Step,
-    /// From the start.
+    /// Restart.
     Restart,
     /// Show all.
     Frame,
-    /// Straight from above.
+    /// View from above.
     Plan,
     /// A still.
     Still,
@@ -29,15 +29,15 @@ pub enum Icon {
     Plot,
     /// Help.
     Help,
-    /// Back to what it was.
+    /// Reset a value.
     Undo,
-    /// Away with it.
+    /// Close.
     Close,
-    /// Into a file.
+    /// Save to a file.
     Save,
 }
 
-/// A button with a sign, which is called `name` and tells it when the pointer rests on it.
+/// A button with an icon, with `name` as its label and tooltip.
 pub fn button(ui: &mut Ui, icon: Icon, name: &str, hint: &str) -> Response {
     sized(ui, icon, name, hint, 30.0, false)
 }
@@ -54,14 +54,14 @@ pub fn sized(ui: &mut Ui, icon: Icon, name: &str, hint: &str, size: f32, on: boo
     if ui.is_rect_visible(rect) {
         let visuals = ui.style().interact_selectable(&response, false);
         let accent = ui.visuals().selection.bg_fill;
-        let ground = if on {
+        let background = if on {
             accent.gamma_multiply(0.22)
         } else if response.hovered() || response.has_focus() {
             visuals.weak_bg_fill
         } else {
             Color32::TRANSPARENT
         };
-        ui.painter().rect_filled(rect, CornerRadius::same(7), ground);
+        ui.painter().rect_filled(rect, CornerRadius::same(7), background);
         let colour = if !ui.is_enabled() {
             ui.visuals().weak_text_color().gamma_multiply(0.5)
         } else if on {
@@ -71,11 +71,11 @@ pub fn sized(ui: &mut Ui, icon: Icon, name: &str, hint: &str, size: f32, on: boo
         };
         paint(ui, icon, rect.shrink(size * 0.23), colour);
     }
-    let told = if hint.is_empty() { name.to_owned() } else { format!("{name} ({hint})") };
-    response.on_hover_text(told)
+    let text = if hint.is_empty() { name.to_owned() } else { format!("{name} ({hint})") };
+    response.on_hover_text(text)
 }
 
-/// Draws a sign.
+/// Draws an icon.
 pub fn paint(ui: &Ui, icon: Icon, rect: Rect, colour: Color32) {
     let at = |x: f32, y: f32| -> Pos2 { rect.min + rect.size() * vec2(x, y) };
     let line = Stroke::new((0.11 * rect.width()).max(1.3), colour);

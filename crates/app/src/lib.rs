@@ -1,13 +1,14 @@
-//! The window: a scene that is looked at and touched while it runs.
+//! The window: shows a scene while it runs, and changes it live.
 //!
-//! The physics goes on in a thread of its own ([`physics`]) and publishes what it shows; the window draws the newest picture on its own
-//! device and never waits: what takes long is drawn elsewhere. [`view`] opens the window of the system; [`Window`] is what is in it, and knows no system: a test shows
+//! The physics runs in a thread of its own ([`physics`]) and publishes snapshots; the window draws the newest one on its own
+//! device and never waits: pictures that take long are drawn in another thread. [`view`] opens the window of the system; [`Window`] is its content, independent of the system: a test shows
 //! it off screen.
 
 mod background_device;
 mod dropped;
 mod files;
 mod gallery;
+mod gas_controls;
 mod help;
 mod icons;
 mod meshes;
@@ -23,7 +24,6 @@ mod screen;
 mod snapshot;
 mod spot;
 mod style;
-mod touch;
 mod transport;
 mod view;
 mod view_state;

@@ -1,4 +1,4 @@
-//! How many pictures there are in a second.
+//! Measurement of the pictures per second.
 
 use crate::Window;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 /// The first pictures of a scene, for which programs are still compiled, are not counted.
 const WARM_UP: Duration = Duration::from_millis(1500);
 
-/// What was measured while a scene played.
+/// The rate of pictures while a scene played.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Pictures in a second, each of a time of its own.
     pub pictures_per_s: f64,
-    /// The longest time between two, s.
+    /// Longest time between two pictures, s.
     pub slowest_s: f64,
-    /// Particles in the last.
+    /// Particles in the last picture.
     pub particles: usize,
     /// Simulated seconds in a second.
     pub pace: f64,
@@ -24,7 +24,7 @@ pub struct Measurement {
 pub(crate) struct Meter {
     seconds: Duration,
     result: Arc<Mutex<Option<Measurement>>>,
-    /// When the scene was first seen.
+    /// When the scene was first shown.
     seen: Option<Instant>,
     /// When counting began, and the time of the scene then.
     began: Option<(Instant, f64)>,
@@ -39,7 +39,7 @@ impl Meter {
         Self { seconds, result, seen: None, began: None, last: None, pictures: 0, slowest: Duration::ZERO }
     }
 
-    /// Another picture; true when enough were counted. A picture of the same time as the last is none.
+    /// Counts a picture; true when enough were counted. A picture of the same time as the last does not count.
     pub fn tick(&mut self, window: &Window) -> bool {
         let now = Instant::now();
         let Some(snapshot) = window.snapshot() else { return window.fault().is_some() };

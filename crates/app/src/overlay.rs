@@ -1,39 +1,39 @@
-//! Axes, walls, marks and the key of colours over a picture, drawn with the window's own letters and lines.
+//! Axes, walls, marks and legend over a picture, drawn with the window's own text and lines.
 
 use corpuscle::pictures::Shown;
 use corpuscle_drawing::svg::Anchor;
-use corpuscle_render::{Border, ColourTable, Key, LineLook, Mark};
+use corpuscle_render::{Border, ColourTable, Key, LineStyle, Mark};
 use egui::{Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
-/// Ink on light and on dark ground, and what is round letters on a lit picture.
+/// Colours of text on light and on dark background, and of its outline on a lit picture.
 const INK: [Color32; 2] = [Color32::from_rgb(0x3c, 0x46, 0x50), Color32::from_rgb(0xb8, 0xc2, 0xcc)];
 const HALO: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
-/// Walls: plain, at a temperature, of a piston.
-const HOT: Color32 = Color32::from_rgb(0xe0, 0x6a, 0x10);
-const WAY: Color32 = Color32::from_rgb(0xc2, 0x18, 0x5b);
+/// Colours of thermal walls, trajectories and pistons.
+const THERMAL_WALL: Color32 = Color32::from_rgb(0xe0, 0x6a, 0x10);
+const TRAJECTORY: Color32 = Color32::from_rgb(0xc2, 0x18, 0x5b);
 const PISTON: [Color32; 2] = [Color32::from_rgb(0x6b, 0x78, 0x85), Color32::from_rgb(0x7d, 0x89, 0x96)];
 /// Thickness of a piston and its rod, points.
 const BLOCK: f32 = 14.0;
 const ROD: f32 = 8.0;
-/// Width of the bar of a key, and height of a row, points.
+/// Width of the colour bar of a legend, height of a row, and space between entries, points.
 const BAR: f32 = 130.0;
 const ROW: f32 = 22.0;
 const GAP: f32 = 20.0;
 
-/// Draws what lies over a picture, which fills a rectangle.
+/// Draws the overlay of a picture that fills a rectangle.
 pub struct Over<'a> {
-    /// What was drawn.
+    /// The picture.
     pub shown: &'a Shown,
-    /// Where it is.
+    /// The rectangle that it fills.
     pub rect: Rect,
-    /// Where to draw.
+    /// The painter to draw with.
     pub painter: &'a Painter,
     /// True in the dark theme.
     pub dark: bool,
 }
 
 impl Over<'_> {
-    /// Draws all of it; gives how much of the top its key takes, points.
+    /// Draws the overlay; returns the height of its legend, points.
     pub fn paint(&self) -> f32 {
         self.axes();
         for border in &self.shown.overlay.borders {
@@ -53,7 +53,7 @@ impl Over<'_> {
         key
     }
 
-    /// Where a place of the world is in the window.
+    /// The position in the window of a point of the world, m.
     pub fn place(&self, point: [f64; 3]) -> Option<Pos2> {
         place(self.shown, self.rect, point)
     }
@@ -96,22 +96,22 @@ impl Over<'_> {
         }
     }
 
-    fn line_of(&self, look: LineLook) -> Stroke {
+    fn line_of(&self, style: LineStyle) -> Stroke {
         let wall =
             if self.is_dark() { Color32::from_rgb(0xd6, 0xdd, 0xe4) } else { Color32::from_rgb(0x17, 0x21, 0x2b) };
-        match look {
-            LineLook::Wall => Stroke::new(2.0, wall),
-            LineLook::HotWall => Stroke::new(3.5, HOT),
-            LineLook::Open => Stroke::new(1.2, self.ink()),
-            LineLook::Partition => Stroke::new(2.5, wall),
-            LineLook::Way => Stroke::new(1.7, WAY),
+        match style {
+            LineStyle::Wall => Stroke::new(2.0, wall),
+            LineStyle::ThermalWall => Stroke::new(3.5, THERMAL_WALL),
+            LineStyle::Periodic => Stroke::new(1.2, self.ink()),
+            LineStyle::Partition => Stroke::new(2.5, wall),
+            LineStyle::Trajectory => Stroke::new(1.7, TRAJECTORY),
         }
     }
 
-    fn stroke(&self, ends: [Pos2; 2], look: LineLook) {
-        let stroke = self.line_of(look);
-        match look {
-            LineLook::Open => self.painter.extend(Shape::dashed_line(&ends, stroke, 5.0, 4.0)),
+    fn stroke(&self, ends: [Pos2; 2], style: LineStyle) {
+        let stroke = self.line_of(style);
+        match style {
+            LineStyle::Periodic => self.painter.extend(Shape::dashed_line(&ends, stroke, 5.0, 4.0)),
             _ => {
                 self.painter.line_segment(ends, stroke);
             }
@@ -123,10 +123,10 @@ impl Over<'_> {
         // y is up in the world and down in the window.
         let out = |[x, y]: [f64; 2]| vec2(x as f32, -y as f32);
         match border {
-            Border::Line { look, ends, outwards } => {
-                let ([Some(one), Some(other)], stroke) = (ends.map(at), self.line_of(*look)) else { return };
+            Border::Line { style, ends, outwards } => {
+                let ([Some(one), Some(other)], stroke) = (ends.map(at), self.line_of(*style)) else { return };
                 let beyond = out(*outwards) * 0.5 * stroke.width;
-                self.stroke([one + beyond, other + beyond], *look);
+                self.stroke([one + beyond, other + beyond], *style);
             }
             Border::Piston { ends, outwards, rod } => {
                 let [Some(one), Some(other)] = ends.map(at) else { return };
@@ -151,13 +151,13 @@ impl Over<'_> {
         match mark {
             Mark::Start(place) => {
                 let Some(at) = self.place(*place) else { return };
-                self.painter.circle(at, 4.0, Color32::WHITE, Stroke::new(2.0, WAY));
+                self.painter.circle(at, 4.0, Color32::WHITE, Stroke::new(2.0, TRAJECTORY));
             }
-            Mark::Ring(place, radius) => ring(self, *place, *radius, WAY),
+            Mark::Ring(place, radius) => ring(self, *place, *radius, TRAJECTORY),
         }
     }
 
-    /// Draws the key of colours and lines; gives how much of the top it takes, points.
+    /// Draws the legend of colours and lines; returns its height, points.
     fn key(&self) -> f32 {
         let overlay = &self.shown.overlay;
         let mut rows: Vec<(String, Row<'_>)> = match &overlay.key {
@@ -167,14 +167,14 @@ impl Over<'_> {
             }
             None => Vec::new(),
         };
-        rows.extend(overlay.lines.iter().map(|(look, name)| (name.clone(), Row::Line(*look))));
+        rows.extend(overlay.lines.iter().map(|(style, name)| (name.clone(), Row::Line(*style))));
         if rows.is_empty() {
             return 0.0;
         }
         let wide = |text: &str| self.painter.layout_no_wrap(text.into(), FontId::proportional(12.0), INK[0]).size().x;
         let widths: Vec<f32> = rows.iter().map(|(name, row)| row.width(&wide, name)).collect();
         let most = self.rect.width() - 24.0;
-        // In lines as long as there is room for.
+        // Wrapped to the width of the picture.
         let (mut lines, mut at) = (vec![0.0_f32], Vec::new());
         for width in widths {
             let line = lines.last_mut().expect("there is one at first");
@@ -221,15 +221,15 @@ impl Over<'_> {
                 self.painter.circle_filled(at + vec2(6.0, 0.5 * ROW), 5.5, *colour);
                 text(17.0, name);
             }
-            Row::Line(look) => {
-                self.stroke([at + vec2(0.0, 0.5 * ROW), at + vec2(18.0, 0.5 * ROW)], *look);
+            Row::Line(style) => {
+                self.stroke([at + vec2(0.0, 0.5 * ROW), at + vec2(18.0, 0.5 * ROW)], *style);
                 text(25.0, name);
             }
         }
     }
 }
 
-/// A ring round something of a radius, m.
+/// Draws a ring round a ball of a radius, m.
 pub fn ring(over: &Over<'_>, place: [f64; 3], radius: f64, colour: Color32) {
     let Some(at) = over.place(place) else { return };
     let right = over.shown.camera.up.cross(over.shown.camera.eye - over.shown.camera.target).normalize_or_zero();
@@ -238,18 +238,18 @@ pub fn ring(over: &Over<'_>, place: [f64; 3], radius: f64, colour: Color32) {
     over.painter.circle_stroke(at, (radius + 3.0).max(7.0), Stroke::new(2.2, colour));
 }
 
-/// Where a place of the world, m, is in a rectangle that a picture fills.
+/// The position of a point of the world, m, in a rectangle that a picture fills.
 pub fn place(shown: &Shown, rect: Rect, point: [f64; 3]) -> Option<Pos2> {
     let aspect = f64::from(rect.width()) / f64::from(rect.height());
     let [x, y] = shown.camera.project(&shown.stage, aspect, point)?;
     Some(pos2(rect.left() + x as f32 * rect.width(), rect.top() + y as f32 * rect.height()))
 }
 
-/// What stands in a row of the key.
+/// The sample in a row of the legend.
 enum Row<'a> {
     Bar(&'a ColourTable),
     Dot(Color32),
-    Line(LineLook),
+    Line(LineStyle),
 }
 
 impl Row<'_> {

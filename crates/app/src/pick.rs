@@ -1,4 +1,4 @@
-//! What was picked in the picture: the nearest particle, its values, and its way from then on.
+//! A picked particle: its values, and its trajectory from then on.
 
 use crate::icons::{self, Icon};
 use crate::overlay::{self, Over};
@@ -7,9 +7,9 @@ use corpuscle::pictures::Shown;
 use corpuscle_drawing::text::number;
 use egui::{Color32, Frame as Box, Grid, Pos2, Rect, RichText, Stroke, Ui};
 
-/// How far from a particle one may click, points.
+/// Largest distance of a click from a particle, points.
 const REACH: f32 = 22.0;
-/// Places of a way that are kept at most; then every other one is given up.
+/// Most points of a trajectory; beyond that every other one is dropped.
 const MOST: usize = 2000;
 const COLOUR: Color32 = Color32::from_rgb(0xe0, 0x3e, 0x8c);
 
@@ -18,15 +18,15 @@ const COLOUR: Color32 = Color32::from_rgb(0xe0, 0x3e, 0x8c);
 pub struct Picked {
     /// Name of its set.
     set: String,
-    /// Its identity.
+    /// Its id.
     id: u64,
-    /// Where it was since.
-    way: Vec<[f64; 3]>,
+    /// Its trajectory since it was picked.
+    trajectory: Vec<[f64; 3]>,
     time: f64,
 }
 
 impl Picked {
-    /// The particle nearest to a place in the window, the nearest to the eye of those within reach.
+    /// The particle at a position in the window: of those within reach the nearest to the camera.
     pub fn at(shown: &Shown, rect: Rect, frame: &Frame, pointer: Pos2) -> Option<Self> {
         let eye: [f64; 3] = shown.camera.eye.into();
         let mut best: Option<(f32, f64, Self)> = None;
@@ -38,10 +38,10 @@ impl Picked {
                     continue;
                 }
                 let far = (0..3).map(|k| (place[k] - eye[k]).powi(2)).sum::<f64>();
-                // A few points beside each other count as one: the nearer to the eye is meant.
+                // Particles a few points apart are equally near; the one nearest to the camera is picked.
                 let step = (off / 4.0).floor();
                 if best.as_ref().is_none_or(|(other, away, _)| (step, far) < (*other, *away)) {
-                    let picked = Self { set: set.name.clone(), id: set.id[at], way: Vec::new(), time: f64::NAN };
+                    let picked = Self { set: set.name.clone(), id: set.id[at], trajectory: Vec::new(), time: f64::NAN };
                     best = Some((step, far, picked));
                 }
             }
@@ -54,36 +54,36 @@ impl Picked {
         Some((set, set.id.iter().position(|id| *id == self.id)?))
     }
 
-    /// Where it is in a frame.
+    /// Its set and index in a frame.
     pub fn place(&self, frame: &Frame) -> Option<[f64; 3]> {
         self.find(frame).map(|(set, at)| set.position[at])
     }
 
-    /// Goes with the particle.
+    /// Adds the position of the particle in a frame to the trajectory.
     pub fn follow(&mut self, frame: &Frame) {
         let Some((set, at)) = self.find(frame) else { return };
         if frame.time == self.time {
             return;
         }
         if frame.time < self.time {
-            self.way.clear();
+            self.trajectory.clear();
         }
         self.time = frame.time;
-        self.way.push(set.position[at]);
-        if self.way.len() > MOST {
+        self.trajectory.push(set.position[at]);
+        if self.trajectory.len() > MOST {
             let mut number = 0;
-            self.way.retain(|_| {
+            self.trajectory.retain(|_| {
                 number += 1;
                 number % 2 == 1
             });
         }
     }
 
-    /// Draws its way and a ring round it.
+    /// Draws its trajectory and a ring round it.
     pub fn paint(&self, over: &Over<'_>, frame: &Frame, box_size: f64) {
         let Some((set, at)) = self.find(frame) else { return };
-        for pair in self.way.windows(2) {
-            // Where a periodic side is crossed the way is not drawn across the box.
+        for pair in self.trajectory.windows(2) {
+            // A crossing of a periodic side is not drawn across the box.
             let far = (0..3).map(|k| (pair[1][k] - pair[0][k]).abs()).fold(0.0, f64::max);
             if let (Some(from), Some(to)) = (over.place(pair[0]), over.place(pair[1]))
                 && far < 0.5 * box_size
@@ -94,7 +94,7 @@ impl Picked {
         overlay::ring(over, set.position[at], set.radius[at], COLOUR);
     }
 
-    /// The card with its values; true where it is to be put away.
+    /// Shows the card with its values; true where it was closed.
     pub fn card(&self, ui: &mut Ui, frame: &Frame, units: bool) -> bool {
         let mut away = false;
         let unit = |unit: &'static str| if units { unit } else { "" };
@@ -103,10 +103,10 @@ impl Picked {
             |ui| {
                 ui.horizontal(|ui| {
                     ui.label(RichText::new(format!("{} {}", self.set, self.id)).color(COLOUR).strong());
-                    away = icons::sized(ui, Icon::Close, "Follow it no longer", "Esc", 20.0, false).clicked();
+                    away = icons::sized(ui, Icon::Close, "Stop following", "Esc", 20.0, false).clicked();
                 });
                 let Some((set, at)) = self.find(frame) else {
-                    ui.label(RichText::new("It is no longer there.").weak());
+                    ui.label(RichText::new("The particle no longer exists.").weak());
                     return;
                 };
                 Grid::new("picked").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
@@ -117,11 +117,11 @@ impl Picked {
                     };
                     let vector = |of: [f64; 3]| of.map(number).join(",  ");
                     let speed = set.velocity[at].iter().map(|along| along * along).sum::<f64>().sqrt();
-                    row("place", vector(set.position[at]), unit("m"));
+                    row("position", vector(set.position[at]), unit("m"));
                     row("velocity", vector(set.velocity[at]), unit("m/s"));
                     row("speed", number(speed), unit("m/s"));
                     row("mass", number(set.mass[at]), unit("kg"));
-                    // Its speed is told of any particle.
+                    // The speed is shown for any particle already.
                     for column in set.columns.iter().filter(|column| column.name != "speed") {
                         let value = match &column.values {
                             Values::Scalar(values) => number(values[at]),

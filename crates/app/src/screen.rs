@@ -6,7 +6,7 @@ use egui::PaintCallbackInfo;
 use egui_wgpu::{CallbackResources, CallbackTrait};
 use std::sync::Arc;
 
-/// The window's device, and how pictures are laid into the window.
+/// The window's device, and the painter that lays pictures into the window.
 #[derive(Clone)]
 pub struct Screen {
     /// The device.

@@ -1,48 +1,48 @@
-//! What the physics shows at one time.
+//! Snapshots of the physics.
 
 use corpuscle::Sample;
 use corpuscle::gpu::DeviceParticles;
 use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
 use std::sync::Arc;
 
-/// Tells the window that there is something new to show; called from any thread.
+/// Wakes the window to show a new snapshot; called from any thread.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// The physics at one time.
+/// A snapshot: the physics at one time.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
-    /// Number of the scene that it is of.
+    /// Number of its scene.
     pub number: u64,
-    /// The time, and the particles; of a scene that goes on on the device that draws only those that are elsewhere.
+    /// The time, and the particles in host memory.
     pub frame: Arc<Frame>,
-    /// Particles that are drawn from where they lie.
+    /// Particles in GPU memory that are drawn from there.
     pub on_device: Option<DeviceParticles>,
-    /// All particles as they last came to the host.
+    /// All particles as last read back to the host.
     pub known: Arc<Frame>,
-    /// The ways of those that are followed.
+    /// Trajectories of followed particles.
     pub paths: Vec<Path>,
     /// The box round them.
     pub container: Option<Container>,
-    /// Particles now.
+    /// Number of particles.
     pub particles: usize,
-    /// True while it goes on.
+    /// True while playing.
     pub playing: bool,
-    /// Simulated seconds in a second of the wall clock, as it goes; 0 while it waits.
+    /// Simulated seconds per second of the wall clock; 0 while paused.
     pub pace: f64,
-    /// True where it cannot keep the pace that was asked for.
+    /// True where it cannot keep the requested pace.
     pub behind: bool,
     /// Particles moved (of a gas: collisions) in a second of the wall clock.
     pub rate: f64,
-    /// The water at the place that was asked for; none of a finished run.
+    /// The water at the sampled position; none for a finished run.
     pub probed: Option<Sample>,
-    /// What was measured, not later than a moment ago.
+    /// Recent measurements.
     pub measures: Arc<Measures>,
 }
 
-/// What was measured, which costs more than a look.
+/// Measurements of a model, which cost more than a frame.
 #[derive(Debug, Clone, Default)]
 pub struct Measures {
-    /// When, s.
+    /// Time, s.
     pub time: f64,
     /// Names of the gauges, as in files.
     pub names: Vec<String>,
@@ -50,14 +50,14 @@ pub struct Measures {
     pub gauges: Vec<f64>,
     /// Charts of the model.
     pub charts: Vec<Chart>,
-    /// What should be conserved.
+    /// The ledger of conserved quantities.
     pub ledger: Ledger,
-    /// What a user should know of the run.
+    /// Warnings to the user.
     pub warnings: Vec<String>,
 }
 
 impl Measures {
-    /// What a model measures now.
+    /// The current measurements of a model.
     pub(crate) fn of(model: &dyn Model) -> Self {
         Self {
             time: model.time(),

@@ -1,4 +1,4 @@
-//! A spot of the ground that was picked: its height, the water there, and a gauge.
+//! A picked position on the terrain: its bed elevation, the water there, and a gauge.
 
 use crate::icons::{self, Icon};
 use crate::overlay::{self, Over};
@@ -8,50 +8,50 @@ use corpuscle::terrain::Terrain;
 use corpuscle_drawing::text::number;
 use egui::{Color32, Frame, Grid, Pos2, Rect, RichText, Stroke, Ui, vec2};
 
-/// Places along each side of the ground that are looked at, and of each finer look.
-const COARSE: u32 = 160;
-const FINE: u32 = 12;
-/// Finer looks: each is over the neighbourhood of the best place so far.
-const LOOKS: u32 = 4;
+/// Positions per side of the first search over the terrain, and of each refinement.
+const COARSE_STEPS: u32 = 160;
+const FINE_STEPS: u32 = 12;
+/// Refinements of the search, each over the neighbourhood of the best position so far.
+const REFINEMENTS: u32 = 4;
 const COLOUR: Color32 = Color32::from_rgb(0xf5, 0x9e, 0x0b);
 
-/// A spot of the ground.
+/// A picked position on the terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spot {
-    /// Place and height in model coordinates, m.
+    /// Position and bed elevation in model coordinates, m.
     place: [f64; 3],
     /// True once there is a gauge.
     pub gauged: bool,
 }
 
-/// What is to be done with a spot.
+/// An action of the card of a spot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
-    /// It is to be put away.
-    Away,
-    /// A gauge is to be placed there.
-    Gauge,
+pub enum SpotAction {
+    /// Close the card.
+    Close,
+    /// Place a gauge there.
+    PlaceGauge,
 }
 
 impl Spot {
-    /// The spot under a place in the window; none where there is no ground.
+    /// The spot at a position in the window; none where there is no terrain.
     pub fn at(shown: &Shown, rect: Rect, terrain: &Terrain, pointer: Pos2) -> Option<Self> {
         let bounds = terrain.bounds();
         let [width, height] = bounds.size();
         let mut range = [[bounds.x_min, bounds.x_max], [bounds.y_min, bounds.y_max]];
-        let mut place = nearest(shown, rect, terrain, pointer, range, COARSE)?;
-        let mut step = [width, height].map(|side| side / f64::from(COARSE));
-        for _ in 0..LOOKS {
+        let mut place = nearest(shown, rect, terrain, pointer, range, COARSE_STEPS)?;
+        let mut step = [width, height].map(|side| side / f64::from(COARSE_STEPS));
+        for _ in 0..REFINEMENTS {
             range = [0, 1].map(|axis| [place[axis] - step[axis], place[axis] + step[axis]]);
-            place = nearest(shown, rect, terrain, pointer, range, FINE)?;
-            step = step.map(|step| 2.0 * step / f64::from(FINE));
+            place = nearest(shown, rect, terrain, pointer, range, FINE_STEPS)?;
+            step = step.map(|step| 2.0 * step / f64::from(FINE_STEPS));
         }
         let seen = overlay::place(shown, rect, place)?;
         let inside = bounds.contains(place[0], place[1]);
         ((seen - pointer).length() < 3.0 && inside).then_some(Self { place, gauged: false })
     }
 
-    /// The spot under a place.
+    /// The spot below a position.
     pub fn under(terrain: &Terrain, [x, y, _]: [f64; 3]) -> Self {
         Self { place: [x, y, terrain.height(x, y)], gauged: false }
     }
@@ -69,16 +69,16 @@ impl Spot {
         }
     }
 
-    /// The card with its values; gives what is to be done.
-    pub fn card(&self, ui: &mut Ui, terrain: &Terrain, water: Option<Sample>, live: bool) -> Option<Asked> {
-        let mut asked = None;
+    /// Shows the card with its values; returns the action chosen.
+    pub fn card(&self, ui: &mut Ui, terrain: &Terrain, water: Option<Sample>, live: bool) -> Option<SpotAction> {
+        let mut action = None;
         Frame::new().fill(ui.visuals().window_fill.gamma_multiply(0.94)).corner_radius(8).inner_margin(10).show(
             ui,
             |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(RichText::new("Ground").color(COLOUR).strong());
-                    if icons::sized(ui, Icon::Close, "Put the spot away", "Esc", 20.0, false).clicked() {
-                        asked = Some(Asked::Away);
+                    ui.label(RichText::new("Terrain").color(COLOUR).strong());
+                    if icons::sized(ui, Icon::Close, "Close the position", "Esc", 20.0, false).clicked() {
+                        action = Some(SpotAction::Close);
                     }
                 });
                 Grid::new("spot").num_columns(2).spacing([14.0, 3.0]).show(ui, |ui| {
@@ -88,8 +88,8 @@ impl Spot {
                         ui.end_row();
                     };
                     let own = terrain.to_own(self.at_model());
-                    row("place", own.map(number).join(",  "));
-                    row("height", format!("{} m", number(self.place[2])));
+                    row("position", own.map(number).join(",  "));
+                    row("bed elevation", format!("{} m", number(self.place[2])));
                     if let Some(water) = water {
                         row("depth", format!("{} m", number(water.depth)));
                         row("level", format!("{} m", number(self.place[2] + water.depth)));
@@ -98,24 +98,24 @@ impl Spot {
                     }
                 });
                 let name = if self.gauged { "There is a gauge here" } else { "Place a gauge here" };
-                let hint = "It measures from now on, is among the plots, and is saved with the scene.";
+                let hint = "Records from now on; it appears in the plots and is saved with the scene.";
                 if live && ui.add_enabled(!self.gauged, egui::Button::new(name)).on_hover_text(hint).clicked() {
-                    asked = Some(Asked::Gauge);
+                    action = Some(SpotAction::PlaceGauge);
                 }
             },
         );
-        asked
+        action
     }
 }
 
-/// Slower than this is rounding, m/s.
+/// Velocities below this are shown as 0, m/s: rounding.
 const REST: f64 = 1e-6;
 
 fn at_rest(velocity: f64) -> f64 {
     if velocity.abs() < REST { 0.0 } else { velocity }
 }
 
-/// Of places over a part of the ground the one that is seen nearest to the pointer, of those next to it the nearest to the eye.
+/// The position on a part of the terrain that appears nearest to the pointer; of those equally near the one nearest to the camera.
 fn nearest(
     shown: &Shown,
     rect: Rect,
@@ -139,7 +139,7 @@ fn nearest(
         }
     }
     let closest = all.iter().map(|(off, ..)| *off).fold(f32::INFINITY, f32::min);
-    // Behind a ridge another place is seen as near; what is in front is meant.
+    // A position behind a ridge may appear as near; the one in front is picked.
     let beside = all.iter().filter(|(off, ..)| *off <= 1.5 * closest + 0.5);
     beside.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(.., place)| *place)
 }

@@ -1,16 +1,16 @@
-//! How the window looks: letters, colours, spacing.
+//! The style of the window: fonts, colours, spacing.
 
 use egui::{
     Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, TextStyle, Theme,
 };
 use std::sync::Arc;
 
-/// Letters that stand out.
+/// Name of the bold font.
 pub const STRONG: &str = "strong";
 
-/// The colour that says what is chosen, in light and in dark.
+/// The accent colour, in light and in dark.
 const ACCENT: [Color32; 2] = [Color32::from_rgb(0x1a, 0x66, 0xc2), Color32::from_rgb(0x5b, 0xa6, 0xf2)];
-/// Grounds of panels, of what lies deeper, and of controls.
+/// Backgrounds of panels, of sunken areas, and of controls.
 const PANEL: [Color32; 2] = [Color32::from_rgb(0xf6, 0xf7, 0xf9), Color32::from_rgb(0x1c, 0x1f, 0x24)];
 const DEEP: [Color32; 2] = [Color32::WHITE, Color32::from_rgb(0x14, 0x16, 0x1a)];
 const CONTROL: [Color32; 2] = [Color32::from_rgb(0xe7, 0xea, 0xee), Color32::from_rgb(0x2c, 0x31, 0x38)];
@@ -20,7 +20,7 @@ const LINE: [Color32; 2] = [Color32::from_rgb(0xdc, 0xe0, 0xe5), Color32::from_r
 const TEXT: [Color32; 2] = [Color32::from_rgb(0x22, 0x2a, 0x33), Color32::from_rgb(0xe3, 0xe7, 0xec)];
 const QUIET: [Color32; 2] = [Color32::from_rgb(0x5d, 0x68, 0x74), Color32::from_rgb(0x9a, 0xa4, 0xaf)];
 
-/// Sets letters and both themes; which of them is shown follows the system.
+/// Sets fonts and both themes; the system chooses the theme.
 pub fn set_up(context: &Context) {
     context.set_fonts(fonts());
     // Where the system does not say: light shows better on a wall.
@@ -30,12 +30,12 @@ pub fn set_up(context: &Context) {
     }
 }
 
-/// The colour that says what is chosen.
+/// The accent colour.
 pub fn accent(visuals: &egui::Visuals) -> Color32 {
     visuals.selection.bg_fill
 }
 
-/// What a drawing lies on: as bytes, and as linear light.
+/// Background of a drawing: as bytes, and as linear light.
 pub fn paper(visuals: &egui::Visuals) -> (Color32, [f32; 3]) {
     let colour = visuals.extreme_bg_color;
     (colour, corpuscle_render::linear([colour.r(), colour.g(), colour.b()]))

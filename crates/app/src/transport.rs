@@ -1,4 +1,4 @@
-//! The strip below the picture: play, pause, step, restart, pace, the time bar, and how fast it goes.
+//! The strip below the picture: play, pause, step, restart, pace, time bar and rates.
 
 use crate::icons::{self, Icon};
 use crate::snapshot::Snapshot;
@@ -7,46 +7,46 @@ use corpuscle::scene::Scene;
 use corpuscle_drawing::text;
 use egui::{Align, Color32, CornerRadius, Layout, Rect, RichText, Role, Sense, Slider, Ui, WidgetInfo, vec2};
 
-/// How much slower and faster than its own pace a scene can be shown.
+/// Slowest and fastest pace, as multiples of the default pace.
 const PACES: [f64; 2] = [0.02, 50.0];
 
-/// What was pressed.
+/// An action of the strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pressed {
-    /// Go on, or wait.
+    /// Play or pause.
     Play,
     /// One step.
     Step,
-    /// From the start.
+    /// Restart.
     Restart,
-    /// So many times the scene's own pace.
+    /// A multiple of the default pace.
     Pace(f64),
     /// Another time of a finished run, s.
     Seek(f64),
 }
 
-/// What the strip shows.
+/// The content of the strip.
 pub struct Transport<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// Where it ends, s.
+    /// End time, s.
     pub end: f64,
     /// True for a finished run, whose time can be chosen.
     pub recorded: bool,
-    /// How it stands.
+    /// The newest snapshot.
     pub snapshot: Option<&'a Snapshot>,
-    /// True while it goes on.
+    /// True while playing.
     pub playing: bool,
-    /// The pace, as a multiple of the scene's own.
+    /// The pace, as a multiple of the default pace of the scene.
     pub times: f64,
     /// Pictures in a second.
     pub pictures: f64,
-    /// Where it is computed, and why there.
+    /// The backend and why it was chosen.
     pub computed_on: Option<&'a str>,
 }
 
 impl Transport<'_> {
-    /// Shows the strip; gives what was pressed.
+    /// Shows the strip; returns the action chosen.
     pub fn ui(&self, ui: &mut Ui) -> Option<Pressed> {
         let mut pressed = None;
         ui.horizontal_centered(|ui| {
@@ -66,7 +66,7 @@ impl Transport<'_> {
                 .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
                 .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
             ui.spacing_mut().slider_width = 90.0;
-            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's own");
+            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
             slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
             press(slider.changed(), Pressed::Pace(times));
             ui.add_space(6.0);
@@ -91,25 +91,25 @@ impl Transport<'_> {
         let (called, work) = models::of(self.scene).map_or(("", ""), |kind| (kind.particles(), kind.work()));
         let words = format!("{particles} {called}");
         let count = ui.label(RichText::new(words).small().weak());
-        let told = |response: egui::Response| match self.computed_on {
+        let hint = |response: egui::Response| match self.computed_on {
             Some(computed_on) => response.on_hover_text(computed_on),
             None => response,
         };
-        told(count);
+        hint(count);
         let rate = if snapshot.playing {
             format!("{:.0} pictures/s  ·  {} {work}/s", self.pictures, text::short_number(snapshot.rate))
         } else {
             String::new()
         };
-        let quick = told(ui.label(RichText::new(rate).small().weak()));
+        let quick = hint(ui.label(RichText::new(rate).small().weak()));
         if snapshot.behind {
-            let told = "This machine cannot compute the scene at this speed: it goes as fast as it can.";
+            let hint = "This machine cannot compute the scene at this speed: it runs as fast as it can.";
             let mark = ui.label(RichText::new("as fast as it can").small().color(ui.visuals().warn_fg_color));
-            mark.union(quick).on_hover_text(told);
+            mark.union(quick).on_hover_text(hint);
         }
     }
 
-    /// How far it has come; gives the time that was chosen.
+    /// Shows the time bar; returns the time chosen.
     fn bar(&self, ui: &mut Ui) -> Option<f64> {
         let now = self.snapshot.map_or(0.0, |snapshot| snapshot.frame.time);
         let end = self.end.max(now);

@@ -9,10 +9,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Size of the window at first, points.
 const SIZE: [f32; 2] = [1360.0, 840.0];
-/// The least that everything has room in, points.
+/// Smallest size of the window, points.
 const LEAST: [f32; 2] = [720.0, 480.0];
 
-/// Why there is no window.
+/// Why the window cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
     /// The system has no display, or no device that can draw on it.
@@ -20,7 +20,7 @@ pub enum ViewError {
     NoDisplay(String),
 }
 
-/// Opens the window, and comes back when it is closed. Scenes are computed on a backend. With `measure` it counts pictures for so many seconds,
+/// Opens the window, and returns when it is closed. Scenes are computed on `backend`. With `measure` it counts pictures for so many seconds,
 /// and closes.
 ///
 /// # Errors
@@ -45,7 +45,7 @@ pub fn view(start: Start, backend: Backend, measure: Option<f64>) -> Result<Opti
         ..eframe::NativeOptions::default()
     };
     let create = move |context: &eframe::CreationContext<'_>| {
-        let state = context.wgpu_render_state.as_ref().ok_or("the window has no graphics device")?;
+        let state = context.wgpu_render_state.as_ref().ok_or("the window has no GPU")?;
         let screen = screen(state);
         if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
             context.egui_ctx.add_plugin(meshes);
@@ -58,7 +58,7 @@ pub fn view(start: Start, backend: Backend, measure: Option<f64>) -> Result<Opti
     Ok(measured.lock().unwrap_or_else(PoisonError::into_inner).take())
 }
 
-/// Why the system gives no window. Its own words for a missing display name source files of the toolkit, and are not
+/// The reason why there is no window. The toolkit's own text for a missing display names its source files, and is not
 /// shown.
 fn reason(error: &eframe::Error) -> String {
     match error {
@@ -83,7 +83,7 @@ fn setup() -> WgpuSetupCreateNew {
     setup.native_adapter_selector = Some(Arc::new(|adapters, surface| {
         let fits = |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
         let best = adapters.iter().filter(fits).min_by_key(|adapter| Gpu::rank(adapter));
-        best.cloned().ok_or_else(|| "no graphics device, nor software in its place, can draw on this display".into())
+        best.cloned().ok_or_else(|| "no GPU, nor software in its place, can draw on this display".into())
     }));
     setup.device_descriptor = Arc::new(Gpu::request);
     setup

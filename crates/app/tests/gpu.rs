@@ -78,19 +78,19 @@ fn who_is_followed_comes_back_again_and_again_and_nobody_else_does() {
     let known = |window: &corpuscle_app::Window| window.snapshot().unwrap().known.time;
     // A particle is clicked on while it goes on, and with it the ground below.
     let before = known(stage.window());
-    assert!(!stage.has("Follow it no longer"));
+    assert!(!stage.has("Stop following"));
     stage.click_picture([0.29, 0.39]);
     let told =
         |window: &corpuscle_app::Window| window.snapshot().unwrap().probed.is_some_and(|water| water.depth > 5.0);
     stage.until(SOON, "the spot tells of the water", told);
-    assert!(stage.has("Follow it no longer") && known(stage.window()) > before);
+    assert!(stage.has("Stop following") && known(stage.window()) > before);
     let mut came = Vec::new();
     for _ in 0..3 {
         let from = known(stage.window());
         stage.until(SOON, "it is followed", |window| known(window) > from && window.snapshot().is_some_and(goes_on));
         came.push(Instant::now());
     }
-    assert!(stage.has("Follow it no longer") && !stage.has("It is no longer there."));
+    assert!(stage.has("Stop following") && !stage.has("The particle no longer exists."));
     stage.picture("gpu-follows");
     stage.key(egui::Key::Escape);
     // Nothing comes back any more, for longer than it took before.

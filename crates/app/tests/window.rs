@@ -64,7 +64,7 @@ fn balls_are_put_in_a_temperature_is_held_and_a_piston_dragged() {
     stage.until(SOON, "there are more", |window| count(window) == before + part);
     stage.click("Hold the temperature");
     stage.run(Duration::from_millis(300));
-    assert!(stage.has_beginning("Hold the temperature no longer") && stage.window().fault().is_none());
+    assert!(stage.has_beginning("Release the temperature") && stage.window().fault().is_none());
     assert!(stage.window().fault().is_none(), "{:?}", stage.window().fault());
 }
 
@@ -202,7 +202,7 @@ fn the_story_of_a_flood_looks_as_it_did() {
     stage.click_picture([0.42, 0.45]);
     stage.until(SOON, "it is probed", |window| window.snapshot().is_some_and(|snapshot| snapshot.probed.is_some()));
     stage.click("Place a gauge here");
-    stage.click("Follow it no longer");
+    stage.click("Stop following");
     stage.same_as_reference("flood");
 }
 

@@ -1,11 +1,11 @@
-//! The command line's words.
+//! The arguments of the command line.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use corpuscle::record::FrameFormat;
+use corpuscle::output::FrameFormat;
 use corpuscle::terrain::MapBox;
 use std::path::PathBuf;
 
-/// Particle physics from a scene file: flood valleys, look at the result in QGIS and ParaView.
+/// Particle physics from a scene file: gases of colliding balls, dew on cold solids, floods on terrain.
 #[derive(Debug, Parser)]
 #[command(name = "corpuscle", version, max_term_width = 100)]
 pub struct Arguments {
@@ -32,26 +32,26 @@ pub enum Command {
     Run(RunOptions),
     /// Draw pictures of a finished run into its folder
     Render(RenderOptions),
-    /// Open the window: look at a scene and touch it while it runs
+    /// Open the window: watch a scene and change it while it runs
     View(ViewOptions),
     /// List the built-in scenes, show one, or copy one to edit
     Scenes(ScenesOptions),
-    /// Say what would be run: sizes, memory, time step, warnings
+    /// Check a scene without running it: sizes, memory, time step, warnings
     Check(CheckOptions),
     /// Run cases with known answers
     Validate(ValidateOptions),
     /// Measure rates on this machine
     Bench(BenchOptions),
-    /// Terrain models: fetch one, tell what one holds, cut one out
+    /// Terrain models: download, describe, cut out
     #[command(subcommand)]
     Terrain(TerrainCommand),
 }
 
 #[derive(Debug, Subcommand)]
 pub enum TerrainCommand {
-    /// Fetch terrain of the Copernicus GLO-30 model, 30 m cells, from its public server
+    /// Download terrain of the Copernicus GLO-30 model, 30 m cells, from its public server
     Fetch(FetchOptions),
-    /// Tell what terrain files hold: size, cells, reference system, heights
+    /// Describe terrain files: size, cells, reference system, heights
     Info(InfoOptions),
     /// Cut a box out of one or several terrain files
     Clip(ClipOptions),
@@ -62,7 +62,7 @@ pub struct FetchOptions {
     /// The box, longitudes and latitudes in degrees
     #[arg(long, value_name = "W,S,E,N", value_parser = map_box, allow_hyphen_values = true)]
     pub bbox: MapBox,
-    /// The GeoTIFF to write; one that exists is left alone
+    /// The GeoTIFF to write; an existing file is not overwritten
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Base address of another copy of the data [default: CORPUSCLE_GLO30, or the public bucket]
@@ -75,23 +75,23 @@ pub struct InfoOptions {
     /// GeoTIFF or ESRI ASCII grids
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
-    /// Reference system of files that name none: EPSG:27700 or a PROJ string
+    /// Reference system of files without one: EPSG:27700 or a PROJ string
     #[arg(long, value_name = "SYSTEM", allow_hyphen_values = true)]
     pub crs: Option<String>,
 }
 
 #[derive(Debug, Args)]
 pub struct ClipOptions {
-    /// GeoTIFF or ESRI ASCII grids; where they overlap the one named first counts
+    /// GeoTIFF or ESRI ASCII grids; where they overlap the first counts
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
     /// The box, in the coordinates of the first file
     #[arg(long, value_name = "W,S,E,N", value_parser = map_box, allow_hyphen_values = true)]
     pub bbox: MapBox,
-    /// The GeoTIFF to write; one that exists is left alone
+    /// The GeoTIFF to write; an existing file is not overwritten
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Reference system of files that name none: EPSG:27700 or a PROJ string
+    /// Reference system of files without one: EPSG:27700 or a PROJ string
     #[arg(long, value_name = "SYSTEM", allow_hyphen_values = true)]
     pub crs: Option<String>,
 }
@@ -126,7 +126,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 }
 
 impl SceneOptions {
-    /// What is to be changed in the scene.
+    /// The changes of the scene: paths of values, and the values.
     pub fn overrides(&self) -> Vec<(String, String)> {
         let until = self.until.iter().map(|until| ("run.until_s".to_owned(), until.clone()));
         self.set.iter().cloned().chain(until).collect()
@@ -143,23 +143,23 @@ pub struct RunOptions {
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,
-    /// How particles are written [default: vtp]
+    /// Format of the particle files [default: vtp]
     #[arg(long, value_enum)]
     pub frames: Option<Frames>,
-    /// Go on with an interrupted run in its folder
+    /// Resume an interrupted run in its folder
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "until", "output", "frames"])]
     pub resume: Option<PathBuf>,
-    /// Draw a film of the run while it runs: film.mp4 in its folder
+    /// Draw a film during the run: film.mp4 in its folder
     #[arg(long, conflicts_with = "resume")]
     pub film: bool,
-    /// How long the film lasts, s
+    /// Length of the film, s
     #[arg(long, value_name = "S", value_parser = film_length, allow_hyphen_values = true, default_value = "12")]
     pub film_length: f64,
     /// Width and height of the film, pixels
     #[arg(long, value_name = "WxH", value_parser = film_size, default_value = "1920x1080")]
     pub film_size: [u32; 2],
     #[command(flatten)]
-    pub look: LookOptions,
+    pub picture: PictureOptions,
 }
 
 fn film_size(text: &str) -> Result<[u32; 2], String> {
@@ -175,7 +175,7 @@ fn film_length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Where a command computes.
+/// The backend that computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Backend {
     /// `run`, `view`: a GPU if there is one and the scene is large enough, else the CPU; `validate`, `bench`: the CPU
@@ -223,10 +223,10 @@ pub struct RenderOptions {
     /// Make a film of every frame, RUN/film.mp4, instead of pictures
     #[arg(long, conflicts_with_all = ["at", "all"])]
     pub film: bool,
-    /// Where the film goes: a name in .mp4 or .gif, or a folder for PNG files [default: RUN/film.mp4]
+    /// File of the film, .mp4 or .gif, or a folder for PNG files [default: RUN/film.mp4]
     #[arg(long, value_name = "PATH", requires = "film")]
     pub film_to: Option<PathBuf>,
-    /// Frames that the film shows in a second
+    /// Frames per second of the film
     #[arg(long, value_name = "N", default_value = "10", requires = "film")]
     pub rate: f64,
     /// Width and height of the pictures, pixels
@@ -236,10 +236,10 @@ pub struct RenderOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4), default_value = "2")]
     pub samples: u32,
     #[command(flatten)]
-    pub look: LookOptions,
+    pub picture: PictureOptions,
 }
 
-/// The arguments of `corpuscle view`.
+/// The options of `corpuscle view`.
 #[derive(Debug, Args)]
 pub struct ViewOptions {
     /// A built-in scene (`corpuscle scenes` lists them), a TOML file, or the folder of a run [default: the first page]
@@ -248,44 +248,44 @@ pub struct ViewOptions {
     /// Change a value of the scene, as in `--set flood.scheme=sph-swe`; rows of lists are counted from 0
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment, requires = "what")]
     pub set: Vec<(String, String)>,
-    /// Where to compute: `auto` takes the GPU that draws the window, where there is one and the scene is large enough
+    /// Where to compute: `auto` uses the GPU that draws the window if there is one and the scene is large enough
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,
-    /// Play for so many seconds, tell how many pictures there were in a second, and close
+    /// Play for so many seconds, print the pictures per second, and close
     #[arg(long, value_name = "S", hide = true, requires = "what")]
     pub measure: Option<f64>,
 }
 
 #[derive(Debug, Args)]
-pub struct LookOptions {
-    /// From where pictures are taken: an eye that stands somewhere, or straight from above, to scale
+pub struct PictureOptions {
+    /// Camera: perspective from a position, or a plan from above, to scale
     #[arg(long, value_enum, default_value = "orbit")]
     pub camera: CameraKind,
-    /// Where the eye stands as seen from the middle: bearing from north, and height above the horizon, degrees
+    /// Direction of the camera as seen from the centre of the picture: bearing from north, and height above the horizon, degrees
     #[arg(long, value_name = "BEARING,HEIGHT", value_parser = direction, allow_hyphen_values = true)]
     pub from: Option<[f64; 2]>,
-    /// The place in the middle of the picture, in the scene's coordinates
-    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
-    pub look: Option<[f64; 2]>,
-    /// How many times nearer than where all is seen
+    /// Position in the centre of the picture, in the scene's coordinates
+    #[arg(long = "look", value_name = "X,Y", value_parser = position, allow_hyphen_values = true)]
+    pub centre: Option<[f64; 2]>,
+    /// Magnification over the view of the whole scene
     #[arg(long, value_name = "N", value_parser = times, default_value = "1")]
     pub zoom: f64,
-    /// A camera that moves: a table with columns time_s, bearing_deg, height_deg, zoom and, if it is to look elsewhere, x and y
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["camera", "from", "look", "zoom"])]
+    /// Moving camera: a table with columns time_s, bearing_deg, height_deg, zoom and, for another centre, x and y
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["camera", "from", "centre", "zoom"])]
     pub camera_path: Option<PathBuf>,
-    /// What lies on the ground of a flood: natural colours, the water's depth, or a picture (PNG) that covers it from corner to corner
+    /// Surface of the terrain of a flood: natural colours, water depth, or a picture (PNG) that covers it from corner to corner
     #[arg(long, value_name = "natural|depth|FILE.png", default_value = "natural")]
     pub ground: String,
-    /// Draw heights of a flood so many times higher than they are
+    /// Exaggeration of the heights of a flood
     #[arg(long, value_name = "N", value_parser = times, default_value = "1")]
     pub heights: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CameraKind {
-    /// An eye that stands somewhere
+    /// Perspective, from a position
     Orbit,
-    /// Straight from above, north up, to scale
+    /// From above, north up, to scale
     Plan,
 }
 
@@ -296,14 +296,14 @@ fn times(text: &str) -> Result<f64, String> {
     }
 }
 
-fn place(text: &str) -> Result<[f64; 2], String> {
+fn position(text: &str) -> Result<[f64; 2], String> {
     let number = |part: &str| part.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    let place = text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
-    place.ok_or_else(|| "must be two numbers with a comma between them, as in 500,320".into())
+    let position = text.split_once(',').and_then(|(x, y)| Some([number(x)?, number(y)?]));
+    position.ok_or_else(|| "must be two numbers with a comma between them, as in 500,320".into())
 }
 
 fn direction(text: &str) -> Result<[f64; 2], String> {
-    match place(text) {
+    match position(text) {
         Ok([bearing, height @ -5.0..=89.0]) => Ok([bearing, height]),
         _ => Err("must be two numbers of degrees, as in 155,35, the second from -5 to 89".into()),
     }
@@ -322,7 +322,7 @@ pub struct ScenesOptions {
     /// The built-in scene to show or copy
     #[arg(value_name = "NAME")]
     pub name: Option<String>,
-    /// Copy it to this file; one that exists is left alone
+    /// Copy it to this file; an existing file is not overwritten
     #[arg(long, value_name = "FILE", requires = "name")]
     pub copy: Option<PathBuf>,
 }
@@ -338,10 +338,10 @@ pub struct ValidateOptions {
     /// Cases by name (`flood/voronoi/stoker`) or beginning (`flood`) [default: all]
     #[arg(value_name = "CASE")]
     pub cases: Vec<String>,
-    /// Leave out the cases that take more than some seconds
+    /// Leave out cases that take more than about ten seconds
     #[arg(long)]
     pub fast: bool,
-    /// Write a page of tables and charts as well
+    /// Also write a page of tables and charts
     #[arg(long, value_name = "FILE.html")]
     pub report: Option<PathBuf>,
     /// Where to compute
@@ -354,16 +354,16 @@ pub struct BenchOptions {
     /// Benches by name or beginning [default: all]
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Less time for each: a quick look, with more scatter
+    /// Less time for each, with more scatter
     #[arg(long)]
     pub quick: bool,
     /// Time each pass of a step on the GPU too
     #[arg(long)]
     pub passes: bool,
-    /// Floods on the GPU: pictures a second as well, 1920 x 1080, one a step
+    /// Floods on the GPU: also pictures per second, 1920 x 1080, one per step
     #[arg(long)]
     pub draw: bool,
-    /// Draw the water by compute shaders, not raster units, with --draw
+    /// Draw the water by compute shaders instead of raster units, with --draw
     #[arg(long, requires = "draw")]
     pub splats: bool,
     /// Where to compute

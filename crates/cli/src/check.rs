@@ -19,22 +19,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long the model is run to see its time step and rate.
+/// Wall-clock time of the trial run that measures time step and rate.
 const PROBE: Duration = Duration::from_secs(2);
 
-/// Steps of each particle (in a gas, collisions for each ball) that are enough to see how long they take.
+/// Steps of each particle (in a gas, collisions for each ball) after which the trial run may end.
 const PROBE_STEPS: u64 = 50;
 
-/// The part of the run that is looked at first; it is doubled until there are enough steps.
+/// The first part of the run that is tried; it is doubled until there are enough steps.
 const SHORTEST_PROBE: f64 = 1e-3;
 
-/// Parts of a run for which the particles to come are counted.
+/// Parts of a run for which the particles to come are estimated.
 const ESTIMATE_PARTS: usize = 20;
 
-/// Memory for each cell of the ground, bytes, measured: heights, and the maps of maxima and times.
+/// Memory for each cell of the terrain, bytes, measured: heights, and the maps of maxima and times.
 const BYTES_PER_CELL: f64 = 55.0;
 
-/// What would be run.
+/// The result of the check.
 #[derive(Debug, Serialize)]
 struct Report {
     ok: bool,
@@ -43,7 +43,7 @@ struct Report {
     /// None for a model without one.
     terrain: Option<Ground>,
     particles_at_start: usize,
-    /// What particles are called.
+    /// Name of the particles, in the plural.
     #[serde(skip)]
     called: &'static str,
     particles_to_come: usize,
@@ -60,7 +60,7 @@ struct Report {
     warnings: Vec<String>,
 }
 
-/// The ground's size.
+/// Size of the terrain.
 #[derive(Debug, Serialize)]
 struct Ground {
     columns: usize,
@@ -76,7 +76,7 @@ impl Ground {
     }
 }
 
-/// Says what a scene would run, without writing anything.
+/// Checks a scene and prints the result, without writing anything.
 pub fn check(options: &CheckOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     match report(options) {
         Ok(report) if as_json => print_json(&report)?,
@@ -91,7 +91,7 @@ pub fn check(options: &CheckOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is wrong, for programs: the message and, where it is in the scene's text, its place.
+/// An error as JSON: the message and, where it is in the scene's text, file, line and column.
 fn fault(error: &anyhow::Error) -> Value {
     let problem = match error.downcast_ref() {
         Some(corpuscle::Error::Scene(error)) => error.problem(),
@@ -142,17 +142,17 @@ fn report(options: &CheckOptions) -> anyhow::Result<Report> {
     })
 }
 
-/// What a short run shows.
+/// Time step and rate of a trial run.
 struct Probe {
     /// Mean time step, s; none where nothing moved.
     time_step: Option<f64>,
-    /// All of it.
+    /// The whole trial run.
     whole: Work,
     /// Its last part, in which something moved: at least half of its simulated time.
     last: Work,
 }
 
-/// What a part of a run took.
+/// Work and time of a part of a run.
 #[derive(Debug, Clone, Copy, Default)]
 struct Work {
     time: f64,
@@ -162,7 +162,7 @@ struct Work {
 }
 
 impl Work {
-    /// Of a run up to now, that began at `start`.
+    /// The work of a run from `start` to now.
     fn of(model: &dyn Model, start: Instant) -> Self {
         let wall = start.elapsed().as_secs_f64();
         Self { time: model.time(), steps: model.steps(), particle_steps: model.particle_steps(), wall }
@@ -209,8 +209,8 @@ impl Probe {
         Ok(Self { time_step: moved.then(|| now.time / now.steps as f64), whole: now, last })
     }
 
-    /// Wall-clock time that the whole run takes, s. The particles to come are taken to come when the scene says, and to
-    /// stay; time step and rate to be those at the end of the probe.
+    /// Estimated wall-clock time of the whole run, s. It assumes that the particles to come enter when the scene says and
+    /// stay, and that time step and rate are those at the end of the trial run.
     fn estimate(&self, simulation: &Simulation) -> Option<f64> {
         let Self { whole, last, .. } = self;
         self.time_step?;
@@ -231,7 +231,7 @@ impl Probe {
     }
 }
 
-/// The report as people read it.
+/// The result as text.
 fn text(report: &Report) -> String {
     let Report { title, model, terrain, .. } = report;
     let mut lines = vec![format!("{title} ({model})")];

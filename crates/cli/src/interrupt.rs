@@ -4,7 +4,7 @@ use anyhow::Context;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Becomes true on Ctrl-C, and what is going on ends in order. A second one ends it at once.
+/// A flag that becomes true on Ctrl-C, so that the command ends in order. A second Ctrl-C ends it at once.
 pub fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     let handler_stop = stop.clone();
@@ -13,6 +13,6 @@ pub fn stop_on_interrupt() -> anyhow::Result<Arc<AtomicBool>> {
             std::process::exit(1);
         }
     })
-    .context("cannot watch for Ctrl-C")?;
+    .context("cannot install the handler of Ctrl-C")?;
     Ok(stop)
 }

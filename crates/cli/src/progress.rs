@@ -1,4 +1,4 @@
-//! What tells on standard error how far work has come; hidden where that is not a terminal.
+//! Progress bars on standard error; hidden where that is not a terminal.
 
 use crate::output::{duration, number, rate};
 use corpuscle::Progress;
@@ -8,7 +8,7 @@ use std::time::Duration;
 /// Length of the bar in ticks.
 const TICKS: u64 = 1000;
 
-/// A bar for a run.
+/// The progress bar of a run.
 pub struct Bar(ProgressBar);
 
 impl Bar {
@@ -19,7 +19,7 @@ impl Bar {
         Ok(Self(bar))
     }
 
-    /// Shows how far the run has come.
+    /// Shows the progress of the run.
     pub fn show(&self, progress: &Progress) {
         let left = progress.left_s.map(|left| format!(", {} left", duration(left))).unwrap_or_default();
         self.0.set_position((progress.fraction() * TICKS as f64) as u64);
@@ -32,13 +32,13 @@ impl Bar {
         ));
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn clear(&self) {
         self.0.finish_and_clear();
     }
 }
 
-/// Does work of which nobody knows how long it takes, and shows for how long it has been at it.
+/// Does work of unknown duration under a spinner that shows the time elapsed.
 pub fn while_shown<T>(what: &str, work: impl FnOnce() -> T) -> anyhow::Result<T> {
     let spinner = ProgressBar::new_spinner();
     spinner.set_style(ProgressStyle::with_template("{spinner} {msg}, {elapsed}")?);

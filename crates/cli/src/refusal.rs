@@ -1,8 +1,8 @@
-//! Errors that are the input's fault.
+//! Errors caused by the input.
 
 use std::fmt;
 
-/// Something asked for that cannot be done: exit status 2.
+/// An error of the input: exit status 2.
 #[derive(Debug)]
 struct Refusal(String);
 
@@ -14,21 +14,21 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// An error that says what was asked for cannot be done.
+/// Makes an error of the input from its message.
 pub fn refuse(what: impl Into<String>) -> anyhow::Error {
     Refusal(what.into()).into()
 }
 
-/// True where the input is at fault.
+/// True for an error of the input.
 pub fn is_refusal(error: &anyhow::Error) -> bool {
     error.is::<Refusal>() || error.downcast_ref::<corpuscle::Error>().is_some_and(corpuscle::Error::is_refusal)
 }
 
-/// The error with its causes as one paragraph; a cause that its effect tells already is not told twice.
+/// The error with its causes as one paragraph; a cause whose text the message already has is left out.
 pub fn in_words(error: &anyhow::Error) -> String {
-    error.chain().map(ToString::to_string).fold(String::new(), |told, cause| match told.as_str() {
+    error.chain().map(ToString::to_string).fold(String::new(), |message, cause| match message.as_str() {
         "" => cause,
-        so_far if so_far.contains(&cause) => told,
+        so_far if so_far.contains(&cause) => message,
         so_far => format!("{so_far}: {cause}"),
     })
 }
@@ -39,7 +39,7 @@ mod tests {
     use anyhow::Context;
 
     #[test]
-    fn causes_are_told_once() {
+    fn causes_are_written_once() {
         let error = Err::<(), _>(std::io::Error::other("disk is full"));
         let error = error.context("cannot write a.csv: disk is full").context("the run ended").unwrap_err();
         assert_eq!(in_words(&error), "the run ended: cannot write a.csv: disk is full");

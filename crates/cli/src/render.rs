@@ -1,15 +1,15 @@
 //! `corpuscle render`.
 
 use crate::args::RenderOptions;
-use crate::look::picture_settings;
 use crate::output::print_json;
+use crate::picture_options::picture_settings;
 use anyhow::Context;
 use corpuscle::Simulation;
-use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Image;
+use corpuscle::output::{FrameFiles, WallPlaces, followed_paths, put_into_report, write_picture};
 use corpuscle::pictures::{Moment, Pictures};
-use corpuscle::record::{FrameFiles, WallPlaces, followed_paths, put_into_report, write_picture};
 use corpuscle::scene::{Run, Scene};
+use corpuscle::video::{Film, Format};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -24,7 +24,7 @@ struct Drawn {
     file: PathBuf,
 }
 
-/// A film that was made.
+/// A film that was written.
 #[derive(Debug, Serialize)]
 struct Filmed {
     file: PathBuf,
@@ -39,7 +39,7 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
     let files = FrameFiles::list(&options.run, |index| time_of(&scene.run, index)).map_err(corpuscle::Error::from)?;
     let paths = followed_paths(&options.run).map_err(corpuscle::Error::from)?;
     let simulation = Simulation::open_to_restore(scene, &options.run)?;
-    let settings = picture_settings(options.size, options.samples, &options.look)?;
+    let settings = picture_settings(options.size, options.samples, &options.picture)?;
     let mut pictures = Pictures::open(&simulation, settings)?;
     eprintln!("drawing on {}", pictures.device());
     let walls = WallPlaces::read(&options.run).map_err(corpuscle::Error::from)?;
@@ -71,12 +71,12 @@ pub fn render(options: &RenderOptions, as_json: bool) -> anyhow::Result<ExitCode
 /// Puts what was drawn into the run's report, where it has one.
 fn show_in_report(run: &Path) -> anyhow::Result<()> {
     if put_into_report(run).map_err(corpuscle::Error::from)? {
-        eprintln!("{} shows them", run.join("report.html").display());
+        eprintln!("{} was updated", run.join("report.html").display());
     }
     Ok(())
 }
 
-/// Makes a film of all frames.
+/// Writes a film of all frames.
 fn film(
     options: &RenderOptions,
     frames: usize,
@@ -99,7 +99,7 @@ fn film(
     let duration_s = pictures as f64 / options.rate;
     eprintln!("{}: {pictures} pictures, {duration_s} s", file.display());
     if as_json {
-        print_json(&Filmed { file, pictures, duration_s }).context("cannot tell of the film")?;
+        print_json(&Filmed { file, pictures, duration_s }).context("cannot write the description of the film")?;
     }
     Ok(ExitCode::SUCCESS)
 }

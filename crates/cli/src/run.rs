@@ -2,21 +2,21 @@
 
 use crate::args::{Backend, RunOptions};
 use crate::interrupt::stop_on_interrupt;
-use crate::look::picture_settings;
 use crate::output::{duration, number, print_json, rate};
+use crate::picture_options::picture_settings;
 use crate::progress::{Bar, while_shown};
 use crate::scene_argument;
 use crate::terrain::fetch_for;
 use anyhow::anyhow;
 use corpuscle::model::ModelError;
-use corpuscle::record::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
+use corpuscle::output::{FrameFormat, Status, Summary, next_run_folder, put_into_report};
 use corpuscle::{Choice, Filming, Recorder, Simulation, Sink};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// Runs a scene, or goes on with an interrupted run.
+/// Runs a scene, or resumes an interrupted run.
 pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let stop = stop_on_interrupt()?;
     let (mut simulation, mut recorder) = match &options.resume {
@@ -36,24 +36,24 @@ pub fn run(options: &RunOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     sinks.extend(filming.iter_mut().map(|filming| filming as &mut dyn Sink));
     let ended = simulation.run(&mut sinks, &stop, &mut |progress| bar.show(progress));
     bar.clear();
-    let summary = ended.map_err(|error| came_to_grief(&error, &simulation, &recorder))?;
+    let summary = ended.map_err(|error| run_error(&error, &simulation, &recorder))?;
     if filming.is_some() {
         put_into_report(recorder.path()).map_err(corpuscle::Error::from)?;
     }
     let has_frames = options.frames.is_none_or(|frames| FrameFormat::from(frames) != FrameFormat::None);
-    tell(&summary, recorder.path(), has_frames);
+    print_summary(&summary, recorder.path(), has_frames);
     if as_json {
         print_json(&summary)?;
     }
     Ok(if summary.status == Status::Done { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// The film that is asked for. Where there is no device to draw it with, the run goes on without, and a line says how to get one.
+/// Opens the film of `--film`. Where there is no GPU to draw it, a warning is printed and the run goes on without a film.
 fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyhow::Result<Option<Filming>> {
     if !options.film {
         return Ok(None);
     }
-    let settings = picture_settings(options.film_size, 1, &options.look)?;
+    let settings = picture_settings(options.film_size, 1, &options.picture)?;
     match Filming::open(simulation, &folder.join("film.mp4"), settings, options.film_length) {
         Ok(filming) => {
             eprintln!("filming on {}", filming.device());
@@ -70,14 +70,14 @@ fn filming(options: &RunOptions, simulation: &Simulation, folder: &Path) -> anyh
 fn resume(folder: &Path, backend: Backend) -> anyhow::Result<(Simulation, Recorder)> {
     let (mut simulation, recorder) = Recorder::resume(folder)?;
     match backend {
-        // Lest a run change hands, and its last digits, because it was interrupted.
-        Backend::Auto => eprintln!("going on on the CPU; `--backend gpu` goes on on a GPU"),
+        // So that an interruption does not change the backend, and with it the last digits.
+        Backend::Auto => eprintln!("resuming on the CPU; `--backend gpu` resumes on a GPU"),
         _ => compute_on(backend, &mut simulation)?,
     }
     Ok((simulation, recorder))
 }
 
-/// Has the steps taken where they are asked for.
+/// Selects the backend of the steps.
 fn compute_on(backend: Backend, simulation: &mut Simulation) -> Result<(), corpuscle::Error> {
     match backend {
         Backend::Auto => {
@@ -95,7 +95,7 @@ fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simula
     let named = scene_argument::read(options.scene.scene.as_deref(), &options.scene.overrides())?;
     fetch_for(&named.scene, stop)?;
     let mut simulation = while_shown("setting up the scene", || Simulation::open(named.scene, &named.folder))??;
-    // Before there is a folder: what is refused leaves none behind.
+    // Before the folder is made: a refused scene leaves none behind.
     compute_on(options.backend, &mut simulation)?;
     let folder = match &options.output {
         Some(folder) => folder.clone(),
@@ -106,22 +106,22 @@ fn start(options: &RunOptions, stop: &Arc<AtomicBool>) -> anyhow::Result<(Simula
     Ok((simulation, recorder))
 }
 
-/// What to tell of a run that could not go on. Whatever the reason, the input had been accepted: exit status 1.
-fn came_to_grief(error: &corpuscle::Error, simulation: &Simulation, recorder: &Recorder) -> anyhow::Error {
+/// The error of a run that broke down. Whatever the reason, the input had been accepted: exit status 1.
+fn run_error(error: &corpuscle::Error, simulation: &Simulation, recorder: &Recorder) -> anyhow::Error {
     let (time, folder) = (number(simulation.model().time()), recorder.path().display());
     let ended = format!("the run ended at t = {time}");
     match error {
         corpuscle::Error::Model(ModelError::Device(error)) if recorder.can_resume() => {
-            anyhow!("{ended}: {error}; go on on the CPU with `corpuscle run --resume {folder} --backend cpu`")
+            anyhow!("{ended}: {error}; resume on the CPU with `corpuscle run --resume {folder} --backend cpu`")
         }
-        corpuscle::Error::Record(error) if recorder.can_resume() => {
-            anyhow!("{ended}: {error}; then go on with `corpuscle run --resume {folder}`")
+        corpuscle::Error::Output(error) if recorder.can_resume() => {
+            anyhow!("{ended}: {error}; then resume with `corpuscle run --resume {folder}`")
         }
         error => anyhow!("{ended}; what was written up to there stays readable in {folder}: {error}"),
     }
 }
 
-/// What was done and how fast, in words.
+/// The work done and its rate, as text.
 fn work(summary: &Summary) -> String {
     match (summary.collisions, summary.collisions_per_s, summary.particle_steps_per_s) {
         (Some(collisions), Some(per_second), _) => {
@@ -132,12 +132,12 @@ fn work(summary: &Summary) -> String {
     }
 }
 
-/// Tells people how it went, and how to get pictures where there are frames to draw.
-fn tell(summary: &Summary, folder: &Path, has_frames: bool) {
+/// Prints the summary of a run and, where there are frames to draw, the command for pictures.
+fn print_summary(summary: &Summary, folder: &Path, has_frames: bool) {
     let folder = folder.display();
     if summary.status == Status::Stopped {
         let time = number(summary.simulated_time_s);
-        eprintln!("interrupted at t = {time}; go on with\n    corpuscle run --resume {folder}");
+        eprintln!("interrupted at t = {time}; resume with\n    corpuscle run --resume {folder}");
         return;
     }
     eprintln!(
@@ -154,7 +154,7 @@ fn tell(summary: &Summary, folder: &Path, has_frames: bool) {
     }
     eprintln!("results in {folder}");
     if has_frames {
-        // Whether a device is there is found out when it is needed: `render` says what to install.
+        // Not checked here whether there is a GPU: `render` says what to install.
         eprintln!("pictures with `corpuscle render {folder}`, on any GPU or software Vulkan (mesa-vulkan-drivers)");
     }
 }

@@ -1,21 +1,21 @@
-//! What a user may name as a scene.
+//! The scene argument of a command: a built-in scene or a file.
 
 use crate::refusal::refuse;
 use crate::suggestion::suggest_scene;
 use corpuscle::scene::{Scene, builtin, scenes};
 use std::path::{Path, PathBuf};
 
-/// A scene that a user named.
+/// The scene that the command line names.
 pub struct Named {
     /// The scene.
     pub scene: Scene,
     /// The folder that its relative paths start from.
     pub folder: PathBuf,
-    /// One word for it, for the run's folder: `valley`.
+    /// Its short name, for the run's folder: `valley`.
     pub short_name: String,
 }
 
-/// What runs when no scene is named.
+/// The scene that runs when none is named.
 const DEFAULT: &str = "flood/valley";
 
 /// Endings of terrain files; `.gz` may follow.
@@ -51,7 +51,7 @@ fn is_terrain(path: &Path) -> bool {
     TERRAIN_ENDINGS.iter().any(|ending| name.ends_with(&format!(".{ending}")))
 }
 
-/// The text for a scene that is neither built in nor a file.
+/// The error message for a name that is neither a built-in scene nor a file.
 pub fn not_found(name: &str) -> String {
     let nearest = scenes()
         .map(|scene| (strsim::jaro_winkler(name, scene.name), scene.name))

@@ -46,7 +46,7 @@ fn list(as_json: bool) -> anyhow::Result<ExitCode> {
 fn copy(scene: Builtin, file: &Path, as_json: bool) -> anyhow::Result<()> {
     let mut out = File::create_new(file).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => {
-            refuse(format!("{} is there already and is left alone; name another file", file.display()))
+            refuse(format!("{} exists already and is not overwritten; name another file", file.display()))
         }
         _ => anyhow::Error::new(error).context(format!("cannot write {}", file.display())),
     })?;

@@ -1,4 +1,4 @@
-//! Picking cases and benches by name.
+//! Selection of cases and benches by name.
 
 use crate::refusal::refuse;
 

@@ -4,19 +4,19 @@ use corpuscle::scene::TerrainFile;
 use corpuscle::terrain::Terrain;
 use std::path::Path;
 
-/// Particles that the suggested inflow brings in.
+/// Particles that the suggested inflow adds.
 const PARTICLES: f64 = 5000.0;
 
-/// How long the suggested run lasts, s.
+/// Duration of the suggested run, s.
 const UNTIL: f64 = 3600.0;
 
-/// About so many places are looked at for a low one.
-const LOOKS: f64 = 250_000.0;
+/// Cells that are compared to find a low one, about.
+const CANDIDATES: f64 = 250_000.0;
 
-/// The surroundings of a place reach out to this part of the shorter side: 1 / 15.
+/// The surroundings of a cell reach to the shorter side of the terrain over this number.
 const SURROUNDINGS: usize = 15;
 
-/// Why a terrain is not a scene, and the three lines that make it one.
+/// A message for a terrain file given as a scene, with the three lines of a scene for it.
 pub fn suggest_scene(path: &Path) -> Result<String, corpuscle::Error> {
     let file = TerrainFile { path: path.to_owned(), crs: None, no_data: Default::default() };
     let terrain = Terrain::open(&corpuscle::scene::Terrain::File(file), 0, Path::new(""))?;
@@ -44,21 +44,21 @@ fn scene_lines(path: &Path, terrain: &Terrain) -> String {
     )
 }
 
-/// The place, m, that lies deepest below its surroundings: a valley.
+/// The position, m, that lies deepest below its surroundings: a valley.
 fn valley(terrain: &Terrain) -> [f64; 2] {
     let grid = terrain.map_grid();
-    let stride = ((grid.columns * grid.rows) as f64 / LOOKS).sqrt().ceil() as usize;
+    let stride = ((grid.columns * grid.rows) as f64 / CANDIDATES).sqrt().ceil() as usize;
     let around = (grid.columns.min(grid.rows) / SURROUNDINGS).max(1) as isize;
     let cells = |count: usize| (0..count).step_by(stride);
-    let places = cells(grid.rows).flat_map(|row| cells(grid.columns).map(move |column| [column, row]));
-    let depths = places.filter_map(|cell| Some((depth_below(terrain, cell, around)?, cell)));
+    let candidates = cells(grid.rows).flat_map(|row| cells(grid.columns).map(move |column| [column, row]));
+    let depths = candidates.filter_map(|cell| Some((depth_below(terrain, cell, around)?, cell)));
     match depths.max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((_, [column, row])) => grid.centre(column, row),
         None => grid.centre(grid.columns / 2, grid.rows / 2),
     }
 }
 
-/// How far a cell lies below the mean of eight others round it, m; none where one of them has no data.
+/// Depth of a cell below the mean of eight others round it, m; none where one of them has no data.
 fn depth_below(terrain: &Terrain, [column, row]: [usize; 2], around: isize) -> Option<f64> {
     let height = |east: isize, south: isize| {
         let (column, row) = (column.checked_add_signed(east * around)?, row.checked_add_signed(south * around)?);

@@ -58,14 +58,14 @@ pub fn validate(options: &ValidateOptions, as_json: bool) -> anyhow::Result<Exit
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// What a case gave.
+/// The results of a case.
 struct Done {
     rows: Vec<Row>,
     charts: Vec<Chart>,
     took: Duration,
 }
 
-/// Runs cases beside each other and takes what they gave in their order: most are so small that two of them on a thread each are done sooner than
+/// Runs cases in parallel and takes their results in order: most are so small that two of them on a thread each are done sooner than
 /// one after the other on both. A GPU takes one after the other.
 fn each(
     cases: &[&Case],
@@ -75,27 +75,27 @@ fn each(
     let threads = rayon::current_num_threads();
     let beside = if with.gpu.is_some() { 1 } else { ((threads as f64).sqrt().ceil() as usize).min(cases.len()).max(1) };
     let next = AtomicUsize::new(0);
-    let (tell, told) = channel();
+    let (sender, receiver) = channel();
     std::thread::scope(|scope| {
         for _ in 0..beside {
             let pool = rayon::ThreadPoolBuilder::new().num_threads((threads / beside).max(1)).build()?;
-            let (tell, with, next) = (tell.clone(), with.clone(), &next);
+            let (sender, with, next) = (sender.clone(), with.clone(), &next);
             let work = move || {
                 while let Some((index, case)) = next_of(cases, next) {
                     let start = Instant::now();
                     let rows = case.rows(&with);
                     let done = Done { rows, charts: with.take_charts(), took: start.elapsed() };
-                    if tell.send((index, done)).is_err() {
+                    if sender.send((index, done)).is_err() {
                         break;
                     }
                 }
             };
             scope.spawn(move || pool.install(work));
         }
-        drop(tell);
+        drop(sender);
         let mut waiting = BTreeMap::new();
         let mut taken = 0;
-        for (ended, (index, done)) in told.into_iter().enumerate() {
+        for (ended, (index, done)) in receiver.into_iter().enumerate() {
             let (name, seconds) = (cases[index].name, done.took.as_secs_f64());
             eprintln!("{name} took {seconds:.1} s ({} of {} cases)", ended + 1, cases.len());
             waiting.insert(index, done);
@@ -108,13 +108,13 @@ fn each(
     })
 }
 
-/// The next of the cases that nobody has begun.
+/// The next case that has not begun.
 fn next_of<'a>(cases: &[&'a Case], next: &AtomicUsize) -> Option<(usize, &'a Case)> {
     let index = next.fetch_add(1, Ordering::Relaxed);
     cases.get(index).map(|case| (index, *case))
 }
 
-/// A row as the report has it.
+/// A row in the form of the report.
 fn measure(row: &Row) -> ValidatedMeasure {
     ValidatedMeasure {
         name: row.measure.clone(),
@@ -127,7 +127,7 @@ fn measure(row: &Row) -> ValidatedMeasure {
     }
 }
 
-/// A row as people read it: verdict, case, measure, value and bound.
+/// A row as text: verdict, case, measure, value and bound.
 fn line(row: &Row) -> String {
     let verdict = match row.pass {
         Some(true) => "pass",

@@ -1,4 +1,4 @@
-//! `corpuscle view`: starts the program with the window.
+//! `corpuscle view`: starts the window program.
 //!
 //! The window's libraries are a third of the whole build, so they are left out of the program that runs scenes.
 
@@ -9,25 +9,25 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// The package, and without an ending the file, of the program with the window.
+/// Name of the package of the window program, and of its file without the ending.
 const NAME: &str = "corpuscle-window";
 
-/// Starts the program with the window on the arguments of this process and waits until it ends.
+/// Starts the window program on the arguments of this process and waits until it ends.
 ///
-/// It is looked for beside this program. Under `cargo run` it is built first.
+/// It lies in the folder of this program. Under `cargo run` it is built first.
 ///
 /// # Errors
 ///
 /// The program is missing, cannot be built or cannot be started.
 pub fn start_window_program(_: &ViewOptions) -> anyhow::Result<ExitCode> {
-    let own = env::current_exe().context("cannot tell where this program lies")?;
+    let own = env::current_exe().context("cannot find the path of this program")?;
     let window = own.with_file_name(format!("{NAME}{}", env::consts::EXE_SUFFIX));
     match cargo() {
         Some(cargo) => build(&cargo, &own)?,
         None if window.exists() => {}
         None => {
             return Err(refuse(format!(
-                "the window is a program of its own, {NAME}, and {} is not there: \
+                "the window is a program of its own, {NAME}, and {} does not exist: \
                  `cargo install --locked --path crates/window` installs it",
                 window.display()
             )));
@@ -45,7 +45,7 @@ fn cargo() -> Option<PathBuf> {
     env::var_os("CARGO").map(PathBuf::from)
 }
 
-/// Builds the program with the window beside this one, with the same profile.
+/// Builds the window program into the folder of this one, with the same profile.
 fn build(cargo: &Path, own: &Path) -> anyhow::Result<()> {
     let folder = own.parent().and_then(Path::file_name).unwrap_or_default();
     let profile = if folder == "debug" { "dev".as_ref() } else { folder };

@@ -19,7 +19,7 @@ fn scenes_are_listed_shown_and_copied_but_never_over_a_file() {
     assert_eq!(fs::read_to_string(place.path("mine.toml")).unwrap(), shown.stdout);
     place.write("mine.toml", "mine");
     let again = place.run(&["scenes", "flood/dam-break", "--copy", "mine.toml"]).expect_status(2);
-    assert!(again.stderr.contains("mine.toml is there already"), "{}", again.stderr);
+    assert!(again.stderr.contains("mine.toml exists already"), "{}", again.stderr);
     assert_eq!(fs::read_to_string(place.path("mine.toml")).unwrap(), "mine");
     let unknown = place.run(&["scenes", "flood/vally"]).expect_status(2);
     assert!(unknown.stderr.contains("did you mean flood/valley?"), "{}", unknown.stderr);

@@ -66,12 +66,12 @@ fn a_box_is_fetched_told_of_and_cut() {
     let part = json(&run(&clip));
     assert!(part["columns"].as_u64().unwrap() < 15 && folder.path().join("part.tif").exists());
 
-    // What exists is left alone.
+    // What exists is not overwritten.
     let before = fs::read(folder.path().join("dem.tif")).unwrap();
     for arguments in [&fetch[..], &["terrain", "clip", "part.tif", "--bbox", "6.45,85.51,6.48,85.515", "-o", "dem.tif"]]
     {
         let output = run(arguments);
-        assert!(output.status.code() == Some(2) && told(&output).contains("left alone"), "{}", told(&output));
+        assert!(output.status.code() == Some(2) && told(&output).contains("not overwritten"), "{}", told(&output));
     }
     assert_eq!(fs::read(folder.path().join("dem.tif")).unwrap(), before);
     // Another address, of which nothing is in the cache.

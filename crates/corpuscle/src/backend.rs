@@ -1,30 +1,30 @@
-//! Where the steps are taken, where nobody says.
+//! Automatic choice of the backend.
 
 use crate::Simulation;
 use corpuscle_gpu::{Gpu, GpuError, GpuKind};
 use corpuscle_scene::Scheme;
 
-/// Fewer particles than this, with those that come, are no work for a GPU. A step is some twenty kernels, one after
+/// Fewest particles, with those to come, for which the GPU is chosen. A step is some twenty kernels, one after
 /// another, of five to ten microseconds each however few particles there are: 0.2 ms at most. In that time one core
 /// takes 200 to 300 steps of a particle (1.3 million a second, see the guide's benchmarks), 16 cores some 4000. A GPU
 /// has not been measured yet.
 pub const FEWEST_ON_GPU: usize = 10_000;
 
-/// Why floods of scheme voronoi stay on the CPU where nobody says otherwise: their speed on a GPU has not been measured yet.
+/// Why floods of scheme voronoi stay on the CPU by default: their speed on a GPU has not been measured yet.
 const VORONOI: &str = "scheme voronoi runs on the CPU unless `--backend gpu` is given";
 
-/// Where steps are taken, and why there.
+/// A choice of the backend, with its reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Choice {
-    /// On the GPU; else on the CPU.
+    /// True for the GPU, false for the CPU.
     pub is_gpu: bool,
-    /// Why, in words; empty where there is no GPU to choose.
+    /// The reason, as text; empty where there is no GPU to choose.
     pub why: String,
 }
 
 impl Simulation {
-    /// Lets a GPU take the steps where there is one, it can compute this scene, and the scene is or becomes
-    /// large enough for it, by an estimate of the water that comes; the CPU elsewhere. Software in place of a
+    /// Chooses the GPU where there is one, it can compute this scene, and the scene is or becomes
+    /// large enough for it, by an estimate of the water to come; else the CPU. Software in place of a
     /// GPU is slower than the CPU's own program, and never chosen.
     pub fn use_best(&mut self) -> Choice {
         self.use_best_of(Gpu::open)

@@ -1,20 +1,20 @@
-//! What can go wrong between a scene and the end of its run.
+//! Errors of opening, running and drawing a scene.
 
 use corpuscle_model::ModelError;
-use corpuscle_output::RecordError;
+use corpuscle_output::OutputError;
 use corpuscle_scene::SceneError;
 use corpuscle_terrain::TerrainError;
 
-/// Why a scene cannot be opened or its run cannot go on. The text is that of the part where it happened.
+/// An error of opening, running or drawing a scene. The text is that of the part where it happened.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The scene, or a time series that it names.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The ground.
+    /// The terrain.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
-    /// Terrain from a server.
+    /// The download of terrain.
     #[cfg(feature = "fetch")]
     #[error(transparent)]
     Fetch(#[from] corpuscle_fetch::FetchError),
@@ -23,7 +23,7 @@ pub enum Error {
     Model(#[from] ModelError),
     /// The run's folder.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Output(#[from] OutputError),
     /// The GPU that was to compute.
     #[cfg(feature = "gpu")]
     #[error(transparent)]
@@ -32,9 +32,9 @@ pub enum Error {
     #[cfg(feature = "pictures")]
     #[error(transparent)]
     Render(#[from] corpuscle_render::RenderError),
-    /// A picture for the ground.
+    /// A picture for the surface of the terrain.
     #[cfg(feature = "pictures")]
-    #[error("{} cannot be laid on the ground: {what}; it must be a PNG file", path.display())]
+    #[error("{} cannot be laid on the terrain: {what}; it must be a PNG file", path.display())]
     GroundPicture {
         /// Its file.
         path: std::path::PathBuf,
@@ -48,7 +48,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// True where what was asked for cannot be run as it is; false where a sound run came to grief.
+    /// True for an error of the input; false where an accepted run failed.
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Scene(_) | Self::Terrain(_) => true,
@@ -67,11 +67,11 @@ impl Error {
             Self::Model(error) => !matches!(error, ModelError::Breakdown { .. } | ModelError::Device(_)),
             #[cfg(feature = "gpu")]
             Self::Gpu(_) => true,
-            Self::Record(error) => !matches!(
+            Self::Output(error) => !matches!(
                 error,
-                RecordError::Write { .. }
-                    | RecordError::GaugeCount { .. }
-                    | RecordError::Map(TerrainError::Write { .. })
+                OutputError::Write { .. }
+                    | OutputError::GaugeCount { .. }
+                    | OutputError::Map(TerrainError::Write { .. })
             ),
         }
     }

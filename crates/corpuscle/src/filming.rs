@@ -19,7 +19,7 @@ pub struct Filming {
 }
 
 impl Filming {
-    /// Makes ready to film a scene, `seconds` long at 25 pictures a second, into the file that is named.
+    /// Opens a film of a scene, `seconds` long at 25 pictures per second, into a file.
     ///
     /// # Errors
     /// Those of [`Pictures::open`] and [`Film::create`].
@@ -66,7 +66,7 @@ impl Sink for Filming {
     }
 
     fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {
-        // Of a run that ended before its end there is a film up to there.
+        // A run that was interrupted has a film up to there.
         Ok(self.film.take().map_or(Ok(()), Film::finish)?)
     }
 }

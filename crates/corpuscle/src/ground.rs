@@ -1,11 +1,11 @@
-//! The ground of a flood.
+//! The terrain of a flood.
 
 use crate::Error;
 use corpuscle_scene::Terrain as Scene;
 use corpuscle_terrain::Terrain;
 use std::path::Path;
 
-/// The ground that a scene asks for; that of `[terrain.fetch]` from the cache, or over the network at first use.
+/// The terrain of a scene; that of `[terrain.fetch]` from the cache, or over the network at first use.
 pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain, Error> {
     #[cfg(feature = "fetch")]
     if let Scene::Fetch(scene) = scene {
@@ -15,8 +15,8 @@ pub(crate) fn ground(scene: &Scene, seed: u64, folder: &Path) -> Result<Terrain,
     Ok(Terrain::open(scene, seed, folder)?)
 }
 
-/// Fetches the terrain of a scene that has `[terrain.fetch]` into the cache, so that opening it needs no network; gives
-/// the bytes that came over the network. Nothing happens for other scenes.
+/// Downloads the terrain of a scene that has `[terrain.fetch]` into the cache, so that opening it needs no network; returns
+/// the bytes downloaded. Nothing happens for other scenes.
 ///
 /// # Errors
 /// [`Error::Fetch`], for which see there.

@@ -42,11 +42,11 @@ pub use corpuscle_gas::LiveChange as GasLiveChange;
 #[cfg(any(feature = "gpu", feature = "pictures"))]
 pub use corpuscle_gpu as gpu;
 pub use corpuscle_model as model;
-pub use corpuscle_output as record;
+pub use corpuscle_output as output;
 pub use corpuscle_scene as scene;
 pub use corpuscle_terrain as terrain;
 #[cfg(feature = "film")]
-pub use corpuscle_video as film;
+pub use corpuscle_video as video;
 
 #[cfg(feature = "gpu")]
 pub use backend::{Choice, FEWEST_ON_GPU};

@@ -1,11 +1,11 @@
-//! Live changes: what is changed while a scene runs.
+//! Live changes: changes of a running scene.
 
 use corpuscle_dew::LiveChange as Dew;
 use corpuscle_flood::LiveChange as Flood;
 use corpuscle_gas::LiveChange as Gas;
 use corpuscle_model::{Model, ModelError};
 
-/// A change of a model that runs.
+/// A change of a running model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LiveChange {
     /// Of a gas.

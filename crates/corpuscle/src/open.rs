@@ -1,4 +1,4 @@
-//! From a scene to a model.
+//! Opening of scenes.
 
 use crate::models::{self, Opened, Opening};
 use crate::{Error, Simulation};
@@ -7,7 +7,7 @@ use corpuscle_model::{CpuOnly, Model, ModelError};
 use corpuscle_scene::Scene;
 use std::path::Path;
 
-/// The error of a model that runs on the CPU only, where a GPU was asked for.
+/// The error of a model that runs on the CPU only, where a GPU was requested.
 #[cfg(feature = "gpu")]
 fn refused(model: &dyn Model) -> Error {
     let why = model.cpu_only().map(|CpuOnly { what, remedy }| format!("{what}: {remedy}"));
@@ -15,10 +15,10 @@ fn refused(model: &dyn Model) -> Error {
 }
 
 impl Simulation {
-    /// Makes a scene ready to run: reads its ground and sets up its model. Relative paths are taken from `folder`.
+    /// Opens a scene: reads its terrain and sets up its model. Relative paths are taken from `folder`.
     ///
     /// # Errors
-    /// Where the scene, its ground or a file that it names cannot be used.
+    /// Where the scene, its terrain or a file that it names cannot be used.
     pub fn open(scene: Scene, folder: &Path) -> Result<Self, Error> {
         Self::open_with(scene, folder, false)
     }

@@ -1,6 +1,6 @@
-//! How far a run has come.
+//! Progress of a run.
 
-/// How far a run has come, for people to watch.
+/// Progress of a run, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
     /// Simulated time, s.
@@ -11,14 +11,14 @@ pub struct Progress {
     pub particles: usize,
     /// Particles moved (of a gas: collisions) per second of wall-clock time, since the start or the resumption.
     pub particle_steps_per_s: f64,
-    /// What is counted so, in words: `particle-steps` or `collisions`.
+    /// Unit of that rate: `particle-steps` or `collisions`.
     pub counted: &'static str,
-    /// Wall-clock time left if it goes on like this, s; none before the first step.
+    /// Estimated wall-clock time left, s; none before the first step.
     pub left_s: Option<f64>,
 }
 
 impl Progress {
-    /// The part of the run that is done, 0 to 1.
+    /// Fraction of the run that is done, 0 to 1.
     pub fn fraction(&self) -> f64 {
         (self.time / self.until).clamp(0.0, 1.0)
     }

@@ -9,7 +9,7 @@ use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Writes a run into its folder; when the run has ended, its report too.
+/// The sink that writes a run into its folder and, at the end, its report.
 pub struct Recorder {
     folder: RunFolder,
     terrain: Option<Arc<Terrain>>,
@@ -20,7 +20,7 @@ impl Recorder {
     /// Starts the folder of a run.
     ///
     /// # Errors
-    /// [`corpuscle_output::RecordError`] where the folder holds anything or cannot be written.
+    /// [`corpuscle_output::OutputError`] where the folder holds anything or cannot be written.
     pub fn create(path: &Path, simulation: &Simulation, frames: FrameFormat) -> Result<Self, Error> {
         let scene_text = simulation.scene().to_toml()?;
         let folder = RunFolder::create(path, &scene_text, &simulation.model().gauge_columns(), frames)?;
@@ -29,7 +29,7 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Takes up the folder of an interrupted run: opens its scene, and goes on from its checkpoint.
+    /// Resumes an interrupted run from its folder: opens its scene and restores its checkpoint.
     ///
     /// # Errors
     /// Where the folder holds no run, no checkpoint or one that does not fit.
@@ -37,7 +37,7 @@ impl Recorder {
         Self::resume_with(path, |scene| Simulation::open_to_restore(scene, path))
     }
 
-    /// [`Recorder::resume`] with a model of one's own: `open` makes the scene ready.
+    /// [`Recorder::resume`] with a caller's own model: `open` opens the scene.
     ///
     /// # Errors
     /// As [`Recorder::resume`].
@@ -65,7 +65,7 @@ impl Recorder {
         self.folder.path()
     }
 
-    /// True where there is a checkpoint to go on from.
+    /// True where there is a checkpoint to resume from.
     pub fn can_resume(&self) -> bool {
         self.folder.has_checkpoint()
     }

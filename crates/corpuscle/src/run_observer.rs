@@ -9,7 +9,7 @@ use corpuscle_model::{AdvanceObserver, ModelProgress};
 use std::cell::RefCell;
 use std::time::Instant;
 
-/// Where this part of the run began, to measure its rate.
+/// Start of this part of the run, to measure its rate.
 pub(crate) struct Meter {
     pub start: Instant,
     pub time: f64,
@@ -56,11 +56,11 @@ pub(crate) struct RunObserver<'a, 'sink> {
     pub on_progress: &'a mut dyn FnMut(&Progress),
     pub checkpoints: CheckpointTimer,
     pub glances: Glances<'a>,
-    /// What a sink failed with.
+    /// The error of a sink.
     pub failed: Option<Error>,
 }
 
-/// When sinks want glances, of those that do, and up to when they had them, s.
+/// For sinks that take glances: when each needs one next, and the time of the last, s.
 #[cfg_attr(not(feature = "pictures"), expect(dead_code, reason = "without pictures no sink takes glances"))]
 pub(crate) struct Glances<'a> {
     pub due: &'a [Option<Schedule>],
@@ -69,7 +69,7 @@ pub(crate) struct Glances<'a> {
 
 #[cfg(feature = "pictures")]
 impl Glances<'_> {
-    /// When a sink wants one next, s.
+    /// When a sink needs one next, s.
     pub fn next(&self) -> f64 {
         let after = |due: &Option<Schedule>| due.and_then(|due| due.after(self.seen));
         self.due.iter().filter_map(after).fold(f64::INFINITY, f64::min)
@@ -78,7 +78,7 @@ impl Glances<'_> {
 
 #[cfg(feature = "pictures")]
 impl RunObserver<'_, '_> {
-    /// Gives a glance to the sinks for which it is due; returns when the next is, s.
+    /// Passes a glance to the sinks for which it is due; returns when the next is due, s.
     pub fn show(&mut self, glance: &Glance) -> f64 {
         let (seen, now) = (self.glances.seen, glance.frame.time);
         for (sink, due) in self.sinks.iter_mut().zip(self.glances.due) {
@@ -92,7 +92,7 @@ impl RunObserver<'_, '_> {
     }
 }
 
-/// The same, shared with what takes glances meanwhile.
+/// The same, shared with the callback that takes glances.
 pub(crate) struct SharedRunObserver<'a, 'b, 'sink>(pub &'a RefCell<RunObserver<'b, 'sink>>);
 
 impl AdvanceObserver for SharedRunObserver<'_, '_, '_> {

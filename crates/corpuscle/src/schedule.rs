@@ -1,4 +1,4 @@
-//! When a run is looked at.
+//! Output times of a run.
 
 /// Times at multiples of a period, and the end of the run.
 ///

@@ -1,4 +1,4 @@
-//! A scene made ready, and its run.
+//! A simulation: an open scene, and its run.
 
 use crate::models::{self, COLLISIONS};
 use crate::run_observer::{CheckpointTimer, Glances, Meter, RunObserver, SharedRunObserver};
@@ -15,23 +15,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// A run pauses at least this often, to report progress and to keep its state.
+/// Longest time between two reports of progress or checkpoints.
 const PAUSES: f64 = 1000.0;
 
-/// A scene made ready to run.
+/// A scene that is open, ready to run.
 pub struct Simulation {
     scene: Scene,
     terrain: Option<Arc<Terrain>>,
     model: Box<dyn Model>,
     /// Wall-clock time spent before this part of the run, s.
     wall_before: f64,
-    /// True where the run goes on from a checkpoint: what is due at its time is taken already.
+    /// True where the run resumes from a checkpoint: output due at its time is written already.
     resumed: bool,
     notes: Vec<String>,
 }
 
 impl Simulation {
-    /// Puts together a scene with all defaults filled in, its ground, if it has one, and its model.
+    /// A simulation of a scene with all defaults filled in, its terrain, if it has one, and its model.
     pub fn new(scene: Scene, terrain: Option<Arc<Terrain>>, model: Box<dyn Model>) -> Self {
         Self { scene, terrain, model, wall_before: 0.0, resumed: false, notes: Vec::new() }
     }
@@ -40,7 +40,7 @@ impl Simulation {
         Self { notes, ..self }
     }
 
-    /// What was chosen from the terrain where the scene leaves it open, in sentences.
+    /// Values chosen from the terrain where the scene leaves them open, in sentences.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -50,7 +50,7 @@ impl Simulation {
         &self.scene
     }
 
-    /// The ground, where there is one.
+    /// The terrain, if there is one.
     pub fn terrain(&self) -> Option<&Arc<Terrain>> {
         self.terrain.as_ref()
     }
@@ -65,7 +65,7 @@ impl Simulation {
         &mut *self.model
     }
 
-    /// Changes the model while it runs. What was changed is not part of the scene: the scene as written does not give this run again.
+    /// Makes a live change of the model. It is not part of the scene: the scene as written does not reproduce this run.
     ///
     /// # Errors
     /// [`corpuscle_model::ModelError::Setup`] where the scene is of another model, or cannot be changed so: nothing has changed then.
@@ -73,14 +73,14 @@ impl Simulation {
         Ok(change.into().change(self.model_mut())?)
     }
 
-    /// The water at a place of a flood, in model coordinates; none where the scene is none.
+    /// The water at a position of a flood, in model coordinates; none for other models.
     pub fn water_at(&self, [x, y]: [f64; 2]) -> Option<Sample> {
         let model: &dyn Any = &*self.model;
         as_flood(model).map(|flood| flood.sample(x, y))
     }
 
-    /// About how many particles inflows, rain and held levels bring from the time shown to the end of the run; in scheme voronoi, how many
-    /// more get wet. What leaves meanwhile is not taken off. 0 for models that no water comes into.
+    /// Estimated number of particles that inflows, rain and prescribed levels add from now to the end of the run; in scheme voronoi, how many
+    /// more become wet. Outflow is not subtracted. 0 for models without inflow of water.
     pub fn particles_to_come(&self) -> f64 {
         self.particles_to_come_until(self.scene.run.until_s)
     }
@@ -91,10 +91,10 @@ impl Simulation {
         as_flood(model).map_or(0.0, |flood| flood.particles_to_come(self.model.time(), time))
     }
 
-    /// Places a gauge in a flood while it runs, at a place in model coordinates. Its columns come after all others.
+    /// Places a gauge in a flood while it runs, at a position in model coordinates. Its columns come after all others.
     ///
     /// # Errors
-    /// [`corpuscle_model::ModelError::Setup`] where the scene is no flood, the name is taken, or the place lies outside the terrain.
+    /// [`corpuscle_model::ModelError::Setup`] where the scene is no flood, the name is taken, or the position lies outside the terrain.
     pub fn place_gauge(&mut self, name: &str, at: [f64; 2]) -> Result<(), Error> {
         let model: &mut dyn Any = &mut *self.model;
         let none = || ModelError::Setup("gauges are placed in floods only".into());
@@ -102,7 +102,7 @@ impl Simulation {
         Ok(flood.place_gauge(name, at)?)
     }
 
-    /// What a user should know, in sentences: of the ground, then of the model.
+    /// Warnings to the user, in sentences: of the terrain, then of the model.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.terrain.as_ref().map_or_else(Vec::new, |terrain| terrain.warnings().to_vec());
         for warning in self.model.warnings() {
@@ -113,7 +113,7 @@ impl Simulation {
         warnings
     }
 
-    /// Goes on from a state that [`Model::save`] wrote.
+    /// Restores a state that [`Model::save`] wrote.
     ///
     /// # Errors
     /// [`corpuscle_model::ModelError::Checkpoint`] where the state does not fit.
@@ -124,10 +124,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Runs to the scene's end, or until `stop` becomes true; then a checkpoint is kept and the summary says so.
+    /// Runs to the end of the scene, or until `stop` becomes true; then a checkpoint is written and the summary says so.
     ///
     /// # Errors
-    /// Where the model breaks down or a sink fails. The sinks are then finished with what there is.
+    /// Where the model breaks down or a sink fails. The sinks are then finished with the output so far.
     pub fn run(
         &mut self,
         sinks: &mut [&mut dyn Sink],
@@ -141,7 +141,7 @@ impl Simulation {
             Err(_) => Status::Failed,
         };
         let mut summary = self.summary(status, start);
-        // A sink that fails does not keep the others from their end; the first error is the one to tell.
+        // All sinks are finished even if one fails; the first error is returned.
         let finished: Vec<_> = sinks.iter_mut().map(|sink| sink.finish(&*self.model, &mut summary)).collect();
         ended?;
         finished.into_iter().collect::<Result<(), Error>>()?;
@@ -219,7 +219,7 @@ impl Simulation {
         }
     }
 
-    /// Whether a sink takes glances of this model for its pictures.
+    /// True where a sink accepts glances of this model for its pictures.
     #[cfg(feature = "pictures")]
     fn glances(&self, sink: &dyn Sink) -> bool {
         sink.glances_on().is_some_and(|gpu| self.is_seen_on(gpu))
@@ -230,7 +230,7 @@ impl Simulation {
         false
     }
 
-    /// Goes on to a time, s; gives up to when glances were given.
+    /// Advances to a time, s; returns the time of the last glance.
     #[cfg(feature = "pictures")]
     fn advance(&mut self, time: f64, stop: &AtomicBool, observer: RunObserver<'_, '_>) -> Result<f64, Error> {
         let first = observer.glances.next();
@@ -238,7 +238,7 @@ impl Simulation {
         let mut show = |glance| observer.borrow_mut().show(&glance);
         self.advance_shown(time, stop, &mut SharedRunObserver(&observer), first, &mut show)?;
         let RunObserver { glances, failed, .. } = observer.into_inner();
-        // A model that was called back may stand a little before what it has shown.
+        // A model that was told to return may be a little before its last glance.
         failed.map_or(Ok(glances.seen), Err)
     }
 
@@ -250,7 +250,7 @@ impl Simulation {
         failed.map_or(Ok(glances.seen), Err)
     }
 
-    /// Has the state kept, to go on from.
+    /// Has the sinks write a checkpoint.
     fn keep(&self, sinks: &mut [&mut dyn Sink], start: Instant) -> Result<(), Error> {
         let clock = Clock { time_s: self.model.time(), wall_time_s: self.wall_time(start) };
         sinks.iter_mut().try_for_each(|sink| sink.checkpoint(&*self.model, clock))

@@ -1,4 +1,4 @@
-//! Where what a run shows goes.
+//! Sinks: receivers of the output of a run.
 
 use crate::Error;
 #[cfg(feature = "pictures")]
@@ -8,13 +8,13 @@ use corpuscle_gpu::Gpu;
 use corpuscle_model::Model;
 use corpuscle_output::{Clock, Summary};
 
-/// Takes what a run shows: a folder, a window, a test. Each call but that for gauges looks at the model at the time it shows now and takes
-/// from it what it needs; an error ends the run.
+/// A receiver of the output of a run: a folder, a film, a test. Each call but that for gauges reads from the model at its current time
+/// what it needs; an error ends the run.
 pub trait Sink {
     /// A row of gauges is due: what [`Model::gauge_columns`] name, at a time, s.
     ///
     /// # Errors
-    /// Where it cannot be taken.
+    /// Where it cannot be written.
     fn gauges(&mut self, _time: f64, _row: &[f64]) -> Result<(), Error> {
         Ok(())
     }
@@ -22,7 +22,7 @@ pub trait Sink {
     /// A frame of particles, with maps, is due.
     ///
     /// # Errors
-    /// Where it cannot be taken.
+    /// Where it cannot be written.
     fn frame(&mut self, _model: &dyn Model) -> Result<(), Error> {
         Ok(())
     }
@@ -35,38 +35,38 @@ pub trait Sink {
     /// A picture of a film is due: at the start, at multiples of the sink's own period, and at the end.
     ///
     /// # Errors
-    /// Where it cannot be taken.
+    /// Where it cannot be written.
     fn picture(&mut self, _model: &dyn Model) -> Result<(), Error> {
         Ok(())
     }
 
-    /// The device on which it draws, if a [`Glance`] of a model that steps there is all that it wants for pictures; none: it wants the model.
+    /// The device on which it draws, if a [`Glance`] of a model that steps there suffices for its pictures; none where it needs the model.
     #[cfg(feature = "pictures")]
     fn glances_on(&self) -> Option<&Gpu> {
         None
     }
 
-    /// [`Sink::picture`] of a model whose particles do not come back for it. The picture of the start is one of the model.
+    /// [`Sink::picture`] of a model whose particles stay on the GPU. The picture of the start is one of the model.
     ///
     /// # Errors
-    /// Where it cannot be taken.
+    /// Where it cannot be written.
     #[cfg(feature = "pictures")]
     fn glance(&mut self, _glance: &Glance) -> Result<(), Error> {
         Ok(())
     }
 
-    /// The state should be kept, to resume from.
+    /// A checkpoint is due.
     ///
     /// # Errors
-    /// Where it cannot be kept.
+    /// Where it cannot be written.
     fn checkpoint(&mut self, _model: &dyn Model, _clock: Clock) -> Result<(), Error> {
         Ok(())
     }
 
-    /// The run has ended, for better or worse (`summary.status`). What the sink finds out may go into the summary.
+    /// The run has ended, see `summary.status`. The sink may add results to the summary.
     ///
     /// # Errors
-    /// Where the end cannot be taken.
+    /// Where the end cannot be written.
     fn finish(&mut self, _model: &dyn Model, _summary: &mut Summary) -> Result<(), Error> {
         Ok(())
     }

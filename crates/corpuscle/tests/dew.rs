@@ -1,6 +1,6 @@
 //! Dew from a scene file to a run's folder: files, ledger and report; interrupted or not, the same.
 
-use corpuscle::record::{FrameFormat, Status};
+use corpuscle::output::{FrameFormat, Status};
 use corpuscle::scene::{Scene, builtin};
 use corpuscle::{Recorder, Simulation};
 use std::fs;

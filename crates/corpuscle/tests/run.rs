@@ -1,7 +1,7 @@
 //! The run loop, with a small model whose every step can be counted.
 
 use corpuscle::model::{Balance, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet};
-use corpuscle::record::{Clock, FrameFormat, RecordError, Status, Summary};
+use corpuscle::output::{Clock, FrameFormat, OutputError, Status, Summary};
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
 use corpuscle::{Error, Progress, Recorder, Simulation, Sink};
@@ -148,7 +148,7 @@ impl Sink for Notes {
     fn frame(&mut self, model: &dyn Model) -> Result<(), Error> {
         if self.fail_at_frame == Some(self.frames.len()) {
             let source = std::io::ErrorKind::StorageFull.into();
-            return Err(RecordError::Write { path: "frame".into(), source }.into());
+            return Err(OutputError::Write { path: "frame".into(), source }.into());
         }
         self.frames.push(model.time());
         Ok(())
@@ -249,7 +249,7 @@ fn a_sink_that_fails_ends_the_run_and_the_others_are_finished() {
     let mut other = Notes::default();
     let stop = AtomicBool::new(false);
     let error = simulation(Counter::new()).run(&mut [&mut other, &mut failing], &stop, &mut |_| {}).unwrap_err();
-    assert!(matches!(error, Error::Record(RecordError::Write { .. })) && !error.is_refusal(), "{error}");
+    assert!(matches!(error, Error::Output(OutputError::Write { .. })) && !error.is_refusal(), "{error}");
     assert_eq!((failing.finished, other.finished), (vec![Status::Failed], vec![Status::Failed]));
 }
 

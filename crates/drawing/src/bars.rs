@@ -1,4 +1,4 @@
-//! Bars that say what colours and lengths mean.
+//! Colour bars and scale bars.
 
 use crate::colour::{Colour, hex};
 use crate::svg::{Anchor, Svg};
@@ -11,8 +11,8 @@ const SHADES: usize = 48;
 /// Prefixes of units, from large to small.
 const PREFIXES: [(f64, &str); 6] = [(1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
 
-/// A bar of the colours of values from `low` to `high`, `width` wide from a place on; `colour` is given the part of the way.
-/// Gives its lower end.
+/// Draws a bar of the colours of values from `low` to `high`, `width` wide from a position on; `colour` takes the fraction from low to high.
+/// Returns its lower end.
 pub fn value_bar(
     svg: &mut Svg,
     [low, high]: [f64; 2],
@@ -44,7 +44,7 @@ fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2]) -> [[f64; 2]; 4] {
     [[x, y], [x + width, y], [x + width, y + height], [x, y + height]]
 }
 
-/// A bar of a round length, ending at `[right, top]`; `scale` is in CSS pixels for a unit of length.
+/// Draws a scale bar of a round length, ending at `[right, top]`; `scale` is in CSS pixels for a unit of length.
 pub fn scale_bar(svg: &mut Svg, scale: f64, unit: &str, [right, top]: [f64; 2]) {
     let length = ticks::step(70.0 / scale, 1);
     let width = length * scale;

@@ -12,7 +12,7 @@ pub fn split(colour: u32) -> Colour {
     [(colour >> 16) as u8, (colour >> 8) as u8, colour as u8]
 }
 
-/// The colour of a part, 0 to 1, of the largest value that is told apart.
+/// The colour of a value, as a fraction, 0 to 1, of that of the last colour.
 pub fn of_part(part: f64) -> Colour {
     let place = part.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
     let below = (place as usize).min(VIRIDIS.len() - 2);

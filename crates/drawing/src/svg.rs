@@ -14,7 +14,7 @@ pub struct Svg {
 pub struct Figure {
     width: f64,
     height: f64,
-    /// What is seen, for those who cannot see it.
+    /// Alternative text.
     title: String,
     body: String,
 }

@@ -1,4 +1,4 @@
-//! Numbers as people read them. A thin space groups thousands.
+//! Numbers as text for display. A thin space groups thousands.
 
 const THIN: char = '\u{2009}';
 

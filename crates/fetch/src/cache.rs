@@ -1,24 +1,24 @@
-//! What has come over the network, kept in files with checksums.
+//! The cache of downloaded pieces, in files with checksums.
 
 use crate::FetchError;
-use crate::checksum::{self, Sealed};
+use crate::checksum::{self, StoredFile};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What is known of a remote file.
+/// Description of a remote file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum About {
-    /// It is there.
+    /// It exists.
     File {
         /// Bytes.
         length: u64,
-        /// The server's mark of this version of it.
+        /// The server's entity tag of this version.
         etag: Option<String>,
     },
-    /// There is none: sea.
+    /// It does not exist: sea.
     Sea,
 }
 
@@ -26,14 +26,14 @@ pub(crate) enum About {
 #[derive(Debug)]
 pub(crate) struct Cache {
     folder: PathBuf,
-    /// Files that were found broken.
-    broken: AtomicUsize,
+    /// Files that were found damaged.
+    damaged: AtomicUsize,
 }
 
 impl Cache {
     /// The cache of the file `tile` below a base address.
     pub fn of(cache: &Path, base: &str, tile: &str) -> Self {
-        Self { folder: cache.join("glo-30").join(checksum::short_name(base)).join(tile), broken: AtomicUsize::new(0) }
+        Self { folder: cache.join("glo-30").join(checksum::short_name(base)).join(tile), damaged: AtomicUsize::new(0) }
     }
 
     pub fn about(&self) -> Option<About> {
@@ -46,7 +46,7 @@ impl Cache {
         checksum::write(&path, &text)
     }
 
-    /// A piece, if it is there as it was written and has the length that it must have.
+    /// A piece, if it is stored undamaged with the expected length.
     pub fn piece(&self, number: u64, length: u64) -> Option<Vec<u8>> {
         self.read(&piece_name(number)).filter(|piece| piece.len() as u64 == length)
     }
@@ -55,7 +55,7 @@ impl Cache {
         checksum::write(&self.folder.join(piece_name(number)), bytes)
     }
 
-    /// Forgets everything.
+    /// Empties the cache of this file.
     pub fn clear(&self) -> Result<(), FetchError> {
         match fs::remove_dir_all(&self.folder) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FetchError::cache(&self.folder, error)),
@@ -63,19 +63,19 @@ impl Cache {
         }
     }
 
-    /// Files that were found broken.
-    pub fn broken(&self) -> usize {
-        self.broken.load(Ordering::Relaxed)
+    /// Files that were found damaged.
+    pub fn damaged(&self) -> usize {
+        self.damaged.load(Ordering::Relaxed)
     }
 
     fn read(&self, name: &str) -> Option<Vec<u8>> {
         match checksum::read(&self.folder.join(name)) {
-            Sealed::Whole(content) => Some(content),
-            Sealed::Broken => {
-                self.broken.fetch_add(1, Ordering::Relaxed);
+            StoredFile::Intact(content) => Some(content),
+            StoredFile::Damaged => {
+                self.damaged.fetch_add(1, Ordering::Relaxed);
                 None
             }
-            Sealed::Absent => None,
+            StoredFile::Absent => None,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Files that know whether they are whole: a checksum, then the content.
+//! Files with a checksum before their content, so that damage is found.
 
 use crate::FetchError;
 use sha2::{Digest, Sha256};
@@ -23,23 +23,23 @@ fn try_write(path: &Path, content: &[u8]) -> std::io::Result<()> {
     })
 }
 
-/// What a sealed file holds.
+/// The result of reading a file with a checksum.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Sealed {
-    Whole(Vec<u8>),
-    /// It is there, but not as it was written.
-    Broken,
+pub(crate) enum StoredFile {
+    Intact(Vec<u8>),
+    /// The checksum does not fit.
+    Damaged,
     Absent,
 }
 
 /// Reads a file and compares its checksum.
-pub(crate) fn read(path: &Path) -> Sealed {
-    let Ok(mut bytes) = fs::read(path) else { return Sealed::Absent };
+pub(crate) fn read(path: &Path) -> StoredFile {
+    let Ok(mut bytes) = fs::read(path) else { return StoredFile::Absent };
     if bytes.len() < CHECKSUM {
-        return Sealed::Broken;
+        return StoredFile::Damaged;
     }
     let content = bytes.split_off(CHECKSUM);
-    if bytes == *Sha256::digest(&content) { Sealed::Whole(content) } else { Sealed::Broken }
+    if bytes == *Sha256::digest(&content) { StoredFile::Intact(content) } else { StoredFile::Damaged }
 }
 
 /// The beginning of a checksum, as a name.
@@ -52,20 +52,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_changed_is_found_broken() {
+    fn a_changed_file_is_found_damaged() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sub/a");
-        assert_eq!(read(&path), Sealed::Absent);
+        assert_eq!(read(&path), StoredFile::Absent);
         write(&path, b"content").unwrap();
-        assert_eq!(read(&path), Sealed::Whole(b"content".to_vec()));
+        assert_eq!(read(&path), StoredFile::Intact(b"content".to_vec()));
         let whole = fs::read(&path).unwrap();
         for broken in [&whole[..whole.len() - 1], &whole[..10], b"", &[&whole[..], b"x"].concat()] {
             fs::write(&path, broken).unwrap();
-            assert_eq!(read(&path), Sealed::Broken);
+            assert_eq!(read(&path), StoredFile::Damaged);
         }
         let mut flipped = whole.clone();
         flipped[CHECKSUM + 2] ^= 1;
         fs::write(&path, flipped).unwrap();
-        assert_eq!(read(&path), Sealed::Broken);
+        assert_eq!(read(&path), StoredFile::Damaged);
     }
 }

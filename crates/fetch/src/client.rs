@@ -1,4 +1,4 @@
-//! Requests over HTTP, repeated where that may help.
+//! HTTP requests, repeated after temporary errors.
 
 use crate::observer::FetchObserver;
 use crate::{FetchError, Source};
@@ -8,34 +8,34 @@ use std::time::{Duration, Instant};
 use ureq::http::Response;
 use ureq::{Agent, Body};
 
-/// The most bytes of a file that is taken whole, from a server that gives no parts.
+/// Largest file that is downloaded whole, from a server without range requests, bytes.
 const MOST_BYTES: u64 = 1 << 29;
 
-/// A request of a megabyte may take so many times the time that the server may be silent.
+/// Time limit of a request over the timeout of the server.
 const LONGEST: u32 = 10;
 
-/// Between looks whether fetching was stopped.
+/// Interval at which the stop flag is checked.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What a server answers.
+/// A response of the server.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Answer {
-    /// The bytes asked for, of a file of `total` bytes.
+    /// The requested bytes, of a file of `total` bytes.
     Part { bytes: Vec<u8>, total: u64, etag: Option<String> },
-    /// The whole file: the server gives no parts.
+    /// The whole file: the server has no range requests.
     Whole { bytes: Vec<u8>, etag: Option<String> },
     /// There is no such file.
     Missing,
 }
 
-/// What went wrong with one attempt.
+/// The error of one attempt.
 enum Fault {
-    /// May be better next time.
+    /// Temporary: the request is repeated.
     Passing(String),
     Final(FetchError),
 }
 
-/// Makes requests.
+/// An HTTP client.
 #[derive(Debug)]
 pub(crate) struct Client {
     agent: Agent,
@@ -76,7 +76,7 @@ impl Client {
         }
     }
 
-    /// Waits, but not longer than until fetching is stopped.
+    /// Waits, or returns early when the download is stopped.
     fn sleep(&self, pause: Duration) -> Result<(), FetchError> {
         let start = Instant::now();
         while start.elapsed() < pause {
@@ -100,7 +100,7 @@ impl Client {
             (206, Some(range)) => {
                 let stated = header(&response, "content-range").as_deref().and_then(content_range);
                 let Some((given, total)) = stated.filter(|(given, total)| is_answer(given, range, *total)) else {
-                    return Err(Fault::Passing(format!("the server did not give the bytes {range:?} asked for")));
+                    return Err(Fault::Passing(format!("the server did not return the requested bytes {range:?}")));
                 };
                 let bytes = self.body(&mut response, Some(given.end - given.start))?;
                 Ok(Answer::Part { bytes, total, etag })
@@ -109,10 +109,10 @@ impl Client {
                 let length = header(&response, "content-length").and_then(|length| length.parse().ok());
                 Ok(Answer::Whole { bytes: self.body(&mut response, length)?, etag })
             }
-            // A bucket that does not let itself be listed answers 403 for a file that is not there.
+            // A bucket that cannot be listed returns 403 for a file that does not exist.
             (403 | 404, _) => Ok(Answer::Missing),
             (408 | 429 | 500 | 502..=504, _) => {
-                Err(Fault::Passing(format!("the server answers with HTTP status {}", response.status().as_u16())))
+                Err(Fault::Passing(format!("the server returned HTTP status {}", response.status().as_u16())))
             }
             (status, _) => Err(Fault::Final(FetchError::Refused { url: url.into(), status })),
         }
@@ -121,7 +121,9 @@ impl Client {
     /// The body, which has `length` bytes where that is known.
     fn body(&self, response: &mut Response<Body>, length: Option<u64>) -> Result<Vec<u8>, Fault> {
         if length.is_some_and(|length| length > MOST_BYTES) {
-            return Err(Fault::Passing("the server gives no part of the file, which is too long to take whole".into()));
+            return Err(Fault::Passing(
+                "the server has no range requests, and the file is too long to be downloaded whole".into(),
+            ));
         }
         let mut reader = response.body_mut().as_reader().take(length.unwrap_or(MOST_BYTES) + 1);
         let mut bytes = Vec::new();
@@ -133,12 +135,12 @@ impl Client {
             match reader.read(&mut buffer) {
                 Ok(0) => break,
                 Ok(count) => bytes.extend_from_slice(&buffer[..count]),
-                Err(error) => return Err(Fault::Passing(format!("the answer broke off: {error}"))),
+                Err(error) => return Err(Fault::Passing(format!("the response ended early: {error}"))),
             }
         }
         match length {
             Some(length) if length != bytes.len() as u64 => {
-                Err(Fault::Passing(format!("the server sent {} bytes where {length} were to come", bytes.len())))
+                Err(Fault::Passing(format!("the server sent {} bytes instead of {length}", bytes.len())))
             }
             _ => Ok(bytes),
         }
@@ -157,17 +159,17 @@ fn content_range(text: &str) -> Option<(Range<u64>, u64)> {
     (first <= last).then_some((first..last + 1, total.parse().ok()?))
 }
 
-/// True where the bytes given are those asked for, up to the end of the file.
+/// True where the bytes returned are those requested, up to the end of the file.
 fn is_answer(given: &Range<u64>, asked: &Range<u64>, total: u64) -> bool {
     given.start == asked.start && given.end == asked.end.min(total)
 }
 
-/// What a request came to that got no answer.
+/// The error of a request without response.
 fn failed(url: &str, error: &ureq::Error) -> Fault {
     match error {
         ureq::Error::BadUri(_) | ureq::Error::Http(_) => Fault::Final(FetchError::no_tile(url, "it is no web address")),
         ureq::Error::HostNotFound => Fault::Passing("the server's name is not known; is there a network?".into()),
-        ureq::Error::Timeout(_) => Fault::Passing("the server is too slow to answer".into()),
+        ureq::Error::Timeout(_) => Fault::Passing("the server is too slow".into()),
         error => Fault::Passing(error.to_string()),
     }
 }

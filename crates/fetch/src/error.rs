@@ -1,39 +1,37 @@
-//! What can go wrong while terrain is fetched.
+//! Errors of downloading terrain.
 
 use crate::source::{BASE_VARIABLE, CACHE_VARIABLE};
 use corpuscle_terrain::TerrainError;
 use std::path::{Path, PathBuf};
 
-/// Why terrain cannot be had. The text says what is wrong, where, and what to do.
+/// An error of downloading terrain. The text says what is wrong, where, and what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FetchError {
-    /// The box is none, or too large.
-    #[error("the box cannot be fetched: {0}")]
+    /// The box is invalid or too large.
+    #[error("the box cannot be downloaded: {0}")]
     Box(String),
-    /// The server was not reached, or broke off, every time.
+    /// The server was not reached, or the connection failed, at every attempt.
     #[error(
-        "{url} was not to be had in {attempts} attempts: {what}; check the network and try again: what has come is kept \
-         in the cache, and fetching goes on from there"
+        "{url} could not be downloaded in {attempts} attempts: {what}; check the network and try again: the cache keeps what \
+         was downloaded, and the download resumes from there"
     )]
     Network {
-        /// What was asked for.
+        /// The address requested.
         url: String,
-        /// How often.
+        /// Number of attempts.
         attempts: u32,
-        /// What happened the last time.
+        /// The error of the last attempt.
         what: String,
     },
-    /// The server refuses.
-    #[error(
-        "{url} was refused: the server answers with HTTP status {status}; check the base address ({BASE_VARIABLE})"
-    )]
+    /// The server refused the request.
+    #[error("{url} was refused: the server returned HTTP status {status}; check the base address ({BASE_VARIABLE})")]
     Refused {
-        /// What was asked for.
+        /// The address requested.
         url: String,
         /// HTTP status.
         status: u16,
     },
-    /// Nothing there looks like the bucket.
+    /// The base address is no copy of the bucket.
     #[error(
         "{base} is not a copy of Copernicus GLO-30: it has neither the file {tile}/{tile}.tif nor a tileList.txt with \
          names of such files; check the base address ({BASE_VARIABLE})"
@@ -44,7 +42,7 @@ pub enum FetchError {
         /// Name of a tile.
         tile: String,
     },
-    /// The list names a file that is not there.
+    /// The list names a file that does not exist.
     #[error(
         "{base} lists the tile {tile} but does not have it; the copy is not complete, use another ({BASE_VARIABLE})"
     )]
@@ -54,21 +52,21 @@ pub enum FetchError {
         /// Name of the tile.
         tile: String,
     },
-    /// What came is no such file.
+    /// The file is no such tile.
     #[error("{url} is not a tile of Copernicus GLO-30: {what}; check the base address ({BASE_VARIABLE})")]
     NoTile {
-        /// What was asked for.
+        /// The address requested.
         url: String,
-        /// What it is instead.
+        /// The reason.
         what: String,
     },
-    /// The file on the server became another while it was read.
+    /// The file changed on the server while it was read.
     #[error("{url} changed on the server while it was read; try again")]
     Changed {
-        /// What was asked for.
+        /// The address requested.
         url: String,
     },
-    /// There is nothing but sea.
+    /// All of the box is sea.
     #[error(
         "there is no land in the box: none of its tiles ({tiles}) exists; check it, the order is west,south,east,north in \
          degrees"
@@ -90,16 +88,16 @@ pub enum FetchError {
     /// No folder is known for the cache.
     #[error("there is no home folder for the cache; name a folder with {CACHE_VARIABLE}")]
     NoCacheFolder,
-    /// It was stopped.
-    #[error("fetching was interrupted; what has come is kept in the cache, and fetching goes on from there")]
+    /// The download was interrupted.
+    #[error("the download was interrupted; the cache keeps what was downloaded, and the download resumes from there")]
     Stopped,
-    /// The tiles do not go together.
+    /// The tiles cannot be joined.
     #[error("the tiles cannot be joined: {0}")]
     Join(String),
 }
 
 impl FetchError {
-    /// True where what was asked for cannot be had as it is; false where it came to grief on the way.
+    /// True for an error of the input; false where an accepted download failed.
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::Box(_) | Self::WrongBase { .. } | Self::NoTile { .. } | Self::NoLand { .. })
     }

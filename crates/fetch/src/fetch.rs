@@ -1,4 +1,4 @@
-//! A box of terrain from the server or the cache.
+//! Download of a box of terrain from the server or the cache.
 
 use crate::cache::{About, Cache};
 use crate::client::{Answer, Client};
@@ -17,23 +17,23 @@ const LIST: &str = "tileList.txt";
 /// A box of terrain.
 #[derive(Debug, Clone)]
 pub struct Fetched {
-    /// Its heights, in longitude and latitude on WGS 84; what a user should know of them, with the attribution, is in its
+    /// Its heights, in longitude and latitude on WGS 84; notes to the user, with the attribution, are in its
     /// warnings.
     pub raster: Raster,
-    /// Names of the tiles that it is from.
+    /// Names of its tiles.
     pub tiles: Vec<String>,
     /// Names of tiles that do not exist: sea, at height 0.
     pub sea: Vec<String>,
-    /// Bytes that came over the network; the rest was in the cache.
+    /// Bytes downloaded; the rest was in the cache.
     pub bytes: u64,
-    /// Files of the cache that were damaged, and were fetched anew.
+    /// Files of the cache that were damaged, and were downloaded again.
     pub renewed: usize,
 }
 
 /// Fetches the heights in a box given by longitudes and latitudes, degrees.
 ///
 /// # Errors
-/// A text that says what was not to be had and what to do. What has come until then stays in the cache.
+/// What could not be downloaded, and what to do. Pieces downloaded until then stay in the cache.
 pub fn fetch(source: &Source, part: &MapBox, observer: &FetchObserver) -> Result<Fetched, FetchError> {
     let names = TileName::within(part).map_err(FetchError::Box)?;
     let mut fetching = Fetching::new(source, observer, names.len());
@@ -46,7 +46,7 @@ pub fn fetch(source: &Source, part: &MapBox, observer: &FetchObserver) -> Result
     fetching.joined(rasters, part)
 }
 
-/// What is going on.
+/// A download in progress.
 struct Fetching<'a> {
     source: &'a Source,
     observer: &'a FetchObserver,
@@ -56,7 +56,7 @@ struct Fetching<'a> {
     renewed: usize,
     tiles: Vec<String>,
     sea: Vec<String>,
-    /// The server's list of tiles, once it was needed.
+    /// The server's list of tiles, downloaded when first needed.
     list: Option<String>,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Fetching<'a> {
         Progress { tiles: self.done, of_tiles: self.of_tiles, bytes: self.bytes.load(Ordering::Relaxed) }
     }
 
-    /// The heights of a tile in the part. A file that changed on the server is read anew, once.
+    /// The heights of a tile in the part. A file that changed on the server is read again, once.
     fn tile(&mut self, name: TileName, part: &MapBox) -> Result<Option<Raster>, FetchError> {
         match self.try_tile(name, part) {
             Err(FetchError::Changed { .. }) => {
@@ -104,7 +104,7 @@ impl<'a> Fetching<'a> {
         let Some(file) = RemoteFile::open(&url, client, self.cache(name), came)? else { return self.sea(name, part) };
         let file = Arc::new(file);
         let raster = tile::read(name, &url, &file, part);
-        self.renewed += file.cache().broken();
+        self.renewed += file.cache().damaged();
         if matches!(&raster, Ok(Some(_))) {
             self.tiles.push(name.to_string());
         }
@@ -115,7 +115,7 @@ impl<'a> Fetching<'a> {
         Cache::of(&self.source.cache, &self.source.base, &name.to_string())
     }
 
-    /// The sea in the place of a tile that the server does not have, if that is what it means.
+    /// Sea instead of a tile that the server does not have, after a check that the tile does not exist.
     fn sea(&mut self, name: TileName, part: &MapBox) -> Result<Option<Raster>, FetchError> {
         let cache = self.cache(name);
         if cache.about() != Some(About::Sea) {
@@ -129,7 +129,7 @@ impl<'a> Fetching<'a> {
         Ok(sea)
     }
 
-    /// Finds out why a tile is missing: by the server's own list there is none, or something is wrong.
+    /// Checks that a missing tile is not in the server's own list of tiles; an error where it is.
     fn check_missing(&mut self, name: TileName) -> Result<(), FetchError> {
         let (base, tile) = (self.source.base.clone(), name.to_string());
         if self.list.is_none() {
@@ -177,7 +177,7 @@ impl<'a> Fetching<'a> {
             ));
         }
         if self.renewed > 0 {
-            warnings.push(format!("{} files of the cache were damaged and were fetched anew.", self.renewed));
+            warnings.push(format!("{} files of the cache were damaged and were downloaded again.", self.renewed));
         }
         warnings.push(ATTRIBUTION.into());
         warnings

@@ -7,7 +7,7 @@ use std::fmt;
 /// Rows of a tile, one arc second high.
 pub(crate) const ROWS: usize = 3600;
 
-/// More cells than this are not fetched at once: the most that a terrain may have.
+/// Most cells of a download: the most that a terrain may have.
 const MOST_CELLS: f64 = 1e8;
 
 /// A file of one degree by one degree, named after its south-west corner.
@@ -75,7 +75,7 @@ impl TileName {
         1.0 / self.columns() as f64
     }
 
-    /// Where its cells lie: the centre of the north-west one is on the whole degrees.
+    /// Georeference of its cells: the centre of the north-west one is on the whole degrees.
     pub fn place(self) -> Georeference {
         let cell = [self.cell_width(), 1.0 / ROWS as f64];
         let corner = [f64::from(self.west) - 0.5 * cell[0], f64::from(self.south + 1) + 0.5 * cell[1]];

@@ -1,7 +1,7 @@
 //! Terrain from public servers: the Copernicus digital elevation model GLO-30.
 //!
 //! Only the blocks of its files that a box needs are read, by HTTP range requests, and kept in a cache with their
-//! checksums: what was fetched once needs no network again. This is the only crate that knows a network.
+//! checksums, so that a second download needs no network. This is the only crate that uses a network.
 
 mod attribution;
 mod cache;

@@ -1,26 +1,26 @@
-//! Progress of a fetch of terrain, and its cancellation.
+//! Progress and cancellation of a download of terrain.
 
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// How far fetching has come.
+/// Progress of a download.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
     /// Files of one degree by one degree that are done.
     pub tiles: usize,
     /// All of them.
     pub of_tiles: usize,
-    /// Bytes that came over the network.
+    /// Bytes downloaded.
     pub bytes: u64,
 }
 
-/// The observer of a fetch: it takes the progress, and may stop it.
+/// The observer of a download: receives the progress, and may stop it.
 #[derive(Clone)]
 pub struct FetchObserver {
-    /// Fetching ends soon after this has become true.
+    /// The download ends soon after this has become true.
     pub stop: Arc<AtomicBool>,
-    /// Takes the progress.
+    /// Receives the progress.
     pub show: Arc<dyn Fn(Progress) + Send + Sync>,
 }
 

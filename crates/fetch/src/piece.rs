@@ -5,10 +5,10 @@ use std::ops::Range;
 /// Bytes of a piece.
 pub(crate) const PIECE: u64 = 64 * 1024;
 
-/// The most pieces that one request asks for.
+/// Most pieces of one request.
 pub(crate) const MOST_PIECES: u64 = 16;
 
-/// The pieces in which so many bytes from `offset` on lie.
+/// The pieces that contain so many bytes from `offset` on.
 pub(crate) fn pieces_of(offset: u64, len: usize) -> Range<u64> {
     let end = offset + len as u64;
     offset / PIECE..end.div_ceil(PIECE)
@@ -19,7 +19,7 @@ pub(crate) fn bytes_of(pieces: &Range<u64>, length: u64) -> Range<u64> {
     pieces.start * PIECE..(pieces.end * PIECE).min(length)
 }
 
-/// Runs of neighbours among pieces in order, none longer than one request asks for.
+/// Runs of adjacent pieces, none longer than one request.
 pub(crate) fn runs(pieces: impl IntoIterator<Item = u64>) -> Vec<Range<u64>> {
     let mut runs: Vec<Range<u64>> = Vec::new();
     for piece in pieces {

@@ -1,4 +1,4 @@
-//! A file on a server, read here and there, through the cache.
+//! A file on a server with random access, through the cache.
 
 use crate::FetchError;
 use crate::cache::{About, Cache};
@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tiff_reader::source::TiffSource;
 
-/// What TIFF files begin with, and BigTIFF.
+/// First bytes of TIFF and BigTIFF files.
 const MARKS: [&[u8]; 4] = [b"II\x2a\0", b"MM\0\x2a", b"II\x2b\0", b"MM\0\x2b"];
 
 /// A TIFF file on a server.
@@ -20,7 +20,7 @@ pub(crate) struct RemoteFile {
     length: u64,
     etag: Option<String>,
     state: Mutex<State>,
-    /// Is told how many bytes came over the network.
+    /// Callback for the bytes downloaded.
     came: Box<dyn Fn(u64) + Send + Sync>,
 }
 
@@ -32,7 +32,7 @@ struct State {
 }
 
 impl RemoteFile {
-    /// The file at `url`; none where the server has none.
+    /// Opens the file at `url`; none where it does not exist.
     pub fn open(
         url: &str,
         client: Client,
@@ -63,7 +63,7 @@ impl RemoteFile {
         Ok(Some(file))
     }
 
-    /// Takes in the first bytes of the file, from which its length is known.
+    /// Stores the first bytes of the file and its length.
     fn first(&mut self, bytes: Vec<u8>, length: u64, etag: Option<String>) -> Result<(), FetchError> {
         if !MARKS.iter().any(|mark| bytes.starts_with(mark)) {
             let start = String::from_utf8_lossy(&bytes[..bytes.len().min(24)]).into_owned();
@@ -71,7 +71,7 @@ impl RemoteFile {
         }
         (self.length, self.etag) = (length, etag.clone());
         self.cache.clear()?;
-        // Last, so that a cache without it is taken for empty.
+        // Written last, so that a cache without it counts as empty.
         self.keep(0, &bytes, &mut HashMap::new())?;
         self.cache.set_about(&About::File { length, etag })
     }
@@ -93,7 +93,7 @@ impl RemoteFile {
         bytes.end.saturating_sub(bytes.start)
     }
 
-    /// Gets the pieces that are not in memory, from the cache or from the server.
+    /// Loads the pieces that are not in memory, from the cache or from the server.
     fn load(&self, wanted: Range<u64>, pieces: &mut HashMap<u64, Vec<u8>>) -> Result<(), FetchError> {
         let mut missing = Vec::new();
         for number in wanted {
@@ -113,7 +113,7 @@ impl RemoteFile {
         Ok(())
     }
 
-    /// Gets a run of pieces from the server.
+    /// Downloads a run of pieces.
     fn request(&self, run: Range<u64>, pieces: &mut HashMap<u64, Vec<u8>>) -> Result<(), FetchError> {
         let changed = || FetchError::Changed { url: self.url.clone() };
         match self.client.get(&self.url, Some(bytes_of(&run, self.length)))? {
@@ -165,9 +165,9 @@ impl TiffSource for RemoteFile {
             return Err(tiff_reader::error::Error::OffsetOutOfBounds { offset, length: len as u64, data_len });
         }
         self.read(offset, len).map_err(|error| {
-            let told = tiff_reader::error::Error::Other(error.to_string());
+            let message = tiff_reader::error::Error::Other(error.to_string());
             self.state().failure = Some(error);
-            told
+            message
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Where terrain is fetched from and kept.
+//! The source of terrain: server, cache and time limits.
 
 use crate::FetchError;
 use etcetera::{BaseStrategy, choose_base_strategy};
@@ -14,23 +14,23 @@ pub const BASE_VARIABLE: &str = "CORPUSCLE_GLO30";
 /// The environment variable that names the folder of the cache.
 pub const CACHE_VARIABLE: &str = "CORPUSCLE_CACHE";
 
-/// Where terrain is fetched from and kept, and how patiently.
+/// The source of terrain: server, cache folder and time limits.
 #[derive(Debug, Clone)]
 pub struct Source {
     /// Address below which `NAME/NAME.tif` and `tileList.txt` lie.
     pub base: String,
     /// Folder of the cache.
     pub cache: PathBuf,
-    /// How long the server may take to connect, to answer, and from one byte to the next.
+    /// Timeout for connecting, for the response, and between bytes.
     pub timeout: Duration,
-    /// How often a request is made until it succeeds.
+    /// Most attempts of a request.
     pub attempts: u32,
     /// Pause before the second attempt; it doubles from one to the next.
     pub pause: Duration,
 }
 
 impl Source {
-    /// An address and a folder, with the usual patience.
+    /// A source with this address and cache folder, and default time limits.
     pub fn new(base: impl Into<String>, cache: impl Into<PathBuf>) -> Self {
         let base = base.into().trim_end_matches('/').to_owned();
         let (timeout, pause) = (Duration::from_secs(30), Duration::from_millis(500));

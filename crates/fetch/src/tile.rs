@@ -27,7 +27,7 @@ pub(crate) fn read(
     file: &Arc<RemoteFile>,
     part: &MapBox,
 ) -> Result<Option<Raster>, FetchError> {
-    // What the reader says of a failed request is only its text; the source knows what it was.
+    // The reader passes on only the text of a failed request; the source has the error.
     let failed = |error: tiff_reader::error::Error| {
         file.failure().unwrap_or_else(|| FetchError::no_tile(url, format!("it cannot be read: {error}")))
     };
@@ -41,7 +41,7 @@ pub(crate) fn read(
     Ok(Some(Raster { columns, rows, values, georeference: place.from_cell(window.first), warnings: Vec::new() }))
 }
 
-/// The sea in the place of a tile that does not exist: height 0.
+/// Sea instead of a tile that does not exist: height 0.
 pub(crate) fn sea(name: TileName, part: &MapBox) -> Option<Raster> {
     let place = name.place();
     let window = window(&place, name, part)?;
@@ -59,19 +59,19 @@ fn window(place: &Georeference, name: TileName, part: &MapBox) -> Option<Window>
     Window::within(place, size, &MapBox { west: west - dx, south: south - dy, east: east + dx, north: north + dy })
 }
 
-/// Where the cells lie, by the file's own words, which must agree with its name.
+/// Georeference of the cells from the file, which must agree with its name.
 fn place(name: TileName, image: &Ifd) -> Result<Georeference, String> {
     let size = [image.width() as usize, image.height() as usize];
     if size != [name.columns(), ROWS] {
         let [columns, rows] = size;
-        return Err(format!("it has {columns} x {rows} cells where {} x {ROWS} are to be", name.columns()));
+        return Err(format!("it has {columns} x {rows} cells instead of {} x {ROWS}", name.columns()));
     }
     let numbers = |tag: u16| image.tag(tag).and_then(|tag| tag.value.as_f64_vec());
     let (Some(scale), Some(tie)) = (numbers(PIXEL_SCALE), numbers(TIEPOINT)) else {
-        return Err("it does not say where it lies".into());
+        return Err("it has no georeference".into());
     };
     let (Ok(scale), Ok(tie)) = (scale.try_into(), tie.try_into()) else {
-        return Err("it does not say clearly where it lies".into());
+        return Err("its georeference is invalid".into());
     };
     let keys = image.tag(KEYS).and_then(|tag| tag.value.as_u16_slice());
     let keys = keys.and_then(|keys| GeoKeyDirectory::parse(keys, &[], ""));

@@ -117,9 +117,9 @@ fn passing_faults_are_overcome() {
 #[test]
 fn lasting_faults_are_told() {
     let told = [
-        (Fault::Cut, "broke off"),
-        (Fault::Short, "where"),
-        (Fault::OtherRange, "asked for"),
+        (Fault::Cut, "ended early"),
+        (Fault::Short, "instead of"),
+        (Fault::OtherRange, "requested bytes"),
         (Fault::Status(503), "503"),
         (Fault::Silent, "too slow"),
         (Fault::Trickle, "imeout"),

@@ -1,6 +1,6 @@
 //! Pictures and film of a run in its report.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::whole::write_bytes;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -10,30 +10,30 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Around what is put into the page.
+/// Markers round the section in the page.
 const START: &str = "<!-- pictures -->\n";
 const END: &str = "<!-- /pictures -->\n";
-/// Pictures in the page at most, and their width at most, pixels.
+/// Most pictures in the page, and their largest width, pixels.
 const MOST: usize = 6;
 const WIDTH: usize = 800;
 /// Quality of the JPEG files in the page, of 100.
 const QUALITY: u8 = 85;
-/// A film of at most so many bytes is in the page; a larger one stands beside it.
+/// Largest film embedded in the page, bytes; a larger one is linked.
 const LARGEST_FILM: u64 = 4 << 20;
 
 /// Puts the pictures of a run (`pictures/picture_*.png`, six of them at most, smaller than they are) and its film (`film.mp4`) into its
 /// report, before all figures, in place of those that were there. False where the run has no report.
 ///
 /// # Errors
-/// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be read.
-pub fn put_into_report(folder: &Path) -> Result<bool, RecordError> {
+/// [`OutputError::Read`], [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be read.
+pub fn put_into_report(folder: &Path) -> Result<bool, OutputError> {
     let path = folder.join("report.html");
     if !path.exists() {
         return Ok(false);
     }
-    let page = fs::read_to_string(&path).map_err(RecordError::read(&path))?;
+    let page = fs::read_to_string(&path).map_err(OutputError::read(&path))?;
     let page = without_album(&page);
-    let at = page.find("<section>").ok_or_else(|| RecordError::content(&path, "it has no sections"))?;
+    let at = page.find("<section>").ok_or_else(|| OutputError::content(&path, "it has no sections"))?;
     let page = [&page[..at], &album(folder)?, &page[at..]].concat();
     write_bytes(&path, page.as_bytes())?;
     Ok(true)
@@ -47,7 +47,7 @@ fn without_album(page: &str) -> String {
 }
 
 /// The pictures and the film as a part of the page; empty where there are none.
-fn album(folder: &Path) -> Result<String, RecordError> {
+fn album(folder: &Path) -> Result<String, OutputError> {
     let mut html = film(folder)?;
     let mut figures = String::new();
     for (number, path) in chosen(pictures(folder)).iter().enumerate() {
@@ -65,14 +65,14 @@ fn album(folder: &Path) -> Result<String, RecordError> {
 }
 
 /// The film in the page, or a link to it.
-fn film(folder: &Path) -> Result<String, RecordError> {
+fn film(folder: &Path) -> Result<String, OutputError> {
     let path = folder.join("film.mp4");
     let Ok(length) = fs::metadata(&path).map(|about| about.len()) else { return Ok(String::new()) };
     let link = "<p>The film of the run is <a href=\"film.mp4\">film.mp4</a>, beside this page.</p>\n";
     if length > LARGEST_FILM {
         return Ok(link.into());
     }
-    let bytes = STANDARD.encode(fs::read(&path).map_err(RecordError::read(&path))?);
+    let bytes = STANDARD.encode(fs::read(&path).map_err(OutputError::read(&path))?);
     let video = "<video controls loop muted playsinline style=\"display:block;width:100%;height:auto\"";
     Ok(format!("<figure>{video} src=\"data:video/mp4;base64,{bytes}\"></video></figure>\n{link}"))
 }
@@ -100,9 +100,9 @@ fn chosen(all: Vec<PathBuf>) -> Vec<PathBuf> {
 }
 
 /// A picture as a JPEG file, no wider than a page needs.
-fn small(path: &Path) -> Result<Vec<u8>, RecordError> {
-    let bytes = fs::read(path).map_err(RecordError::read(path))?;
-    let wrong = |what: String| RecordError::content(path, what);
+fn small(path: &Path) -> Result<Vec<u8>, OutputError> {
+    let bytes = fs::read(path).map_err(OutputError::read(path))?;
+    let wrong = |what: String| OutputError::content(path, what);
     let (width, height, rgba) = decode_rgba(&bytes).map_err(wrong)?;
     let (size, rgb) = shrunk([width as usize, height as usize], &rgba);
     let [width, height] = size.map(|length| u16::try_from(length).unwrap_or(u16::MAX));
@@ -165,7 +165,7 @@ mod tests {
         );
         assert!(page.find("Pictures") < page.find("<section>B"));
         assert_eq!(without_album(&page), PAGE);
-        // A picture that is cut is told of, and the page stays.
+        // A truncated picture is an error, and the page stays.
         fs::write(at("pictures/picture_000000.png"), "cut").unwrap();
         assert!(put_into_report(folder.path()).unwrap_err().to_string().contains("picture_000000.png"));
         assert_eq!(fs::read_to_string(at("report.html")).unwrap(), page);

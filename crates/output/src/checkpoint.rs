@@ -1,8 +1,8 @@
-//! The checkpoint: a model's state and how far the folder had been written.
+//! The checkpoint: a model's state, and the output written so far.
 //!
 //! One file, written whole: a line with a checksum of all that follows, a line of JSON, the state's bytes.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::frames::FrameFormat;
 use crate::whole::write_whole;
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use std::path::Path;
 
 const MAGIC: &str = "corpuscle checkpoint 1 sha256:";
 
-/// How far a run has come.
+/// Times of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
     /// Simulated time, s.
@@ -22,16 +22,16 @@ pub struct Clock {
     pub wall_time_s: f64,
 }
 
-/// What stands in a checkpoint beside the state.
+/// The header of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Progress {
     /// Version of Corpuscle that wrote it.
     pub version: String,
     /// Checksum of the scene's text.
     pub scene_sha256: String,
-    /// How far the run had come.
+    /// The times of the run.
     pub clock: Clock,
-    /// How particles are written.
+    /// Format of the particle files.
     pub frame_format: FrameFormat,
     /// Times of the frames written, s.
     pub frame_times: Vec<f64>,
@@ -43,8 +43,8 @@ pub(crate) struct Progress {
 
 impl Progress {
     /// Writes the checkpoint, whole or not at all.
-    pub(crate) fn write(&self, path: &Path, state: &[u8]) -> Result<(), RecordError> {
-        let line = serde_json::to_string(self).map_err(|error| RecordError::content(path, error))? + "\n";
+    pub(crate) fn write(&self, path: &Path, state: &[u8]) -> Result<(), OutputError> {
+        let line = serde_json::to_string(self).map_err(|error| OutputError::content(path, error))? + "\n";
         let digest = checksum(&[line.as_bytes(), state]);
         write_whole(path, |file| {
             writeln!(file, "{MAGIC}{digest}")?;
@@ -54,9 +54,9 @@ impl Progress {
     }
 
     /// Reads a checkpoint and its state, and checks that it is sound, of this version and of this scene.
-    pub(crate) fn read(path: &Path, scene_text: &str) -> Result<(Self, Vec<u8>), RecordError> {
-        let refuse = |what: String| RecordError::Checkpoint { path: path.to_owned(), what };
-        let mut bytes = fs::read(path).map_err(RecordError::read(path))?;
+    pub(crate) fn read(path: &Path, scene_text: &str) -> Result<(Self, Vec<u8>), OutputError> {
+        let refuse = |what: String| OutputError::Checkpoint { path: path.to_owned(), what };
+        let mut bytes = fs::read(path).map_err(OutputError::read(path))?;
         let (digest, rest) = split_line(&bytes)
             .and_then(|(line, rest)| Some((line.strip_prefix(MAGIC)?, rest)))
             .ok_or_else(|| refuse("it does not begin as a checkpoint of this version does".into()))?;

@@ -1,4 +1,4 @@
-//! What can go wrong with a run's folder.
+//! Errors of a run's folder.
 
 use corpuscle_terrain::TerrainError;
 use std::io;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Why a run's folder cannot be written or read. The text says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
-pub enum RecordError {
+pub enum OutputError {
     /// A file or folder cannot be written.
     #[error("cannot write {}: {source}; {}; what was written before is whole and stays readable", path.display(), advice(source))]
     Write {
@@ -56,7 +56,7 @@ pub enum RecordError {
         /// What is wrong with it.
         what: String,
     },
-    /// A file does not hold what it should.
+    /// A file has wrong content.
     #[error("{} cannot be understood: {what}", path.display())]
     Content {
         /// The file.
@@ -79,7 +79,7 @@ pub enum RecordError {
     },
 }
 
-impl RecordError {
+impl OutputError {
     /// Makes an [`io::Error`] met while writing `path` into an error that names it.
     pub(crate) fn write(path: &Path) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Write { path: path.to_owned(), source }
@@ -96,7 +96,7 @@ impl RecordError {
     }
 }
 
-/// What to do about a failed write.
+/// Advice for a failed write.
 fn advice(source: &io::Error) -> &'static str {
     match source.kind() {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space there",

@@ -1,6 +1,6 @@
 //! `gauges.csv`: one row for each time, written as it comes.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::number::Shortest;
 use corpuscle_model::GaugeColumn;
 use std::fs::{self, File, OpenOptions};
@@ -20,8 +20,8 @@ pub(crate) struct GaugeWriter {
 
 impl GaugeWriter {
     /// A new file with its header.
-    pub(crate) fn create(path: &Path, columns: &[GaugeColumn]) -> Result<Self, RecordError> {
-        let file = File::create_new(path).map_err(RecordError::write(path))?;
+    pub(crate) fn create(path: &Path, columns: &[GaugeColumn]) -> Result<Self, OutputError> {
+        let file = File::create_new(path).map_err(OutputError::write(path))?;
         let mut writer = Self { path: path.to_owned(), file, length: 0, columns: columns.len(), rows: 0 };
         let header = std::iter::once("time_s".to_owned()).chain(columns.iter().map(GaugeColumn::header));
         writer.put(header)?;
@@ -29,23 +29,23 @@ impl GaugeWriter {
     }
 
     /// An existing file, cut back to its first `rows` rows. What a crash tore off is cut with the rest.
-    pub(crate) fn resume(path: &Path, rows: usize) -> Result<Self, RecordError> {
+    pub(crate) fn resume(path: &Path, rows: usize) -> Result<Self, OutputError> {
         let table = GaugeTable::read(path)?;
-        let text = fs::read(path).map_err(RecordError::read(path))?;
+        let text = fs::read(path).map_err(OutputError::read(path))?;
         let mut ends = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at as u64 + 1);
         let length = ends.nth(rows).ok_or_else(|| {
             let found = table.rows.len();
-            RecordError::content(path, format!("it has {found} rows where the checkpoint counted {rows}"))
+            OutputError::content(path, format!("it has {found} rows where the checkpoint counted {rows}"))
         })?;
-        let file = OpenOptions::new().append(true).open(path).map_err(RecordError::write(path))?;
-        file.set_len(length).map_err(RecordError::write(path))?;
+        let file = OpenOptions::new().append(true).open(path).map_err(OutputError::write(path))?;
+        file.set_len(length).map_err(OutputError::write(path))?;
         Ok(Self { path: path.to_owned(), file, length, columns: table.columns.len(), rows })
     }
 
     /// Adds a row.
-    pub(crate) fn append(&mut self, time: f64, values: &[f64]) -> Result<(), RecordError> {
+    pub(crate) fn append(&mut self, time: f64, values: &[f64]) -> Result<(), OutputError> {
         if values.len() != self.columns {
-            return Err(RecordError::GaugeCount { expected: self.columns, found: values.len() });
+            return Err(OutputError::GaugeCount { expected: self.columns, found: values.len() });
         }
         self.put([time].iter().chain(values).map(|value| Shortest(*value).to_string()))?;
         self.rows += 1;
@@ -57,7 +57,7 @@ impl GaugeWriter {
         self.rows
     }
 
-    fn put(&mut self, fields: impl Iterator<Item = String>) -> Result<(), RecordError> {
+    fn put(&mut self, fields: impl Iterator<Item = String>) -> Result<(), OutputError> {
         let written = line(fields).and_then(|line| {
             self.file.write_all(&line)?;
             Ok(line.len() as u64)
@@ -68,7 +68,7 @@ impl GaugeWriter {
                 // On a full disk a part of the row may have gone in. If it cannot be taken out either, the reader and
                 // `resume` pass over it.
                 let _ = self.file.set_len(self.length);
-                return Err(RecordError::write(&self.path)(source));
+                return Err(OutputError::write(&self.path)(source));
             }
         }
         Ok(())
@@ -96,11 +96,11 @@ impl GaugeTable {
     /// Reads `gauges.csv`. A last line without its end, as a crash leaves it, is passed over.
     ///
     /// # Errors
-    /// [`RecordError::Read`] or, with the line, [`RecordError::Content`].
-    pub fn read(path: &Path) -> Result<Self, RecordError> {
-        let text = fs::read_to_string(path).map_err(RecordError::read(path))?;
+    /// [`OutputError::Read`] or, with the line, [`OutputError::Content`].
+    pub fn read(path: &Path) -> Result<Self, OutputError> {
+        let text = fs::read_to_string(path).map_err(OutputError::read(path))?;
         let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
-        Self::parse(whole).map_err(|what| RecordError::content(path, what))
+        Self::parse(whole).map_err(|what| OutputError::content(path, what))
     }
 
     fn parse(text: &str) -> Result<Self, String> {
@@ -150,7 +150,7 @@ mod tests {
         let table = GaugeTable::read(&path).unwrap();
         assert_eq!(table.columns[1], "Mill, \"old\".discharge_m3_per_s");
         assert_eq!(table.column("P1.depth_m"), Some(vec![0.1]));
-        assert!(matches!(writer.append(1.0, &[1.0]), Err(RecordError::GaugeCount { expected: 2, found: 1 })));
+        assert!(matches!(writer.append(1.0, &[1.0]), Err(OutputError::GaugeCount { expected: 2, found: 1 })));
     }
 
     #[test]

@@ -22,7 +22,7 @@ mod whole;
 
 pub use album::put_into_report;
 pub use checkpoint::Clock;
-pub use error::RecordError;
+pub use error::OutputError;
 pub use extent::{ExtentScores, compare_extent, write_extent, write_run_up};
 pub use frames::{FrameFiles, FrameFormat};
 pub use gauges::GaugeTable;

@@ -1,6 +1,6 @@
 //! `maps/`: fields on the terrain's own grid, as GeoTIFF.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::number::Shortest;
 use crate::whole::write_whole;
 use corpuscle_terrain::{MapGrid, write_geotiff};
@@ -9,25 +9,25 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What stands in cells without data: less than any depth, level, velocity or time.
+/// Value of cells without data: less than any depth, level, velocity or time.
 const NO_DATA: f32 = -9999.0;
 
-/// The map that is kept for each frame; of the others the last one stands for the whole run.
+/// The map that is written for each frame; of the others only the last, which covers the whole run.
 pub(crate) const SNAPSHOT: &str = "depth";
 
 /// Writes a map (not-a-number where there is nothing).
-pub(crate) fn write_map(path: &Path, grid: &MapGrid, values: &[f32]) -> Result<(), RecordError> {
+pub(crate) fn write_map(path: &Path, grid: &MapGrid, values: &[f32]) -> Result<(), OutputError> {
     Ok(write_geotiff(path, grid, values, NO_DATA)?)
 }
 
 /// Reads a map that [`write_map`] wrote: values row by row, not-a-number where there is no data. Unlike terrain, a map
 /// may be without any data: nothing is wet.
-pub(crate) fn read_map(path: &Path) -> Result<Vec<f32>, RecordError> {
+pub(crate) fn read_map(path: &Path) -> Result<Vec<f32>, OutputError> {
     let read = || {
         let file = GeoTiffFile::open(path)?;
         file.read_band::<f32>(0)
     };
-    let values = read().map_err(|error| RecordError::content(path, error))?;
+    let values = read().map_err(|error| OutputError::content(path, error))?;
     Ok(values.iter().map(|value| if *value == NO_DATA { f32::NAN } else { *value }).collect())
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn snapshot_path(folder: &Path, index: usize) -> PathBuf {
 }
 
 /// Writes `times.csv`: which depth map shows which time.
-pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), RecordError> {
+pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), OutputError> {
     write_whole(&folder.join("times.csv"), |file| {
         writeln!(file, "file,time_s")?;
         times
@@ -48,15 +48,15 @@ pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), RecordErro
 }
 
 /// Reads the times of the depth maps from `times.csv`; none where there is no such file.
-pub(crate) fn read_times(folder: &Path) -> Result<Vec<f64>, RecordError> {
+pub(crate) fn read_times(folder: &Path) -> Result<Vec<f64>, OutputError> {
     let path = folder.join("times.csv");
     let text = match fs::read_to_string(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        text => text.map_err(RecordError::read(&path))?,
+        text => text.map_err(OutputError::read(&path))?,
     };
     let time = |line: &str| line.split_once(',').and_then(|(_, time)| time.parse().ok());
     let line_or_error = |(number, line)| {
-        time(line).ok_or_else(|| RecordError::content(&path, format!("line {}: `{line}` has no time", number + 1)))
+        time(line).ok_or_else(|| OutputError::content(&path, format!("line {}: `{line}` has no time", number + 1)))
     };
     text.lines().enumerate().skip(1).map(line_or_error).collect()
 }

@@ -6,7 +6,7 @@ use crate::frames::{FrameFormat, write_pvd, write_surface};
 use crate::gauges::GaugeWriter;
 use crate::maps::{self, SNAPSHOT};
 use crate::whole::{write_bytes, write_whole};
-use crate::{Clock, RecordError, Summary, write_extent, write_run_up};
+use crate::{Clock, OutputError, Summary, write_extent, write_run_up};
 use corpuscle_atomic_file::clear_unfinished;
 use corpuscle_model::{Chart, Container, Frame, GaugeColumn, Map, Surface};
 use corpuscle_terrain::Terrain;
@@ -30,26 +30,26 @@ pub struct RunFolder {
 /// Makes the first of the folders `<parent>/<scene>-1`, `-2`, ... that does not exist yet, and gives its path.
 ///
 /// # Errors
-/// [`RecordError::Write`].
-pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, RecordError> {
-    fs::create_dir_all(parent).map_err(RecordError::write(parent))?;
+/// [`OutputError::Write`].
+pub fn next_run_folder(parent: &Path, scene: &str) -> Result<PathBuf, OutputError> {
+    fs::create_dir_all(parent).map_err(OutputError::write(parent))?;
     let mut number = 1;
     loop {
         let path = parent.join(format!("{scene}-{number}"));
-        // Made here and now, so that of two runs started together each gets its own.
+        // Made at once, so that two runs started together get different folders.
         match fs::create_dir(&path) {
             Ok(()) => return Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
-            Err(error) => return Err(RecordError::write(&path)(error)),
+            Err(error) => return Err(OutputError::write(&path)(error)),
         }
     }
 }
 
-/// The ways of the particles that a run followed, from its folder; none where it followed none.
+/// Trajectories of the particles that a run followed, from its folder; none where it followed none.
 ///
 /// # Errors
-/// [`RecordError::Content`] where `path.csv` is damaged.
-pub fn followed_paths(run: &Path) -> Result<Vec<corpuscle_model::Path>, RecordError> {
+/// [`OutputError::Content`] where `path.csv` is damaged.
+pub fn followed_paths(run: &Path) -> Result<Vec<corpuscle_model::Path>, OutputError> {
     read_paths(run)
 }
 
@@ -59,18 +59,18 @@ impl RunFolder {
     /// `scene_text` is the scene as run, with all defaults, as TOML.
     ///
     /// # Errors
-    /// [`RecordError::Exists`] where the folder holds anything, [`RecordError::Write`].
+    /// [`OutputError::Exists`] where the folder holds anything, [`OutputError::Write`].
     pub fn create(
         path: &Path,
         scene_text: &str,
         gauges: &[GaugeColumn],
         frame_format: FrameFormat,
-    ) -> Result<Self, RecordError> {
-        fs::create_dir_all(path).map_err(RecordError::write(path))?;
-        if fs::read_dir(path).map_err(RecordError::read(path))?.next().is_some() {
-            return Err(RecordError::Exists { path: path.to_owned() });
+    ) -> Result<Self, OutputError> {
+        fs::create_dir_all(path).map_err(OutputError::write(path))?;
+        if fs::read_dir(path).map_err(OutputError::read(path))?.next().is_some() {
+            return Err(OutputError::Exists { path: path.to_owned() });
         }
-        let begin = || -> Result<_, RecordError> {
+        let begin = || -> Result<_, OutputError> {
             write_bytes(&path.join("scene.toml"), scene_text.as_bytes())?;
             Ok((GaugeWriter::create(&path.join("gauges.csv"), gauges)?, open_log(path)?))
         };
@@ -86,18 +86,18 @@ impl RunFolder {
         })
     }
 
-    /// Takes up the folder of an interrupted run at its checkpoint: gives the folder, cut back to what had been
-    /// written then, how far the run had come, and the model's state.
+    /// Opens the folder of an interrupted run at its checkpoint: returns the folder, truncated to what had been
+    /// written then, the progress of the run, and the model's state.
     ///
     /// # Errors
-    /// [`RecordError::NoCheckpoint`], [`RecordError::Checkpoint`] where it is damaged or the scene was changed,
-    /// [`RecordError::Read`], [`RecordError::Write`].
-    pub fn resume(path: &Path) -> Result<(Self, Clock, Vec<u8>), RecordError> {
+    /// [`OutputError::NoCheckpoint`], [`OutputError::Checkpoint`] where it is damaged or the scene was changed,
+    /// [`OutputError::Read`], [`OutputError::Write`].
+    pub fn resume(path: &Path) -> Result<(Self, Clock, Vec<u8>), OutputError> {
         let scene_path = path.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
         let checkpoint = checkpoint_path(path);
         if !checkpoint.exists() {
-            return Err(RecordError::NoCheckpoint { path: path.to_owned() });
+            return Err(OutputError::NoCheckpoint { path: path.to_owned() });
         }
         let (progress, state) = Progress::read(&checkpoint, &scene_text)?;
         let folder = Self {
@@ -109,7 +109,7 @@ impl RunFolder {
             map_times: progress.map_times,
             log: open_log(path)?,
         };
-        folder.cut_back()?;
+        folder.truncate()?;
         Ok((folder, progress.clock, state))
     }
 
@@ -118,12 +118,12 @@ impl RunFolder {
         &self.path
     }
 
-    /// True where there is a checkpoint to go on from.
+    /// True where there is a checkpoint to resume from.
     pub fn has_checkpoint(&self) -> bool {
         checkpoint_path(&self.path).exists()
     }
 
-    /// How particles are written.
+    /// Format of the particle files.
     pub fn frame_format(&self) -> FrameFormat {
         self.frame_format
     }
@@ -141,8 +141,8 @@ impl RunFolder {
     /// Adds a particle frame: `frames/frame_NNNNNN.vtp` and `frames.pvd`, or `.csv`, or `.xyz`, numbered from 0. `container` is the box round the particles.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn write_frame(&mut self, frame: &Frame, container: Option<&Container>) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn write_frame(&mut self, frame: &Frame, container: Option<&Container>) -> Result<(), OutputError> {
         if self.frame_format != FrameFormat::None {
             let folder = self.subfolder("frames")?;
             self.frame_format.write(&folder, self.frame_times.len(), frame, container)?;
@@ -154,8 +154,8 @@ impl RunFolder {
     /// Adds a row to `gauges.csv`. It is in the file when this returns.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; [`RecordError::GaugeCount`].
-    pub fn append_gauges(&mut self, time: f64, values: &[f64]) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; [`OutputError::GaugeCount`].
+    pub fn append_gauges(&mut self, time: f64, values: &[f64]) -> Result<(), OutputError> {
         self.gauges.append(time, values)
     }
 
@@ -163,8 +163,8 @@ impl RunFolder {
     /// `maps/times.csv`. A model without this map writes none.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn write_snapshot(&mut self, time: f64, maps: &[Map], terrain: &Terrain) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn write_snapshot(&mut self, time: f64, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
         let Some(map) = maps.iter().find(|map| map.name == SNAPSHOT) else { return Ok(()) };
         let folder = self.subfolder("maps")?;
         maps::write_map(&maps::snapshot_path(&folder, self.map_times.len()), terrain.map_grid(), &map.values)?;
@@ -176,8 +176,8 @@ impl RunFolder {
     /// extent `maps/extent.geojson` and its run-up line `maps/run_up.geojson`.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn write_final_maps(&self, maps: &[Map], terrain: &Terrain) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn write_final_maps(&self, maps: &[Map], terrain: &Terrain) -> Result<(), OutputError> {
         let folder = self.subfolder("maps")?;
         for map in maps.iter().filter(|map| map.name != SNAPSHOT) {
             maps::write_map(&folder.join(format!("{}.tif", map.name)), terrain.map_grid(), &map.values)?;
@@ -191,12 +191,12 @@ impl RunFolder {
         }
     }
 
-    /// Writes what is known of the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
+    /// Writes the values on the surfaces of solids: `maps/NAME.vtp` for each, spaces of its name as `_`. A model without solids
     /// writes none.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn write_surfaces(&self, surfaces: &[Surface]) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn write_surfaces(&self, surfaces: &[Surface]) -> Result<(), OutputError> {
         if surfaces.is_empty() {
             return Ok(());
         }
@@ -210,8 +210,8 @@ impl RunFolder {
     /// Writes charts as tables, `charts/NAME.csv`, and paths, `path.csv`. A model without them writes none.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn write_charts(&self, charts: &[Chart], paths: &[corpuscle_model::Path]) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn write_charts(&self, charts: &[Chart], paths: &[corpuscle_model::Path]) -> Result<(), OutputError> {
         if !charts.is_empty() {
             let folder = self.subfolder("charts")?;
             charts.iter().try_for_each(|chart| write_chart(&folder, chart))?;
@@ -222,8 +222,8 @@ impl RunFolder {
     /// Writes the checkpoint over the one before.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; the checkpoint before stays.
-    pub fn write_checkpoint(&self, clock: Clock, state: &[u8]) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; the checkpoint before stays.
+    pub fn write_checkpoint(&self, clock: Clock, state: &[u8]) -> Result<(), OutputError> {
         self.subfolder("checkpoint")?;
         let progress = Progress {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -240,36 +240,36 @@ impl RunFolder {
     /// Adds a line to `log.txt`.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn log(&mut self, line: &str) -> Result<(), RecordError> {
-        self.log.write_all(format!("{line}\n").as_bytes()).map_err(RecordError::write(&self.path.join("log.txt")))
+    /// [`OutputError::Write`].
+    pub fn log(&mut self, line: &str) -> Result<(), OutputError> {
+        self.log.write_all(format!("{line}\n").as_bytes()).map_err(OutputError::write(&self.path.join("log.txt")))
     }
 
     /// Writes `summary.json`.
     ///
     /// # Errors
-    /// [`RecordError::Write`].
-    pub fn finish(&self, summary: &Summary) -> Result<(), RecordError> {
+    /// [`OutputError::Write`].
+    pub fn finish(&self, summary: &Summary) -> Result<(), OutputError> {
         summary.write(&self.path)
     }
 
-    fn subfolder(&self, name: &str) -> Result<PathBuf, RecordError> {
+    fn subfolder(&self, name: &str) -> Result<PathBuf, OutputError> {
         let path = self.path.join(name);
-        fs::create_dir_all(&path).map_err(RecordError::write(&path))?;
+        fs::create_dir_all(&path).map_err(OutputError::write(&path))?;
         Ok(path)
     }
 
-    fn write_pvd(&self) -> Result<(), RecordError> {
+    fn write_pvd(&self) -> Result<(), OutputError> {
         match self.frame_format {
             FrameFormat::Vtp => write_pvd(&self.path.join("frames"), &self.frame_times),
             _ => Ok(()),
         }
     }
 
-    /// Takes away what was written after the checkpoint.
-    fn cut_back(&self) -> Result<(), RecordError> {
+    /// Removes what was written after the checkpoint.
+    fn truncate(&self) -> Result<(), OutputError> {
         for folder in FOLDERS.map(|name| self.path.join(name)) {
-            clear_unfinished(&folder).map_err(RecordError::write(&folder))?;
+            clear_unfinished(&folder).map_err(OutputError::write(&folder))?;
         }
         let frames = self.path.join("frames");
         remove_numbered(&frames, "frame_", self.frame_times.len())?;
@@ -283,7 +283,7 @@ impl RunFolder {
         }
         let summary = self.path.join("summary.json");
         match fs::remove_file(&summary) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(RecordError::write(&summary)(error)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(OutputError::write(&summary)(error)),
             _ => Ok(()),
         }
     }
@@ -296,7 +296,7 @@ fn checkpoint_path(folder: &Path) -> PathBuf {
     folder.join("checkpoint").join("state")
 }
 
-/// Takes away what a run wrote that could not begin, so that it can be tried again into the same folder.
+/// Removes the files of a run that could not begin, so that it can be started again in the same folder.
 fn clear_beginning(folder: &Path) {
     for name in ["scene.toml", "gauges.csv", "log.txt"] {
         let _ = fs::remove_file(folder.join(name));
@@ -305,18 +305,18 @@ fn clear_beginning(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
-fn open_log(folder: &Path) -> Result<File, RecordError> {
+fn open_log(folder: &Path) -> Result<File, OutputError> {
     let path = folder.join("log.txt");
-    OpenOptions::new().create(true).append(true).open(&path).map_err(RecordError::write(&path))
+    OpenOptions::new().create(true).append(true).open(&path).map_err(OutputError::write(&path))
 }
 
 /// Removes files `<prefix>NNNNNN.<any>` whose number is `first` or more.
-fn remove_numbered(folder: &Path, prefix: &str, first: usize) -> Result<(), RecordError> {
+fn remove_numbered(folder: &Path, prefix: &str, first: usize) -> Result<(), OutputError> {
     let Ok(entries) = fs::read_dir(folder) else { return Ok(()) };
     for path in entries.flatten().map(|entry| entry.path()) {
         let number = path.file_stem().and_then(|stem| stem.to_str()?.strip_prefix(prefix)?.parse::<usize>().ok());
         if number.is_some_and(|number| number >= first) {
-            fs::remove_file(&path).map_err(RecordError::write(&path))?;
+            fs::remove_file(&path).map_err(OutputError::write(&path))?;
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! Pictures in a run's folder.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::whole::write_bytes;
 use corpuscle_drawing::png::encode_rgba;
 use std::fs;
@@ -10,11 +10,11 @@ use std::path::Path;
 /// made where it is not there.
 ///
 /// # Errors
-/// [`RecordError::Write`]; [`RecordError::Content`] where the bytes do not fit the size.
-pub fn write_picture(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<(), RecordError> {
+/// [`OutputError::Write`]; [`OutputError::Content`] where the bytes do not fit the size.
+pub fn write_picture(path: &Path, size: [u32; 2], rgba: &[u8]) -> Result<(), OutputError> {
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(RecordError::write(folder))?;
+        fs::create_dir_all(folder).map_err(OutputError::write(folder))?;
     }
-    let png = encode_rgba(size[0], size[1], rgba).map_err(|what| RecordError::content(path, what))?;
+    let png = encode_rgba(size[0], size[1], rgba).map_err(|what| OutputError::content(path, what))?;
     write_bytes(path, &png)
 }

@@ -1,6 +1,6 @@
-//! `summary.json`: what a run was and what came of it.
+//! `summary.json`: the summary of a run.
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::extent::ExtentScores;
 use crate::whole::write_whole;
 use corpuscle_model::Ledger;
@@ -10,12 +10,12 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-/// What a run was and what came of it.
+/// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The model: `flood`.
     pub model: String,
-    /// Where it ran: `cpu` or `gpu`.
+    /// The backend: `cpu` or `gpu`.
     pub backend: String,
     /// Version of Corpuscle.
     pub version: String,
@@ -38,7 +38,7 @@ pub struct Summary {
     /// Collisions per second of wall-clock time (of a gas).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collisions_per_s: Option<f64>,
-    /// Things a user should know, in sentences.
+    /// Warnings to the user, in sentences.
     pub warnings: Vec<String>,
     /// The balances, by quantity: `water_m3`.
     pub ledger: BTreeMap<String, LedgerEntry>,
@@ -51,7 +51,7 @@ pub struct Summary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It came to its end.
+    /// It reached its end.
     Done,
     /// It was stopped before its end and can be continued.
     Stopped,
@@ -93,17 +93,17 @@ impl Summary {
     /// Reads the `summary.json` of a run's folder.
     ///
     /// # Errors
-    /// [`RecordError::Read`] or [`RecordError::Content`].
-    pub fn read(folder: &Path) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`] or [`OutputError::Content`].
+    pub fn read(folder: &Path) -> Result<Self, OutputError> {
         let path = folder.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(RecordError::read(&path))?;
-        serde_json::from_str(&text).map_err(|error| RecordError::content(&path, error))
+        let text = fs::read_to_string(&path).map_err(OutputError::read(&path))?;
+        serde_json::from_str(&text).map_err(|error| OutputError::content(&path, error))
     }
 
     /// Writes `summary.json` into a run's folder.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), RecordError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), OutputError> {
         let path = folder.join("summary.json");
-        let text = serde_json::to_string_pretty(self).map_err(|error| RecordError::content(&path, error))?;
+        let text = serde_json::to_string_pretty(self).map_err(|error| OutputError::content(&path, error))?;
         write_whole(&path, |file| writeln!(file, "{text}"))
     }
 }

@@ -1,10 +1,10 @@
-//! Where the walls of a box were over a run.
+//! Positions of the moving walls of a box over a run.
 
-use crate::{GaugeTable, RecordError};
+use crate::{GaugeTable, OutputError};
 use corpuscle_model::Container;
 use std::path::Path;
 
-/// Where the walls that move were, by a run's gauges.
+/// Positions of the moving walls, from a run's gauges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WallPlaces {
     times: Vec<f64>,
@@ -20,11 +20,11 @@ struct WallPlace {
 }
 
 impl WallPlaces {
-    /// Those of a run, from its gauges; of none where no wall moves.
+    /// Reads the positions of a run from its gauges; empty where no wall moves.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Content`] where `gauges.csv` cannot be used.
-    pub fn read(run: &Path) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Content`] where `gauges.csv` cannot be used.
+    pub fn read(run: &Path) -> Result<Self, OutputError> {
         Ok(Self::of(&GaugeTable::read(&run.join("gauges.csv"))?))
     }
 

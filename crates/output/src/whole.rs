@@ -1,23 +1,23 @@
 //! Files written whole or not at all, with errors that name them.
 
-use crate::RecordError;
+use crate::OutputError;
 use corpuscle_atomic_file::WholeFile;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a file: whoever reads `path` sees the old content or the new, never a part.
+/// Writes a file atomically: a reader of `path` sees the old content or the new, never a part.
 ///
 /// # Errors
-/// [`RecordError::Write`], naming `path`; the old content, if there was any, is untouched.
+/// [`OutputError::Write`], naming `path`; the old content, if there was any, is untouched.
 pub(crate) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut WholeFile) -> io::Result<()>,
-) -> Result<(), RecordError> {
-    corpuscle_atomic_file::write_whole(path, write).map_err(RecordError::write(path))
+) -> Result<(), OutputError> {
+    corpuscle_atomic_file::write_whole(path, write).map_err(OutputError::write(path))
 }
 
 /// [`write_whole`] for content that is there already.
-pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_whole(path, |file| file.write_all(bytes))
 }
 

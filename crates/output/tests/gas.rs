@@ -212,7 +212,7 @@ fn it_has_the_balls_the_charts_and_the_ledger_and_needs_nothing_else() {
         "Pressure",
         "on the walls",
         "energy",
-        "way of one ball",
+        "trajectory of one ball",
         "wall at a temperature",
         "corpuscle run run/scene.toml",
         "Speed",
@@ -233,7 +233,7 @@ fn it_has_the_balls_the_charts_and_the_ledger_and_needs_nothing_else() {
     }
     assert!(path.join("charts/speeds.csv").is_file() && path.join("path.csv").is_file());
     let svg = fs::read_to_string(path.join("pictures/balls.svg")).unwrap();
-    assert_eq!(svg.matches("<circle").count(), 800 + 2, "the balls, the start of the way and the ball that went it");
+    assert_eq!(svg.matches("<circle").count(), 800 + 2, "the balls, the start of the trajectory and its ball");
 }
 
 #[test]

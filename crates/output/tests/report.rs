@@ -98,7 +98,7 @@ fn runs_without_gauges_or_water_have_a_report() {
     let folder = tempfile::tempdir().unwrap();
     let plane = "plane]\nextent = { length_m = 100.0, width_m = 50.0, cell_m = 5.0 }";
     let html = small_run(folder.path(), plane, |_| false);
-    assert!(html.contains("No place became wet."));
+    assert!(html.contains("Nothing became wet."));
     let again = tempfile::tempdir().unwrap();
     assert!(html == small_run(again.path(), plane, |_| false), "the same run gives another report");
     assert!(html.contains("&lt;b&gt;&amp;") && !html.contains("<b>&"));

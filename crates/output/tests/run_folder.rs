@@ -3,7 +3,7 @@
 mod common;
 
 use common::{advance, finish, gauge_columns, scene, terrain, write_run};
-use corpuscle_output::{Clock, FrameFormat, RecordError, Report, RunFolder, Summary, next_run_folder};
+use corpuscle_output::{Clock, FrameFormat, OutputError, Report, RunFolder, Summary, next_run_folder};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -102,7 +102,7 @@ fn a_run_is_never_overwritten() {
     let path = folder.path().join("run");
     RunFolder::create(&path, "first", &[], FrameFormat::None).unwrap();
     let error = RunFolder::create(&path, "second", &[], FrameFormat::None).unwrap_err();
-    assert!(matches!(error, RecordError::Exists { .. }), "{error}");
+    assert!(matches!(error, OutputError::Exists { .. }), "{error}");
     assert_eq!(fs::read_to_string(path.join("scene.toml")).unwrap(), "first");
 }
 
@@ -118,14 +118,14 @@ fn new_folders_are_numbered_and_free() {
 #[test]
 fn what_cannot_be_resumed_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(RunFolder::resume(folder.path()), Err(RecordError::Read { .. })));
+    assert!(matches!(RunFolder::resume(folder.path()), Err(OutputError::Read { .. })));
     let path = folder.path().join("run");
     let run = RunFolder::create(&path, "scene", &[], FrameFormat::None).unwrap();
-    assert!(matches!(RunFolder::resume(&path), Err(RecordError::NoCheckpoint { .. })));
+    assert!(matches!(RunFolder::resume(&path), Err(OutputError::NoCheckpoint { .. })));
     run.write_checkpoint(Clock { time_s: 0.0, wall_time_s: 0.0 }, b"state").unwrap();
     assert!(RunFolder::resume(&path).is_ok());
     fs::write(path.join("scene.toml"), "another scene").unwrap();
-    assert!(matches!(RunFolder::resume(&path), Err(RecordError::Checkpoint { .. })));
+    assert!(matches!(RunFolder::resume(&path), Err(OutputError::Checkpoint { .. })));
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn gauge_rows_must_fit_the_header() {
     let scene = scene();
     let columns = gauge_columns(&scene);
     let mut run = RunFolder::create(&folder.path().join("run"), "scene", &columns, FrameFormat::None).unwrap();
-    assert!(matches!(run.append_gauges(0.0, &[1.0]), Err(RecordError::GaugeCount { .. })));
+    assert!(matches!(run.append_gauges(0.0, &[1.0]), Err(OutputError::GaugeCount { .. })));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Where a picture is taken from.
+//! Cameras.
 
 use crate::Stage;
 use glam::camera::rh::{proj::directx, view};
@@ -9,28 +9,28 @@ const NEAR: f32 = 2e-3;
 /// Half the depth that a lens without perspective covers, in units of the stage.
 const DEPTH: f32 = 4.0;
 
-/// Where a picture is taken from, in the world's coordinates.
+/// A camera in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where the eye is, m.
+    /// Position of the camera, m.
     pub eye: DVec3,
-    /// What it looks at, m.
+    /// Target point, m.
     pub target: DVec3,
-    /// What is up in the picture; not along the line of sight.
+    /// Up vector; not along the line of sight.
     pub up: DVec3,
-    /// How it projects.
+    /// Its projection.
     pub lens: Lens,
 }
 
-/// How a camera projects.
+/// Projection of a camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Lens {
-    /// As an eye sees.
+    /// Perspective.
     Perspective {
-        /// Angle between the lower and upper edge of the picture, radians.
+        /// Vertical field of view, radians.
         field_of_view: f64,
     },
-    /// Parallel lines stay parallel, lengths across the line of sight are to scale.
+    /// Orthographic: lengths across the line of sight are to scale.
     Orthographic {
         /// Height of the world in the picture, m.
         height: f64,
@@ -58,7 +58,7 @@ impl Camera {
         Self { eye, target, up, lens: Lens::Orthographic { height } }
     }
 
-    /// A camera that looks at the middle of the stage from `azimuth` (radians, from east over north, where the camera stands)
+    /// A camera with its target in the middle of the stage, from `azimuth` (radians, from east over north, where the camera stands)
     /// and `elevation` (radians above the horizon), so far away that all corners of the stage are in a picture of `aspect`
     /// but for a `margin` (part of the picture, 0 for none).
     pub fn orbit(stage: &Stage, [azimuth, elevation]: [f64; 2], field_of_view: f64, aspect: f64, margin: f64) -> Self {
@@ -80,12 +80,12 @@ impl Camera {
         }
     }
 
-    /// The same moved to look at another place, m.
+    /// The camera with another target, m, and the same direction.
     pub fn looking_at(self, target: DVec3) -> Self {
         Self { eye: self.eye + (target - self.target), target, ..self }
     }
 
-    /// The same so many times nearer to what it looks at, or with what it shows so many times larger where there is no perspective.
+    /// The camera so many times nearer to its target, or with a picture magnified so many times where it is orthographic.
     pub fn nearer(self, times: f64) -> Self {
         match self.lens {
             Lens::Perspective { .. } => Self { eye: self.target + (self.eye - self.target) / times, ..self },
@@ -93,7 +93,7 @@ impl Camera {
         }
     }
 
-    /// Where a place, m, is in a picture of `aspect`: parts of its width from the left and of its height from above. None behind
+    /// Position of a point, m, in a picture of `aspect`: fractions of its width from the left and of its height from above. None behind
     /// the eye.
     pub fn project(&self, stage: &Stage, aspect: f64, point: [f64; 3]) -> Option<[f64; 2]> {
         let clip = self.clip_from_view(stage, aspect as f32) * self.view_from_world(stage);
@@ -115,7 +115,7 @@ impl Camera {
             Lens::Orthographic { height } => {
                 let half = 0.5 * stage.length(height);
                 let [near, far] = self.depths(stage);
-                // Near and far changed places: depth 1 is near.
+                // Reversed depth: 1 is near.
                 directx::orthographic(-half * aspect, half * aspect, -half, half, far, near)
             }
         }

@@ -1,9 +1,9 @@
-//! A camera that moves, for films.
+//! Moving cameras, for films.
 
 use crate::{Camera, Lens};
 use glam::DVec3;
 
-/// Where a camera is at times: through given stations, smoothly.
+/// A smooth path of a camera through given stations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraPath {
     /// Times, s, and cameras; in order of time.
@@ -19,7 +19,7 @@ impl CameraPath {
         (!stations.is_empty()).then_some(Self { stations })
     }
 
-    /// The camera at a time; before the first station and after the last it stands there.
+    /// The camera at a time; before the first station and after the last it rests there.
     pub fn at(&self, time: f64) -> Camera {
         let next = self.stations.partition_point(|(at, _)| *at <= time);
         let last = self.stations.len() - 1;
@@ -58,7 +58,7 @@ fn hermite([before, from, to, after]: [(f64, DVec3); 4], part: f64) -> DVec3 {
         + end * (cube - square)
 }
 
-/// A lens between two of a kind; two of different kinds change half way.
+/// A projection between two of a kind; two of different kinds change half way.
 fn between(from: Lens, to: Lens, part: f64) -> Lens {
     let mix = |a: f64, b: f64| a + (b - a) * part;
     match (from, to) {

@@ -12,7 +12,7 @@ pub struct ColourTable {
     pub low: f32,
     /// The number that has the last.
     pub high: f32,
-    /// Colours at equal distances; between them they go over into each other. At least one.
+    /// Colours at equal distances, interpolated between them. At least one.
     pub colours: Vec<[u8; 3]>,
 }
 

@@ -1,55 +1,55 @@
-//! What can be in a picture: the seam between the renderer and each kind of thing.
+//! Drawable things: the interface between the renderer and each kind of thing.
 
 use crate::{Camera, Stage};
 use corpuscle_gpu::{Gpu, wgpu};
 
 /// A thing in a picture. It takes part in the passes that concern it, in this order:
 ///
-/// 1. [`Drawable::cast`], once for all things: what throws shadows draws itself as the sun sees it, depth alone.
+/// 1. [`Drawable::cast`], once for all things: things that cast shadows draw their depth as seen from the sun.
 /// 2. [`Drawable::draw_before`], one thing after another, in lit pictures: passes into textures of its own that it needs to be drawn.
-/// 3. [`Drawable::draw`], once for all things: what is opaque draws itself into colour and depth, over the backdrop.
-/// 4. [`Drawable::draw_through`], one thing after another: what lets light through (water, glass) draws itself over a copy of
+/// 3. [`Drawable::draw`], once for all things: opaque things draw into colour and depth, over the backdrop.
+/// 4. [`Drawable::draw_through`], one thing after another: transparent things (water, glass) draw over a copy of
 ///    all that is behind it.
 ///
 /// Shaders begin with `#import view` (camera, places, lines of sight), `#import sky` (what is mirrored) or `#import light` (light
 /// on surfaces, shadows); group 0 is bound already, a thing's own groups start at 1. Coordinates are those of the stage; depth is
 /// 1 near and 0 far, so nearer is *greater*; colours are linear light.
 pub trait Drawable {
-    /// Called before the passes of each picture: what depends on the camera and the size (samples) is made ready.
+    /// Called before the passes of each picture: prepares what depends on the camera and the size (samples).
     fn prepare(&mut self, _gpu: &Gpu, _stage: &Stage, _camera: &Camera, _size: [u32; 2]) {}
 
-    /// Draws what throws shadows, with a pipeline of [`crate::DEPTH_FORMAT`] alone. Group 0 is the view from the sun (without
+    /// Draws the parts that cast shadows, with a pipeline of [`crate::DEPTH_FORMAT`] alone. Group 0 is the view from the sun (without
     /// perspective).
     fn cast(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
-    /// False for things that throw none: where they move, others' shadows rest.
+    /// False for things that cast no shadow: where only they move, shadows can be kept.
     fn throws_shadow(&self) -> bool {
         true
     }
 
-    /// Draws what the thing needs to be drawn into textures of its own.
+    /// Draws into textures of the thing's own that its later passes need.
     fn draw_before(&mut self, _frame: &mut Before<'_>) {}
 
-    /// Draws what is opaque, with a pipeline of [`crate::COLOUR_FORMAT`] and [`crate::DEPTH_FORMAT`].
+    /// Draws the opaque parts, with a pipeline of [`crate::COLOUR_FORMAT`] and [`crate::DEPTH_FORMAT`].
     fn draw(&self, _pass: &mut wgpu::RenderPass<'_>) {}
 
-    /// For what stands still, a number that no other thing has, and that is another one when the thing is drawn otherwise although
-    /// camera, light and size are the same. Its picture is kept while these rest, in light that throws shadows only where nothing
-    /// moves that throws one. None for what moves.
+    /// For a static thing, a number that no other thing has, and that changes when the thing is drawn otherwise although
+    /// camera, light and size are the same. Its picture is kept while these rest, in light that casts shadows only where nothing
+    /// moves that casts one. None for a moving thing.
     fn static_state(&self) -> Option<u64> {
         None
     }
 
-    /// True for things that let light through. They throw no shadows and draw nothing opaque.
+    /// True for transparent things. They cast no shadows and draw nothing opaque.
     fn lets_light_through(&self) -> bool {
         false
     }
 
-    /// Draws what lets light through, in passes of its own.
+    /// Draws the transparent parts, in passes of its own.
     fn draw_through(&mut self, _frame: &mut Through<'_>) {}
 }
 
-/// What a thing has to draw with before the picture is begun.
+/// Device, encoder and bindings for the passes before the picture.
 pub struct Before<'a> {
     /// The device.
     pub gpu: &'a Gpu,
@@ -61,7 +61,7 @@ pub struct Before<'a> {
     pub size: [u32; 2],
 }
 
-/// What a thing that lets light through draws into, and what is behind it.
+/// Targets of a transparent thing, and the picture behind it.
 pub struct Through<'a> {
     /// The device.
     pub gpu: &'a Gpu,

@@ -1,9 +1,9 @@
-//! What can go wrong while a picture is drawn.
+//! Errors of drawing a picture.
 
-/// Why there is no picture.
+/// An error of drawing a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The graphics device cannot.
+    /// An error of the GPU.
     #[error(transparent)]
     Gpu(#[from] corpuscle_gpu::GpuError),
     /// Text and bars over the picture cannot be drawn.

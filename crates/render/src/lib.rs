@@ -1,10 +1,10 @@
 //! Pictures of a model's frames on the GPU, off screen or on.
 //!
 //! A [`Renderer`] draws [`Drawable`] things, seen by a [`Camera`] under a [`Light`], into a [`Target`], from which a picture is
-//! read back. It knows no physics and no files.
+//! read back. It depends on no physics and no files.
 //!
 //! Things are drawn in the coordinates of a [`Stage`]: relative to the middle of what is shown, its half diagonal 1. So a gas of
-//! nanometres and a valley of kilometres look alike to single precision.
+//! nanometres and a valley of kilometres have the same relative error in single precision.
 
 mod balls;
 mod buffer;
@@ -43,7 +43,7 @@ pub use floor::Floor;
 pub use fluid::{DeviceWater, Droplet, Fluid, FluidPainter, FluidPass, FluidStyle, Smoothing, Water, WaterSides};
 pub use inlay::{Inlay, InlayPainter};
 pub use light::{Backdrop, Light};
-pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineLook, Mark, Overlay};
+pub use overlay::{Axes, AxisOnPage, Border, Key, KeyPlace, LineStyle, Mark, Overlay};
 pub use renderer::Renderer;
 pub use solids::{Solid, SolidStyle};
 pub use stage::Stage;

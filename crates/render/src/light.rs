@@ -1,25 +1,25 @@
-//! The sun and what is behind everything.
+//! Sunlight and background.
 
 use glam::Vec3;
 
 /// Sun and surroundings. Colours are linear; 1 is what white paper in full light gives back.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
-    /// Where the sun stands: azimuth (from east over north) and height above the horizon, radians.
+    /// Direction of the sun: azimuth (from east over north) and height above the horizon, radians.
     pub sun: [f32; 2],
     /// Colour and strength of sunlight.
     pub sunlight: [f32; 3],
-    /// Half the angle that the sun fills, radians: how soft shadows are. The real one has 0.0047.
+    /// Angular radius of the sun, radians: softness of shadows. The real one has 0.0047.
     pub softness: f32,
     /// Strength of the light that comes from the backdrop.
     pub ambient: f32,
-    /// What is behind everything, and is mirrored.
+    /// The background, which surfaces also reflect.
     pub backdrop: Backdrop,
-    /// Whether things throw shadows in sunlight.
+    /// True where sunlight casts shadows.
     pub shadows: bool,
 }
 
-/// What is behind everything.
+/// The background.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Backdrop {
     /// A clear sky with the sun in it.
@@ -33,7 +33,7 @@ pub enum Backdrop {
         /// Straight below.
         below: [f32; 3],
     },
-    /// The same with a bright window towards the sun, which is mirrored more than it is seen.
+    /// The same with a bright window towards the sun, for its reflections.
     Room {
         /// Overhead.
         above: [f32; 3],
@@ -60,7 +60,7 @@ impl Light {
         Self { sun, sunlight, softness: 0.05, ambient: 0.8, backdrop, shadows: true }
     }
 
-    /// A room with dark walls and a window: what is clear shows best against it.
+    /// A room with dark walls and a window, for transparent things.
     pub fn dim_room() -> Self {
         let backdrop =
             Backdrop::Room { above: [0.92, 0.97, 1.05], horizon: [0.53, 0.57, 0.62], below: [0.17, 0.185, 0.21] };
@@ -93,7 +93,7 @@ impl Light {
         Vec3::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin())
     }
 
-    /// The colour that stands for the backdrop where that is not drawn: of paper, or at the horizon.
+    /// The clear colour where the background is not drawn: of paper, or at the horizon.
     pub(crate) fn plain_backdrop(&self) -> [f32; 3] {
         match self.backdrop {
             Backdrop::Sky => [0.66, 0.77, 0.90],
@@ -107,7 +107,7 @@ impl Light {
         self.is_lit() && self.shadows
     }
 
-    /// True where things are lit, not drawn in plain colours.
+    /// True where things are lit, not drawn in flat colours.
     pub fn is_lit(&self) -> bool {
         !matches!(self.backdrop, Backdrop::Paper(_))
     }

@@ -3,9 +3,9 @@
 use crate::{COLOUR_FORMAT, DEPTH_FORMAT};
 use corpuscle_gpu::{Gpu, GroupLayout, wgpu};
 
-/// What a pipeline is made of. Its shader has entry points `vertex` and, unless another is named, `fragment`.
+/// Description of a pipeline. Its shader has entry points `vertex` and, unless another is named, `fragment`.
 pub(crate) struct PipelineDescriptor<'a> {
-    /// For messages.
+    /// Its label.
     pub label: &'a str,
     /// The shader.
     pub module: &'a wgpu::ShaderModule,

@@ -1,4 +1,4 @@
-//! Draws pictures, pass by pass.
+//! The renderer: draws pictures pass by pass.
 
 use crate::pipeline::PipelineDescriptor;
 use crate::static_layer::{StaticLayer, StaticUse};
@@ -7,7 +7,7 @@ use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through
 use corpuscle_gpu::{Gpu, GroupLayout, Image, read_rgba8, wgpu};
 use std::sync::PoisonError;
 
-/// Draws pictures. Holds what does not change from one to the next.
+/// The renderer of pictures; holds pipelines and layouts.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -92,7 +92,7 @@ impl Renderer {
         let shadows = static_layer.shadows(gpu, light);
         let view = View::new(gpu, &self.view_layout, stage, camera, light, target.drawn_size(), shadows);
         things.iter_mut().for_each(|thing| thing.prepare(gpu, stage, camera, target.drawn_size()));
-        let static_use = static_layer.look(view.bytes(), light, things);
+        let static_use = static_layer.decide(view.bytes(), light, things);
         if light.throws_shadows() && static_use != StaticUse::Kept {
             draw_shadows(encoder, &view, things);
         }

@@ -1,4 +1,4 @@
-//! The pieces that shaders of this crate import.
+//! The modules that shaders of this crate import.
 
 use crate::shared::declared;
 use corpuscle_gpu::{DECLARED, Gpu, GroupLayout, ImportError, join, wgpu};

@@ -1,4 +1,4 @@
-//! What the host and the shaders of this crate share: structures and constants, declared once. Shaders take them in by `#import declared`; the bindings stand in the shaders.
+//! Structures and constants shared by the host and the shaders of this crate, declared once. Shaders take them in by `#import declared`; the bindings stand in the shaders.
 
 use corpuscle_gpu::{Layout, SharedPiece, wgpu};
 
@@ -14,7 +14,7 @@ corpuscle_gpu::declare! {
         pub(crate) const PIXELS_DOWN: u32 = 2;
         /// Threads of a group of those that splat particles.
         pub(crate) const SPLAT_GROUP: u32 = 128;
-        /// Which of the numbers that splats are told is that of particles.
+        /// Index of the number of particles in the arguments of splats.
         pub(crate) const SPLAT_COUNT: u32 = 25;
         /// Numbers a pixel in which splats add up water and foam.
         pub(crate) const SUMS: u32 = 5;
@@ -82,7 +82,7 @@ corpuscle_gpu::declare! {
             pub(crate) value: f32,
         }
 
-        /// How balls look.
+        /// Style of balls.
         pub(crate) struct BallUniforms {
             /// The number of the first colour.
             pub(crate) low: f32,
@@ -110,7 +110,7 @@ corpuscle_gpu::declare! {
             pub(crate) unused: [u32; 2],
         }
 
-        /// How drops look.
+        /// Style of drops.
         pub(crate) struct CapUniforms {
             /// How far they reach for each other.
             pub(crate) neck: f32,
@@ -130,7 +130,7 @@ corpuscle_gpu::declare! {
             pub(crate) nodes: [u32; 4],
         }
 
-        /// How a solid looks.
+        /// Style of a solid.
         pub(crate) struct SolidUniforms {
             /// Colour; of glass what is left of light straight through.
             pub(crate) colour: [f32; 4],
@@ -138,7 +138,7 @@ corpuscle_gpu::declare! {
             pub(crate) gloss: [f32; 4],
         }
 
-        /// How a fluid looks.
+        /// Style of a fluid.
         pub(crate) struct FluidUniforms {
             /// Part of light that is lost in a metre of water (1/m); density of foam that hides what is below.
             pub(crate) absorption: [f32; 4],

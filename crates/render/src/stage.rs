@@ -29,7 +29,7 @@ impl Stage {
         if half.is_finite() && half > 0.0 { half } else { 1.0 }
     }
 
-    /// A place of the world, m, in stage coordinates.
+    /// A point of the world, m, in stage coordinates.
     pub fn place(&self, point: [f64; 3]) -> Vec3 {
         ((DVec3::from(point) - self.centre()) / self.unit()).as_vec3()
     }

@@ -1,5 +1,5 @@
-//! What stands still is drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that throws
-//! shadows where all that throws one stands still.
+//! The static layer: static things are drawn once, and kept from picture to picture while the camera rests: in plain light, and in light that casts
+//! shadows where all things that cast one are static.
 
 use crate::target::{COLOUR_FORMAT, DEPTH_FORMAT};
 use crate::view::SHADOW_PIXELS;
@@ -8,16 +8,16 @@ use crate::{Drawable, Light, Target};
 use corpuscle_gpu::{Gpu, wgpu};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A number for how a thing looks that stands still; no two are the same.
+/// A unique number for the appearance of a static thing.
 pub(crate) fn new_state() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Colour and depth of what stands still, of one size.
+/// Colour and depth of the static things, for one size of picture.
 #[derive(Debug, Default)]
 pub(crate) struct StaticLayer {
-    /// What the last picture was drawn by: camera, light and size, and the state of each thing that stands.
+    /// The inputs of the last picture: camera, light and size, and the state of each static thing.
     by: Option<(Vec<u8>, Vec<u64>)>,
     textures: Option<[wgpu::Texture; 2]>,
     /// True where the textures hold it.
@@ -26,14 +26,14 @@ pub(crate) struct StaticLayer {
     shadows: Option<(wgpu::TextureView, bool)>,
 }
 
-/// What is to be done with what stands.
+/// Use of the static layer in a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum StaticUse {
-    /// Something is other than it was: drawn with the rest.
+    /// Something has changed: static things are drawn with the rest.
     Changed,
-    /// Nothing has changed since the last picture: drawn alone, and kept.
+    /// Nothing has changed since the last picture: static things are drawn alone and stored.
     Rests,
-    /// It was kept.
+    /// The stored layer is used.
     Kept,
 }
 
@@ -50,8 +50,8 @@ impl StaticLayer {
         map
     }
 
-    /// What is to be done in a picture by a camera and light.
-    pub fn look(&mut self, view: &[u8], light: &Light, things: &[&mut dyn Drawable]) -> StaticUse {
+    /// Decides how the layer is used in a picture with a camera and light.
+    pub fn decide(&mut self, view: &[u8], light: &Light, things: &[&mut dyn Drawable]) -> StaticUse {
         let states: Vec<u64> = things.iter().filter_map(|thing| thing.static_state()).collect();
         let moves = |thing: &&mut dyn Drawable| {
             thing.static_state().is_none() && thing.throws_shadow() && !thing.lets_light_through()
@@ -69,7 +69,7 @@ impl StaticLayer {
         if std::mem::replace(&mut self.drawn, true) { StaticUse::Kept } else { StaticUse::Rests }
     }
 
-    /// Keeps what was drawn into a target.
+    /// Stores the layer from a target.
     pub fn keep(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, target: &Target) {
         let kept = self.textures.get_or_insert_with(|| {
             [("static colours", COLOUR_FORMAT), ("static depth", DEPTH_FORMAT)].map(|(label, format)| {
@@ -88,7 +88,7 @@ impl StaticLayer {
         copy(encoder, [&target.colour, &target.depth], [&kept[0], &kept[1]]);
     }
 
-    /// Lays what was kept into a target.
+    /// Copies the stored layer into a target.
     pub fn lay(&self, encoder: &mut wgpu::CommandEncoder, target: &Target) {
         if let Some([colour, depth]) = &self.textures {
             copy(encoder, [colour, depth], [&target.colour, &target.depth]);
@@ -106,7 +106,7 @@ fn copy(encoder: &mut wgpu::CommandEncoder, from: [&wgpu::Texture; 2], to: [&wgp
 mod tests {
     use super::*;
 
-    /// A thing that stands, or moves and throws a shadow, or none.
+    /// A static thing, or one that moves, with or without a shadow.
     struct Thing(Option<u64>, bool);
 
     impl Drawable for Thing {
@@ -121,14 +121,14 @@ mod tests {
 
     #[test]
     fn what_moves_without_a_shadow_leaves_the_rest_in_peace() {
-        let look = |throws: bool, light: &Light| {
+        let uses = |throws: bool, light: &Light| {
             let (mut static_layer, mut ground, mut moving) =
                 (StaticLayer::default(), Thing(Some(new_state()), true), Thing(None, throws));
-            [(); 3].map(|()| static_layer.look(&[1], light, &[&mut ground, &mut moving]))
+            [(); 3].map(|()| static_layer.decide(&[1], light, &[&mut ground, &mut moving]))
         };
         let kept = [StaticUse::Changed, StaticUse::Rests, StaticUse::Kept];
-        assert_eq!(look(false, &Light::day()), kept);
-        assert_eq!(look(true, &Light::day()), [StaticUse::Changed; 3]);
-        assert_eq!(look(true, &Light::day().without_shadows()), kept);
+        assert_eq!(uses(false, &Light::day()), kept);
+        assert_eq!(uses(true, &Light::day()), [StaticUse::Changed; 3]);
+        assert_eq!(uses(true, &Light::day().without_shadows()), kept);
     }
 }

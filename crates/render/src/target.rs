@@ -1,4 +1,4 @@
-//! What a picture is drawn into.
+//! Render targets.
 
 use crate::RenderError;
 use crate::static_layer::StaticLayer;
@@ -12,8 +12,8 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Format of the finished picture: sRGB bytes.
 pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// What a picture is drawn into: colour and depth with several samples a pixel, the opaque scene behind what lets light
-/// through, and the finished picture. Kept from picture to picture of a film.
+/// A render target: colour and depth with several samples a pixel, the opaque scene behind transparent
+/// things, and the finished picture. Reused from picture to picture of a film.
 #[derive(Debug)]
 pub struct Target {
     /// Width and height of the picture, pixels.

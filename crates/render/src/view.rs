@@ -1,4 +1,4 @@
-//! What every shader knows of the picture: camera, light, and the sun's depth map. Group 0 of every pipeline; in WGSL `#import view`.
+//! Bindings of camera, light and the sun's depth map. Group 0 of every pipeline; in WGSL `#import view`.
 
 use crate::shared::CameraAndLight;
 use crate::{Backdrop, Camera, Lens, Light, Stage, shaders};
@@ -48,7 +48,7 @@ impl View {
         Self { group, sun_group, shadow, uniform: seen }
     }
 
-    /// All that shaders know of camera, light and size.
+    /// The uniforms of camera, light and size.
     pub(crate) fn bytes(&self) -> &[u8] {
         bytemuck::bytes_of(&self.uniform)
     }
@@ -107,7 +107,7 @@ fn sun_from_world(light: &Light) -> Mat4 {
     let towards = light.towards_sun();
     let up = if towards.z.abs() > 0.99 { Vec3::Y } else { Vec3::Z };
     let reach = 1.02;
-    // Near and far changed places: depth 1 is near the sun.
+    // Reversed depth: 1 is near the sun.
     directx::orthographic(-reach, reach, -reach, reach, 4.0 + reach, 4.0 - reach)
         * view::look_at_mat4(towards * 4.0, Vec3::ZERO, up)
 }

@@ -1,4 +1,4 @@
-// What every shader knows of the picture (view.rs): group 0.
+// Bindings of the picture that every shader has (view.rs): group 0.
 #import declared
 
 @group(0) @binding(0) var<uniform> view: CameraAndLight;

@@ -6,7 +6,7 @@ use corpuscle_gpu::{Image, require_gpu};
 use corpuscle_model::SolidShape;
 use corpuscle_render::{
     Axes, BallPainter, BallStyle, Border, Camera, Cap, CapPainter, ColourTable, Drawable, Droplet, Floor, FluidPainter,
-    FluidStyle, HeightField, Key, KeyPlace, Light, LineLook, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
+    FluidStyle, HeightField, Key, KeyPlace, Light, LineStyle, Mark, Overlay, Renderer, Shading, Solid, SolidStyle,
     Stage, Target, Terrain, TubePainter, TubeStyle, WaterSides, box_edges, natural_colours,
 };
 use std::path::Path;
@@ -162,21 +162,27 @@ fn plan(table: &Table, left_out: &str) -> Image {
     let discs = (0..40).map(|k| ([1.0 + 2.0 * (k % 8) as f64, 1.0 + 1.8 * (k / 8) as f64, 0.0], 0.7, k as f64 / 39.0));
     let style = BallStyle { shading: Shading::Discs, ..BallStyle::new(viridis()) };
     let mut balls = BallPainter::new(&table.renderer).balls(gpu, &stage, &style, discs);
-    let line = |look, ends: [[f64; 2]; 2], outwards| Border::Line { look, ends, outwards };
+    let line = |style, ends: [[f64; 2]; 2], outwards| Border::Line { style, ends, outwards };
     let borders = vec![
-        line(LineLook::Wall, [[0.0, 0.0], [16.0, 0.0]], [0.0, -1.0]),
-        line(LineLook::HotWall, [[0.0, 0.0], [0.0, 9.0]], [-1.0, 0.0]),
-        line(LineLook::Open, [[0.0, 9.0], [16.0, 9.0]], [0.0, 1.0]),
-        line(LineLook::Partition, [[8.0, 0.0], [8.0, 3.0]], [0.0, 0.0]),
+        line(LineStyle::Wall, [[0.0, 0.0], [16.0, 0.0]], [0.0, -1.0]),
+        line(LineStyle::ThermalWall, [[0.0, 0.0], [0.0, 9.0]], [-1.0, 0.0]),
+        line(LineStyle::Periodic, [[0.0, 9.0], [16.0, 9.0]], [0.0, 1.0]),
+        line(LineStyle::Partition, [[8.0, 0.0], [8.0, 3.0]], [0.0, 0.0]),
         Border::Piston { ends: [[12.0, 0.0], [12.0, 9.0]], outwards: [1.0, 0.0], rod: 3.0 },
     ];
     let marks = |place: [f64; 3]| [Mark::Ring(place, 0.7), Mark::Start([place[0] + 1.0, place[1], 0.0])];
     let whole = Overlay {
         scale_bar: Some("m".into()),
         key_place: KeyPlace::Corner,
-        lines: [LineLook::Way, LineLook::Wall, LineLook::HotWall, LineLook::Open, LineLook::Partition]
-            .map(|look| (look, format!("what is drawn as {look:?}")))
-            .into(),
+        lines: [
+            LineStyle::Trajectory,
+            LineStyle::Wall,
+            LineStyle::ThermalWall,
+            LineStyle::Periodic,
+            LineStyle::Partition,
+        ]
+        .map(|style| (style, format!("what is drawn as {style:?}")))
+        .into(),
         borders,
         marks: (0..5).flat_map(|k| marks([5.0, 1.0 + 1.8 * k as f64, 0.0])).collect(),
         axes: Some(Axes { from: [0.0; 3], to: [16.0, 9.0, 0.0], unit: "m".into(), heights: 1.0 }),

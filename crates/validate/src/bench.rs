@@ -1,4 +1,4 @@
-//! What a bench is and what it gives.
+//! Benches: measurements of rates.
 
 use corpuscle_dew::Dew;
 use corpuscle_flood::{SphSweFlood, VoronoiFlood};
@@ -12,13 +12,13 @@ use std::time::Instant;
 /// A rate measured on this machine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rate {
-    /// What was run: `flood/voronoi-60k`.
+    /// Name of the bench: `flood/voronoi-60k`.
     pub name: String,
     /// Number of particles.
     pub particles: usize,
     /// Dimensions of the computation.
     pub dimensions: usize,
-    /// Part of space that particles fill (gas).
+    /// Packing fraction (gas).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<f64>,
     /// Threads used; 0 on a GPU.
@@ -28,16 +28,16 @@ pub struct Rate {
     pub device: Option<String>,
     /// The rate, all threads together.
     pub rate: f64,
-    /// What is counted: `particle_steps_per_s`.
+    /// Unit of the rate: `particle_steps_per_s`.
     pub rate_unit: String,
     /// Memory of the model over its particles.
     pub bytes_per_particle: f64,
-    /// What each pass of a step takes on the GPU, where that was asked for.
+    /// Times of the passes of a step on the GPU, where requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub passes: Vec<PassTime>,
 }
 
-/// What a pass takes on a GPU.
+/// Time of a pass on a GPU.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PassTime {
     /// The name of its kernel.
@@ -48,23 +48,23 @@ pub struct PassTime {
     pub seconds_a_step: f64,
 }
 
-/// A scene whose cost matters.
+/// A bench: a scene whose rate is measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Bench {
     /// Name: the model and words, `flood/voronoi-60k`.
     pub name: &'static str,
     /// What it measures, in a sentence.
     pub about: &'static str,
-    /// Whether it is for a GPU only.
+    /// True for a GPU only.
     pub needs_gpu: bool,
     /// Runs it.
     pub run: fn(&BenchOptions) -> Vec<Rate>,
 }
 
-/// What benches are run with.
+/// Options of benches.
 #[derive(Debug, Clone, Default)]
 pub struct BenchOptions {
-    /// Less time for each, for a quick look: the figures scatter more.
+    /// Less time for each: the rates scatter more.
     pub quick: bool,
     /// The GPU to compute on; else the CPU.
     pub gpu: Option<Gpu>,
@@ -74,7 +74,7 @@ pub struct BenchOptions {
 
 static ADDED: RwLock<Vec<Bench>> = RwLock::new(Vec::new());
 
-/// Adds a bench, in this process. Nothing changes where one of its name is there.
+/// Registers a bench, in this process. Nothing changes where one of its name exists.
 pub fn register_bench(bench: Bench) {
     if benches().iter().all(|known| known.name != bench.name) {
         ADDED.write().unwrap_or_else(PoisonError::into_inner).push(bench);
@@ -111,7 +111,7 @@ macro_rules! stepped {
 
 stepped!(SphSweFlood, VoronoiFlood, Dew);
 
-/// Lets a GPU take the steps of a model.
+/// Moves the steps of a model to a GPU.
 fn use_gpu(model: &mut dyn Model, gpu: Gpu) -> Result<(), ModelError> {
     let why = model.cpu_only().map_or("", |cpu_only| cpu_only.what);
     model.on_gpu_mut().ok_or_else(|| ModelError::Setup(why.into()))?.use_gpu(gpu)
@@ -123,7 +123,7 @@ pub(crate) struct Measuring {
     pub dimensions: usize,
     /// Steps before the clock is started.
     pub settling: u64,
-    /// Steps between two looks at the clock: here, and on a GPU, where each look brings the state back.
+    /// Steps between two readings of the clock: on the CPU, and on a GPU, where each reading brings the state back.
     pub steps: [f64; 2],
     /// Wall-clock time, s.
     pub seconds: f64,

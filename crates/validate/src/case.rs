@@ -1,4 +1,4 @@
-//! What a case is and what it gives.
+//! Cases with known answers, and their results.
 
 use corpuscle_model::Chart;
 use serde::Serialize;
@@ -11,13 +11,13 @@ use std::sync::{PoisonError, RwLock};
 pub struct Row {
     /// The case: `flood/voronoi/stoker`.
     pub case: String,
-    /// What is measured, in words joined by `_`: `relative_l1_error_1m`.
+    /// Name of the measure: `relative_l1_error_1m`.
     pub measure: String,
-    /// What was found; none where the case was skipped.
+    /// Its value; none where the case was skipped.
     pub value: Option<f64>,
     /// Unit of value and bound; empty for a number.
     pub unit: String,
-    /// How the value must stand to the bound: `<=`, `>=` or `==`.
+    /// Required relation of value and bound: `<=`, `>=` or `==`.
     pub relation: String,
     /// The bound.
     pub bound: f64,
@@ -37,7 +37,7 @@ pub struct Case {
     pub about: &'static str,
     /// True where it takes more than about ten seconds.
     pub slow: bool,
-    /// By how much particles are farther apart at its reduced size, or, of dew, how much less time goes by; 1 where it has none, as it takes
+    /// Factor of the spacing at its reduced size, or, of dew, of the simulated time; 1 where it has none, as it takes
     /// little.
     pub reduced: f64,
     /// Runs it.
@@ -53,7 +53,7 @@ impl Case {
     }
 }
 
-/// What cases are run with.
+/// Options of cases.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// The folder of reference data; without it the cases that need it are skipped.
@@ -65,7 +65,7 @@ pub struct Options {
     /// Whether floods and dew have their reduced size, at which measures are those of two programs to be compared: bounds are meant for the full size,
     /// and so are the distances in the names of measures.
     pub reduced: bool,
-    /// What cases have drawn, for a report.
+    /// Charts of the cases, for a report.
     charts: RefCell<Vec<Chart>>,
 }
 
@@ -75,7 +75,7 @@ impl Options {
         Self { data, require_data, gpu: None, reduced: false, charts: RefCell::default() }
     }
 
-    /// Takes what cases have drawn since this was last asked.
+    /// Takes the charts of cases since the last call.
     pub fn take_charts(&self) -> Vec<Chart> {
         self.charts.take()
     }
@@ -88,7 +88,7 @@ impl Options {
 
 static ADDED: RwLock<Vec<Case>> = RwLock::new(Vec::new());
 
-/// Adds a case, in this process. Nothing changes where one of its name is there.
+/// Registers a case, in this process. Nothing changes where one of its name exists.
 pub fn register_case(case: Case) {
     if cases().iter().all(|known| known.name != case.name) {
         ADDED.write().unwrap_or_else(PoisonError::into_inner).push(case);
@@ -125,12 +125,12 @@ impl Row {
         Self::new(case, measure, value, unit, ">=", bound, value >= bound)
     }
 
-    /// A measure that is known to miss what a peer gets: shown beside it, neither kept nor failed.
+    /// A measure that is known to miss the value of another program: shown beside it, neither passed nor failed.
     pub fn beside(case: &str, measure: &str, value: f64, unit: &str, peer: f64, why: &str) -> Self {
         Self { pass: None, reason: Some(why.into()), ..Self::at_most(case, measure, value, unit, peer) }
     }
 
-    /// A case that did not come to its end.
+    /// A case that broke down.
     pub fn broken(case: &str, why: &str) -> Self {
         Self {
             value: None,

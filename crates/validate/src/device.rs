@@ -1,4 +1,4 @@
-//! Where the floods and the dew of cases are computed.
+//! The backend and the size of cases of floods and dew.
 
 use crate::Row;
 use corpuscle_gpu::Gpu;
@@ -6,14 +6,14 @@ use corpuscle_model::ModelError;
 use std::cell::{Cell, RefCell};
 
 thread_local! {
-    /// By how much the case that this thread runs is smaller than at full size: its particles are farther apart, or less time goes by.
+    /// Reduction of the case that this thread runs: factor of its spacing, or of its simulated time.
     static COARSER: Cell<f64> = const { Cell::new(1.0) };
 
     /// The GPU that takes the steps of the case that this thread runs, if one does.
     static GPU: RefCell<Option<Gpu>> = const { RefCell::new(None) };
 }
 
-/// Lets a GPU take the steps of all models that `case` sets up.
+/// Runs `case` with the steps of all its models on a GPU.
 pub(crate) fn on_gpu<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
     let before = GPU.replace(gpu);
     let result = case();
@@ -21,7 +21,7 @@ pub(crate) fn on_gpu<T>(gpu: Option<Gpu>, case: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Has `case` `factor` times as small: it asks for that by [`sized`] or [`reduction`].
+/// Runs `case` reduced by `factor`, which it reads by [`sized`] or [`reduction`].
 pub(crate) fn coarser<T>(factor: f64, case: impl FnOnce() -> T) -> T {
     let before = COARSER.replace(factor);
     let result = case();
@@ -34,12 +34,12 @@ pub(crate) fn is_reduced() -> bool {
     COARSER.get() > 1.0
 }
 
-/// Of what a case does at several sizes or in several ways, beginning with the smallest, what it does at its reduced size: the first only.
+/// The variants of a case to run: at reduced size only the first, which is the smallest.
 pub(crate) fn reduced<T>(all: &[T]) -> &[T] {
     if is_reduced() { &all[..1] } else { all }
 }
 
-/// By how much the case is smaller than at full size.
+/// Reduction of the case.
 pub(crate) fn reduction() -> f64 {
     COARSER.get()
 }
@@ -64,7 +64,7 @@ pub(crate) fn rounding(double: f64, single: f64) -> f64 {
     if is_gpu() { single } else { double }
 }
 
-/// Refuses what the GPU code does not compute.
+/// Refuses models that the GPU does not support.
 pub(crate) fn refuse_on_gpu(what: &str) -> Result<(), ModelError> {
     if is_gpu() { Err(ModelError::Setup(format!("the GPU cannot yet compute {what}"))) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! How fast a GPU copies its own memory: what the passes of a step are measured against.
+//! Copy bandwidth of a GPU's memory: the reference for the passes of a step.
 
 use crate::{Bench, BenchOptions, Rate};
 use corpuscle_gpu::{Gpu, GpuError, Kernel, THREADS, Task, read, storage, submit, wgpu};
@@ -11,10 +11,10 @@ pub(crate) const BENCHES: &[Bench] = &[Bench {
     run: |options| options.gpu.iter().flat_map(|gpu| rate(gpu, options)).collect(),
 }];
 
-/// Bytes of the buffers, at most: far more than a GPU keeps near.
+/// Most bytes of the buffers: far more than the caches of a GPU.
 const BYTES: u64 = 1 << 30;
 
-/// Copies that are ordered at once.
+/// Copies submitted at once.
 const COPIES: u32 = 16;
 
 /// Bytes that a thread takes at a time.
@@ -29,11 +29,11 @@ corpuscle_gpu::declare! {
     }
     structs {}
 
-    /// What is copied.
+    /// The bindings of the copy.
     buffers Memory {
-        /// From here.
+        /// Source.
         storage source: [[u32; 4]],
-        /// To here.
+        /// Destination.
         storage copied: [[u32; 4]],
     }
 }
@@ -51,7 +51,7 @@ impl Copying {
         Self { task: kernel.on(gpu, &Memory { source: from.clone(), copied: to.clone() }), groups }
     }
 
-    /// Orders so many copies.
+    /// Submits so many copies.
     fn order(&self, gpu: &Gpu, times: u32) {
         submit(gpu, "copies", None, |pass| (0..times).for_each(|_| self.task.run(pass, self.groups)));
     }

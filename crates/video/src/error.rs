@@ -1,9 +1,9 @@
-//! What can go wrong with a film.
+//! Errors of writing a film.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why there is no film. The text says what is wrong, where, and what to do.
+/// An error of writing a film. The text says what is wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum FilmError {
     /// The format holds no pictures of this size.
@@ -17,7 +17,7 @@ pub enum FilmError {
         width: u32,
         /// Pixels down.
         height: u32,
-        /// Least pixels of a side.
+        /// Fewest pixels of a side.
         shortest: u32,
         /// Most pixels of the longer and of the shorter side.
         longest: [u32; 2],
@@ -25,7 +25,7 @@ pub enum FilmError {
     /// The format holds no film of this rate.
     #[error("{rate} pictures a second cannot be written in this format; choose 0.1 to {most}")]
     Rate {
-        /// Pictures a second, as asked for.
+        /// Pictures per second, as requested.
         rate: f64,
         /// The most that the format holds.
         most: f64,
@@ -54,7 +54,7 @@ pub enum FilmError {
         path: PathBuf,
     },
     /// The folder for PNG files holds something.
-    #[error("{} is there already and holds files; name another folder for the film's pictures, or empty it", path.display())]
+    #[error("{} exists already and holds files; name another folder for the film's pictures, or empty it", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum FilmError {
     Write {
         /// The film.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
     /// The encoder failed.
@@ -72,7 +72,7 @@ pub enum FilmError {
     Encoder {
         /// The film.
         path: PathBuf,
-        /// What the encoder says.
+        /// The error of the encoder.
         what: String,
     },
     /// Built without H.264.

@@ -6,9 +6,9 @@ use gif::{Encoder, EncodingError, Frame, Repeat};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The most pictures a second: many players slow down anything faster.
+/// Most pictures per second: many players slow down anything faster.
 const MOST: f64 = 50.0;
-/// How coarsely colours are chosen, 1 to 30; 10 is the library's advice.
+/// Coarseness of the choice of colours, 1 to 30; the library recommends 10.
 const SPEED: i32 = 10;
 
 pub(crate) struct Gif {
@@ -28,7 +28,7 @@ impl Gif {
         Ok(Self { path: path.into(), size, rate, pictures: 0, encoder })
     }
 
-    /// Hundredths of a second for the next picture, such that the sum stays right to half of one.
+    /// Duration of the next picture, hundredths of a second, such that the sum is right to half of one.
     fn delay(&self) -> u16 {
         let at = |picture: usize| (100.0 * picture as f64 / self.rate).round();
         (at(self.pictures + 1) - at(self.pictures)) as u16

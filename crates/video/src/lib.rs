@@ -1,4 +1,4 @@
-//! Films: pictures in, one after another; a file that an ordinary player plays out.
+//! Writing of films (video files) from pictures.
 //!
 //! ```
 //! use corpuscle_video::{Film, Format};
@@ -22,7 +22,7 @@ pub use error::FilmError;
 
 use std::path::{Path, PathBuf};
 
-/// What a film is written as.
+/// Format of a film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// One file, H.264 in MP4: up to 3840 x 2160. A side of odd length gets its last row or column twice, since the
@@ -30,7 +30,7 @@ pub enum Format {
     Mp4,
     /// One file, an endless loop of 256 colours a picture, in whole hundredths of a second.
     Gif,
-    /// A folder of files `000000.png`, `000001.png`, ..., nothing lost; the rate is for whoever joins them.
+    /// A folder of files `000000.png`, `000001.png`, ..., lossless; the rate is not stored.
     Png,
 }
 
@@ -46,7 +46,7 @@ impl Format {
     }
 }
 
-/// A film in the making. It appears at its path when it is finished; dropped before, it leaves nothing behind.
+/// A film being written. It appears at its path when it is finished; dropped before, it leaves nothing behind.
 pub struct Film {
     path: PathBuf,
     size: [u32; 2],
@@ -54,7 +54,7 @@ pub struct Film {
     writer: Box<dyn Writer>,
 }
 
-/// What each format does with pictures, whose size is right.
+/// The writer of a format; the size of pictures has been checked.
 trait Writer: Send {
     fn add(&mut self, rgba: &[u8]) -> Result<(), FilmError>;
     fn finish(self: Box<Self>) -> Result<(), FilmError>;
@@ -101,10 +101,10 @@ impl Film {
         self.pictures
     }
 
-    /// Puts the film in its place. What stood there before, if it was a file, is replaced.
+    /// Moves the finished film to its path. An existing file there is replaced.
     ///
     /// # Errors
-    /// [`FilmError::Empty`] without a picture; [`FilmError::Write`] where the disk does not take it. Nothing changes at
+    /// [`FilmError::Empty`] without a picture; [`FilmError::Write`] where it cannot be written. Nothing changes at
     /// the path then.
     pub fn finish(self) -> Result<(), FilmError> {
         if self.pictures == 0 {
@@ -114,7 +114,7 @@ impl Film {
     }
 }
 
-/// Refuses a rate that is none or is above `most` pictures a second.
+/// Refuses a rate that is not positive or above `most` pictures per second.
 fn check_rate(rate: f64, most: f64) -> Result<(), FilmError> {
     let sound = rate >= 0.1 && rate <= most;
     if sound { Ok(()) } else { Err(FilmError::Rate { rate, most }) }

@@ -11,16 +11,16 @@ use openh264::formats::{RgbaSliceU8, YUVBuffer};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// The most pictures a second.
+/// Most pictures per second.
 const MOST: f64 = 120.0;
-/// Between pictures that can be jumped to, s.
+/// Interval of key frames, s.
 const JUMP: f64 = 2.0;
 pub(crate) struct Mp4 {
     path: PathBuf,
     size: [u32; 2],
     rate: f64,
     encoder: Encoder,
-    /// Holds what is encoded; the file is written at the end, with its table of contents in front.
+    /// The writer of MP4: keeps the encoded pictures; the file is written at the end, with its index in front.
     muxer: Muxer<WholeFile>,
     yuv: YUVBuffer,
     pictures: usize,

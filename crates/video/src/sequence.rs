@@ -6,10 +6,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// The longest side that is taken for meant.
+/// Longest side that is accepted, pixels.
 const LONGEST: u32 = 1 << 16;
 
-/// Pictures in a temporary folder beside the one that they shall stand in.
+/// The writer of PNG files: into a temporary folder, which is renamed at the end.
 pub(crate) struct Sequence {
     path: PathBuf,
     size: [u32; 2],

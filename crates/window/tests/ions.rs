@@ -7,8 +7,8 @@ mod ions;
 mod stage;
 
 use corpuscle::model::Model;
+use corpuscle::output::{FrameFormat, Status};
 use corpuscle::pictures::{PictureSettings, Pictures};
-use corpuscle::record::{FrameFormat, Status};
 use corpuscle::{Recorder, Simulation};
 use std::fs;
 use std::path::Path;
@@ -85,7 +85,7 @@ fn it_is_drawn() {
     let image = pictures.draw_model(simulation.model()).unwrap();
     if let Some(folder) = std::env::var_os("CORPUSCLE_SHOTS") {
         let file = Path::new(&folder).join("ions.png");
-        corpuscle::record::write_picture(&file, [image.width, image.height], &image.rgba).unwrap();
+        corpuscle::output::write_picture(&file, [image.width, image.height], &image.rgba).unwrap();
     }
     // Some hundred balls are seen in their colour, and not where there are none.
     let is_blue = |pixel: &&[u8]| pixel[2] > pixel[0].saturating_add(60) && pixel[2] > pixel[1].saturating_add(20);

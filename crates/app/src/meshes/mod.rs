@@ -1,4 +1,4 @@
-//! Draws what the toolkit draws, where software stands in for a GPU.
+//! Draws the toolkit's meshes, where software stands in for a GPU.
 //!
 //! The toolkit's own shader filters images in two ways and takes one; software computes both, one of them with whole-number division,
 //! and half of the time of a picture went there (`docs/src/benchmarks.md`, "The window"). Here the same triangles go through a
@@ -18,12 +18,12 @@ use std::sync::Arc;
 /// Images that hold letters and the white of plain grounds.
 const LETTERS: TextureId = TextureId::Managed(0);
 
-/// Takes the toolkit's shapes before it draws them, and draws them itself.
+/// A plugin that takes the toolkit's shapes before it draws them, and draws them itself.
 pub struct Meshes {
     gpu: Gpu,
     pipelines: Arc<Pipelines>,
     images: HashMap<TextureId, Image>,
-    /// Images that may go as soon as another picture is made.
+    /// Images to be freed after the next picture.
     gone: Vec<TextureId>,
     vertices: Room,
     indices: Room,
@@ -53,7 +53,7 @@ struct Part {
     first_vertex: i32,
 }
 
-/// What a picture's triangles lie in: corners, the numbers of corners, and the parts.
+/// Buffers of a picture's triangles: vertices, indices, and the parts.
 #[derive(Default)]
 struct Gathered {
     vertices: Vec<Vertex>,

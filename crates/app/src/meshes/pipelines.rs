@@ -1,4 +1,4 @@
-//! How the window's triangles are drawn on the device.
+//! Pipelines that draw the window's triangles on the device.
 
 use corpuscle::gpu::{Gpu, GroupLayout, wgpu};
 use egui::TextureFilter;

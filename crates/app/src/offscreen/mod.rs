@@ -6,7 +6,7 @@ use crate::background_device::BackgroundDevice;
 use crate::snapshot::{Snapshot, Wake};
 use crate::view_state::ViewState;
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{Look, Scenery, Shown};
+use corpuscle::pictures::{Quality, Scenery, Shown};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
@@ -20,20 +20,20 @@ pub struct RenderJob {
     pub scenery: Arc<Scenery>,
     /// The scene at one time.
     pub snapshot: Arc<Snapshot>,
-    /// How it is seen.
+    /// The camera and the partition.
     pub view_state: ViewState,
 }
 
 /// How the window's picture of a paused scene is drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct PausedSettings {
-    /// How much work it may be.
-    pub look: Look,
+    /// The quality.
+    pub quality: Quality,
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel.
     pub samples: u32,
-    /// What a drawing lies on, linear light.
+    /// Background of a drawing, linear light.
     pub paper: [f32; 3],
 }
 
@@ -88,12 +88,12 @@ impl OffscreenRenderer {
     /// Starts the thread.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// Where the thread cannot be started.
     pub fn start(device: BackgroundDevice, wake: Wake) -> std::io::Result<Self> {
-        let (tell, results) = channel();
+        let (sender, results) = channel();
         let shared = Arc::<SharedQueue>::default();
         let own = shared.clone();
-        let run = move || thread::run(&own, &tell, &wake, &device);
+        let run = move || thread::run(&own, &sender, &wake, &device);
         let thread = std::thread::Builder::new().name("offscreen".into()).spawn(run)?;
         Ok(Self { shared, results, thread: Some(thread) })
     }

@@ -16,14 +16,14 @@ use std::sync::mpsc::Sender;
 
 /// Size of a still, pixels.
 const STILL_SIZE: [u32; 2] = [1920, 1080];
-const FAULT: &str = "a fault in the program stopped the picture";
+const FAULT: &str = "an internal error stopped the picture";
 
 /// Draws what is requested until the queue is closed.
-pub(super) fn run(shared: &SharedQueue, tell: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
+pub(super) fn run(shared: &SharedQueue, results: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
     let mut thread = Thread { device, scene: None };
     while let Some(request) = next(shared) {
-        // Nobody listens where the window is closing.
-        let _ = tell.send(thread.print(request));
+        // The receiver is gone when the window closes.
+        let _ = results.send(thread.render(request));
         wake();
     }
 }
@@ -53,12 +53,12 @@ fn next(shared: &SharedQueue) -> Option<Request> {
 
 struct Thread<'a> {
     device: &'a BackgroundDevice,
-    /// The scene that was drawn last, by its number, and what draws it.
+    /// The scene that was drawn last, by its number, and its pictures.
     scene: Option<(u64, Pictures)>,
 }
 
 impl Thread<'_> {
-    fn print(&mut self, request: Request) -> RenderResult {
+    fn render(&mut self, request: Request) -> RenderResult {
         match request {
             Request::Still(job, folder, name) => {
                 RenderResult::Still(self.guarded(|thread| thread.still(&job, &folder, &name)))
@@ -69,7 +69,7 @@ impl Thread<'_> {
         }
     }
 
-    /// A fault of the program must not take the window's pictures with it.
+    /// Draws and turns a panic into an error, so that it does not end the thread.
     fn guarded<T>(&mut self, draw: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, String> {
         match catch_unwind(AssertUnwindSafe(|| draw(self))) {
             Ok(done) => done.map_err(|error| error.to_string()),
@@ -89,7 +89,8 @@ impl Thread<'_> {
     fn paused(&mut self, job: &RenderJob, settings: &PausedSettings) -> Result<Box<(Shown, Image)>, Error> {
         let pictures = self.pictures(job, settings.size, settings.samples)?;
         job.view_state.lift(pictures);
-        let shown = pictures.show(&moment(&job.snapshot), &job.view_state.hand, settings.look, settings.paper)?;
+        let shown =
+            pictures.show(&moment(&job.snapshot), &job.view_state.camera_offset, settings.quality, settings.paper)?;
         Ok(Box::new((shown, pictures.read()?)))
     }
 

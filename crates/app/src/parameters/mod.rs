@@ -26,26 +26,26 @@ pub struct Parameters {
     groups: Vec<Group>,
     /// The scene as written, without changes.
     written: Table,
-    /// Keys that it leaves out: the values of those are what they then are.
+    /// Keys that it leaves out; their values are the defaults.
     left_out: Vec<String>,
     /// Changes: paths of values, and the values as they are written.
     changes: Vec<(String, String)>,
     /// Names of gauges that were placed.
     placed: Vec<String>,
-    /// Changes that the scene goes on with; the others wait for a restart.
+    /// Changes that have been applied; the others wait for a restart.
     applied: Vec<(String, String)>,
 }
 
-/// What was done to the parameters.
+/// A change of the parameters by the user.
 pub enum Changed {
-    /// A value changes while the scene goes on.
+    /// A live change.
     Live(Change),
-    /// The scene is to be started again with the changes.
+    /// Restart the scene with the changes.
     Restart,
 }
 
 impl Parameters {
-    /// Those of a scene whose text gives `written` without, and `now` with the changes.
+    /// The parameters of a scene: `written` without the changes, `now` with them.
     pub fn new(written: &Scene, now: &Scene, changes: Vec<(String, String)>) -> Self {
         let mut whole = written.clone();
         whole.resolve_defaults();
@@ -73,7 +73,7 @@ impl Parameters {
         &self.changes
     }
 
-    /// Adds a gauge at a place in the terrain's own coordinates, which the scene goes on with; gives its name.
+    /// Adds a gauge at a position in the terrain's own coordinates as an applied change; returns its name.
     pub fn add_gauge(&mut self, [x, y]: [f64; 2]) -> String {
         let rows = value_at(&self.written, "flood.gauge").and_then(Value::as_array);
         let names: Vec<String> = rows
@@ -97,7 +97,7 @@ impl Parameters {
         self.changes != self.applied
     }
 
-    /// Shows them; gives what is to be done.
+    /// Shows the parameters; returns the changes made.
     pub fn ui(&mut self, ui: &mut Ui) -> Vec<Changed> {
         let mut done = Vec::new();
         let groups = std::mem::take(&mut self.groups);
@@ -107,7 +107,7 @@ impl Parameters {
             for parameter in &group.parameters {
                 if let Some(value) = self.row(ui, parameter) {
                     self.set(&parameter.path, value.clone());
-                    let numbers = |path: &str| self.told(path);
+                    let numbers = |path: &str| self.number_at(path);
                     if let Some(change) = parameter.live.and_then(|live| live(&parameter.path, &value, &numbers)) {
                         let written = self.change_of(&parameter.path);
                         set(&mut self.applied, &parameter.path, written);
@@ -120,7 +120,7 @@ impl Parameters {
         done
     }
 
-    /// What is said at the end of the list, where changes wait.
+    /// Shows the buttons for waiting changes; returns a restart where it was chosen.
     pub fn waiting(&mut self, ui: &mut Ui) -> Option<Changed> {
         if !self.waits() {
             return None;
@@ -130,7 +130,7 @@ impl Parameters {
             let accent = ui.visuals().selection.bg_fill;
             let text = RichText::new("Restart with changes").color(ui.visuals().selection.stroke.color);
             restart = ui.add(egui::Button::new(text).fill(accent)).on_hover_text("R").clicked();
-            if ui.button("Undo").on_hover_text("Back to what the scene goes on with").clicked() {
+            if ui.button("Undo").on_hover_text("Discard the changes that wait for a restart").clicked() {
                 self.changes = self.applied.clone();
             }
         });
@@ -156,13 +156,13 @@ impl Parameters {
         }
     }
 
-    /// The number of a key that the scene or a change tells.
-    fn told(&self, path: &str) -> Option<f64> {
+    /// The number at a key, from the changes or the scene.
+    fn number_at(&self, path: &str) -> Option<f64> {
         let left_out = self.left_out.iter().any(|left_out| left_out == path) && self.change_of(path).is_none();
         self.value(path).filter(|_| !left_out).as_ref().and_then(as_number)
     }
 
-    /// One parameter; gives its value where it was changed.
+    /// Shows one parameter; returns its value where it was changed.
     fn row(&self, ui: &mut Ui, parameter: &Parameter) -> Option<String> {
         let value = self.value(&parameter.path)?;
         let changed = self.change_of(&parameter.path).is_some();
@@ -184,7 +184,7 @@ impl Parameters {
                 }
             });
         });
-        let told = format!("{}, {}", parameter.name, parameter.unit);
+        let label = format!("{}, {}", parameter.name, parameter.unit);
         match &parameter.control {
             Control::Choice(choices) => {
                 let now = value.to_string();
@@ -202,20 +202,20 @@ impl Parameters {
             }
             Control::Number { range, logarithmic } => {
                 let mut number = as_number(&value)?;
-                if slider(ui, &mut number, *range, *logarithmic, false, parameter.unit, &told) {
+                if slider(ui, &mut number, *range, *logarithmic, false, parameter.unit, &label) {
                     new = Some(written(number));
                 }
             }
             Control::Times(range) => {
                 let series = value_at(&self.written, &parameter.path)?;
                 let mut times = largest(&value)? / largest(series)?;
-                if slider(ui, &mut times, *range, false, false, "×", &told) {
+                if slider(ui, &mut times, *range, false, false, "×", &label) {
                     new = multiplied(series, times);
                 }
             }
             Control::Whole(range) => {
                 let mut number = as_number(&value)?;
-                if slider(ui, &mut number, *range, range[1] > 1000.0, true, parameter.unit, &told) {
+                if slider(ui, &mut number, *range, range[1] > 1000.0, true, parameter.unit, &label) {
                     new = Some(format!("{number:.0}"));
                 }
             }

@@ -6,7 +6,7 @@ use toml::Value;
 /// Width of a number beside its slider, points.
 const VALUE: f32 = 92.0;
 
-/// Whether a unit has no room beside a number.
+/// True for a unit too long to be shown beside a number.
 pub(super) fn is_long(unit: &str) -> bool {
     unit.chars().count() > 5
 }
@@ -50,15 +50,15 @@ pub(super) fn slider(
     *number != before
 }
 
-/// A number with the figures that a slider tells apart.
+/// A number rounded to the resolution of a slider.
 pub(super) fn rounded(number: f64, range: [f64; 2]) -> f64 {
     let step = 10_f64.powf((number.abs().max(1e-3 * (range[1] - range[0]))).log10().floor() - 2.0);
     let rounded = (number / step).round() * step;
-    // Without the digits that binary numbers leave behind.
+    // Without the rounding errors of binary numbers.
     format!("{rounded:.12e}").parse().unwrap_or(rounded)
 }
 
-/// A number as it is written in a scene: never taken for a whole one.
+/// A number as written in a scene, always with a decimal point.
 pub(super) fn written(number: f64) -> String {
     Value::Float(number).to_string()
 }

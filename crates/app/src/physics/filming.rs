@@ -1,11 +1,11 @@
-//! A film of what goes on, drawn in its thread: the physics waits for the pictures, the window does not.
+//! A film of the scene in the window, drawn in the physics thread: the physics waits for the pictures, the window does not.
 
 use super::subject::Subject;
 use crate::view_state::ViewState;
 use corpuscle::Error;
-use corpuscle::film::{Film, Format};
 use corpuscle::gpu::Gpu;
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
+use corpuscle::video::{Film, Format};
 use std::path::{Path, PathBuf};
 
 /// Size of its pictures, pixels, and how many there are in a second.
@@ -23,7 +23,7 @@ pub(super) struct Filming {
 }
 
 impl Filming {
-    /// Begins a film from now on; `pace` simulated seconds go by in a second of it.
+    /// Starts a film; `pace` is its simulated seconds per second.
     pub fn begin(gpu: &Gpu, subject: &Subject, path: &Path, pace: f64) -> Result<Self, Error> {
         let settings = PictureSettings { size: SIZE, ..PictureSettings::default() };
         let pictures = Pictures::open_on(gpu, subject.simulation(), settings)?;
@@ -31,12 +31,12 @@ impl Filming {
         Ok(Self { pictures, film, path: path.to_owned(), every: pace / RATE, next: subject.time() })
     }
 
-    /// Adds a picture, seen as it is seen in the window now, if one is due.
-    pub fn look(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
+    /// Adds a picture with the camera of the window, if one is due.
+    pub fn add_if_due(&mut self, subject: &Subject, view_state: &ViewState) -> Result<(), Error> {
         if subject.time() < self.next {
             return Ok(());
         }
-        let (frame, paths, container) = subject.look();
+        let (frame, paths, container) = subject.current();
         self.add(&Moment { frame: &frame, on_device: None, paths: &paths, container }, view_state)
     }
 
@@ -48,7 +48,7 @@ impl Filming {
         Ok(())
     }
 
-    /// Puts the film in its place; gives its file.
+    /// Finishes the film; returns its path.
     pub fn finish(self) -> Result<PathBuf, Error> {
         self.film.finish()?;
         Ok(self.path)
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use crate::physics::Backend;
     use corpuscle::gpu::require_gpu;
-    use corpuscle::pictures::Hand;
+    use corpuscle::pictures::CameraOffset;
     use corpuscle::scene::{Scene, builtin};
 
     #[test]
@@ -72,11 +72,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();
-        let near = ViewState { hand: Hand { zoom: 2.0, ..Hand::default() }, lifted: None };
+        let near = ViewState { camera_offset: CameraOffset { zoom: 2.0, ..CameraOffset::default() }, lifted: None };
         let lifted = ViewState { lifted: Some(0.0), ..near };
         for view_state in [ViewState::default(), near, near, lifted] {
             filming.next = 0.0;
-            filming.look(&subject, &view_state).unwrap();
+            filming.add_if_due(&subject, &view_state).unwrap();
         }
         let film = filming.finish().unwrap();
         let mut files: Vec<_> = std::fs::read_dir(film).unwrap().map(|entry| entry.unwrap().path()).collect();

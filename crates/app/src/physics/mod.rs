@@ -1,7 +1,7 @@
-//! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes what it shows.
+//! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes snapshots.
 
 mod filming;
-mod glide;
+mod gpu_advance;
 mod pace;
 mod subject;
 mod thread;
@@ -20,10 +20,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-/// Seconds in which a scene is seen from start to end, if it can be computed so fast.
+/// Duration of a whole scene at the default pace, s.
 const WHOLE: f64 = 40.0;
 
-/// The pace of what ends at a time, s: simulated seconds in a second, if nobody says otherwise; a round number.
+/// The default pace of a scene that ends at a time, s: simulated seconds per second, a round number.
 pub fn default_pace(end: f64) -> f64 {
     round(end.max(f64::MIN_POSITIVE) / WHOLE)
 }
@@ -36,7 +36,7 @@ pub(crate) fn round(value: f64) -> f64 {
     steps.into_iter().min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(value)
 }
 
-/// Where steps are taken.
+/// The backend of the steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Backend {
     /// On the device that draws the window, where that is a GPU and the scene is large enough.
@@ -48,85 +48,85 @@ pub enum Backend {
     Gpu,
 }
 
-/// What the physics is asked to do.
+/// A command to the physics thread.
 pub enum Command {
-    /// Set a scene up, at its start, and wait. Relative paths are taken from the folder.
+    /// Open a scene and pause at its start. Relative paths are taken from the folder.
     Open(Box<Scene>, PathBuf),
-    /// Show a finished run from its folder, at its start, and wait.
+    /// Open a finished run from its folder and pause at its start.
     OpenRun(PathBuf),
     /// Show another time of a finished run, s.
     Seek(f64),
-    /// Go on.
+    /// Play.
     Play,
-    /// Wait.
+    /// Pause.
     Pause,
-    /// Go on by this much, s, and wait.
+    /// Advance by this much, s, and pause.
     Step(f64),
-    /// Go on at this pace, simulated seconds in a second, where that is possible.
+    /// Set the pace, simulated seconds per second.
     Pace(f64),
-    /// Tell of the water at a place from now on, in model coordinates; none: no longer.
+    /// Sample the water at this position in model coordinates from now on; none ends it.
     Probe(Option<[f64; 2]>),
-    /// Film what goes on from now on into a file, as it is seen ([`Physics::see`]).
+    /// Start a film into a file, with the camera of [`Physics::see`].
     Film(PathBuf),
     /// End the film.
     EndFilm,
-    /// Change something while it runs.
+    /// Make a live change.
     Change(Change),
 }
 
-/// What the physics tells.
+/// An event of the physics thread.
 pub enum Event {
-    /// A scene stands at its start.
+    /// A scene is open at its start.
     Opened(Box<Opened>),
-    /// A scene could not be set up.
+    /// A scene could not be opened.
     Refused(String),
-    /// What was to change while it runs could not.
+    /// A live change was refused.
     NotChanged(String),
-    /// A film was put in its place, or could not be.
+    /// A film was written, or could not be.
     Filmed(Result<PathBuf, String>),
-    /// It came to the scene's end, and waits.
+    /// The scene reached its end, and is paused.
     Ended,
-    /// It broke down, and waits; what it showed last is sound.
+    /// The scene broke down, and is paused; the last snapshot is valid.
     Fault(String),
 }
 
-/// A scene that stands at its start.
+/// A scene that is open at its start.
 pub struct Opened {
     /// Its number: snapshots of it carry the same.
     pub number: u64,
     /// The scene with all defaults filled in.
     pub scene: Scene,
-    /// Draws it.
+    /// Its pictures.
     pub pictures: Pictures,
-    /// Draws it elsewhere.
+    /// What pictures in another thread need of it.
     pub scenery: Scenery,
     /// Names of its gauges, as in files.
     pub gauges: Vec<String>,
-    /// What a user should know.
+    /// Warnings to the user.
     pub warnings: Vec<String>,
-    /// Where it is computed, and why there, in words; none of a finished run.
+    /// The backend and why it was chosen, as text; none for a finished run.
     pub computed_on: Option<String>,
     /// Of a finished run its gauges: times, s, and rows of values.
     pub history: Option<Vec<(f64, Vec<f64>)>>,
-    /// Its ground, where it has one.
+    /// Its terrain, if it has one.
     pub terrain: Option<Arc<Terrain>>,
-    /// Where it ends, s.
+    /// End time, s.
     pub end: f64,
 }
 
-/// What is shared between the thread and whoever shows it.
+/// State shared by the physics thread and the window.
 struct Shared {
     newest: Mutex<Option<Arc<Snapshot>>>,
-    /// How it is seen, for films.
+    /// The camera, for films.
     view_state: Mutex<ViewState>,
-    /// Whether a single particle is followed.
+    /// True while a particle is followed.
     follows: AtomicBool,
-    /// Breaks off what is being computed, so that a command is taken.
+    /// Ends the current slice, so that a command is taken.
     stop: AtomicBool,
     wake: Wake,
 }
 
-/// What it draws and computes on.
+/// The devices that draw and compute.
 #[derive(Clone, Copy)]
 struct Devices<'a> {
     /// The window's.
@@ -146,7 +146,7 @@ impl Shared {
     }
 }
 
-/// The physics, seen from outside. Dropping it ends its thread.
+/// The handle of the physics thread. Dropping it ends the thread.
 pub struct Physics {
     commands: Option<Sender<Command>>,
     events: Receiver<Event>,
@@ -155,10 +155,10 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// Starts the thread; pictures are made for a device, which may take the steps too, and films drawn on one that may take long.
+    /// Starts the thread: `gpu` draws pictures and may take the steps too, `background` draws films.
     ///
     /// # Errors
-    /// Where the system gives no thread.
+    /// Where the thread cannot be started.
     pub(crate) fn start(
         gpu: &Gpu,
         background: BackgroundDevice,
@@ -166,42 +166,42 @@ impl Physics {
         wake: Wake,
     ) -> std::io::Result<Self> {
         let (commands, taken) = channel();
-        let (tell, events) = channel();
+        let (sender, events) = channel();
         let (newest, view_state) = (Mutex::default(), Mutex::default());
         let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
         let shared = Arc::new(Shared { newest, view_state, follows, stop, wake });
         let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &tell, &own, Devices { gpu: &gpu, background: &background, backend });
+        let run = move || thread::run(&taken, &sender, &own, Devices { gpu: &gpu, background: &background, backend });
         let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
     }
 
-    /// Asks for something. Never waits.
-    pub fn ask(&self, command: Command) {
+    /// Sends a command. Never waits.
+    pub fn send(&self, command: Command) {
         if let Some(commands) = &self.commands {
-            // Before the command can be taken: it must not break itself off.
+            // Set before the command is sent, so that it does not end the command's own slice.
             self.shared.stop.store(true, Ordering::Relaxed);
-            // A thread that is gone has told why.
+            // A thread that has ended has sent an event.
             let _ = commands.send(command);
         }
     }
 
-    /// It is seen so from now on. Never waits.
+    /// Sets the camera of films. Never waits.
     pub fn see(&self, view_state: ViewState) {
         *self.shared.view_state.lock().unwrap_or_else(PoisonError::into_inner) = view_state;
     }
 
-    /// A single particle is followed from now on, or none: all of them come to the host again and again. Never waits.
+    /// Sets whether a particle is followed: the particles are then read back from the GPU regularly. Never waits.
     pub fn follow(&self, follows: bool) {
         self.shared.follows.store(follows, Ordering::Relaxed);
     }
 
-    /// What it told since, the oldest first.
+    /// The events since the last call, the oldest first.
     pub fn events(&self) -> Vec<Event> {
         self.events.try_iter().collect()
     }
 
-    /// The newest that it shows.
+    /// The newest snapshot.
     pub fn newest(&self) -> Option<Arc<Snapshot>> {
         self.shared.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

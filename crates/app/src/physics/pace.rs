@@ -1,48 +1,48 @@
-//! How far to go in a slice of wall-clock time.
+//! Control of the pace: how far to advance in a slice of wall-clock time.
 
 use std::time::Duration;
 
-/// Longest that a slice may take, s: each gives a picture, and commands are taken between them.
+/// Longest duration of a slice, s: each gives a picture, and commands are taken between them.
 const LONGEST: f64 = 0.015;
-/// A slice that was waited for longer than this is not made up for, s.
+/// Longest delay that the next slice makes up for, s.
 const MOST_OWED: f64 = 0.1;
 /// A slice on a device that draws as well waits for pictures besides, which makes it no use to have it as short as may be: it may take from
 /// so long to so long, s, and goes farther or less far by this factor where it does not.
 const BESIDE_PICTURES: [f64; 2] = [0.03, 0.04];
 const FARTHER: f64 = 1.25;
-/// Weight of the newest slice in what a slice costs, and in the pace that is told.
+/// Weight of the newest slice in the mean cost, and in the pace reported.
 const NEWEST: f64 = 0.2;
 
-/// Keeps simulated time in step with the wall clock, or as near as can be computed.
+/// Keeps simulated time in step with the wall clock, as far as the computation is fast enough.
 #[derive(Debug, Clone)]
 pub(super) struct Pace {
-    /// Simulated seconds in a second, as asked for.
-    pub asked: f64,
+    /// Requested pace, simulated seconds per second.
+    pub requested: f64,
     /// Wall-clock seconds that a simulated second takes; none before the first slice.
     cost: Option<f64>,
-    /// How far a slice goes at most on a device that draws as well, s; none before the first.
+    /// Largest advance of a slice on a device that also draws, s; none before the first.
     most: Option<f64>,
-    /// Simulated seconds in a second, as it goes.
+    /// Pace reached, simulated seconds per second.
     pub real: f64,
 }
 
 impl Pace {
-    pub fn new(asked: f64) -> Self {
-        Self { asked, cost: None, most: None, real: 0.0 }
+    pub fn new(requested: f64) -> Self {
+        Self { requested, cost: None, most: None, real: 0.0 }
     }
 
-    /// How far to go, s, when the last slice began so long ago. The first slice is a try.
+    /// The advance of the next slice, s, when the last one began so long ago. The first slice is a trial.
     pub fn next(&self, since: Duration) -> f64 {
-        let wanted = self.asked * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         match self.cost {
             Some(cost) => wanted.min(LONGEST / cost.max(1e-300)),
             None => 0.02 * wanted,
         }
     }
 
-    /// The same on a device that draws as well, after a slice that went so far, s, and worked so long; one without a step only waited.
+    /// The same on a device that also draws, after a slice that advanced so far, s, and worked so long; one without a step only waited.
     pub fn next_beside_pictures(&mut self, since: Duration, far: f64, worked: Duration, has_stepped: bool) -> f64 {
-        let wanted = self.asked * since.as_secs_f64().min(MOST_OWED);
+        let wanted = self.requested * since.as_secs_f64().min(MOST_OWED);
         let most = self.most.get_or_insert(wanted);
         let [short, long] = BESIDE_PICTURES;
         let (worked, is_most) = (worked.as_secs_f64(), far > 0.9 * *most);
@@ -54,7 +54,7 @@ impl Pace {
         wanted.min(*most)
     }
 
-    /// A slice went so far, s; it took `worked`, and with waiting `whole`.
+    /// Records a slice: its advance, s, its work `worked`, and with waiting `whole`.
     pub fn went(&mut self, far: f64, worked: Duration, whole: Duration) {
         if far <= 0.0 {
             return;
@@ -66,12 +66,12 @@ impl Pace {
         self.real = if self.real == 0.0 { real } else { mix(self.real, real) };
     }
 
-    /// True where it is too much to compute.
+    /// True where the requested pace is not reached.
     pub fn is_behind(&self) -> bool {
-        self.real > 0.0 && self.real < 0.9 * self.asked && self.cost.is_some_and(|cost| cost * self.asked > 0.7)
+        self.real > 0.0 && self.real < 0.9 * self.requested && self.cost.is_some_and(|cost| cost * self.requested > 0.7)
     }
 
-    /// Nothing goes on.
+    /// Resets the pace on pause.
     pub fn rest(&mut self) {
         self.real = 0.0;
     }
@@ -104,8 +104,8 @@ mod tests {
 
     /// Goes on for ten seconds of the wall clock where steps of so many simulated seconds cost so much work each, and each slice waits besides;
     /// gives how far it went, and the mean length of a slice.
-    fn beside_pictures(asked: f64, step: f64, cost: f64, wait: f64) -> (f64, f64) {
-        let mut pace = Pace::new(asked);
+    fn beside_pictures(requested: f64, step: f64, cost: f64, wait: f64) -> (f64, f64) {
+        let mut pace = Pace::new(requested);
         let (mut clock, mut time, mut stepped, mut slices) = (0.0, 0.0, 0.0, 0.0);
         let (mut far, mut worked, mut has_stepped, mut since) = (0.0, 0.0, false, 0.016);
         while clock < 10.0 {

@@ -1,16 +1,16 @@
-//! What goes on in the thread: a scene that is computed, or a finished run that is shown again.
+//! The subject of the physics thread: a scene that is computed, or a finished run that is replayed.
 
 use super::{Backend, Change};
 use crate::snapshot::Measures;
 use corpuscle::gpu::{DeviceParticles, Gpu, GpuKind};
-use corpuscle::model::{Container, Frame, GaugeColumn, Path as Way};
-use corpuscle::record::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
+use corpuscle::model::{Container, Frame, GaugeColumn, Path as Trajectory};
+use corpuscle::output::{FrameFiles, GaugeTable, WallPlaces, followed_paths};
 use corpuscle::scene::Scene;
 use corpuscle::{Choice, Error, Sample, Simulation};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// What goes on.
+/// A scene that is computed, or a finished run.
 pub(super) enum Subject {
     Live(Box<Simulation>, Choice),
     Recorded(Box<Recorded>),
@@ -18,10 +18,10 @@ pub(super) enum Subject {
 
 /// A finished run.
 pub(super) struct Recorded {
-    /// The scene at its start: ground, solids and box.
+    /// The scene at its start: terrain, solids and box.
     simulation: Simulation,
     files: FrameFiles,
-    paths: Vec<Way>,
+    paths: Vec<Trajectory>,
     walls: WallPlaces,
     gauges: GaugeTable,
     /// Number of the frame that is shown, and the frame.
@@ -31,24 +31,24 @@ pub(super) struct Recorded {
 }
 
 impl Subject {
-    /// A scene at its start, on a backend, with the device of the window.
+    /// Opens a scene at its start, on a backend, with the device of the window.
     pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: &Gpu) -> Result<Self, Error> {
         let mut simulation = Simulation::open(scene, folder)?;
-        let asked = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
+        let choice = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
         let choice = match backend {
             Backend::Auto => simulation.use_best_on(gpu),
-            Backend::Gpu if simulation.model().on_gpu().is_none() => asked(false, "this model computes nowhere else"),
+            Backend::Gpu if simulation.model().on_gpu().is_none() => choice(false, "this model runs on the CPU only"),
             Backend::Gpu => {
                 simulation.use_this_gpu(gpu.clone())?;
-                asked(true, &gpu.name)
+                choice(true, &gpu.name)
             }
-            Backend::Cpu => asked(false, "as asked for"),
+            Backend::Cpu => choice(false, "as requested"),
         };
         Ok(Self::Live(Box::new(simulation), choice))
     }
 
-    /// What is computed where it is drawn, by a GPU; elsewhere particles come to the host for every picture.
-    pub fn gliding(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
+    /// The simulation, where it is computed on the GPU that draws it; elsewhere the host needs the particles for every picture.
+    pub fn drawn_in_place(&mut self, gpu: &Gpu) -> Option<&mut Simulation> {
         match self {
             Self::Live(simulation, _) if gpu.kind == GpuKind::Hardware && simulation.is_seen_on(gpu) => {
                 Some(simulation)
@@ -57,7 +57,7 @@ impl Subject {
         }
     }
 
-    /// The particles where they are drawn, as they stand.
+    /// The particles in GPU memory, where they are drawn from there.
     pub fn on_device(&self, gpu: &Gpu) -> Result<Option<DeviceParticles>, Error> {
         match self {
             Self::Live(simulation, _) if gpu.kind == GpuKind::Hardware => simulation.seen_on(gpu),
@@ -65,7 +65,7 @@ impl Subject {
         }
     }
 
-    /// A finished run at its start.
+    /// Opens a finished run at its start.
     pub fn recorded(folder: &Path) -> Result<Self, Error> {
         let scene = Scene::read(&folder.join("scene.toml"), &[])?;
         let (period, until) = (scene.run.frame_period_s(), scene.run.until_s);
@@ -87,7 +87,7 @@ impl Subject {
         }
     }
 
-    /// Where it is computed, and why there.
+    /// The backend and why it was chosen, as text.
     pub fn computed_on(&self) -> Option<String> {
         match self {
             Self::Live(_, Choice { is_gpu, why }) => {
@@ -105,7 +105,7 @@ impl Subject {
         }
     }
 
-    /// Where it ends, s.
+    /// End time, s.
     pub fn end(&self) -> f64 {
         match self {
             Self::Live(simulation, _) => simulation.scene().run.until_s,
@@ -113,7 +113,7 @@ impl Subject {
         }
     }
 
-    /// Where it waits next: who plays a scene on from its end wants to see more.
+    /// The time of the next pause: beyond the end, where a scene is played on from there.
     pub fn next_end(&self) -> f64 {
         match self {
             Self::Live(..) if self.time() >= self.end() => f64::INFINITY,
@@ -121,7 +121,7 @@ impl Subject {
         }
     }
 
-    /// Goes on to a time, or to where it was told to stop.
+    /// Advances to a time, or until it is stopped.
     pub fn advance_to(&mut self, time: f64, stop: &AtomicBool) -> Result<(), Error> {
         match self {
             Self::Live(simulation, _) => Ok(simulation.model_mut().advance_to(time, stop)?),
@@ -180,8 +180,8 @@ impl Subject {
         }
     }
 
-    /// What is seen now.
-    pub fn look(&self) -> (Frame, Vec<Way>, Option<Container>) {
+    /// The current frame, trajectories and box.
+    pub fn current(&self) -> (Frame, Vec<Trajectory>, Option<Container>) {
         match self {
             Self::Live(simulation, _) => {
                 let model = simulation.model();
@@ -195,7 +195,7 @@ impl Subject {
         }
     }
 
-    /// The water at a place of a flood that is computed.
+    /// The water at a position of a flood that is computed.
     pub fn water_at(&self, place: [f64; 2]) -> Option<Sample> {
         match self {
             Self::Live(simulation, _) => simulation.water_at(place),
@@ -203,7 +203,7 @@ impl Subject {
         }
     }
 
-    /// What is measured now.
+    /// The current measurements.
     pub fn measures(&self) -> Measures {
         match self {
             Self::Live(simulation, _) => Measures::of(simulation.model()),

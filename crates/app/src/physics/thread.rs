@@ -1,7 +1,7 @@
-//! The thread itself.
+//! The physics thread.
 
 use super::filming::Filming;
-use super::glide::{self, Fault};
+use super::gpu_advance::{self, Fault};
 use super::pace::Pace;
 use super::subject::Subject;
 use super::{Command, Devices, Event, Opened, Shared, default_pace};
@@ -23,19 +23,19 @@ pub(super) const PICTURES: f64 = 60.0;
 /// Time between two measurements at least, and how many times longer than one takes.
 pub(super) const MEASURE: Duration = Duration::from_millis(120);
 const MEASURE_SHARE: u32 = 10;
-/// Size that pictures are opened with; whoever shows them makes them larger.
+/// Initial size of pictures; the window resizes them.
 const SMALL: [u32; 2] = [16, 16];
 
-/// Takes commands and goes on until there is nobody to give commands.
-pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &Arc<Shared>, devices: Devices<'_>) {
-    let mut thread = Thread { tell, shared, devices, number: 0, running: None };
+/// Takes commands and advances until the sender of commands is dropped.
+pub(super) fn run(commands: &Receiver<Command>, events: &Sender<Event>, shared: &Arc<Shared>, devices: Devices<'_>) {
+    let mut thread = Thread { events, shared, devices, number: 0, running: None };
     loop {
         let next = match thread.time_left() {
             None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
             Some(left) => commands.recv_timeout(left),
         };
         shared.stop.store(false, Ordering::Relaxed);
-        // A fault of the program must not take the window with it.
+        // A panic must not end the window.
         let done = catch_unwind(AssertUnwindSafe(|| match next {
             Ok(command) => {
                 thread.take(command);
@@ -52,14 +52,14 @@ pub(super) fn run(commands: &Receiver<Command>, tell: &Sender<Event>, shared: &A
             Ok(false) => return thread.end_film(),
             Err(_) => {
                 thread.running = None;
-                thread.tell(Event::Fault("a fault in the program stopped it; open the scene again".into()));
+                thread.send(Event::Fault("an internal error stopped the scene; open it again".into()));
             }
         }
     }
 }
 
 struct Thread<'a> {
-    tell: &'a Sender<Event>,
+    events: &'a Sender<Event>,
     shared: &'a Arc<Shared>,
     devices: Devices<'a>,
     /// Scenes opened so far.
@@ -71,7 +71,7 @@ struct Thread<'a> {
 pub(super) struct Running {
     pub subject: Subject,
     playing: bool,
-    /// Where it waits next, s.
+    /// Time of the next pause, s.
     pub until: f64,
     pub pace: Pace,
     /// When the last slice began.
@@ -80,45 +80,45 @@ pub(super) struct Running {
     /// When it may be measured again.
     pub measure_at: Instant,
     pub rate: Rate,
-    /// Where to tell of the water.
+    /// Position at which the water is sampled.
     pub probe: Option<[f64; 2]>,
     pub filming: Option<Filming>,
-    /// The water there, and all particles, as they last came.
+    /// The water there, and all particles, as last read back.
     pub probed: Option<Sample>,
     pub known: Arc<Frame>,
 }
 
-/// Work done in a second.
+/// Rate of work.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rate {
-    /// Work done, and when, as it was last told.
-    told: (u64, Instant),
+    /// Work done at the last update, and when that was.
+    noted: (u64, Instant),
     pub now: f64,
 }
 
 impl Rate {
-    /// So much work is done by now.
+    /// Updates the rate with the work done so far.
     pub fn note(&mut self, work: u64) {
-        let (before, when) = self.told;
+        let (before, when) = self.noted;
         let since = when.elapsed().as_secs_f64();
         // While particles come back from a GPU no work is done.
         if since > 0.5 && work > before || since > 2.0 {
             self.now = work.saturating_sub(before) as f64 / since;
-            self.told = (work, Instant::now());
+            self.noted = (work, Instant::now());
         }
     }
 }
 
 impl Thread<'_> {
-    /// How long to wait for a command before the next slice; none where there is nothing to go on with.
+    /// How long to wait for a command before the next slice; none while paused.
     fn time_left(&self) -> Option<Duration> {
         let running = self.running.as_ref().filter(|running| running.playing)?;
         Some(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(running.began.elapsed()))
     }
 
-    fn tell(&self, event: Event) {
-        // Nobody listens where the window is closing.
-        let _ = self.tell.send(event);
+    fn send(&self, event: Event) {
+        // The receiver is gone when the window closes.
+        let _ = self.events.send(event);
         (self.shared.wake)();
     }
 
@@ -136,7 +136,7 @@ impl Thread<'_> {
             Command::Open(..) | Command::OpenRun(..) => {}
             Command::Seek(time) => {
                 if let Err(error) = running.subject.seek(time) {
-                    self.tell(Event::Fault(error.to_string()));
+                    self.send(Event::Fault(error.to_string()));
                 }
             }
             Command::Play => {
@@ -147,11 +147,11 @@ impl Thread<'_> {
             Command::Probe(place) => running.probe = place,
             Command::Film(path) => self.film(&path),
             Command::EndFilm => self.end_film(),
-            Command::Pace(pace) => running.pace.asked = pace,
+            Command::Pace(pace) => running.pace.requested = pace,
             Command::Step(by) => self.step(by),
             Command::Change(change) => match running.subject.change(change) {
                 Ok(()) => running.measure_at = Instant::now(),
-                Err(error) => self.tell(Event::NotChanged(error.to_string())),
+                Err(error) => self.send(Event::NotChanged(error.to_string())),
             },
         }
         self.publish();
@@ -164,13 +164,13 @@ impl Thread<'_> {
         match subject().and_then(|subject| self.put(subject)) {
             Ok(opened) => {
                 self.publish();
-                self.tell(Event::Opened(Box::new(opened)));
+                self.send(Event::Opened(Box::new(opened)));
             }
-            Err(error) => self.tell(Event::Refused(error.to_string())),
+            Err(error) => self.send(Event::Refused(error.to_string())),
         }
     }
 
-    /// Makes ready what was opened.
+    /// Sets up the opened scene.
     fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
         let simulation = subject.simulation();
         let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
@@ -189,7 +189,7 @@ impl Thread<'_> {
             began: now,
             measured: Arc::default(),
             measure_at: now,
-            rate: Rate { told: (subject.work(), now), now: 0.0 },
+            rate: Rate { noted: (subject.work(), now), now: 0.0 },
             probe: None,
             filming: None,
             probed: None,
@@ -213,12 +213,12 @@ impl Thread<'_> {
     fn film(&mut self, path: &Path) {
         let Some(running) = &mut self.running else { return };
         let gpu = self.devices.background.gpu().map_err(|error| Error::from(RenderError::from(error)));
-        match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.asked)) {
+        match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.requested)) {
             Ok(filming) => {
                 running.filming = Some(filming);
-                self.look_for_film();
+                self.add_film_picture();
             }
-            Err(error) => self.tell(Event::Filmed(Err(error.to_string()))),
+            Err(error) => self.send(Event::Filmed(Err(error.to_string()))),
         }
     }
 
@@ -227,40 +227,40 @@ impl Thread<'_> {
         running.wait();
         let to = running.subject.time() + by;
         if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
-            self.tell(Event::Fault(error.to_string()));
+            self.send(Event::Fault(error.to_string()));
         }
-        self.look_for_film();
+        self.add_film_picture();
     }
 
-    /// Goes on for a slice of wall-clock time.
+    /// Advances for a slice of wall-clock time.
     fn slice(&mut self) {
         let Some(running) = &mut self.running else { return };
         let begun = Instant::now();
-        if running.subject.gliding(self.devices.gpu).is_some() {
+        if running.subject.drawn_in_place(self.devices.gpu).is_some() {
             running.began = begun;
-            return self.glide();
+            return self.advance_on_gpu();
         }
         let from = running.subject.time();
         let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
-        // A film has its pictures at their times.
+        // The pictures of a film are due at fixed times.
         let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
         let whole = running.began.elapsed();
         running.began = begun;
         let gone = running.subject.advance_to(to, &self.shared.stop);
         let now = running.subject.time();
         running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
-        self.look_for_film();
+        self.add_film_picture();
         self.went(gone);
     }
 
-    /// Goes on where it is drawn until something is asked for, or looks at its particles.
-    fn glide(&mut self) {
+    /// Advances on the GPU that draws, until a command arrives or the particles are needed.
+    fn advance_on_gpu(&mut self) {
         let Some(running) = &mut self.running else { return };
-        match glide::glide(running, self.shared, self.devices.gpu, self.number) {
+        match gpu_advance::advance(running, self.shared, self.devices.gpu, self.number) {
             Err(Fault::OfModel(error)) => self.went(Err(error)),
             Err(Fault::OfFilm(error)) => {
                 running.filming = None;
-                self.tell(Event::Filmed(Err(error.to_string())));
+                self.send(Event::Filmed(Err(error.to_string())));
                 self.went(Ok(()));
             }
             Ok(recalled) => {
@@ -272,47 +272,47 @@ impl Thread<'_> {
         }
     }
 
-    /// Shows what it came to, and waits where it came to an end.
+    /// Publishes the result of a slice, and pauses at the end or after an error.
     fn went(&mut self, gone: Result<(), Error>) {
         let Some(running) = &mut self.running else { return };
-        let told = match gone {
+        let event = match gone {
             Err(error) => Some(Event::Fault(error.to_string())),
             Ok(()) if running.subject.time() >= running.until => Some(Event::Ended),
             Ok(()) => None,
         };
-        if told.is_some() {
+        if event.is_some() {
             running.wait();
         }
         self.publish();
-        if let Some(event) = told {
-            self.tell(event);
+        if let Some(event) = event {
+            self.send(event);
         }
     }
 
-    /// Adds a picture to the film, where one is made and it is due.
-    fn look_for_film(&mut self) {
+    /// Adds a picture to the film, where one is recorded and a picture is due.
+    fn add_film_picture(&mut self) {
         let Some(running) = &mut self.running else { return };
         let Some(filming) = &mut running.filming else { return };
         let view_state = self.shared.view_state();
-        if let Err(error) = filming.look(&running.subject, &view_state) {
+        if let Err(error) = filming.add_if_due(&running.subject, &view_state) {
             running.filming = None;
-            self.tell(Event::Filmed(Err(error.to_string())));
+            self.send(Event::Filmed(Err(error.to_string())));
         }
     }
 
     fn end_film(&mut self) {
         let filming = self.running.as_mut().and_then(|running| running.filming.take());
         if let Some(filming) = filming {
-            self.tell(Event::Filmed(filming.finish().map_err(|error| error.to_string())));
+            self.send(Event::Filmed(filming.finish().map_err(|error| error.to_string())));
         }
     }
 
-    /// Shows how it stands now.
+    /// Publishes a snapshot.
     fn publish(&mut self) {
         let Some(running) = &mut self.running else { return };
         match running.snapshot(self.number, self.devices.gpu) {
             Ok(snapshot) => self.shared.publish(snapshot),
-            Err(error) => self.tell(Event::Fault(error.to_string())),
+            Err(error) => self.send(Event::Fault(error.to_string())),
         }
     }
 }
@@ -321,7 +321,7 @@ impl Running {
     fn wait(&mut self) {
         self.playing = false;
         self.pace.rest();
-        // What stands still is shown with its newest measures.
+        // A paused scene shows its newest measurements.
         self.measure_at = Instant::now();
     }
 
@@ -332,7 +332,7 @@ impl Running {
             self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
         }
         self.rate.note(self.subject.work());
-        let (frame, paths, container) = self.subject.look();
+        let (frame, paths, container) = self.subject.current();
         self.known = Arc::new(frame);
         self.probed = self.probe.and_then(|place| self.subject.water_at(place));
         Ok(Snapshot {

@@ -1,4 +1,4 @@
-//! The picture in the middle: drawn on the window's device, turned, shifted and zoomed by hand.
+//! The picture in the middle: drawn on the window's device, with a camera that the user rotates, pans and zooms.
 
 mod paused;
 
@@ -9,29 +9,29 @@ use crate::snapshot::Snapshot;
 use crate::view_state::moment;
 use crate::{Screen, style};
 use corpuscle::gpu::GpuKind;
-use corpuscle::pictures::{Hand, Look, Pictures, Scenery, Shown};
+use corpuscle::pictures::{CameraOffset, Pictures, Quality, Scenery, Shown};
 use corpuscle_render::Lens;
 use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How far a point that the pointer goes turns the eye, radians.
+/// Rotation of the camera per point of pointer motion, radians.
 const TURN: f64 = 0.008;
-/// How far it may be zoomed.
+/// Smallest and largest zoom.
 const ZOOM: [f64; 2] = [0.3, 200.0];
-/// After so long without change what stands still is drawn with all there is.
+/// Time without change after which a paused scene is drawn with full quality.
 const STILL: Duration = Duration::from_millis(350);
 
-/// How much work pictures are, as the user wants it.
+/// The quality that the user chose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Quality {
-    /// All there is on a GPU and of what stands still; what moves simply where there is no GPU.
+pub enum QualitySetting {
+    /// Full with a GPU and at rest; simple in motion without a GPU.
     #[default]
     Auto,
     /// Always simple.
     Simple,
-    /// Always all there is.
+    /// Always full.
     Full,
 }
 
@@ -46,27 +46,27 @@ pub struct Picture {
     drawn: Option<Drawn>,
     /// The full-quality picture requested since something last changed, with the number of the request.
     requested: Option<(u64, Drawn)>,
-    /// How the camera was moved.
-    pub hand: Hand,
+    /// How the user moved the camera.
+    pub camera_offset: CameraOffset,
     /// When the partition was lifted, s.
     lifted: Option<f64>,
-    /// How much work it may be.
-    pub quality: Quality,
+    /// The quality chosen.
+    pub quality: QualitySetting,
     /// When something last changed.
     changed: Instant,
-    /// How much of its top the key takes, points.
+    /// Height of the legend, points.
     key_height: f32,
-    /// What went wrong with it.
+    /// The last error of drawing.
     fault: Option<String>,
 }
 
 /// What a picture was drawn from.
 #[derive(Clone, PartialEq)]
 struct Drawn {
-    /// The snapshot, by where it lies.
+    /// The snapshot, by its address.
     of: usize,
-    hand: Hand,
-    look: Look,
+    camera_offset: CameraOffset,
+    quality: Quality,
     size: [u32; 2],
     samples: u32,
     paper: Color32,
@@ -83,18 +83,18 @@ impl Picture {
             shown: None,
             drawn: None,
             requested: None,
-            hand: Hand::default(),
+            camera_offset: CameraOffset::default(),
             lifted: None,
-            quality: Quality::Auto,
+            quality: QualitySetting::Auto,
             changed: Instant::now(),
             key_height: 0.0,
             fault: None,
         }
     }
 
-    /// Shows all again from where the model shows best.
+    /// Resets the camera.
     pub fn reset(&mut self) {
-        self.hand = Hand { plan: self.hand.plan, ..Hand::default() };
+        self.camera_offset = CameraOffset { plan: self.camera_offset.plan, ..CameraOffset::default() };
     }
 
     /// What was drawn last.
@@ -102,13 +102,14 @@ impl Picture {
         self.shown.as_ref()
     }
 
-    /// Begins the picture of a snapshot as the last one was seen, so that the device draws while the rest of the window is thought out.
-    /// Where it is seen otherwise after all, it is drawn again.
+    /// Begins the picture of a snapshot with the last camera, so that the device draws while the rest of the window is laid out.
+    /// If the camera has changed after all, it is drawn again.
     pub fn draw_ahead(&mut self, snapshot: &Arc<Snapshot>, visuals: &egui::Visuals) {
         let (paper, linear) = style::paper(visuals);
         let Some(last) = self.drawn.clone().filter(|last| last.paper == paper) else { return };
-        let (look, samples) = self.work(false);
-        let drawn = Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, samples, ..last };
+        let (quality, samples) = self.work(false);
+        let drawn =
+            Drawn { of: Arc::as_ptr(snapshot) as usize, camera_offset: self.camera_offset, quality, samples, ..last };
         self.draw_as(snapshot, drawn, linear);
     }
 
@@ -123,7 +124,7 @@ impl Picture {
         }
     }
 
-    /// Fills what is left of the window with the picture of a snapshot; returns where it is and what was done to it. The full-quality
+    /// Fills the rest of the window with the picture of a snapshot; returns the response of its area. The full-quality
     /// picture of a paused scene is drawn by the offscreen renderer.
     pub fn ui(
         &mut self,
@@ -140,16 +141,23 @@ impl Picture {
         let (paper, linear) = style::paper(ui.visuals());
         let still = self.note_change(ui, snapshot, moves, size, paper);
         let [quick, best] = [false, true].map(|still| {
-            let (look, samples) = self.work(still);
-            Drawn { of: Arc::as_ptr(snapshot) as usize, hand: self.hand, look, size, samples, paper }
+            let (quality, samples) = self.work(still);
+            Drawn {
+                of: Arc::as_ptr(snapshot) as usize,
+                camera_offset: self.camera_offset,
+                quality,
+                size,
+                samples,
+                paper,
+            }
         });
         if !still {
             self.requested = None;
         }
         if !still || self.drawn.as_ref() != Some(&best) {
-            let asks = still && quick != best;
+            let needs_full = still && quick != best;
             self.draw_as(snapshot, quick, linear);
-            if asks {
+            if needs_full {
                 self.request(snapshot, best, linear, offscreen);
             }
         }
@@ -157,28 +165,28 @@ impl Picture {
         response
     }
 
-    /// How much of the picture's top its key takes, points.
+    /// Height of the legend over the picture, points.
     pub fn key_height(&self) -> f32 {
         self.key_height
     }
 
-    /// True where what was drawn last has all there is to its look.
+    /// True where the last picture has full quality.
     pub fn is_complete(&self) -> bool {
         self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1)
     }
 
-    /// The partition of a gas was lifted.
+    /// Records that the partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
         self.lifted = Some(time);
         self.view_state().lift(&mut self.pictures);
         (self.drawn, self.requested) = (None, None);
     }
 
-    /// True where nothing has changed for a while; asks to be called again where that is yet to come.
+    /// True where nothing has changed for a while; else requests a repaint for when that may be.
     fn note_change(&mut self, ui: &Ui, snapshot: &Arc<Snapshot>, moves: bool, size: [u32; 2], paper: Color32) -> bool {
         let same = self.drawn.as_ref().is_some_and(|drawn| {
             drawn.of == Arc::as_ptr(snapshot) as usize
-                && (drawn.hand, drawn.size, drawn.paper) == (self.hand, size, paper)
+                && (drawn.camera_offset, drawn.size, drawn.paper) == (self.camera_offset, size, paper)
         });
         if !same || moves {
             self.changed = Instant::now();
@@ -190,21 +198,22 @@ impl Picture {
         since >= STILL
     }
 
-    /// The look, and samples each way in a pixel.
-    fn work(&self, still: bool) -> (Look, u32) {
+    /// The quality, and samples each way in a pixel.
+    fn work(&self, still: bool) -> (Quality, u32) {
         let is_hardware = self.screen.gpu.kind == GpuKind::Hardware;
         match self.quality {
-            Quality::Simple => (Look::Simple, if is_hardware || still { 2 } else { 1 }),
-            Quality::Full => (Look::Full, if is_hardware || still { 2 } else { 1 }),
-            Quality::Auto => {
-                (if is_hardware || still { Look::Full } else { Look::Simple }, if is_hardware || still { 2 } else { 1 })
-            }
+            QualitySetting::Simple => (Quality::Simple, if is_hardware || still { 2 } else { 1 }),
+            QualitySetting::Full => (Quality::Full, if is_hardware || still { 2 } else { 1 }),
+            QualitySetting::Auto => (
+                if is_hardware || still { Quality::Full } else { Quality::Simple },
+                if is_hardware || still { 2 } else { 1 },
+            ),
         }
     }
 
     fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let shown = self.pictures.show(&moment(snapshot), &self.hand, drawn.look, paper)?;
+        let shown = self.pictures.show(&moment(snapshot), &self.camera_offset, drawn.quality, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         self.shown = Some(shown);
         Ok(())
@@ -224,7 +233,7 @@ impl Picture {
         key_height
     }
 
-    /// Turns, shifts and zooms.
+    /// Rotates, pans and zooms.
     fn follow_hand(&mut self, ui: &Ui, rect: Rect, response: &Response) {
         if response.double_clicked() {
             self.reset();
@@ -243,8 +252,8 @@ impl Picture {
         let point = height(shown) / f64::from(rect.height());
         if turns {
             let away = shown.camera.eye - shown.camera.target;
-            let own = (away.z / away.length()).asin() - self.hand.turn[1];
-            self.hand.turn_by(own, [-f64::from(moved.x) * TURN, f64::from(moved.y) * TURN]);
+            let own = (away.z / away.length()).asin() - self.camera_offset.turn[1];
+            self.camera_offset.turn_by(own, [-f64::from(moved.x) * TURN, f64::from(moved.y) * TURN]);
         }
         if shifts {
             self.shift_by(point * (f64::from(moved.y) * up - f64::from(moved.x) * right));
@@ -253,18 +262,18 @@ impl Picture {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let times = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
             if let Some(pointer) = response.hover_pos().filter(|_| times != 1.0) {
-                let zoom = (self.hand.zoom * times).clamp(ZOOM[0], ZOOM[1]);
+                let zoom = (self.camera_offset.zoom * times).clamp(ZOOM[0], ZOOM[1]);
                 let off = pointer - rect.center();
                 let towards = point * (f64::from(off.x) * right - f64::from(off.y) * up);
-                let part = 1.0 - self.hand.zoom / zoom;
-                self.hand.zoom = zoom;
+                let part = 1.0 - self.camera_offset.zoom / zoom;
+                self.camera_offset.zoom = zoom;
                 self.shift_by(part * towards);
             }
         }
     }
 
     fn shift_by(&mut self, by: DVec3) {
-        self.hand.shift = (DVec3::from(self.hand.shift) + by).into();
+        self.camera_offset.shift = (DVec3::from(self.camera_offset.shift) + by).into();
     }
 }
 
@@ -275,7 +284,7 @@ fn axes(shown: &Shown) -> [DVec3; 2] {
     [right, right.cross(forward)]
 }
 
-/// Height of the world in the picture at what it looks at, m.
+/// Height of the world in the picture at the camera's target, m.
 fn height(shown: &Shown) -> f64 {
     match shown.camera.lens {
         Lens::Orthographic { height } => height,

@@ -19,7 +19,7 @@ impl Picture {
         offscreen: &OffscreenRenderer,
     ) {
         if self.requested.as_ref().is_none_or(|(_, requested)| *requested != drawn) {
-            let settings = PausedSettings { look: drawn.look, size: drawn.size, samples: drawn.samples, paper };
+            let settings = PausedSettings { quality: drawn.quality, size: drawn.size, samples: drawn.samples, paper };
             self.requested = Some((offscreen.draw_paused(self.job(snapshot), settings), drawn));
         }
     }
@@ -42,7 +42,7 @@ impl Picture {
 
     /// The camera and the partition as the user set them.
     pub fn view_state(&self) -> ViewState {
-        ViewState { hand: self.hand, lifted: self.lifted }
+        ViewState { camera_offset: self.camera_offset, lifted: self.lifted }
     }
 
     /// A snapshot to be drawn as it is seen now.

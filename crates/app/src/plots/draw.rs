@@ -15,7 +15,7 @@ const COLOURS: [Color32; 4] = [
 ];
 const THEORY: Color32 = Color32::from_rgb(0xd6, 0x3a, 0x4a);
 
-/// Draws a chart into what is left of a place.
+/// Draws a chart into the rest of a panel.
 pub fn chart(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, chart: &Chart) {
     let number = |mark: egui_plot::GridMark, _: &std::ops::RangeInclusive<f64>| short_number(mark.value);
     let log = [chart.x.logarithmic, chart.y.logarithmic];
@@ -67,7 +67,7 @@ fn steps(input: &GridInput, logarithmic: bool) -> [f64; 3] {
     [1.0, 10.0, 100.0].map(|times| times * if logarithmic { step.max(1.0) } else { step })
 }
 
-/// Where all values are one but for rounding, a range round them: rounding is not to fill the plot.
+/// A range round values that are equal but for rounding, so that rounding does not fill the plot.
 fn nearly_constant(chart: &Chart) -> Option<[f64; 2]> {
     let values =
         || chart.series.iter().flat_map(|series| &series.points).map(|point| point[1]).filter(|y| y.is_finite());
@@ -81,7 +81,7 @@ fn bars(series: &ChartSeries) -> Vec<Bar> {
     series.points.iter().map(|[x, y]| Bar::new(*x, *y).width(0.92 * width)).collect()
 }
 
-/// A point as it is drawn: by its logarithm along a logarithmic axis; none where it has no place there.
+/// A point in plot coordinates: its logarithm along a logarithmic axis; none where that does not exist.
 fn scaled(point: [f64; 2], log: [bool; 2]) -> Option<[f64; 2]> {
     let scaled = [0, 1].map(|axis| if log[axis] { point[axis].log10() } else { point[axis] });
     scaled.iter().all(|value| value.is_finite()).then_some(scaled)

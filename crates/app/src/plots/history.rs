@@ -2,17 +2,17 @@
 
 use corpuscle::model::{Chart, ChartAxis, ChartSeries};
 
-/// Rows at most; then every other one is given up, so that what is kept reaches from the start to now.
+/// Most rows; beyond that every other one is dropped, so that the rows kept reach from the start to now.
 const MOST: usize = 4000;
 
 /// Rows of gauges.
 #[derive(Debug, Default)]
 pub struct History {
     rows: Vec<(f64, Vec<f64>)>,
-    /// Rows that come are counted; one of so many is kept.
+    /// Rows added so far; one of so many is kept.
     every: usize,
     come: usize,
-    /// True where all there is is there.
+    /// True for a finished run, whose rows are complete.
     whole: bool,
 }
 
@@ -22,7 +22,7 @@ impl History {
         Self { rows, whole: true, ..Self::default() }
     }
 
-    /// Takes in a row, if it is one of a later time.
+    /// Adds a row, if its time is later.
     pub fn take(&mut self, time: f64, row: &[f64]) {
         let later = self.rows.last().is_none_or(|(last, _)| time > *last);
         if self.whole || row.is_empty() || !later {

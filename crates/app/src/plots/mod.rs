@@ -1,4 +1,4 @@
-//! Plots of what is measured while a scene goes on.
+//! Plots of gauges, charts and speeds while a scene runs.
 
 mod draw;
 mod history;
@@ -15,7 +15,7 @@ use history::History;
 use speeds::Speeds;
 use std::fmt::Write;
 
-/// What a plot shows.
+/// The content of a plot.
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
     /// The speeds of a set of balls now, over Maxwell's curve.
@@ -35,7 +35,7 @@ pub struct Plots {
     dimensions: Option<usize>,
     /// Names of the sets of balls.
     sets: Vec<String>,
-    /// What is shown, from the left.
+    /// The content of each plot, from the left.
     chosen: Vec<Kind>,
     /// Unit of time, empty in reduced units.
     time_unit: &'static str,
@@ -63,7 +63,7 @@ impl Plots {
         }
     }
 
-    /// Takes in another snapshot.
+    /// Adds a snapshot.
     pub fn take(&mut self, snapshot: &Snapshot) {
         self.rename(&snapshot.measures.names);
         self.history.take(snapshot.measures.time, &snapshot.measures.gauges);
@@ -75,7 +75,7 @@ impl Plots {
         }
     }
 
-    /// Gauges that have come while the scene goes on, as where one is placed, are among the others from now on.
+    /// Adds gauges that were placed while the scene runs.
     fn rename(&mut self, names: &[String]) {
         if names.is_empty() || self.gauges == names {
             return;
@@ -91,12 +91,12 @@ impl Plots {
         self.gauges = names.to_vec();
     }
 
-    /// The speeds of balls that were seen so far are no longer those of now.
+    /// Drops the speeds counted so far: they have changed.
     pub fn forget_speeds(&mut self) {
         self.speeds.forget();
     }
 
-    /// Shows the plots side by side; gives a table to be saved: its name and its text.
+    /// Shows the plots side by side; returns a table to be saved: its name and its text.
     pub fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot) -> Option<(String, String)> {
         let gap = 18.0;
         let width = (ui.available_width() - gap) / self.chosen.len().max(1) as f32;
@@ -130,7 +130,7 @@ impl Plots {
         }
     }
 
-    /// All that can be shown.
+    /// All contents to choose from.
     fn kinds(&self, snapshot: &Snapshot) -> Vec<Kind> {
         let speeds = (0..self.sets.len()).map(Kind::Speeds);
         let gauges = (0..self.gauges.len()).map(Kind::Gauge);
@@ -161,13 +161,13 @@ impl Plots {
         match &chart {
             Some(chart) => draw::chart(ui, ("chart", slot), chart),
             None => {
-                ui.label(RichText::new("Nothing has been measured yet.").weak());
+                ui.label(RichText::new("No measurements yet.").weak());
             }
         }
         chart.filter(|_| save).map(|chart| (chart.name.clone(), table(&chart)))
     }
 
-    /// What a plot shows, as a chart.
+    /// The content of a plot as a chart.
     fn chart(&self, kind: &Kind, snapshot: &Snapshot) -> Option<Chart> {
         match kind {
             Kind::Speeds(set) => self.speeds.chart(*set),

@@ -6,9 +6,9 @@ use std::f64::consts::PI;
 /// Bars, and where they end, thermal speeds.
 const BARS: usize = 36;
 const FASTEST: f64 = 4.2;
-/// How much of what was counted is kept from picture to picture: bars of few balls flicker less.
+/// Fraction of the counts kept from picture to picture: bars of few balls flicker less.
 const KEPT: f64 = 0.9;
-/// Bars are set anew where the temperature is so many times more or less than they were set for.
+/// Factor of the temperature beyond which the bars are rescaled.
 const ELSEWHERE: f64 = 1.5;
 
 /// Speeds counted, set by set.
@@ -34,12 +34,12 @@ impl Speeds {
         Self { dimensions, sets: Vec::new(), time: f64::NAN }
     }
 
-    /// Counting begins anew.
+    /// Restarts the counts.
     pub fn forget(&mut self) {
         self.sets.clear();
     }
 
-    /// Takes in the balls of another time.
+    /// Adds the balls of another time.
     pub fn take(&mut self, frame: &Frame) {
         if frame.time == self.time && !self.sets.is_empty() {
             return;

@@ -1,13 +1,13 @@
 //! Files that are dropped on the window.
 
-use super::{Awaited, Start, Window};
+use super::{Pending, Start, Window};
 use crate::dropped;
 use egui::{Align2, Color32, Context, FontId, Id, LayerId, Order};
 use std::path::PathBuf;
 use std::sync::mpsc::channel;
 
 impl Window {
-    /// Takes what is dropped on the window, and says so while it hovers over it.
+    /// Opens a file that is dropped on the window, and shows a hint while one hovers over it.
     pub(super) fn take_dropped(&mut self, context: &Context) {
         let (hovers, dropped) = context.input(|input| {
             let dropped = input.raw.dropped_files.first().map(|file| file.path().to_owned());
@@ -25,27 +25,27 @@ impl Window {
         }
     }
 
-    /// Opens a file or a folder; large terrain takes a while to read, and the window goes on meanwhile.
+    /// Opens a file or a folder in a thread of its own: large terrain takes a while to read.
     pub fn open_dropped(&mut self, context: &Context, path: PathBuf) {
         self.fault = None;
-        let (tell, told) = channel();
+        let (sender, receiver) = channel();
         let context = context.clone();
         let read = move || {
-            // Nobody listens where the window is closing.
-            let _ = tell.send(dropped::open(&path));
+            // The receiver is gone when the window closes.
+            let _ = sender.send(dropped::open(&path));
             context.request_repaint();
         };
         match std::thread::Builder::new().name("dropped".into()).spawn(read) {
-            Ok(_) => self.awaited = Some(Awaited::Dropped(told)),
+            Ok(_) => self.pending = Some(Pending::Dropped(receiver)),
             Err(error) => self.fault = Some(error.to_string()),
         }
     }
 
-    /// Opens what was dropped, once it is read.
-    pub(super) fn look_for_dropped(&mut self) {
-        let Some(Awaited::Dropped(told)) = &self.awaited else { return };
-        let Ok(read) = told.try_recv() else { return };
-        self.awaited = None;
+    /// Opens the dropped file once it is read.
+    pub(super) fn check_dropped(&mut self) {
+        let Some(Pending::Dropped(receiver)) = &self.pending else { return };
+        let Ok(read) = receiver.try_recv() else { return };
+        self.pending = None;
         match read {
             Ok(Start::Scene(source)) => self.open(source),
             Ok(Start::Run(folder)) => self.open_run(folder),

@@ -1,4 +1,4 @@
-//! Keys, and what is pressed in the strip.
+//! Handling of keys and of the controls of the strip.
 
 use super::open::QUALITIES;
 use super::{Source, Window};
@@ -33,14 +33,14 @@ impl Window {
         if pressed(Key::S) {
             self.save_still();
         }
-        let asks = ui.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::Questionmark));
-        self.help |= asks;
+        let help = ui.input(|input| input.key_pressed(Key::F1) || input.key_pressed(Key::Questionmark));
+        self.help |= help;
         let Some(open) = &mut self.open else { return };
         if pressed(Key::F) {
             open.picture.reset();
         }
         if pressed(Key::T) && !open.is_flat() {
-            open.picture.hand.plan = !open.picture.hand.plan;
+            open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
         }
         if pressed(Key::Escape) {
             (open.picked, open.spot, open.clicked) = (None, None, None);
@@ -61,18 +61,18 @@ impl Window {
             }
             Pressed::Step => {
                 open.playing = false;
-                self.physics.ask(Command::Step(open.times * default_pace(open.end) / 30.0));
+                self.physics.send(Command::Step(open.times * default_pace(open.end) / 30.0));
             }
-            Pressed::Restart if open.recorded => self.physics.ask(Command::Seek(0.0)),
+            Pressed::Restart if open.recorded => self.physics.send(Command::Seek(0.0)),
             Pressed::Restart => {
                 let changes = open.parameters.changes().to_vec();
                 let source = Source { changes, ..open.source.clone() };
                 self.open(source);
             }
-            Pressed::Seek(time) => self.physics.ask(Command::Seek(time)),
+            Pressed::Seek(time) => self.physics.send(Command::Seek(time)),
             Pressed::Pace(times) => {
                 open.times = times;
-                self.physics.ask(Command::Pace(times * default_pace(open.end)));
+                self.physics.send(Command::Pace(times * default_pace(open.end)));
             }
         }
     }

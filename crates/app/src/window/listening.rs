@@ -7,12 +7,12 @@ use crate::physics::Event;
 impl Window {
     /// Handles the events of the physics thread, and takes the pictures of the offscreen renderer.
     pub(super) fn listen(&mut self) {
-        self.look_for_dropped();
+        self.check_dropped();
         for event in self.physics.events() {
             match event {
                 Event::Opened(opened) => self.take(*opened),
                 Event::Refused(what) => {
-                    self.awaited = None;
+                    self.pending = None;
                     self.fault = Some(what);
                 }
                 Event::NotChanged(what) => self.fault = Some(what),

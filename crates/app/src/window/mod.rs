@@ -1,4 +1,4 @@
-//! What is in the window.
+//! The content of the window.
 
 mod dropping;
 mod keys;
@@ -13,12 +13,12 @@ pub use source::{Source, Start};
 
 use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
+use crate::gas_controls::GasControls;
 use crate::offscreen::OffscreenRenderer;
 use crate::physics::{Backend, Command, Opened, Physics, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
-use crate::touch::Hands;
 use crate::{Screen, help, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
@@ -32,31 +32,31 @@ use std::time::{Duration, Instant};
 pub struct Window {
     screen: Screen,
     physics: Physics,
-    /// Draws what takes long.
+    /// Draws pictures that take long.
     offscreen: OffscreenRenderer,
     gallery: Gallery,
-    /// Which of scenes, parameters and plots are shown.
+    /// Visibility of the panels.
     panels: Panels,
     help: bool,
-    /// What was done last, for a moment.
+    /// The last notice, and when it was shown.
     notice: Option<(String, Instant)>,
-    /// What was asked to be opened, until it is.
-    awaited: Option<Awaited>,
+    /// The scene or run being opened.
+    pending: Option<Pending>,
     open: Option<Open>,
-    /// What went wrong last.
+    /// The last error.
     fault: Option<String>,
     clock: PictureClock,
-    /// Where files are written.
+    /// Folder of the files written.
     folder: PathBuf,
-    /// Whether what is opened plays at once.
+    /// Whether a scene plays as soon as it is open.
     plays: bool,
 }
 
-/// What is to be opened.
-enum Awaited {
+/// A scene or run being opened.
+enum Pending {
     Scene(Source),
     Run(PathBuf),
-    /// What was dropped, until it is read.
+    /// A dropped file that is being read.
     Dropped(Receiver<Result<Start, String>>),
 }
 
@@ -91,10 +91,10 @@ impl PictureClock {
 }
 
 impl Window {
-    /// A window that begins so, and has scenes computed on a backend.
+    /// A window that opens `start` first and computes scenes on `backend`.
     ///
     /// # Errors
-    /// Where the system gives no thread for the physics or for pictures that take long.
+    /// Where the threads of the physics or of the pictures cannot be started.
     pub fn new(context: &Context, screen: Screen, start: Start, backend: Backend) -> std::io::Result<Self> {
         style::set_up(context);
         let wake = context.clone();
@@ -110,7 +110,7 @@ impl Window {
             panels: Panels { scenes: true, parameters: true, plots: true },
             help: false,
             notice: None,
-            awaited: None,
+            pending: None,
             open: None,
             fault: None,
             clock: PictureClock::default(),
@@ -130,7 +130,7 @@ impl Window {
         self.folder = folder;
     }
 
-    /// What is opened from now on waits at its start.
+    /// Scenes opened from now on are paused at their start.
     pub fn wait_at_start(&mut self) {
         self.plays = false;
     }
@@ -140,8 +140,8 @@ impl Window {
         self.fault = None;
         match source.scene() {
             Ok(scene) => {
-                self.physics.ask(Command::Open(Box::new(scene), source.folder.clone()));
-                self.awaited = Some(Awaited::Scene(source));
+                self.physics.send(Command::Open(Box::new(scene), source.folder.clone()));
+                self.pending = Some(Pending::Scene(source));
             }
             Err(error) => self.fault = Some(error.to_string()),
         }
@@ -150,58 +150,58 @@ impl Window {
     /// Opens the folder of a finished run.
     pub fn open_run(&mut self, folder: PathBuf) {
         self.fault = None;
-        self.physics.ask(Command::OpenRun(folder.clone()));
-        self.awaited = Some(Awaited::Run(folder));
+        self.physics.send(Command::OpenRun(folder.clone()));
+        self.pending = Some(Pending::Run(folder));
     }
 
-    /// The newest snapshot of what is open.
+    /// The newest snapshot of the open scene.
     pub fn snapshot(&self) -> Option<Arc<Snapshot>> {
         self.open.as_ref()?.snapshot.clone()
     }
 
-    /// What a gauge was measured at last, by its name as in files; none where there is none.
+    /// Last value of a gauge, by its name as in files.
     pub fn gauge(&self, name: &str) -> Option<f64> {
         let snapshot = self.snapshot()?;
         let at = snapshot.measures.names.iter().position(|gauge| gauge == name)?;
         snapshot.measures.gauges.get(at).copied()
     }
 
-    /// True where the picture has all there is to its look: without a GPU what moves is drawn simply.
+    /// True where the picture has full quality: without a GPU it is simple in motion.
     pub fn is_complete(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.picture.is_complete())
     }
 
-    /// True until a scene that was asked for is open or refused.
+    /// True while a scene or run is being opened.
     pub fn is_waiting(&self) -> bool {
-        self.awaited.is_some()
+        self.pending.is_some()
     }
 
-    /// What went wrong last, if anything did.
+    /// The last error, if any.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Lets the scene go on, or wait.
+    /// Plays or pauses the scene.
     pub fn play(&mut self, playing: bool) {
         if let Some(open) = &mut self.open {
             open.playing = playing;
-            self.physics.ask(if playing { Command::Play } else { Command::Pause });
+            self.physics.send(if playing { Command::Play } else { Command::Pause });
         }
     }
 
     fn take(&mut self, opened: Opened) {
-        let Some(awaited) = self.awaited.take() else { return };
+        let Some(pending) = self.pending.take() else { return };
         let plots = Plots::new(&opened);
         let Opened { number, scene, pictures, scenery, terrain, end, computed_on, .. } = opened;
-        let recorded = matches!(awaited, Awaited::Run(_));
-        let source = match awaited {
-            Awaited::Scene(source) => source,
-            // What was opened before is no longer wanted.
-            Awaited::Dropped(_) => {
-                self.awaited = Some(awaited);
+        let recorded = matches!(pending, Pending::Run(_));
+        let source = match pending {
+            Pending::Scene(source) => source,
+            // The scene opened before is dropped.
+            Pending::Dropped(_) => {
+                self.pending = Some(pending);
                 return;
             }
-            Awaited::Run(folder) => Source {
+            Pending::Run(folder) => Source {
                 name: folder.display().to_string(),
                 text: scene.to_toml().unwrap_or_default(),
                 folder,
@@ -212,11 +212,11 @@ impl Window {
         let mut picture = Picture::new(self.screen.clone(), pictures, scenery);
         let mut times = 1.0;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
-            // Who changes a scene wants to see it from where it was seen.
-            (picture.hand, picture.quality) = (before.picture.hand, before.picture.quality);
+            // A scene restarted with changes keeps its camera.
+            (picture.camera_offset, picture.quality) = (before.picture.camera_offset, before.picture.quality);
             times = before.times;
         }
-        self.physics.ask(Command::Pace(times * default_pace(end)));
+        self.physics.send(Command::Pace(times * default_pace(end)));
         self.open = Some(Open {
             number,
             parameters: parameters(&source),
@@ -227,7 +227,7 @@ impl Window {
             spot: None,
             probed: None,
             filming: false,
-            hands: Hands::default(),
+            gas_controls: GasControls::default(),
             source,
             recorded,
             end,
@@ -241,20 +241,20 @@ impl Window {
         self.play(self.plays);
     }
 
-    /// Shows everything.
+    /// Shows the whole window.
     pub fn ui(&mut self, ui: &mut Ui) {
         self.take_dropped(ui.ctx());
         self.listen();
         self.keys(ui);
         let pictures = self.clock.tick();
-        // Not while a hand moves the camera: it would be drawn twice.
+        // Not while the user moves the camera: it would be drawn twice.
         if let Some(open) = &mut self.open
             && let Some(snapshot) = open.snapshot.clone().filter(|snapshot| snapshot.playing)
             && !ui.input(|input| input.pointer.any_down())
         {
             open.picture.draw_ahead(&snapshot, ui.visuals());
         }
-        if self.open.is_none() && self.awaited.is_none() {
+        if self.open.is_none() && self.pending.is_none() {
             return self.first_page(ui);
         }
         let strip = Frame::new().inner_margin(Margin::symmetric(12, 6));
@@ -270,7 +270,7 @@ impl Window {
             self.press(pressed);
         }
         if self.help {
-            self.help = !help::sheet(ui.ctx());
+            self.help = !help::list(ui.ctx());
         }
     }
 }

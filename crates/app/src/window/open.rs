@@ -1,14 +1,14 @@
 //! The scene that is open.
 
 use super::Source;
+use crate::gas_controls::GasControls;
 use crate::overlay::Over;
 use crate::parameters::Parameters;
 use crate::pick::Picked;
-use crate::picture::{Picture, Quality};
+use crate::picture::{Picture, QualitySetting};
 use crate::plots::Plots;
 use crate::snapshot::Snapshot;
 use crate::spot::Spot;
-use crate::touch::Hands;
 use corpuscle::model::Frame;
 use corpuscle::scene::Scene;
 use corpuscle::terrain::Terrain;
@@ -21,37 +21,37 @@ pub(super) struct Open {
     pub(super) source: Source,
     /// True for a finished run.
     pub(super) recorded: bool,
-    /// Where it ends, s.
+    /// End time, s.
     pub(super) end: f64,
     pub(super) scene: Scene,
     pub(super) picture: Picture,
     pub(super) parameters: Parameters,
     pub(super) plots: Plots,
     pub(super) picked: Option<Picked>,
-    /// Where the picture was clicked on, and the particles that were known then, until it is known what is there.
+    /// Position of the last click and the particles known then, until newer particles have come from the GPU.
     pub(super) clicked: Option<(Pos2, Arc<Frame>)>,
-    /// The ground, and the spot of it that was picked.
+    /// The terrain.
     pub(super) terrain: Option<Arc<Terrain>>,
     pub(super) spot: Option<Spot>,
-    /// The place that the physics was asked to tell of.
+    /// The position at which the physics samples the water.
     pub(super) probed: Option<[f64; 2]>,
-    /// What hands hold of a gas.
-    pub(super) hands: Hands,
-    /// Where it is computed, and why there.
+    /// State of the controls of a gas.
+    pub(super) gas_controls: GasControls,
+    /// The backend, and why it was chosen.
     pub(super) computed_on: Option<String>,
-    /// True while a film is made.
+    /// True while a film is recorded.
     pub(super) filming: bool,
     pub(super) snapshot: Option<Arc<Snapshot>>,
     pub(super) playing: bool,
-    /// The pace, as a multiple of the scene's own.
+    /// The pace, as a multiple of the default pace of the scene.
     pub(super) times: f64,
 }
 
-/// Looks: how they are called, and what they mean.
-pub(super) const QUALITIES: [(Quality, &str, &str); 3] = [
-    (Quality::Auto, "By itself", "Full on a GPU; without one full where it stands still, simple where it moves"),
-    (Quality::Simple, "Simple", "Without shadows, water as its particles: quick"),
-    (Quality::Full, "Full", "Shadows, and water that looks like water: slow without a GPU"),
+/// Settings of the quality, with their names and explanations.
+pub(super) const QUALITIES: [(QualitySetting, &str, &str); 3] = [
+    (QualitySetting::Auto, "Automatic", "Full with a GPU; without one full at rest, simple in motion"),
+    (QualitySetting::Simple, "Simple", "Without shadows, water as particles: fast"),
+    (QualitySetting::Full, "Full", "With shadows and realistic water: slow without a GPU"),
 ];
 
 /// The parameters of a scene as it is written.
@@ -71,21 +71,21 @@ impl Open {
     pub(super) fn quality(&mut self, ui: &mut Ui) {
         let now =
             QUALITIES.iter().find(|(quality, ..)| *quality == self.picture.quality).map_or("", |(_, name, _)| *name);
-        let combo = egui::ComboBox::from_id_salt("look").selected_text(format!("Look: {}", now.to_lowercase()));
+        let combo = egui::ComboBox::from_id_salt("quality").selected_text(format!("Quality: {}", now.to_lowercase()));
         let shown = combo.show_ui(ui, |ui| {
             for (quality, name, hint) in QUALITIES {
                 ui.selectable_value(&mut self.picture.quality, quality, name).on_hover_text(hint);
             }
         });
-        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Look"));
+        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Quality"));
     }
 
-    /// Picks what was clicked on, and draws what is picked.
+    /// Picks the particle or position that was clicked, and marks it.
     pub(super) fn pick(&mut self, ui: &Ui, response: &egui::Response, snapshot: &Snapshot) {
         if response.clicked() {
             self.clicked = response.interact_pointer_pos().map(|at| (at, snapshot.known.clone()));
         }
-        // Where particles were is not where they are: a click waits until they come.
+        // The known particles may be older than the picture: a click waits for newer ones.
         let newer = |(_, before): &(Pos2, Arc<Frame>)| {
             snapshot.known.time == snapshot.frame.time || !Arc::ptr_eq(before, &snapshot.known)
         };
@@ -108,7 +108,7 @@ impl Open {
         self.picked = Picked::at(shown, rect, known, pointer);
         let place = self.picked.as_ref().and_then(|picked| picked.place(known));
         self.spot = self.terrain.as_ref().and_then(|terrain| match place {
-            // Who clicks on water means the place below it.
+            // A click on water picks the position on the bed below it.
             Some(place) => Some(Spot::under(terrain, place)),
             None => Spot::at(shown, rect, terrain, pointer),
         });

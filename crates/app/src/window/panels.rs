@@ -1,10 +1,10 @@
-//! The first page, the bar, the scenes, the picture and the strip below it.
+//! The panels: first page, toolbar, scenes, picture, and the strip below it.
 
 use super::open::Open;
 use super::{NOTICE, Window};
 use crate::icons::{self, Icon};
 use crate::physics::{Change, Command};
-use crate::spot::Asked;
+use crate::spot::SpotAction;
 use crate::transport::{Pressed, Transport};
 use corpuscle::models;
 use egui::{Frame, Margin, Panel, RichText, ScrollArea, Ui, vec2};
@@ -17,10 +17,12 @@ impl Window {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.add_space(40.0);
                 ui.label(RichText::new("Corpuscle").heading().size(30.0));
-                ui.label(RichText::new("Particle physics to look at and to touch while it runs.").size(15.0).weak());
+                ui.label(
+                    RichText::new("Particle physics: watch a scene and change it while it runs.").size(15.0).weak(),
+                );
                 ui.add_space(6.0);
-                self.told_fault(ui);
-                // Beside the bar that scrolls.
+                self.show_fault(ui);
+                // Leave room for the scroll bar.
                 ui.set_max_width(ui.available_width() - 16.0);
                 chosen = self.gallery.cards(ui);
                 ui.add_space(40.0);
@@ -62,23 +64,23 @@ impl Window {
             self.physics.see(open.picture.view_state());
             open.pick(ui, &response, &snapshot);
             let spot = open.spot.map(|spot| spot.at_model());
-            // A key, or its card, may have put it away.
+            // A key, or its card, may have closed it.
             if spot != open.probed {
                 open.probed = spot;
-                self.physics.ask(Command::Probe(spot));
+                self.physics.send(Command::Probe(spot));
             }
         }
         let mut inside = whole.shrink2(vec2(16.0, 12.0));
         // Cards lie below the key of colours.
         inside.min.y += self.open.as_ref().map_or(0.0, |open| open.picture.key_height());
         let mut over = ui.new_child(egui::UiBuilder::new().max_rect(inside));
-        if self.awaited.is_some() {
+        if self.pending.is_some() {
             over.horizontal(|ui| {
                 ui.spinner();
-                ui.label("Setting the scene up");
+                ui.label("Setting up the scene");
             });
         }
-        self.told_fault(&mut over);
+        self.show_fault(&mut over);
         if let Some((notice, _)) = self.notice.as_ref().filter(|(_, since)| since.elapsed() < NOTICE) {
             Frame::new()
                 .fill(over.visuals().window_fill)
@@ -100,19 +102,19 @@ impl Window {
         self.spot_card(&mut over);
     }
 
-    /// The card of the spot of ground that was picked.
+    /// The card of the picked position on the terrain.
     fn spot_card(&mut self, ui: &mut Ui) {
         let Some(open) = &mut self.open else { return };
         let (Some(spot), Some(terrain)) = (&mut open.spot, &open.terrain) else { return };
         let water = open.snapshot.as_ref().and_then(|snapshot| snapshot.probed);
         match spot.card(ui, terrain, water, !open.recorded) {
-            Some(Asked::Away) => open.spot = None,
-            Some(Asked::Gauge) => {
+            Some(SpotAction::Close) => open.spot = None,
+            Some(SpotAction::PlaceGauge) => {
                 spot.gauged = true;
                 let at = spot.at_model();
                 let name = open.parameters.add_gauge(terrain.to_own(at));
                 let place: Change = Box::new(move |simulation| simulation.place_gauge(&name, at));
-                self.physics.ask(Command::Change(place));
+                self.physics.send(Command::Change(place));
             }
             None => {}
         }
@@ -138,9 +140,10 @@ impl Window {
                 let name = if open.filming { "End the film" } else { "Record a film" };
                 film = icons::toggle(ui, Icon::Film, name, "V", open.filming).clicked();
                 still = icons::button(ui, Icon::Still, "Save a still", "S").clicked();
-                if !open.is_flat() && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.hand.plan).clicked()
+                if !open.is_flat()
+                    && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.camera_offset.plan).clicked()
                 {
-                    open.picture.hand.plan = !open.picture.hand.plan;
+                    open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
                 }
                 if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
                     open.picture.reset();
@@ -157,8 +160,8 @@ impl Window {
         self.help |= help;
     }
 
-    /// What went wrong, until it is put away.
-    pub(super) fn told_fault(&mut self, ui: &mut Ui) {
+    /// Shows the last error until it is closed.
+    pub(super) fn show_fault(&mut self, ui: &mut Ui) {
         let Some(fault) = &self.fault else { return };
         let mut away = false;
         Frame::new()
@@ -168,7 +171,7 @@ impl Window {
             .inner_margin(Margin::symmetric(12, 8))
             .show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    away = icons::sized(ui, Icon::Close, "Put the message away", "", 22.0, false).clicked();
+                    away = icons::sized(ui, Icon::Close, "Close the message", "", 22.0, false).clicked();
                     ui.add(egui::Label::new(fault).wrap());
                 });
             });

@@ -1,4 +1,4 @@
-//! Stills and scenes into files.
+//! Saving of stills, films and scenes.
 
 use super::{Source, Window};
 use crate::files;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 impl Window {
-    /// Says where something was written, or why not.
+    /// Shows where a file was written, or the error.
     pub(super) fn wrote(&mut self, done: Result<PathBuf, String>) {
         match done {
             Ok(path) => self.notice = Some((format!("Saved as {}", path.display()), Instant::now())),
@@ -34,11 +34,11 @@ impl Window {
         self.wrote(done);
     }
 
-    /// Begins a film, or ends it.
+    /// Starts a film, or ends it.
     pub(super) fn film(&mut self) {
         let Some(open) = &mut self.open else { return };
         open.filming = !open.filming;
-        self.physics.ask(if open.filming {
+        self.physics.send(if open.filming {
             let path = files::free(&self.folder, &open.source.name, "mp4");
             self.physics.see(open.picture.view_state());
             Command::Film(path)
@@ -47,7 +47,7 @@ impl Window {
         });
     }
 
-    /// A film is there, or could not be made.
+    /// Handles the end of a film.
     pub(super) fn filmed(&mut self, film: Result<PathBuf, String>) {
         if let Some(open) = &mut self.open {
             open.filming = false;

@@ -2,9 +2,9 @@
 
 use super::Window;
 use crate::files;
+use crate::gas_controls::{self, GasAction};
 use crate::parameters::Changed;
 use crate::physics::Command;
-use crate::touch::{self, Touched};
 use crate::transport::Pressed;
 use egui::{Frame, Margin, Panel, ScrollArea, Ui};
 
@@ -19,22 +19,22 @@ impl Window {
                 let waiting = open.parameters.waiting(ui);
                 restart = matches!(waiting, Some(Changed::Restart));
                 if let Some(gas) = open.scene.gas() {
-                    match touch::ui(ui, gas, &mut open.hands, open.snapshot.as_deref()) {
-                        Some(Touched::Heated(change)) => {
+                    match gas_controls::ui(ui, gas, &mut open.gas_controls, open.snapshot.as_deref()) {
+                        Some(GasAction::Heated(change)) => {
                             open.plots.forget_speeds();
-                            self.physics.ask(Command::Change(change));
+                            self.physics.send(Command::Change(change));
                         }
-                        Some(Touched::Lifted(change)) => {
+                        Some(GasAction::Lifted(change)) => {
                             open.picture.lift_partition(open.snapshot.as_ref().map_or(0.0, |now| now.frame.time));
-                            self.physics.ask(Command::Change(change));
+                            self.physics.send(Command::Change(change));
                         }
-                        Some(Touched::Changed(change)) => self.physics.ask(Command::Change(change)),
+                        Some(GasAction::Changed(change)) => self.physics.send(Command::Change(change)),
                         None => {}
                     }
                 }
                 for changed in open.parameters.ui(ui) {
                     match changed {
-                        Changed::Live(change) => self.physics.ask(Command::Change(change)),
+                        Changed::Live(change) => self.physics.send(Command::Change(change)),
                         Changed::Restart => restart = true,
                     }
                 }

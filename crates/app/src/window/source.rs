@@ -1,9 +1,9 @@
-//! What the window shows: a scene as it is written, or a finished run.
+//! The source of the window: a scene as written, or a finished run.
 
 use corpuscle::scene::{Builtin, Scene, SceneError};
 use std::path::PathBuf;
 
-/// What the window begins with.
+/// What the window opens first.
 #[derive(Debug, Clone)]
 pub enum Start {
     /// The first page.
@@ -17,13 +17,13 @@ pub enum Start {
 /// A scene as it is written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
-    /// What it is called: `gas/maxwell`, or its file.
+    /// Its name: `gas/maxwell`, or its file.
     pub name: String,
     /// Its text.
     pub text: String,
     /// The folder that its relative paths start from.
     pub folder: PathBuf,
-    /// What was changed in it: paths of values, and the values.
+    /// Its changes: paths of values, and the values.
     pub changes: Vec<(String, String)>,
 }
 
@@ -37,7 +37,7 @@ impl Source {
         if self.changes.is_empty() {
             return Ok(written);
         }
-        // What has a default is written out, so that every value has its place.
+        // Defaults are written out, so that every value can be set by its path.
         let mut whole = written;
         whole.resolve_defaults();
         Scene::parse(&whole.to_toml()?, &self.name, &self.changes)

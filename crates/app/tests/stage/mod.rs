@@ -246,7 +246,7 @@ impl Stage {
         let image = draw(&self.screen, &self.renderer, &self.harness);
         if let Some(folder) = std::env::var_os("CORPUSCLE_SHOTS") {
             let file = PathBuf::from(folder).join(format!("{name}.png"));
-            corpuscle::record::write_picture(&file, [image.width, image.height], &image.rgba).unwrap();
+            corpuscle::output::write_picture(&file, [image.width, image.height], &image.rgba).unwrap();
         }
         image
     }

@@ -1,15 +1,15 @@
-//! Pictures a second of a flood that is stepped and drawn on one GPU: a picture a step, and nothing comes back in between but a few numbers.
+//! Pictures per second of a flood that is stepped and drawn on one GPU: one per step, and only a few numbers are read back in between.
 
 use crate::args::BenchOptions;
 use corpuscle::gpu::{Gpu, PassTiming, wgpu};
 use corpuscle::model::{Glance, GpuModel};
-use corpuscle::pictures::{Hand, Look, Moment, PictureSettings, Pictures};
+use corpuscle::pictures::{CameraOffset, Moment, PictureSettings, Pictures, Quality};
 use corpuscle_validate::{FloodModel, PassTime, Rate, bench_water};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Seconds of wall-clock time measured, and the same for a quick look.
+/// Seconds of wall-clock time measured, and the same with `--quick`.
 const MEASURED: f64 = 10.0;
 const QUICK: f64 = 2.0;
 
@@ -17,12 +17,12 @@ const QUICK: f64 = 2.0;
 const TIMED: u32 = 16;
 
 /// Pictures before the clock starts.
-const WARMING: u32 = 3;
+const WARM_UP: u32 = 3;
 
-/// Pictures that are ordered before the first of them is done, at most.
+/// Pictures submitted before the first of them is done, at most.
 const AHEAD: usize = 3;
 
-/// Longer than any bench runs, s of the flood.
+/// Simulated time beyond the end of any bench, s.
 const LONG: f64 = 1e5;
 
 /// Draws the water of a bench; none where it is no bench of a flood.
@@ -85,7 +85,7 @@ impl Drawn {
             (always, true),
             &mut |Glance { frame, on_device }| {
                 let moment = Moment { frame: &frame, on_device: on_device.as_ref(), paths: &[], container: None };
-                let shown = pictures.show(&moment, &Hand::default(), Look::Full, [1.0; 3]);
+                let shown = pictures.show(&moment, &CameraOffset::default(), Quality::Full, [1.0; 3]);
                 let over = shown.map_err(anyhow::Error::from).and_then(|_| is_over());
                 stop.store(!matches!(over, Ok(false)), Ordering::Relaxed);
                 ended = over.map(|_| ());
@@ -95,7 +95,7 @@ impl Drawn {
         ended
     }
 
-    /// What the passes that draw the water take in a picture, those that take longest first, by so many pictures.
+    /// Time of the passes that draw the water per picture, the longest first, from so many pictures.
     fn passes(&mut self, pictures: u32) -> anyhow::Result<Vec<PassTime>> {
         self.pictures.measure();
         let mut left = pictures;
@@ -114,13 +114,13 @@ impl Drawn {
     }
 }
 
-/// Keeps the host from running away from the device, and counts until the time is over.
+/// Limits how many pictures the host submits ahead of the GPU, and counts them until the time is over.
 struct Pace<'a> {
     gpu: &'a Gpu,
     seconds: f64,
     ordered: VecDeque<wgpu::SubmissionIndex>,
     pictures: u32,
-    /// When those before the clock starts were done.
+    /// When the warm-up pictures were done.
     began: Instant,
     /// Pictures a second, once all are done.
     rate: f64,
@@ -131,11 +131,11 @@ impl<'a> Pace<'a> {
         Self { gpu, seconds, ordered: VecDeque::new(), pictures: 0, began: Instant::now(), rate: 0.0 }
     }
 
-    /// A picture more was ordered; true for the last.
+    /// Counts a submitted picture; true for the last.
     fn step(&mut self) -> anyhow::Result<bool> {
         self.ordered.push_back(self.gpu.queue.submit([]));
         self.pictures += 1;
-        if self.pictures <= WARMING {
+        if self.pictures <= WARM_UP {
             self.wait(0)?;
             self.began = Instant::now();
             return Ok(false);
@@ -145,7 +145,7 @@ impl<'a> Pace<'a> {
             return Ok(false);
         }
         self.wait(0)?;
-        self.rate = f64::from(self.pictures - WARMING) / self.began.elapsed().as_secs_f64();
+        self.rate = f64::from(self.pictures - WARM_UP) / self.began.elapsed().as_secs_f64();
         Ok(true)
     }
 

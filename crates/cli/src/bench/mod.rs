@@ -9,7 +9,7 @@ use corpuscle::gpu::Gpu;
 use corpuscle_validate::{PassTime, Rate, benches};
 use std::process::ExitCode;
 
-/// Measures rates and prints them as they come.
+/// Measures rates and prints each when it is known.
 pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> {
     let gpu = if options.backend == Backend::Gpu { Some(Gpu::open().map_err(corpuscle::Error::from)?) } else { None };
     let with = corpuscle_validate::BenchOptions { quick: options.quick, passes: options.passes && gpu.is_some(), gpu };
@@ -20,7 +20,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
             continue;
         }
         if with.gpu.is_none() && bench.needs_gpu {
-            eprintln!("{} left out: it is for a GPU", bench.name);
+            eprintln!("{} left out: it needs a GPU", bench.name);
             continue;
         }
         let drawn = match &with.gpu {
@@ -43,7 +43,7 @@ pub fn bench(options: &BenchOptions, as_json: bool) -> anyhow::Result<ExitCode> 
     Ok(ExitCode::SUCCESS)
 }
 
-/// A rate as people read it, with what its passes take.
+/// A rate as text, with the times of its passes.
 fn line(rate: &Rate) -> String {
     let Rate { name, particles, dimensions, threads, rate_unit, .. } = rate;
     let on = rate.device.clone().unwrap_or_else(|| format!("{threads} threads"));
@@ -51,12 +51,12 @@ fn line(rate: &Rate) -> String {
     let of_what = match particles {
         0 => on,
         _ => format!(
-            "{particles} particles, {dimensions}D{packing}, {on}, {} bytes a particle",
+            "{particles} particles, {dimensions}D{packing}, {on}, {} bytes per particle",
             number(rate.bytes_per_particle)
         ),
     };
     let passes = rate.passes.iter().map(|PassTime { name, times_a_step, seconds_a_step }| {
-        format!("    {name:24} {:>11} µs a step  ({} times)\n", number(1e6 * seconds_a_step), number(*times_a_step))
+        format!("    {name:24} {:>11} µs per step  ({} times)\n", number(1e6 * seconds_a_step), number(*times_a_step))
     });
     format!("{name:28} {:>11} {rate_unit}  ({of_what})\n{}", number(rate.rate), passes.collect::<String>())
 }

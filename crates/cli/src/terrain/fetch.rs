@@ -22,7 +22,7 @@ pub fn fetch(options: &FetchOptions, as_json: bool) -> anyhow::Result<()> {
     let fetched = fetch::fetch(&source, &options.bbox, &watch);
     bar.finish_and_clear();
     let fetched = fetched.map_err(corpuscle::Error::from)?;
-    eprintln!("{} MB came over the network", megabytes(fetched.bytes));
+    eprintln!("{} MB downloaded", megabytes(fetched.bytes));
     write(&options.output, &fetched.raster)?;
     if as_json {
         print_json(&json!({
@@ -39,22 +39,22 @@ pub fn fetch(options: &FetchOptions, as_json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fetches the terrain of a scene that wants it from the network, unless it is in the cache already.
+/// Downloads the terrain of a scene with `[terrain.fetch]`, unless it is in the cache already.
 pub fn fetch_for(scene: &Scene, stop: &Arc<AtomicBool>) -> anyhow::Result<()> {
     let Some(Terrain::Fetch(_)) = scene.flood().map(|scene| &scene.terrain) else { return Ok(()) };
     let (bar, watch) = shown(stop)?;
     let came = corpuscle::fetch_terrain(scene, &watch);
     bar.finish_and_clear();
     if came? > 0 {
-        eprintln!("the terrain was fetched; from now on it is in the cache");
+        eprintln!("the terrain was downloaded into the cache");
     }
     Ok(())
 }
 
-/// A bar on standard error that shows how far fetching has come; hidden where that is not a terminal.
+/// The progress bar of a download on standard error; hidden where that is not a terminal.
 fn shown(stop: &Arc<AtomicBool>) -> anyhow::Result<(ProgressBar, FetchObserver)> {
     let bar = ProgressBar::new(1);
-    bar.set_style(ProgressStyle::with_template("fetching terrain {bar:30} tile {pos} of {len}, {msg}")?);
+    bar.set_style(ProgressStyle::with_template("downloading terrain {bar:30} tile {pos} of {len}, {msg}")?);
     let shown = bar.clone();
     let show = move |progress: Progress| {
         shown.set_length(progress.of_tiles as u64);

@@ -6,7 +6,7 @@ use corpuscle::terrain::{MapBox, ReferenceSystem, Summary, summarize};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// What a terrain file holds, as programs read it.
+/// Description of a terrain file, for JSON.
 #[derive(Debug, Serialize)]
 struct Info {
     file: PathBuf,
@@ -31,7 +31,7 @@ struct Info {
     warnings: Vec<String>,
 }
 
-/// Tells what terrain files hold.
+/// Prints the description of terrain files.
 pub fn info(options: &InfoOptions, as_json: bool) -> anyhow::Result<()> {
     let mut infos = Vec::new();
     for file in &options.files {
@@ -81,7 +81,7 @@ impl Info {
         }
     }
 
-    /// As people read it.
+    /// The description as text.
     fn text(&self) -> String {
         let listed = |numbers: &[f64]| numbers.iter().map(|value| place(*value)).collect::<Vec<_>>().join(", ");
         let ([dx, dy], [width, height], [dx_m, dy_m]) =

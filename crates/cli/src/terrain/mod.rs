@@ -12,7 +12,7 @@ use corpuscle::terrain::{Raster, write_raster};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What marks cells without data in files that are written.
+/// The value of cells without data in files that are written.
 const NO_DATA: f32 = -9999.0;
 
 /// Runs one of the commands.
@@ -25,15 +25,15 @@ pub fn terrain(command: &TerrainCommand, as_json: bool) -> anyhow::Result<ExitCo
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses a file that exists, before anything is done for it.
+/// Refuses a file that exists, before any other work.
 fn check_is_new(path: &Path) -> anyhow::Result<()> {
     if path.exists() {
-        return Err(refuse(format!("{} exists and is left alone; name another file with -o", path.display())));
+        return Err(refuse(format!("{} exists and is not overwritten; name another file with -o", path.display())));
     }
     Ok(())
 }
 
-/// Writes a raster and tells what is to be known of it.
+/// Writes a raster and prints its warnings.
 fn write(path: &Path, raster: &Raster) -> anyhow::Result<()> {
     write_raster(path, raster, NO_DATA).map_err(corpuscle::Error::from)?;
     for warning in &raster.warnings {

@@ -1,6 +1,6 @@
 //! The models of the workbench: how the scenes of each are opened, recorded, shown and changed.
 //!
-//! [`ModelKind`] is all that the workbench asks of a model beside its physics; [`register`] adds one.
+//! [`ModelKind`] is what the workbench needs of a model beside its physics; [`register`] adds one.
 
 pub(crate) mod dew;
 pub(crate) mod flood;
@@ -9,7 +9,7 @@ pub(crate) mod gas;
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{Particles, PictureSettings, Scenery, Studio, Subject};
+use crate::pictures::{DrawContext, Particles, PictureSettings, Scenery, Subject};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_output::{PlainReport, Summary};
 use corpuscle_scene::{Scene, SceneKind};
@@ -17,34 +17,34 @@ use corpuscle_terrain::Terrain;
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// What the work of models that step is counted in.
+/// Unit of work of models that step.
 const PARTICLE_STEPS: &str = "particle-steps";
 
-/// What the work of models without steps is counted in.
+/// Unit of work of models without steps.
 pub(crate) const COLLISIONS: &str = "collisions";
 
-/// A scene that is to be made ready.
+/// A scene to be opened.
 pub struct Opening<'a> {
     /// Paths and defaults are resolved; what a model chooses where the scene leaves it open is written into it.
     pub scene: &'a mut Scene,
     /// Folder that relative paths of terrain and series start from.
     pub folder: &'a Path,
-    /// Whether a saved state follows, so that particles need no places of their own.
+    /// True where a saved state is restored next, so that particles need no initial positions.
     pub is_restored: bool,
 }
 
-/// What comes of it.
+/// An opened scene.
 pub struct Opened {
     /// The model.
     pub model: Box<dyn Model>,
-    /// The ground, where there is one.
+    /// The terrain, if there is one.
     pub terrain: Option<Arc<Terrain>>,
-    /// What was chosen where the scene leaves it open, in sentences.
+    /// Values chosen where the scene leaves them open, in sentences.
     pub notes: Vec<String>,
 }
 
 impl Opened {
-    /// A model without ground.
+    /// A model without terrain.
     pub fn plain(model: Box<dyn Model>) -> Self {
         Self { model, terrain: None, notes: Vec::new() }
     }
@@ -56,29 +56,29 @@ pub struct Recorded<'a> {
     pub folder: &'a Path,
     /// The scene as run.
     pub scene: &'a Scene,
-    /// The ground, where there is one.
+    /// The terrain, if there is one.
     pub terrain: Option<&'a Terrain>,
     /// The model, which shows the time of the frame, or the end.
     pub model: &'a dyn Model,
 }
 
-/// A model as the workbench knows it. What has a default here is right for a model of particles in a box.
+/// A kind of model: how its scenes are opened, recorded, shown and changed. Defaults suit a model of particles in a box.
 pub trait ModelKind: Send + Sync {
     /// Its tables in scene files, and the scenes of it that come with the program.
     fn scene(&self) -> SceneKind;
 
-    /// Makes a scene ready to run.
+    /// Opens a scene.
     ///
     /// # Errors
     /// Where the scene, or a file that it names, cannot be used.
     fn open(&self, opening: Opening<'_>) -> Result<Opened, Error>;
 
-    /// What its particles are called, in the plural.
+    /// Name of its particles, in the plural.
     fn particles(&self) -> &'static str {
         "particles"
     }
 
-    /// What its work is counted in, in the plural.
+    /// Unit of its work, in the plural.
     fn work(&self) -> &'static str {
         PARTICLE_STEPS
     }
@@ -98,14 +98,14 @@ pub trait ModelKind: Send + Sync {
         &[]
     }
 
-    /// Says what of a scene a user may change; `now` is the scene with the changes that it goes on with. By default all numbers of its tables.
+    /// Lists the parameters of a scene; `now` is the scene with the changes that have been applied. By default all numbers of its tables.
     fn parameters(&self, builder: &mut Builder, _scene: &Scene, _now: &Scene) {
         for table in self.scene().tables {
             builder.numbers_of(table);
         }
     }
 
-    /// Draws for the report what a frame shows.
+    /// Draws a frame for the report.
     ///
     /// # Errors
     /// Where that cannot be written.
@@ -137,14 +137,14 @@ pub trait ModelKind: Send + Sync {
     #[cfg(feature = "pictures")]
     fn pictures(
         &self,
-        _studio: &Studio,
+        _context: &DrawContext,
         scenery: &Scenery,
         _settings: &PictureSettings,
     ) -> Result<Box<dyn Subject>, Error> {
         Ok(Box::new(Particles::new(scenery)))
     }
 
-    /// Whether pictures show the particles that lie on a GPU which takes the steps.
+    /// True where pictures show particles in the memory of a GPU that takes the steps.
     fn shows_particles(&self, _scene: &Scene) -> bool {
         true
     }
@@ -154,7 +154,7 @@ static GAS: gas::Kind = gas::Kind;
 static FLOOD: flood::Kind = flood::Kind;
 static DEW: dew::Kind = dew::Kind;
 
-/// The models that are there from the start.
+/// The built-in models.
 static OWN: [&dyn ModelKind; 3] = [&GAS, &FLOOD, &DEW];
 
 static ADDED: RwLock<Vec<&'static dyn ModelKind>> = RwLock::new(Vec::new());

@@ -9,7 +9,7 @@ use toml::{Table, Value};
 use values::place_at;
 pub use values::{as_number, largest, multiplied, set, size, size_as_written, value_at};
 
-/// A change of a scene that runs.
+/// A change of a running scene.
 pub type Change = Box<dyn FnOnce(&mut Simulation) -> Result<(), Error> + Send>;
 
 /// A change of a model that runs.
@@ -22,42 +22,42 @@ pub fn number_in(path: &str) -> Option<usize> {
     path.split('.').find_map(|word| word.parse().ok())
 }
 
-/// Asks for the number that another parameter has now, by its key.
+/// A function that returns the current number of another parameter by its key.
 pub type Numbers<'a> = &'a dyn Fn(&str) -> Option<f64>;
 
-/// Changes a value while the scene goes on: by its key, as it is written, and what the others are; none where that cannot be told.
+/// A function that makes the live change of a value from its key, its text and the values of the others; none where these are unknown.
 pub type Live = fn(&str, &str, Numbers<'_>) -> Option<Change>;
 
 /// A value of the scene that can be changed.
 pub struct Parameter {
     /// Its key, as on the command line.
     pub path: String,
-    /// What it is called here.
+    /// Its name.
     pub name: String,
-    /// What it means.
+    /// Its meaning.
     pub hint: &'static str,
     /// Its unit; empty for a number.
     pub unit: &'static str,
-    /// What it is changed with.
+    /// The control that changes it.
     pub control: Control,
-    /// Changes it while the scene goes on; none where a restart takes it.
+    /// Makes its live change; none where it needs a restart.
     pub live: Option<Live>,
 }
 
-/// What a value is changed with.
+/// The control that changes a value.
 pub enum Control {
     /// A number in a range.
     Number {
         /// The smallest and the largest.
         range: [f64; 2],
-        /// True where a step is a factor.
+        /// True for a logarithmic range.
         logarithmic: bool,
     },
     /// A whole number in a range.
     Whole([f64; 2]),
-    /// By how many times the values of a series are multiplied, in a range.
+    /// A factor on the values of a series, in a range.
     Times([f64; 2]),
-    /// One of several: what they are called, and as they are written in the scene.
+    /// One of several: names, and values as the scene writes them.
     Choice(&'static [(&'static str, &'static str)]),
 }
 
@@ -69,12 +69,12 @@ pub struct Group {
     pub parameters: Vec<Parameter>,
 }
 
-/// How many times more a slider gives of what the scene says.
+/// Largest factor on the values of a series.
 pub const MOST_TIMES: f64 = 5.0;
 
-/// Groups as they are put together; what the scene does not have is left out.
+/// Builder of the groups of parameters; keys that the scene does not have are skipped.
 pub struct Builder {
-    /// The scene as written, with all defaults, and the values of keys that it leaves out and that are offered.
+    /// The scene as written, with all defaults, and the default values of offered keys that it leaves out.
     pub document: Table,
     /// The groups.
     pub groups: Vec<Group>,
@@ -83,13 +83,13 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// Begins a group: what follows stands under this heading.
+    /// Begins a group with this heading; the parameters added next belong to it.
     pub fn group(&mut self, name: impl Into<String>) -> &mut Self {
         self.groups.push(Group { name: name.into(), parameters: Vec::new() });
         self
     }
 
-    /// A parameter; left out where the scene has no such value.
+    /// Adds a parameter; skipped where the scene has no such value.
     pub fn add(
         &mut self,
         path: impl Into<String>,
@@ -122,12 +122,12 @@ impl Builder {
         self.add(path, name, unit, hint, Control::Number { range, logarithmic: false })
     }
 
-    /// A number above 0 from a tenth of what it is to ten times as much.
+    /// Adds a positive number, from a tenth of its value to ten times it.
     pub fn scaled(&mut self, path: impl Into<String>, name: &str, unit: &'static str, hint: &'static str) -> &mut Self {
         self.between(path, name, unit, [0.1, 10.0], hint)
     }
 
-    /// A number above 0 in a range that is told in parts of what it is.
+    /// Adds a positive number in a range that is relative to its value.
     pub fn between(
         &mut self,
         path: impl Into<String>,
@@ -174,7 +174,7 @@ impl Builder {
         }
     }
 
-    /// A value that the scene may leave out: it is then this.
+    /// Declares the default of a key that the scene may leave out.
     pub fn or(&mut self, path: &str, value: f64) -> &mut Self {
         if let Some(place) = place_at(&mut self.document, path) {
             *place = Value::Float(value);
@@ -183,7 +183,7 @@ impl Builder {
         self
     }
 
-    /// The last one changes while the scene goes on.
+    /// Makes the last parameter live.
     pub fn live(&mut self, path: &str, change: Live) -> &mut Self {
         let last = self.groups.last_mut().and_then(|group| group.parameters.last_mut());
         if let Some(last) = last.filter(|last| last.path == path) {
@@ -194,7 +194,7 @@ impl Builder {
 }
 
 impl Builder {
-    /// All numbers of a table, each from a tenth of what it is to ten times as much: for a model that says nothing else.
+    /// Adds all numbers of a table, each from a tenth of its value to ten times it: the default of models without their own list.
     pub fn numbers_of(&mut self, table: &str) -> &mut Self {
         let mut paths = Vec::new();
         if let Some(value) = self.document.get(table) {
@@ -213,7 +213,7 @@ impl Builder {
     }
 }
 
-/// Paths of the numbers below a value, whether they are whole, and what they are.
+/// Paths of the numbers below a value, whether they are integers, and the numbers.
 fn numbers_below(value: &Value, path: &str, found: &mut Vec<(String, bool, f64)>) {
     match value {
         Value::Integer(number) => found.push((path.into(), true, *number as f64)),
@@ -228,7 +228,7 @@ fn numbers_below(value: &Value, path: &str, found: &mut Vec<(String, bool, f64)>
     }
 }
 
-/// What can be changed in a scene as it is written; `now` is the scene with the changes that it goes on with.
+/// The parameters of a scene as written; `now` is the scene with the changes that have been applied.
 ///
 /// # Errors
 /// [`ModelError::Setup`] where the scene is of a model that was not registered.
@@ -240,7 +240,7 @@ pub fn parameters(scene: &Scene, now: &Scene, document: Table) -> Result<Builder
         "seed",
         "Seed",
         "",
-        "Another seed, another start by chance",
+        "Start value of all random numbers",
         whole,
     );
     builder.groups.retain(|group| !group.parameters.is_empty());

@@ -3,7 +3,7 @@
 use corpuscle_scene::Series;
 use toml::{Table, Value};
 
-/// Sets a value in a list of changes; none takes it out.
+/// Sets a value in a list of changes; none removes it.
 pub fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option<String>) {
     let at = changes.iter().position(|(changed, _)| changed == path);
     match (at, value) {
@@ -16,7 +16,7 @@ pub fn set(changes: &mut Vec<(String, String)>, path: &str, value: Option<String
     }
 }
 
-/// The number that a value is.
+/// A value as a number; none where it is none.
 pub fn as_number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(number) => Some(*number as f64),
@@ -25,7 +25,7 @@ pub fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-/// The value at a path as on the command line: rows of lists are counted from 0.
+/// The value at a path of `--set`: rows of lists are counted from 0.
 pub fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
     let mut words = path.split('.');
     let mut value = document.get(words.next()?)?;
@@ -39,7 +39,7 @@ pub fn value_at<'a>(document: &'a Table, path: &str) -> Option<&'a Value> {
     Some(value)
 }
 
-/// The place of a value that the document leaves out, with the tables on the way; none where it is there, or cannot be.
+/// Inserts the tables down to a value that the document leaves out; none where it has the value, or cannot have it.
 pub(super) fn place_at<'a>(document: &'a mut Table, path: &str) -> Option<&'a mut Value> {
     if value_at(document, path).is_some() {
         return None;
@@ -66,7 +66,7 @@ pub fn largest(series: &Value) -> Option<f64> {
     values.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
 }
 
-/// How large a series is, to be compared with the same times a number.
+/// Size of a series, to compare it with a multiple of it.
 pub fn size(series: &Series) -> f64 {
     match series {
         Series::Constant(value) => *value,

@@ -1,4 +1,4 @@
-//! Pictures of a model that steps on the device that draws: its particles stay there.
+//! Pictures of a model that steps on the GPU that draws: its particles stay there.
 
 use super::{Moment, Pictures};
 use crate::{Error, Simulation, models};
@@ -7,12 +7,12 @@ use corpuscle_model::{AdvanceObserver, Frame, Glance, GpuModel, Model};
 use std::sync::atomic::AtomicBool;
 
 impl Simulation {
-    /// The GPU that takes the steps, where one does.
+    /// The GPU that takes the steps, if one does.
     pub(super) fn stepping_gpu(&self) -> Option<Gpu> {
         gpu_of(self.model())
     }
 
-    /// The particles that pictures show as they stand, where the model steps on a device and is drawn there; else none.
+    /// The particles in GPU memory, where the model steps on the device that draws it; else none.
     ///
     /// # Errors
     /// [`Error::Model`] where the device has too little memory.
@@ -20,18 +20,18 @@ impl Simulation {
         if self.is_seen_on(gpu) && self.shows_particles() { particles_of(self.model()) } else { Ok(None) }
     }
 
-    /// Whether the model steps on a device and can be drawn there without its particles coming back.
+    /// True where the model steps on this device and can be drawn there without reading its particles back.
     pub fn is_seen_on(&self, gpu: &Gpu) -> bool {
         self.stepping_gpu().is_some_and(|device| device.is_same(gpu))
     }
 
-    /// Whether pictures show the particles that lie on the GPU.
+    /// True where pictures show particles in GPU memory.
     fn shows_particles(&self) -> bool {
         models::of(self.scene()).is_ok_and(|kind| kind.shows_particles(self.scene()))
     }
 
     /// Goes on as [`Model::advance_with`] does. Of a model that can be drawn where it steps ([`Simulation::is_seen_on`]) `show` is given a
-    /// glance from the time `first`, s, on, and says when it wants the next, s (a time that has passed stands for the end of the next
+    /// glance from the time `first`, s, on, and returns when the next is due, s (a time that has passed stands for the end of the next
     /// step); particles come back only at the end.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl Simulation {
 }
 
 impl Pictures {
-    /// The picture of a model as it is now. Where it steps on the device that draws, its particles are drawn from where they lie.
+    /// The picture of a model in its current state. Where it steps on the device that draws, its particles are drawn from its memory.
     ///
     /// # Errors
     /// [`Error::Model`] where that device has too little memory, [`Error::Render`] where it was lost.
@@ -77,7 +77,7 @@ impl Pictures {
         self.draw(&Moment { frame, on_device: on_device.as_ref(), paths: &[], container: None })
     }
 
-    /// Whether pictures show all that there is by a glance: not where the ground shows the water's depth.
+    /// True where a glance suffices for a picture: not where the terrain shows a map of the depth.
     pub fn show_glances(&self) -> bool {
         self.subject.shows_glances()
     }
@@ -100,7 +100,7 @@ fn particles_of(model: &dyn Model) -> Result<Option<DeviceParticles>, Error> {
 #[cfg(all(test, feature = "gpu"))]
 mod tests {
     use super::*;
-    use crate::pictures::{GroundLook, Hand, Look, PictureSettings};
+    use crate::pictures::{CameraOffset, GroundStyle, PictureSettings, Quality};
     use corpuscle_gpu::require_gpu;
     use corpuscle_scene::{Scene, builtin};
     use std::path::Path;
@@ -135,33 +135,33 @@ mod tests {
             ground,
             ..PictureSettings::default()
         };
-        let mut pictures = Pictures::open(&simulation, settings(GroundLook::Natural)).unwrap();
+        let mut pictures = Pictures::open(&simulation, settings(GroundStyle::Natural)).unwrap();
         assert!(pictures.gpu().is_same(&gpu) && pictures.on_device(simulation.model()).unwrap().is_some());
         let image = pictures.draw_model(simulation.model()).unwrap();
-        let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundLook::Natural)).unwrap();
+        let mut others = Pictures::open_on(&gpu, &simulation, settings(GroundStyle::Natural)).unwrap();
         let apart = difference(&image, &by_frame(&mut others, simulation.model()));
         println!("{apart} of 255");
         assert!(apart < SAME, "{apart}");
         let nothing = Frame { time: 4.0, sets: Vec::new() };
         let dry = others.draw(&Moment { frame: &nothing, on_device: None, paths: &[], container: None }).unwrap();
         assert!(difference(&image, &dry) > 100.0 * SAME, "{}", difference(&image, &dry));
-        // So it is in the simple look.
+        // The same at simple quality.
         let device = simulation.seen_on(&gpu).unwrap().unwrap();
         let frame = simulation.model().frame();
         let mut simple = |on_device| {
             let moment = Moment { frame: &frame, on_device, paths: &[], container: None };
-            let shown = others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            let shown = others.show(&moment, &CameraOffset::default(), Quality::Simple, [1.0; 3]).unwrap();
             assert!(!shown.finished);
             others.resize([480, 270], 2).unwrap();
-            others.show(&moment, &Hand::default(), Look::Simple, [1.0; 3]).unwrap();
+            others.show(&moment, &CameraOffset::default(), Quality::Simple, [1.0; 3]).unwrap();
             let image = others.read().unwrap();
             others.resize([480, 270], 1).unwrap();
             image
         };
         let apart = difference(&simple(Some(&device)), &simple(None));
         assert!(apart < SAME, "{apart}");
-        // What the ground shows of the water is the host's to draw.
-        let mut of_depth = Pictures::open(&simulation, settings(GroundLook::Depth)).unwrap();
+        // The host draws the map of the depth.
+        let mut of_depth = Pictures::open(&simulation, settings(GroundStyle::Depth)).unwrap();
         assert!(of_depth.on_device(simulation.model()).unwrap().is_none());
         assert!(difference(&of_depth.draw_model(simulation.model()).unwrap(), &dry) > 100.0 * SAME);
     }

@@ -5,7 +5,7 @@ use corpuscle_flood::LineWall;
 /// Corners of triangles, three by three: position, m, and unit vector outwards.
 pub(super) type Corners = Vec<([f64; 3], [f64; 3])>;
 
-/// Plates of a thickness, m, along walls; heights are drawn so many times higher than they are.
+/// Plates of a thickness, m, along walls; `heights` exaggerates heights.
 pub(super) fn plates(walls: &[LineWall], thickness: f64, heights: f64) -> Corners {
     walls.iter().flat_map(|wall| plate(wall, thickness, heights)).collect()
 }

@@ -1,12 +1,12 @@
-//! Pictures of a run's moments: what is shown of each model, from where, in which colours.
+//! Pictures of a run: what is drawn of each model, with which camera and colours.
 
+mod camera_offset;
 mod device;
 pub(crate) mod dew;
 pub(crate) mod flood;
 pub(crate) mod gas;
-mod hand;
+mod ground_style;
 mod lines;
-mod look;
 mod particles;
 mod scenery;
 mod show;
@@ -15,6 +15,7 @@ mod times;
 mod viewpoint;
 
 use crate::{Error, Simulation, models};
+pub use camera_offset::CameraOffset;
 use corpuscle_gpu::{DeviceParticles, Gpu, Image};
 pub use corpuscle_model::Glance;
 use corpuscle_model::{Container, Frame, Path};
@@ -25,45 +26,44 @@ use corpuscle_render::{
 use corpuscle_scene::Flood;
 use corpuscle_terrain::Terrain;
 use flood::FloodPicture;
-pub use hand::Hand;
-pub use look::GroundLook;
+pub use ground_style::GroundStyle;
 pub use particles::Particles;
 pub use scenery::Scenery;
-pub use show::{Look, Shown};
+pub use show::{Quality, Shown};
 pub use subject::Subject;
 pub use viewpoint::Viewpoint;
 use viewpoint::{OwnView, Station};
 
-/// How pictures are taken.
+/// Settings of pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureSettings {
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Samples each way in a pixel: 2 for stills; 1 is fast.
     pub samples: u32,
-    /// From where, at times, s: one entry is a camera that stands, several are stations of one that moves; none is the model's own
-    /// choice.
+    /// Viewpoints at times, s: one is a fixed camera, several are stations of a moving one; none is the model's default
+    /// camera.
     pub viewpoints: Vec<(f64, Viewpoint)>,
-    /// What lies on the ground of a flood.
-    pub ground: GroundLook,
-    /// How many times higher than they are heights of a flood are drawn.
+    /// Surface style of the terrain of a flood.
+    pub ground: GroundStyle,
+    /// Exaggeration of the heights of a flood.
     pub heights: f64,
 }
 
 impl Default for PictureSettings {
     fn default() -> Self {
-        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundLook::Natural, heights: 1.0 }
+        Self { size: [1920, 1080], samples: 2, viewpoints: Vec::new(), ground: GroundStyle::Natural, heights: 1.0 }
     }
 }
 
-/// What a picture shows: a model at one time.
+/// A model at one time, as a picture shows it.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment<'a> {
     /// The particles.
     pub frame: &'a Frame,
-    /// Those of a flood, or the air, as buffers of the device that draws: drawn in place of the frame's, but where the ground shows depth.
+    /// The water of a flood, or the air, in memory of the device that draws: drawn instead of the frame's, except with [`GroundStyle::Depth`].
     pub on_device: Option<&'a DeviceParticles>,
-    /// The ways of those that are followed; of a way only what lies before the frame's time is drawn.
+    /// Trajectories of followed particles; only the part before the frame's time is drawn.
     pub paths: &'a [Path],
     /// The box round the particles.
     pub container: Option<Container>,
@@ -71,13 +71,13 @@ pub struct Moment<'a> {
 
 /// Draws pictures of one run.
 pub struct Pictures {
-    studio: Studio,
+    context: DrawContext,
     title: String,
     subject: Box<dyn Subject>,
 }
 
-/// What all subjects draw with.
-pub struct Studio {
+/// Renderer, painters, target and camera settings that all subjects draw with.
+pub struct DrawContext {
     renderer: Renderer,
     balls: BallPainter,
     tubes: TubePainter,
@@ -85,17 +85,17 @@ pub struct Studio {
     fluids: FluidPainter,
     target: Target,
     stations: Vec<Station>,
-    /// How the camera was moved by hand.
-    hand: Hand,
-    look: Look,
-    /// What a drawing lies on, linear light.
+    /// How the user moved the camera.
+    camera_offset: CameraOffset,
+    quality: Quality,
+    /// Background of a drawing, linear light.
     paper: [f32; 3],
-    /// True where texts and lines are drawn into the picture; false where whoever shows it draws them.
+    /// True where text and lines are drawn into the picture; false where the caller draws them.
     overlaid: bool,
 }
 
 impl Pictures {
-    /// Makes ready to draw a scene: on the GPU that takes the steps, else on the best device.
+    /// Opens pictures of a scene: on the GPU that takes the steps, else on the best device.
     ///
     /// # Errors
     /// [`Error::Render`] where there is no device, or the pictures are larger than it can hold.
@@ -118,24 +118,24 @@ impl Pictures {
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn open_scenery(gpu: &Gpu, scenery: &Scenery, settings: PictureSettings) -> Result<Self, Error> {
         let Scenery { scene, terrain, .. } = scenery;
-        let studio = Studio::new(gpu, &settings, terrain.as_deref())?;
-        let subject = models::of(scene)?.pictures(&studio, scenery, &settings)?;
-        Ok(Self { studio, title: scene.title.clone(), subject })
+        let context = DrawContext::new(gpu, &settings, terrain.as_deref())?;
+        let subject = models::of(scene)?.pictures(&context, scenery, &settings)?;
+        Ok(Self { context, title: scene.title.clone(), subject })
     }
 
-    /// Makes ready to draw a flood that is of no scene, on a device that is open already.
+    /// Opens pictures of a flood without scene, on a device that is open already.
     ///
     /// # Errors
     /// [`Error::Render`] where the pictures are larger than the device can hold.
     pub fn of_flood(gpu: &Gpu, flood: &Flood, ground: &Terrain, settings: PictureSettings) -> Result<Self, Error> {
-        let studio = Studio::new(gpu, &settings, Some(ground))?;
-        let flood = FloodPicture::new(&studio, flood, ground, settings.ground, settings.heights)?;
-        Ok(Self { studio, title: String::new(), subject: Box::new(flood) })
+        let context = DrawContext::new(gpu, &settings, Some(ground))?;
+        let flood = FloodPicture::new(&context, flood, ground, settings.ground, settings.heights)?;
+        Ok(Self { context, title: String::new(), subject: Box::new(flood) })
     }
 
     /// The device that draws, by its name.
     pub fn device(&self) -> &str {
-        &self.studio.renderer.gpu().name
+        &self.context.renderer.gpu().name
     }
 
     /// The picture of a moment.
@@ -143,11 +143,11 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the device was lost.
     pub fn draw(&mut self, moment: &Moment<'_>) -> Result<Image, Error> {
-        self.still(moment, &Hand::default())
+        self.still(moment, &CameraOffset::default())
     }
 }
 
-impl Studio {
+impl DrawContext {
     fn new(gpu: &Gpu, settings: &PictureSettings, ground: Option<&Terrain>) -> Result<Self, Error> {
         let renderer = Renderer::new(gpu);
         let target = Target::new(gpu, settings.size, settings.samples)?;
@@ -159,8 +159,8 @@ impl Studio {
         let (balls, tubes) = (BallPainter::new(&renderer), TubePainter::new(&renderer));
         let caps = CapPainter::new(&renderer);
         let fluids = FluidPainter::new(&renderer);
-        let (hand, look, paper, overlaid) = (Hand::default(), Look::Full, [1.0; 3], true);
-        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, hand, look, paper, overlaid })
+        let (camera_offset, quality, paper, overlaid) = (CameraOffset::default(), Quality::Full, [1.0; 3], true);
+        Ok(Self { renderer, balls, tubes, caps, fluids, target, stations, camera_offset, quality, paper, overlaid })
     }
 
     /// Width of a picture over its height.
@@ -169,9 +169,9 @@ impl Studio {
         f64::from(width) / f64::from(height)
     }
 
-    /// Light as the look has it.
+    /// The light at the current quality.
     fn lit(&self, light: Light) -> Light {
-        if self.look == Look::Full { light } else { light.without_shadows() }
+        if self.quality == Quality::Full { light } else { light.without_shadows() }
     }
 
     /// Draws things, with their overlay if it is wanted in the picture.
@@ -183,7 +183,7 @@ impl Studio {
         things: &mut [&mut dyn Drawable],
         overlay: Overlay,
     ) -> Result<Shown, Error> {
-        let quick = !self.overlaid && self.look == Look::Simple && self.target.samples == 1;
+        let quick = !self.overlaid && self.quality == Quality::Simple && self.target.samples == 1;
         if quick {
             self.renderer.draw_light(&self.target, stage, camera, light, things);
         } else {

@@ -1,23 +1,23 @@
-//! Pictures of particles in a box, for models that have none of their own: in a bright room, or on paper where all lie in one plane.
+//! Pictures of particles in a box, for models without their own: in a bright room, or on paper where all lie in one plane.
 
-use super::{Look, Moment, OwnView, Scenery, Shown, Studio, Subject};
+use super::{DrawContext, Moment, OwnView, Quality, Scenery, Shown, Subject};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_model::{Container, Frame, ParticleSet};
 use corpuscle_render::{Axes, BallStyle, Balls, ColourTable, Drawable, Floor, Key, Light, Overlay, Shading, Stage};
 
-/// From where the box is seen, radians: to the right of its front, from above.
+/// Default azimuth and elevation of the camera, radians: to the right of the front, from above.
 const DIRECTION: [f64; 2] = [-1.02, 0.36];
-/// Room for axes round it.
+/// Margin for axes.
 const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.11, 0.11, 0.14, 0.1] };
-/// How far the sun stands to the left of the eye, radians.
+/// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -0.9;
-/// Least radius of a particle, parts of the picture's height.
+/// Least radius of a particle, fraction of the picture's height.
 const LEAST_RADIUS: f64 = 0.004;
-/// Room round particles without a box, parts of their extent.
+/// Margin round particles without a box, fraction of their extent.
 const ROOM: f64 = 0.1;
-/// The colours of sets, told apart by colour-blind eyes too (Okabe & Ito 2008).
+/// The colours of sets, distinct without full colour vision too (Okabe & Ito 2008).
 const COLOURS: [[u8; 3]; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
 
@@ -30,7 +30,7 @@ pub struct Particles {
 }
 
 impl Particles {
-    /// Those of a scene.
+    /// The pictures of a scene.
     pub fn new(scenery: &Scenery) -> Self {
         let scene = scenery.scene();
         let has_si_units = crate::models::of(scene).is_ok_and(|kind| kind.has_si_units(scene));
@@ -55,33 +55,33 @@ impl Particles {
 }
 
 impl Subject for Particles {
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+    fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let stage = *self.stage.get_or_insert_with(|| stage_of(moment));
         let is_flat = stage.from.z == stage.to.z;
         let light = match is_flat {
-            true => Light::paper_of(studio.paper),
-            false => studio.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
+            true => Light::paper_of(context.paper),
+            false => context.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
-        let camera = studio.seen(&stage, &OWN_VIEW, moment.frame.time, is_flat);
-        let shading = match (is_flat, studio.look) {
+        let camera = context.seen(&stage, &OWN_VIEW, moment.frame.time, is_flat);
+        let shading = match (is_flat, context.quality) {
             (true, _) => Shading::Discs,
-            (false, Look::Simple) => Shading::Matt,
-            (false, Look::Full) => Shading::Full,
+            (false, Quality::Simple) => Shading::Matt,
+            (false, Quality::Full) => Shading::Full,
         };
-        let samples = f64::from(studio.target.size[1] * studio.target.samples);
+        let samples = f64::from(context.target.size[1] * context.target.samples);
         let balls = |(set, colour): (&ParticleSet, &[u8; 3])| {
             let least_radius = (LEAST_RADIUS * samples) as f32;
             let style = BallStyle { shading, least_radius, ..BallStyle::new(ColourTable::plain(*colour)) };
             let each = (0..set.len()).map(|at| (set.position[at], set.radius[at], 0.0));
-            studio.balls.balls(studio.renderer.gpu(), &stage, &style, each)
+            context.balls.balls(context.renderer.gpu(), &stage, &style, each)
         };
         let mut sets: Vec<Balls> = moment.frame.sets.iter().zip(COLOURS.iter().cycle()).map(balls).collect();
         let overlay = self.overlay(title, moment.frame, &stage);
         let mut things: Vec<&mut dyn Drawable> = sets.iter_mut().map(|set| set as &mut dyn Drawable).collect();
-        if !is_flat && studio.look == Look::Full {
-            things.push(self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z)));
+        if !is_flat && context.quality == Quality::Full {
+            things.push(self.floor.get_or_insert_with(|| Floor::new(&context.renderer, stage.from.z)));
         }
-        studio.take(&stage, &camera, &light, &mut things, overlay)
+        context.take(&stage, &camera, &light, &mut things, overlay)
     }
 }
 

@@ -6,7 +6,7 @@ use corpuscle_scene::Scene;
 use corpuscle_terrain::Terrain;
 use std::sync::Arc;
 
-/// What pictures need of a scene that was opened. With it they can be opened in another thread than the one that computes.
+/// The data that pictures need of an open scene. With it they can be opened in another thread than the one that computes.
 #[derive(Debug, Clone)]
 pub struct Scenery {
     pub(super) scene: Scene,
@@ -20,7 +20,7 @@ impl Scenery {
         &self.scene
     }
 
-    /// The ground, where there is one.
+    /// The terrain, if there is one.
     pub fn terrain(&self) -> Option<&Terrain> {
         self.terrain.as_deref()
     }
@@ -30,7 +30,7 @@ impl Scenery {
         &self.surfaces
     }
 
-    /// That of a scene as it stands.
+    /// The data of a scene in its current state.
     pub fn of(simulation: &Simulation) -> Self {
         Self {
             scene: simulation.scene().clone(),

@@ -1,39 +1,39 @@
-//! Pictures that are shown where they are drawn, again and again, seen from where a hand moves the camera to.
+//! Pictures for a window: drawn repeatedly on its device, with a camera that the user moves.
 
-use super::{Hand, Moment, Pictures};
+use super::{CameraOffset, Moment, Pictures};
 use crate::Error;
 use corpuscle_gpu::{Gpu, Image};
 use corpuscle_render::{Camera, Inlay, InlayPainter, Overlay, Stage, Target};
 
-/// How much work a picture may be.
+/// Quality of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Look {
-    /// All there is: shadows, water that looks like water.
+pub enum Quality {
+    /// Shadows and realistic water.
     #[default]
     Full,
-    /// What can be drawn quickly without a GPU: no shadows, water as its particles, coloured by depth.
+    /// Fast without a GPU: no shadows, water as particles coloured by depth.
     Simple,
 }
 
-/// What was drawn, for whoever lays texts and lines over it.
+/// A drawn picture, for a caller that draws text and lines over it.
 #[derive(Debug, Clone)]
 pub struct Shown {
     /// The part of the world that is shown.
     pub stage: Stage,
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// True where it is a drawing on paper, false where it is lit.
     pub on_paper: bool,
-    /// False where linear light was left, as quick pictures are.
+    /// False where the picture is linear light still, as simple pictures are.
     pub finished: bool,
-    /// What is to lie over it.
+    /// The overlay to be drawn over it.
     pub overlay: Overlay,
 }
 
 impl Pictures {
     /// The device that draws.
     pub fn gpu(&self) -> &Gpu {
-        self.studio.renderer.gpu()
+        self.context.renderer.gpu()
     }
 
     /// Draws a moment and leaves the picture on the device ([`Pictures::inlay`]), without its overlay, on paper of a colour (linear
@@ -41,20 +41,28 @@ impl Pictures {
     ///
     /// # Errors
     /// [`Error::Render`] where something cannot be drawn.
-    pub fn show(&mut self, moment: &Moment<'_>, hand: &Hand, look: Look, paper: [f32; 3]) -> Result<Shown, Error> {
-        let studio = &mut self.studio;
-        (studio.overlaid, studio.look, studio.hand, studio.paper) = (false, look, *hand, paper);
-        self.subject.draw(studio, &self.title, moment)
+    pub fn show(
+        &mut self,
+        moment: &Moment<'_>,
+        camera_offset: &CameraOffset,
+        quality: Quality,
+        paper: [f32; 3],
+    ) -> Result<Shown, Error> {
+        let context = &mut self.context;
+        (context.overlaid, context.quality, context.camera_offset, context.paper) =
+            (false, quality, *camera_offset, paper);
+        self.subject.draw(context, &self.title, moment)
     }
 
-    /// The picture of a moment as [`Pictures::draw`] makes it, seen from where a hand moved the camera to.
+    /// The picture of a moment as [`Pictures::draw`] makes it, with the user's camera.
     ///
     /// # Errors
     /// [`Error::Render`] where the device was lost.
-    pub fn still(&mut self, moment: &Moment<'_>, hand: &Hand) -> Result<Image, Error> {
-        let studio = &mut self.studio;
-        (studio.overlaid, studio.look, studio.hand, studio.paper) = (true, Look::Full, *hand, [1.0; 3]);
-        self.subject.draw(studio, &self.title, moment)?;
+    pub fn still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Image, Error> {
+        let context = &mut self.context;
+        (context.overlaid, context.quality, context.camera_offset, context.paper) =
+            (true, Quality::Full, *camera_offset, [1.0; 3]);
+        self.subject.draw(context, &self.title, moment)?;
         self.read()
     }
 
@@ -63,7 +71,7 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the device was lost.
     pub fn read(&self) -> Result<Image, Error> {
-        Ok(self.studio.renderer.read(&self.studio.target)?)
+        Ok(self.context.renderer.read(&self.context.target)?)
     }
 
     /// Makes pictures of another size, pixels, with so many samples each way in a pixel; false where they have it already.
@@ -71,22 +79,22 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where that is more than the device can hold.
     pub fn resize(&mut self, size: [u32; 2], samples: u32) -> Result<bool, Error> {
-        let target = &mut self.studio.target;
+        let target = &mut self.context.target;
         if (target.size, target.samples) == (size, samples) {
             return Ok(false);
         }
-        *target = Target::new(self.studio.renderer.gpu(), size, samples)?;
+        *target = Target::new(self.context.renderer.gpu(), size, samples)?;
         Ok(true)
     }
 
-    /// The partition of a gas is drawn no longer from a time on, s: it was lifted by hand.
+    /// Draws no partition of a gas from a time on, s: the user lifted it.
     pub fn lift_partition(&mut self, time: f64) {
         self.subject.lift_partition(time);
     }
 
     /// What was shown last, ready to be laid into a window.
     pub fn inlay(&self, shown: &Shown, painter: &InlayPainter) -> Inlay {
-        let target = &self.studio.target;
+        let target = &self.context.target;
         if shown.finished {
             painter.finished(self.gpu(), target)
         } else {

@@ -1,37 +1,37 @@
-//! What pictures show of a model.
+//! Drawing of a model.
 
-use super::{Moment, Shown, Studio};
+use super::{DrawContext, Moment, Shown};
 use crate::Error;
 use corpuscle_gpu::{Gpu, PassTiming};
 
-/// What pictures show of one model.
+/// A model that can be drawn.
 pub trait Subject: Send {
     /// Draws a moment.
     ///
     /// # Errors
     /// [`Error::Render`] where something cannot be drawn.
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error>;
+    fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error>;
 
-    /// Whether particles are drawn from where they lie on the device ([`Moment::on_device`]).
+    /// True where particles are drawn from GPU memory ([`Moment::on_device`]).
     fn draws_from_device(&self) -> bool {
         false
     }
 
-    /// Whether pictures show all that there is by a glance ([`corpuscle_model::Glance`]).
+    /// True where a glance ([`corpuscle_model::Glance`]) suffices for a picture.
     fn shows_glances(&self) -> bool {
         true
     }
 
-    /// The partition of a gas is gone from a time on, s.
+    /// Draws no partition of a gas from a time on, s.
     fn lift_partition(&mut self, _time: f64) {}
 
-    /// Compute shaders draw the water of a flood from now on, in the place of raster units.
+    /// Draws the water of a flood by compute shaders from now on, instead of raster units.
     fn splat(&mut self) {}
 
     /// Times the passes that draw water, from the next picture on.
     fn measure(&mut self, _gpu: &Gpu) {}
 
-    /// What they have taken since, by name.
+    /// Times of the passes since, by name.
     fn taken(&self) -> Vec<(&'static str, PassTiming)> {
         Vec::new()
     }

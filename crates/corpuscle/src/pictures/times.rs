@@ -1,4 +1,4 @@
-//! What the passes of pictures take.
+//! Times of the passes of pictures.
 
 use super::Pictures;
 use super::flood::FloodPicture;
@@ -6,17 +6,17 @@ use corpuscle_gpu::{Gpu, PassTiming};
 use corpuscle_render::FluidPass;
 use std::collections::BTreeMap;
 
-/// What the passes that draw water have taken.
+/// Times of the passes that draw water.
 pub(super) type Times = BTreeMap<&'static str, PassTiming>;
 
 impl Pictures {
     /// Times the passes that draw the water of a flood, from the next picture on: each of them then waits for the one before it.
     pub fn measure(&mut self) {
-        let gpu = self.studio.renderer.gpu().clone();
+        let gpu = self.context.renderer.gpu().clone();
         self.subject.measure(&gpu);
     }
 
-    /// From now on compute shaders draw the particles of a flood's water in the place of raster units.
+    /// Draws the water of a flood by compute shaders from now on, instead of raster units.
     pub fn splat(&mut self) {
         self.subject.splat();
     }

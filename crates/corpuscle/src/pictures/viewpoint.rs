@@ -1,86 +1,86 @@
-//! From where a picture is taken, as a user says it.
+//! Viewpoints of pictures, as the user gives them.
 
-use super::Studio;
+use super::DrawContext;
 use corpuscle_render::{Camera, CameraPath, Stage};
 use corpuscle_terrain::Terrain;
 use glam::DVec3;
 
-/// From where a picture is taken. What is not said is the model's own choice.
+/// A viewpoint of a picture. Values that are not given are the model's defaults.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viewpoint {
-    /// True for straight from above and to scale, north up; false for an eye that stands somewhere.
+    /// True for a plan from above, to scale, north up; false for perspective.
     pub plan: bool,
-    /// Where the eye stands as seen from the middle of the picture: bearing, clockwise from north (the second axis), and height above
+    /// Direction of the camera as seen from the centre of the picture: bearing, clockwise from north (the second axis), and height above
     /// the horizon, degrees.
     pub from_deg: Option<[f64; 2]>,
-    /// The place in the middle of the picture, in the scene's own coordinates.
-    pub look_at: Option<[f64; 2]>,
-    /// How many times nearer than where all is seen.
+    /// Position in the centre of the picture, in the scene's own coordinates.
+    pub centre: Option<[f64; 2]>,
+    /// Magnification over the view of the whole scene.
     pub zoom: f64,
 }
 
 impl Default for Viewpoint {
     fn default() -> Self {
-        Self { plan: false, from_deg: None, look_at: None, zoom: 1.0 }
+        Self { plan: false, from_deg: None, centre: None, zoom: 1.0 }
     }
 }
 
-/// A viewpoint at a time, its place that of the world.
+/// A viewpoint at a time, its centre in world coordinates.
 pub(super) struct Station {
     time: f64,
     viewpoint: Viewpoint,
-    /// What is in the middle of the picture, m; the middle of the stage, or its height, where none is said.
+    /// Position in the centre of the picture, m; by default the centre of the stage, or its height.
     target: Option<([f64; 2], Option<f64>)>,
 }
 
 impl Station {
-    /// Of a flood, whose scene has coordinates of its own, with heights drawn so many times higher than they are.
+    /// A station for a flood, whose scene has its own coordinates, with heights exaggerated by `heights`.
     pub(super) fn on_ground((time, viewpoint): (f64, Viewpoint), ground: &Terrain, heights: f64) -> Self {
-        let target = viewpoint.look_at.map(|own| {
+        let target = viewpoint.centre.map(|own| {
             let [x, y] = ground.to_model(own);
             ([x, y], Some(heights * ground.height(x, y)))
         });
         Self { time, viewpoint, target }
     }
 
-    /// Of any other model.
+    /// A station for any other model.
     pub(super) fn plain((time, viewpoint): (f64, Viewpoint)) -> Self {
-        Self { time, viewpoint, target: viewpoint.look_at.map(|at| (at, None)) }
+        Self { time, viewpoint, target: viewpoint.centre.map(|at| (at, None)) }
     }
 }
 
-/// From where a model is seen if nobody says otherwise.
+/// The default view of a model.
 pub(super) struct OwnView {
-    /// Azimuth (from east over north) and height of the eye, radians.
+    /// Azimuth (from east over north) and elevation of the camera, radians.
     pub direction: [f64; 2],
-    /// Angle of the lens, radians.
+    /// Field of view, radians.
     pub field_of_view: f64,
-    /// Room round what is seen, part of the picture.
+    /// Margin round the stage, fraction of the picture.
     pub margin: f64,
-    /// The same in a plan: left, right, below and above, parts of the picture's height.
+    /// Margins in a plan: left, right, below and above, fractions of the picture's height.
     pub margins: [f64; 4],
 }
 
-impl Studio {
-    /// The camera of a time.
+impl DrawContext {
+    /// The camera at a time.
     pub(super) fn camera(&self, stage: &Stage, own: &OwnView, time: f64) -> Camera {
         let stations = self.stations.iter().map(|station| (station.time, self.seen_from(stage, own, station)));
         let still = || self.seen_from(stage, own, &Station::plain((0.0, Viewpoint::default())));
-        self.hand.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
+        self.camera_offset.moved(CameraPath::through(stations.collect()).map_or_else(still, |path| path.at(time)))
     }
 
-    /// The camera of a time; straight from above where all lies in one plane.
+    /// The camera at a time; from above where all lies in one plane.
     pub(super) fn seen(&self, stage: &Stage, own: &OwnView, time: f64, is_flat: bool) -> Camera {
         match is_flat {
-            true => self.hand.moved(Camera::plan(stage, self.aspect(), own.margins)),
+            true => self.camera_offset.moved(Camera::plan(stage, self.aspect(), own.margins)),
             false => self.camera(stage, own, time),
         }
     }
 
-    /// True where the whole stage is in the picture whatever the time, so that axes along its edges are.
+    /// True where the whole stage is always in the picture, so that axes along its edges are visible.
     pub(super) fn shows_all(&self) -> bool {
         let whole = |station: &Station| station.viewpoint.zoom <= 1.0 && station.target.is_none();
-        self.hand.zoom <= 1.5 && self.stations.iter().all(whole)
+        self.camera_offset.zoom <= 1.5 && self.stations.iter().all(whole)
     }
 
     fn seen_from(&self, stage: &Stage, own: &OwnView, station: &Station) -> Camera {
@@ -89,7 +89,7 @@ impl Studio {
             Some([bearing, height]) => [(90.0 - bearing).to_radians(), height.to_radians()],
             None => own.direction,
         };
-        let whole = match viewpoint.plan || self.hand.plan {
+        let whole = match viewpoint.plan || self.camera_offset.plan {
             true => Camera::plan(stage, self.aspect(), own.margins),
             false => Camera::orbit(stage, direction, own.field_of_view, self.aspect(), own.margin),
         };

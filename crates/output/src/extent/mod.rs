@@ -7,7 +7,7 @@ mod run_up;
 pub use observed::{ExtentScores, compare_extent};
 pub use run_up::write_run_up;
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::whole::write_whole;
 use corpuscle_terrain::Terrain;
 use outline::{Outline, outlines};
@@ -20,8 +20,8 @@ use std::path::Path;
 /// 7946 asks; a terrain without reference system gives its own coordinates, and a note in the file says so.
 ///
 /// # Errors
-/// [`RecordError::Write`].
-pub fn write_extent(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<(), RecordError> {
+/// [`OutputError::Write`].
+pub fn write_extent(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<(), OutputError> {
     let grid = terrain.map_grid();
     let wet: Vec<bool> = max_depth.iter().map(|depth| !depth.is_nan()).collect();
     let outlines = outlines(&wet, grid.columns, grid.rows);
@@ -65,7 +65,7 @@ pub(crate) fn wet_area(terrain: &Terrain, wet: &[bool]) -> f64 {
 
 fn polygon(outline: &Outline, place: impl Fn([usize; 2]) -> [f64; 2]) -> Value {
     let ring = |ring: &Vec<[usize; 2]>| -> Vec<[f64; 2]> {
-        // GeoJSON repeats the first place at the end.
+        // GeoJSON repeats the first position at the end.
         ring.iter().chain(ring.first()).map(|vertex| place(*vertex)).collect()
     };
     json!(std::iter::once(&outline.outer).chain(&outline.holes).map(ring).collect::<Vec<_>>())

@@ -1,7 +1,7 @@
 //! The flooded extent against an observed one.
 
 use super::wet_area;
-use crate::RecordError;
+use crate::OutputError;
 use corpuscle_terrain::{Polygon, Terrain, polygons_of_geojson};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -30,10 +30,10 @@ pub struct ExtentScores {
 /// terrain without reference system, are the terrain's own coordinates.
 ///
 /// # Errors
-/// [`RecordError::Read`], or [`RecordError::Content`] for a file that is no GeoJSON or has no polygon on the terrain.
-pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<ExtentScores, RecordError> {
-    let text = fs::read_to_string(observed).map_err(RecordError::read(observed))?;
-    let polygons = polygons_of_geojson(&text).map_err(|error| RecordError::content(observed, error))?;
+/// [`OutputError::Read`], or [`OutputError::Content`] for a file that is no GeoJSON or has no polygon on the terrain.
+pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<ExtentScores, OutputError> {
+    let text = fs::read_to_string(observed).map_err(OutputError::read(observed))?;
+    let polygons = polygons_of_geojson(&text).map_err(|error| OutputError::content(observed, error))?;
     let polygons = terrain.polygons_to_own(polygons);
     let observed_wet = draw(&polygons, terrain);
     if !observed_wet.contains(&true) {
@@ -42,7 +42,7 @@ pub fn compare_extent(observed: &Path, terrain: &Terrain, max_depth: &[f32]) -> 
             "none of its {count} polygons covers a cell of the terrain; give polygons in longitude and latitude (or in \
              the terrain's own coordinates) that overlap it"
         );
-        return Err(RecordError::content(observed, what));
+        return Err(OutputError::content(observed, what));
     }
     let both: Vec<[bool; 2]> =
         max_depth.iter().map(|depth| !depth.is_nan()).zip(observed_wet).map(Into::into).collect();
@@ -112,7 +112,7 @@ mod tests {
         (0..50).map(|cell| if wet(cell % 10, cell / 10) { 1.0 } else { f32::NAN }).collect()
     }
 
-    fn compare(text: &str, depths: &[f32]) -> Result<ExtentScores, RecordError> {
+    fn compare(text: &str, depths: &[f32]) -> Result<ExtentScores, OutputError> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("observed.geojson");
         fs::write(&path, text).unwrap();

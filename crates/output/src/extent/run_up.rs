@@ -1,8 +1,8 @@
-//! The run-up line: how far the water came, where ground goes on beyond it.
+//! The run-up line: the limit of the wet cells, where the terrain continues beyond it.
 
 use super::outline::outlines;
 use super::{feature_collection, has_system, note_of_system, place_of};
-use crate::RecordError;
+use crate::OutputError;
 use corpuscle_terrain::Terrain;
 use serde_json::json;
 use std::io::Write;
@@ -17,8 +17,8 @@ type Corner = [usize; 2];
 /// is no line. Coordinates are as in [`write_extent`](super::write_extent).
 ///
 /// # Errors
-/// [`RecordError::Write`].
-pub fn write_run_up(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<(), RecordError> {
+/// [`OutputError::Write`].
+pub fn write_run_up(path: &Path, terrain: &Terrain, max_depth: &[f32]) -> Result<(), OutputError> {
     let grid = terrain.map_grid();
     let wet: Vec<bool> = max_depth.iter().map(|depth| !depth.is_nan()).collect();
     let is_ground =

@@ -22,7 +22,7 @@ pub(super) fn write(file: &mut impl Write, frame: &Frame) -> io::Result<()> {
     Ok(())
 }
 
-/// Names of the model's own columns over all sets, in the order of their first coming, and whether they are vectors.
+/// Names of the model's own columns over all sets, in order of first appearance, and whether they are vectors.
 pub(super) fn own_columns(frame: &Frame) -> Vec<(&'static str, bool)> {
     let mut columns: Vec<(&'static str, bool)> = Vec::new();
     for column in frame.sets.iter().flat_map(|set| &set.columns) {

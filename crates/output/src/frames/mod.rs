@@ -9,7 +9,7 @@ mod xyz;
 pub(crate) use patches::write as write_surface;
 pub use read::FrameFiles;
 
-use crate::RecordError;
+use crate::OutputError;
 use crate::number::Shortest;
 use crate::whole::write_whole;
 use corpuscle_model::{Container, Frame};
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
 
-/// How particles are written.
+/// Format of the particle files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrameFormat {
@@ -50,7 +50,7 @@ impl FrameFormat {
         index: usize,
         frame: &Frame,
         container: Option<&Container>,
-    ) -> Result<(), RecordError> {
+    ) -> Result<(), OutputError> {
         let Some(name) = self.file_name(index) else { return Ok(()) };
         write_whole(&folder.join(name), |file| match self {
             Self::Csv => csv::write(file, frame),
@@ -61,7 +61,7 @@ impl FrameFormat {
 }
 
 /// Writes the collection of all frames so far, with their times in s.
-pub(crate) fn write_pvd(folder: &Path, times: &[f64]) -> Result<(), RecordError> {
+pub(crate) fn write_pvd(folder: &Path, times: &[f64]) -> Result<(), OutputError> {
     write_whole(&folder.join("frames.pvd"), |file| {
         writeln!(file, "<?xml version=\"1.0\"?>")?;
         writeln!(file, "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>")?;

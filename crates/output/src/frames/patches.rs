@@ -1,4 +1,4 @@
-//! A surface as VTK XML PolyData: a square for each of its patches, with all that is known of it as cell data.
+//! A surface as VTK XML PolyData: a square for each of its patches, with their values as cell data.
 
 use super::vtp::Appended;
 use corpuscle_model::{Surface, Values};

@@ -86,7 +86,7 @@ fn vectors(frame: &Frame, column: impl Fn(&ParticleSet) -> &Vec<[f64; 3]>) -> im
     frame.sets.iter().flat_map(column).flatten().flat_map(|value| value.to_le_bytes())
 }
 
-/// Values of one of a model's own columns; not-a-number where this set has it not.
+/// Values of one of a model's own columns; not-a-number for a set without it.
 fn own_values(set: &ParticleSet, name: &str, components: usize) -> Vec<f64> {
     match set.columns.iter().find(|column| column.name == name).map(|column| &column.values) {
         Some(Values::Scalar(values)) => values.clone(),

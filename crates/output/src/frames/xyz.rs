@@ -25,7 +25,7 @@ pub(super) fn write(file: &mut impl Write, frame: &Frame, container: Option<&Con
     frame.sets.iter().try_for_each(|set| write_set(file, set, &columns))
 }
 
-/// The edges of the box, its corner, and that nothing comes in again beyond it: programs unfold nothing.
+/// The box as lattice and origin, not periodic, so that programs do not unwrap positions.
 fn write_box(file: &mut impl Write, Container { from, to }: &Container) -> io::Result<()> {
     let side = |axis: usize| Shortest(to[axis] - from[axis]);
     let [x, y, z] = from.map(Shortest);

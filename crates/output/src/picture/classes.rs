@@ -4,7 +4,7 @@ use super::colour::Colour;
 use super::text::short_number;
 use super::ticks::{self, TimeUnit};
 
-/// A kind of quantity and its colours. All ramps change steadily in lightness, so they hold without colour vision too.
+/// A kind of quantity and its colours. The lightness of all ramps is monotonic, so they can be read without colour vision too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ramp {
     /// Depth, m: light to dark blue.
@@ -41,7 +41,7 @@ const HAZARD: [&str; 4] = ["Low", "Moderate", "Significant", "Extreme"];
 /// Classes of a quantity: `edges.len() + 1` of them, open at both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Classes {
-    /// What is classed, with its unit: `Maximum depth, m`.
+    /// The quantity with its unit: `Maximum depth, m`.
     pub title: String,
     /// Edges between the classes, rising.
     pub edges: Vec<f64>,
@@ -116,7 +116,7 @@ impl Classes {
         }
     }
 
-    /// A class in words: its values, or its name and values.
+    /// A class as text: its values, or its name and values.
     pub(crate) fn range(&self, class: usize) -> String {
         let range = self.values(class);
         match self.names.get(class) {

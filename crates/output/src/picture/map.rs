@@ -1,4 +1,4 @@
-//! Maps: relief, a classed field over it, marked places, and what a reader needs to read them.
+//! Maps: relief, a classed field over it, marked positions, legend and scale bar.
 
 use super::classes::Classes;
 use super::clip::inside_unit_square;
@@ -11,7 +11,7 @@ use super::svg::{Anchor, Figure, Svg};
 use super::text::{number, short_number};
 use super::ticks;
 
-/// How large a map is drawn, and how much stands round it.
+/// Size of a map, and what is drawn round it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Size {
     /// A whole page's width: coordinates, names, legend.
@@ -50,7 +50,7 @@ pub(crate) struct Layer {
     pub classes: Classes,
 }
 
-/// What is marked on a map.
+/// Kind of a mark on a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlaceKind {
     /// A gauge: one point.
@@ -63,7 +63,7 @@ pub(crate) enum PlaceKind {
     Obstacle,
 }
 
-/// A marked place: its name, and points in the terrain's own coordinates.
+/// A mark: its name, and points in the terrain's own coordinates.
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     pub kind: PlaceKind,
@@ -71,7 +71,7 @@ pub(crate) struct Place {
     pub points: Vec<[f64; 2]>,
 }
 
-/// A map in the making.
+/// A map to be drawn.
 #[derive(Debug, Clone)]
 pub(crate) struct MapFigure<'a> {
     /// The ground it shows.
@@ -80,13 +80,13 @@ pub(crate) struct MapFigure<'a> {
     pub relief_url: &'a str,
     /// The field over it.
     pub layer: Option<&'a Layer>,
-    /// Marked places.
+    /// Marks.
     pub places: &'a [Place],
     /// Size.
     pub size: Size,
     /// Title and subtitle above the map.
     pub heading: Option<[&'a str; 2]>,
-    /// What is seen; the caption of a [`Size::Thumb`].
+    /// Alternative text; the caption of a [`Size::Thumb`].
     pub title: &'a str,
 }
 
@@ -395,7 +395,7 @@ fn draw_place(svg: &mut Svg, kind: PlaceKind, points: &[[f64; 2]]) -> Option<[f6
     Some(first)
 }
 
-/// Writes a name beside a point, where it covers least of what is there and stays on the map.
+/// Writes a name beside a point, where it overlaps least and stays on the map.
 fn draw_name(svg: &mut Svg, frame: &Frame, [x, y]: [f64; 2], name: &str, taken: &mut Vec<[f64; 4]>) {
     let width = name.chars().count() as f64 * 7.0;
     // Beside a point at the upper or lower edge, but not beyond it.

@@ -1,9 +1,9 @@
 //! The part of a terrain that maps show: all of it, or where the water was if that is a small part.
 
-/// Space left round what matters, over its longer side.
+/// Margin round the cells and positions shown, over their longer side.
 const MARGIN: f64 = 0.12;
 
-/// Cells left round what matters at least.
+/// Least margin, cells.
 const LEAST_MARGIN: f64 = 8.0;
 
 /// The shorter side over the longer at least: a river's map shows its surroundings too.

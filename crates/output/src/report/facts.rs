@@ -6,7 +6,7 @@ use crate::picture::{area, number, short_number, time, volume};
 use corpuscle_scene::{Scheme, Terrain};
 use std::path::Path;
 
-/// The handful of numbers that come first.
+/// The key figures.
 pub(super) fn key_figures(report: &Report) -> Vec<KeyFigure> {
     let mut figures = Vec::new();
     let mut add = |label, value, remark| figures.push(KeyFigure { label, value, remark });
@@ -80,7 +80,7 @@ pub(super) fn gauge_peaks(report: &Report) -> Table {
     }
 }
 
-/// Name and value of what was run.
+/// Names and values of the facts of the run.
 pub(super) fn run_facts(report: &Report) -> Vec<(&'static str, String)> {
     let (summary, scene) = (&report.summary, &report.flood);
     let (ground, whole) = (&report.ground, &report.whole);
@@ -118,7 +118,7 @@ fn shown_words(report: &Report) -> String {
         return "the whole terrain".into();
     }
     let [east, north] = report.ground.extent.map(|length| short_number((length / 10.0).round() * 10.0));
-    format!("the part round the water and the marked places, {east} m × {north} m")
+    format!("the part round the water and the marked positions, {east} m × {north} m")
 }
 
 fn terrain_words(terrain: &Terrain) -> String {

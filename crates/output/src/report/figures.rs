@@ -1,4 +1,4 @@
-//! Everything in the report that is drawn.
+//! The figures of the report of a flood.
 
 use super::snapshots::Snapshot;
 use super::{Report, gauges};
@@ -9,7 +9,7 @@ use crate::picture::{
 
 use rayon::prelude::*;
 
-/// A field that the report knows how to show.
+/// A field of the report.
 #[derive(Debug)]
 pub(super) struct FieldKind {
     /// Name of the file.
@@ -18,11 +18,11 @@ pub(super) struct FieldKind {
     pub title: &'static str,
     /// Title of the legend.
     pub legend: &'static str,
-    /// What it means.
+    /// Its explanation.
     pub about: &'static str,
     /// Its colours.
     pub ramp: Ramp,
-    /// True to tell the area in each class.
+    /// True to list the area in each class.
     pub areas: bool,
 }
 
@@ -32,7 +32,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         name: "max_depth",
         title: "Maximum depth",
         legend: "Maximum depth, m",
-        about: "The largest depth that each place saw during the run.",
+        about: "The largest depth at each position during the run.",
         ramp: Ramp::Depth,
         areas: true,
     },
@@ -40,7 +40,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
         name: "arrival_s",
         title: "Arrival of the water",
         legend: "Arrival after the start",
-        about: "When each place first became wet. Dark is early.",
+        about: "When each position first became wet. Dark is early.",
         ramp: Ramp::Arrival,
         areas: false,
     },
@@ -64,8 +64,8 @@ pub(super) const FIELDS: [FieldKind; 5] = [
     FieldKind {
         name: "duration_s",
         title: "Duration of flooding",
-        legend: "Time under water",
-        about: "How long each place was wet during the run.",
+        legend: "Duration of flooding",
+        about: "How long each position was wet during the run.",
         ramp: Ramp::Duration,
         areas: true,
     },

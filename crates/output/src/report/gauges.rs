@@ -9,7 +9,7 @@ use corpuscle_scene::Inflow;
 const UNITS: [(&str, &str); 5] =
     [("m3_per_s", "m³/s"), ("m2_per_s", "m²/s"), ("m_per_s", "m/s"), ("m3", "m³"), ("m", "m")];
 
-/// Gauges whose hydrographs are drawn at most; the others are in the table's file.
+/// Most gauges whose hydrographs are drawn; the others are in `gauges.csv`.
 pub(super) const MOST_GAUGES: usize = 24;
 
 /// One column of the table.
@@ -46,7 +46,7 @@ impl GaugeSeries {
     }
 }
 
-/// What the report draws over time: the gauges, and the inflows as the scene prescribes them.
+/// The curves of the report over time: the gauges, and the inflows as the scene prescribes them.
 pub(super) fn series(report: &Report) -> Vec<GaugeSeries> {
     let mut all = gauge_series(&report.gauges);
     all.extend(report.flood.flood.inflow.iter().filter_map(|inflow| prescribed(inflow, report)));

@@ -1,4 +1,4 @@
-//! The report of a run: of a flood what a planner would show, of a gas what a teacher would, of dew where the water is.
+//! The reports of runs, one for each model.
 
 mod dew;
 mod facts;
@@ -15,7 +15,7 @@ mod validation;
 use crate::maps::read_map;
 use crate::picture::{Ground, Place, PlaceKind, Window};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_scene::{Circle, Flood, FloodScene, Obstacle, Scene};
 use corpuscle_terrain::Terrain;
 use figures::{FIELDS, FieldKind, Figures};
@@ -29,7 +29,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 pub use validation::{ValidatedCase, ValidatedMeasure, ValidationReport};
 
-/// A finished flood as its report needs it.
+/// The report of a flood.
 #[derive(Debug)]
 pub struct Report {
     folder: PathBuf,
@@ -38,7 +38,7 @@ pub struct Report {
     scene_text: String,
     summary: Summary,
     gauges: GaugeTable,
-    /// The ground in the window.
+    /// The terrain in the window.
     ground: Ground,
     /// The part of the terrain that maps show.
     window: Window,
@@ -57,7 +57,7 @@ struct Whole {
     grid: [usize; 2],
     /// Size of a cell `[east, north]`, m.
     cell: [f64; 2],
-    /// Lowest and highest ground, m.
+    /// Lowest and highest elevation, m.
     heights: [f64; 2],
 }
 
@@ -73,7 +73,7 @@ impl Whole {
         Self { grid: [grid.columns, grid.rows], cell: grid.cell_size(), heights: range }
     }
 
-    /// Round the cells with a value and the places but obstacles.
+    /// The window round the cells with a value and the marked positions except obstacles.
     fn window(&self, field: Option<&Field>, places: &[Place], terrain: &Terrain) -> Window {
         let [columns, _] = self.grid;
         let values = field.map_or(&[][..], |field| &field.values).iter().enumerate();
@@ -86,7 +86,7 @@ impl Whole {
     }
 }
 
-/// A field that stands for the whole run.
+/// A field of the whole run.
 #[derive(Debug)]
 struct Field {
     kind: &'static FieldKind,
@@ -100,11 +100,11 @@ impl Report {
     /// Maps that are not there are left out of the report.
     ///
     /// # Errors
-    /// [`RecordError::Read`] or [`RecordError::Content`], naming the file.
-    pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, RecordError> {
+    /// [`OutputError::Read`] or [`OutputError::Content`], naming the file.
+    pub fn read(folder: &Path, scene: &Scene, terrain: &Terrain) -> Result<Self, OutputError> {
         let scene_path = folder.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
-        let no_flood = || RecordError::content(&scene_path, "it is not the scene of a flood");
+        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
+        let no_flood = || OutputError::content(&scene_path, "it is not the scene of a flood");
         let flood = scene.flood().ok_or_else(no_flood)?;
         let grid = terrain.map_grid();
         let cells = grid.columns * grid.rows;
@@ -138,11 +138,11 @@ impl Report {
     /// Writes `pictures/*.png` and `report.html` into the folder. The same folder always gives the same bytes.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
-        let drawing = |what: String| RecordError::content(&pictures, what);
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))?;
+        let drawing = |what: String| OutputError::content(&pictures, what);
         let figures = Figures::draw(self).map_err(drawing)?;
         for (name, png) in figures.pngs().map_err(drawing)? {
             write_bytes(&pictures.join(format!("{name}.png")), &png)?;
@@ -187,17 +187,17 @@ fn folder_name(folder: &Path) -> String {
     folder.file_name().map_or_else(|| "run".into(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, RecordError> {
+fn read_field(path: &Path, cells: usize) -> Result<Vec<f32>, OutputError> {
     let values = read_map(path)?;
     if values.len() != cells {
         let what =
             format!("it has {} cells where the scene's terrain has {cells}; it belongs to another", values.len());
-        return Err(RecordError::content(path, what));
+        return Err(OutputError::content(path, what));
     }
     Ok(values)
 }
 
-/// What the scene names on the ground, in the terrain's own coordinates.
+/// Gauges, inflows, sections and obstacles of the scene, in the terrain's own coordinates.
 fn places(flood: &Flood, terrain: &Terrain) -> Vec<Place> {
     let sections = flood.section.iter().map(|section| Place {
         kind: PlaceKind::Section,

@@ -65,7 +65,7 @@ fn class_areas(report: &Report, field: &FieldFigure) -> String {
     let areas = facts::areas_by_class(report, field);
     let total: f64 = areas.iter().map(|(_, _, area)| area).sum();
     if total == 0.0 {
-        return "<p class=\"none\">No place became wet.</p>\n".into();
+        return "<p class=\"none\">Nothing became wet.</p>\n".into();
     }
     let largest = areas.iter().map(|(_, _, area)| *area).fold(0.0, f64::max);
     let mut html = format!(

@@ -8,7 +8,7 @@ const PAGE_CSS: &str = include_str!("page.css");
 
 /// A key figure.
 pub(super) struct KeyFigure {
-    /// What it is.
+    /// Its name.
     pub label: &'static str,
     /// The value with its unit.
     pub value: String,
@@ -34,14 +34,14 @@ pub(super) fn document(title: &str, before: &str, content: &str) -> String {
     )
 }
 
-/// What kind of report, of what, and what is seen.
+/// The header: kind of report, title, description.
 pub(super) fn header(kind: &str, title: &str, description: &str) -> String {
     let paragraphs = description.split("\n\n").map(str::trim).filter(|paragraph| !paragraph.is_empty());
     let paragraphs: String = paragraphs.map(|text| format!("<p class=\"lead\">{}</p>\n", escape(text))).collect();
     format!("<header>\n<p class=\"kind\">{kind}</p>\n<h1>{}</h1>\n{paragraphs}</header>\n", escape(title))
 }
 
-/// The handful of numbers that come first.
+/// The key figures.
 pub(super) fn key_figures(figures: &[KeyFigure]) -> String {
     let mut html = String::from("<dl class=\"figures\">\n");
     for figure in figures {
@@ -55,31 +55,31 @@ pub(super) fn key_figures(figures: &[KeyFigure]) -> String {
     html + "</dl>\n"
 }
 
-/// What a reader must know before trusting the rest.
+/// The warnings of the run.
 pub(super) fn warnings(summary: &Summary) -> String {
     let status = match summary.status {
         Status::Done => None,
-        Status::Stopped => Some("The run was stopped before its end: this is how far it came."),
-        Status::Failed => Some("The computation broke down before its end: this is what came before."),
+        Status::Stopped => Some("The run was stopped before its end: the report covers the time until then."),
+        Status::Failed => Some("The computation broke down before its end: the report covers the time until then."),
     };
     let warnings = summary.warnings.iter().map(String::as_str);
     let items: String = status.into_iter().chain(warnings).map(|text| format!("<li>{}</li>\n", escape(text))).collect();
     if items.is_empty() {
         return String::new();
     }
-    format!("<aside class=\"warnings\">\n<h2>To be known</h2>\n<ul>\n{items}</ul>\n</aside>\n")
+    format!("<aside class=\"warnings\">\n<h2>Warnings</h2>\n<ul>\n{items}</ul>\n</aside>\n")
 }
 
 /// How a run ended, in words.
 pub(super) fn how_it_ended(summary: &Summary) -> &'static str {
     match summary.status {
-        Status::Done => "came to its end",
+        Status::Done => "complete",
         Status::Stopped => "stopped before its end",
         Status::Failed => "broke down before its end",
     }
 }
 
-/// The balances.
+/// The table of the balances.
 pub(super) fn balance(summary: &Summary) -> String {
     if summary.ledger.is_empty() {
         return String::new();
@@ -89,7 +89,7 @@ pub(super) fn balance(summary: &Summary) -> String {
         std::iter::once(quantity(name, &summary.model)).chain(values).collect()
     };
     let ledger = Table {
-        head: vec!["quantity", "at the start", "came in", "went out", "at the end", "relative error"],
+        head: vec!["quantity", "at the start", "in", "out", "at the end", "relative error"],
         rows: summary.ledger.iter().map(row).collect(),
     };
     format!(
@@ -110,7 +110,7 @@ fn quantity(name: &str, model: &str) -> String {
     }
 }
 
-/// What was run, and how to run it again.
+/// The facts of the run, and the command that repeats it.
 pub(super) fn run(facts: &[(&'static str, String)], folder: &str, scene: &str) -> String {
     let mut facts_html = String::new();
     for (name, value) in facts {
@@ -126,7 +126,7 @@ pub(super) fn run(facts: &[(&'static str, String)], folder: &str, scene: &str) -
     )
 }
 
-/// The last line: how much time was simulated, and what stands beside the page.
+/// The footer: version, and the files in the folder.
 pub(super) fn footer(summary: &Summary, simulated: &str, beside: &str) -> String {
     format!(
         "<footer><p>Simulated {} with Corpuscle {}. {beside}</p></footer>\n",
@@ -135,7 +135,7 @@ pub(super) fn footer(summary: &Summary, simulated: &str, beside: &str) -> String
     )
 }
 
-/// A word as a shell takes it.
+/// A word quoted for a shell.
 fn shell_word(word: &str) -> String {
     if word.chars().all(|c| c.is_ascii_alphanumeric() || "-_./".contains(c)) {
         word.to_owned()
@@ -144,7 +144,7 @@ fn shell_word(word: &str) -> String {
     }
 }
 
-/// A table whose first column heads its rows.
+/// A table whose first column has the row headers.
 pub(super) fn table(table: &Table) -> String {
     let cell = |(index, text): (usize, &String)| match index {
         0 => format!("<th scope=\"row\">{}</th>", escape(text)),

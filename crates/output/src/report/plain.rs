@@ -1,10 +1,10 @@
-//! The report of a model that has none of its own: its gauges and charts, its balances, and how to run it again.
+//! The report of a model without its own: gauges, charts, balances, and the command that repeats the run.
 
 use super::parts::{self, KeyFigure, how_it_ended};
 use super::{folder_name, title_or_folder};
 use crate::picture::{Figure, number, plot, svg_to_png, time};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn, Model};
 use corpuscle_scene::Scene;
 use std::fs;
@@ -35,20 +35,20 @@ impl<'a> PlainReport<'a> {
     /// Writes `pictures/*.png` and `report.html`.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a chart that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Write`]; [`OutputError::Content`] for a chart that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let scene = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let mut charts = over_time(&self.model.gauge_columns(), &table, self.time_unit);
         charts.extend(self.model.charts());
         let charts: Vec<(String, Figure)> =
             charts.iter().map(|chart| (chart.name.clone(), plot(chart, CHART))).collect();
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))?;
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))?;
         for (name, figure) in &charts {
-            let drawing = |what: String| RecordError::content(&pictures, what);
+            let drawing = |what: String| OutputError::content(&pictures, what);
             let png = svg_to_png(&figure.with_margin(16.0)).map_err(drawing)?;
             write_bytes(&pictures.join(format!("{name}.png")), &png)?;
         }
@@ -76,7 +76,7 @@ impl<'a> PlainReport<'a> {
         parts::document(&format!("{title} – report"), "", &sections.concat())
     }
 
-    /// The handful of numbers that come first.
+    /// The key figures.
     fn key_figures(&self, summary: &Summary) -> Vec<KeyFigure> {
         let figure = |label, value: String, remark: &str| KeyFigure { label, value, remark: remark.into() };
         let worst = summary.ledger.values().map(|entry| entry.relative_error.abs()).reduce(f64::max);
@@ -89,7 +89,7 @@ impl<'a> PlainReport<'a> {
         figures
     }
 
-    /// Name and value of what was run.
+    /// Names and values of the facts of the run.
     fn run_facts(&self, summary: &Summary) -> Vec<(&'static str, String)> {
         vec![
             ("Model", summary.model.clone()),

@@ -1,7 +1,7 @@
 //! Depth maps over time, as many as fit on a page.
 
 use super::read_field;
-use crate::RecordError;
+use crate::OutputError;
 use crate::maps::{read_times, snapshot_path};
 use std::path::Path;
 
@@ -18,7 +18,7 @@ pub(super) struct Snapshot {
 }
 
 /// Reads depth maps, evenly spread from the first after the start to the last.
-pub(super) fn read(maps: &Path, cells: usize) -> Result<Vec<Snapshot>, RecordError> {
+pub(super) fn read(maps: &Path, cells: usize) -> Result<Vec<Snapshot>, OutputError> {
     let times = read_times(maps)?;
     let read =
         |index: usize| Ok(Snapshot { time: times[index], depth: read_field(&snapshot_path(maps, index), cells)? });

@@ -1,7 +1,7 @@
-//! What cases with known answers gave, as one page of tables and charts.
+//! The report of the validation: results of cases with known answers, as one page of tables and charts.
 
 use super::parts::{self, Table};
-use crate::RecordError;
+use crate::OutputError;
 use crate::picture::{escape, number, plot};
 use crate::whole::write_bytes;
 use corpuscle_model::Chart;
@@ -38,7 +38,7 @@ pub struct ValidatedCase {
     pub about: &'static str,
     /// What was measured.
     pub measures: Vec<ValidatedMeasure>,
-    /// What was drawn.
+    /// Its charts.
     pub charts: Vec<Chart>,
 }
 
@@ -47,16 +47,16 @@ pub struct ValidatedCase {
 pub struct ValidationReport {
     path: PathBuf,
     sections: String,
-    /// Measures that kept their bounds, missed them, and those of which neither can be said.
+    /// Numbers of measures within their bounds, beyond them, and without verdict.
     counts: [usize; 3],
 }
 
 impl ValidationReport {
-    /// Begins the page in a file, which is written at once: what cannot be written is told before anything is run.
+    /// Begins the page in a file, which is written at once, so that an error is found before anything is run.
     ///
     /// # Errors
-    /// [`RecordError`] where the file cannot be written.
-    pub fn create(path: &Path) -> Result<Self, RecordError> {
+    /// [`OutputError`] where the file cannot be written.
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
         let report = Self { path: path.into(), sections: String::new(), counts: [0; 3] };
         report.write()?;
         Ok(report)
@@ -73,8 +73,8 @@ impl ValidationReport {
     /// Writes the page as it stands, whole or not at all.
     ///
     /// # Errors
-    /// [`RecordError`] where the file cannot be written.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError`] where the file cannot be written.
+    pub fn write(&self) -> Result<(), OutputError> {
         let [kept, missed, rest] = self.counts;
         let about =
             format!("{kept} measures keep their bounds, {missed} do not, {rest} are only shown or were skipped.");

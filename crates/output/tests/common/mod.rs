@@ -122,13 +122,13 @@ impl<'a> Wave<'a> {
             if let Some([depth, _]) = self.at(place, time) {
                 maps[0].values[cell] = depth as f32;
             }
-            for look in 0..=(time / period) as usize {
-                let Some([depth, speed]) = self.at(place, look as f64 * period) else { continue };
+            for sample in 0..=(time / period) as usize {
+                let Some([depth, speed]) = self.at(place, sample as f64 * period) else { continue };
                 let larger = |map: &mut Map, value: f64| map.values[cell] = map.values[cell].max(value as f32);
                 larger(&mut maps[1], depth);
                 larger(&mut maps[2], speed);
                 larger(&mut maps[5], depth * (speed + 0.5));
-                maps[3].values[cell] = maps[3].values[cell].min((look as f64 * period) as f32);
+                maps[3].values[cell] = maps[3].values[cell].min((sample as f64 * period) as f32);
                 maps[4].values[cell] = maps[4].values[cell].max(0.0) + period as f32;
             }
         }

@@ -1,4 +1,4 @@
-//! Balls of particles that lie on the device.
+//! Balls of particles in GPU memory.
 
 use super::{BallPainter, BallStyle, Balls};
 use crate::shared::{BallInstance, Bound};
@@ -6,7 +6,7 @@ use crate::{RenderError, Stage};
 use corpuscle_gpu::{DeviceParticles, Gpu, Kernel, THREADS, storage, submit, uniform};
 use glam::DVec3;
 
-/// What balls of particles on the device show.
+/// Settings of balls of particles in GPU memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BallsOfDevice {
     /// Radius over the particles' distance.

@@ -19,10 +19,10 @@ const MOST: usize = 6 << 20;
 /// From so many on, one before the other, they are shaded only where they are seen.
 const MANY: u32 = 20_000;
 
-/// How much work balls may be.
+/// Shading of balls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shading {
-    /// As the light has it: glazed with shadows, or discs on paper.
+    /// As the light: glazed with shadows, or discs on paper.
     #[default]
     Full,
     /// Matt, without shadows.
@@ -31,14 +31,14 @@ pub enum Shading {
     Discs,
 }
 
-/// How balls look.
+/// Style of balls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallStyle {
     /// Colours of the numbers.
     pub colours: ColourTable,
-    /// How much the surface shines: 0 matt, 1 glazed.
+    /// Gloss of the surface: 0 matt, 1 glazed.
     pub gloss: f32,
-    /// How much work they may be.
+    /// Their shading.
     pub shading: Shading,
     /// Smaller balls are drawn with this radius, samples, so that none falls between pixels.
     pub least_radius: f32,
@@ -51,7 +51,7 @@ impl BallStyle {
     }
 }
 
-/// Draws balls; holds what all of them share.
+/// Draws balls; holds the pipelines of all.
 #[derive(Debug)]
 pub struct BallPainter {
     layout: GroupLayout,
@@ -60,7 +60,7 @@ pub struct BallPainter {
     discs: wgpu::RenderPipeline,
     cast: wgpu::RenderPipeline,
     seen: Arc<SeenPainter>,
-    /// What makes balls of particles on the device, once somebody has some.
+    /// The kernel that makes balls of particles in GPU memory, once it is needed.
     maker: OnceLock<Kernel<device::Memory>>,
 }
 
@@ -72,7 +72,7 @@ pub struct Balls {
     /// Groups of the shaders, and how many balls are in each.
     parts: Vec<(wgpu::BindGroup, u32)>,
     painter: Arc<SeenPainter>,
-    /// True where shading takes no more than finding out what is seen.
+    /// True where shading is as cheap as the test of visibility.
     quick: bool,
     /// Which balls are seen where, in a picture of many.
     seen: Option<Seen>,
@@ -140,8 +140,8 @@ impl BallPainter {
         parts: impl IntoIterator<Item = (&'a wgpu::Buffer, u32)>,
     ) -> Balls {
         let ColourTable { low, high, .. } = style.colours;
-        let look = BallUniforms { low, high, gloss: style.gloss, least: style.least_radius };
-        let settings = uniform(gpu, "balls", &look);
+        let uniforms = BallUniforms { low, high, gloss: style.gloss, least: style.least_radius };
+        let settings = uniform(gpu, "balls", &uniforms);
         let colours = style.colours.upload(gpu);
         let part = |(buffer, count): (&wgpu::Buffer, u32)| {
             let resources = [

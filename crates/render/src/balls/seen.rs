@@ -1,4 +1,4 @@
-//! Many balls: first the number of the nearest ball is drawn for each sample, then what is seen is shaded, once.
+//! Deferred shading of many balls: first the number of the nearest ball is drawn for each sample, then visible samples are shaded once.
 
 use crate::pipeline::PipelineDescriptor;
 use crate::{Before, DEPTH_FORMAT, Renderer, shaders};

@@ -7,7 +7,7 @@ use corpuscle_gpu::{GroupLayout, texture_2d, wgpu};
 /// Format of the area that droplets cover.
 const COVERED: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 
-/// Draws fog; holds what does not change.
+/// Draws fog; holds its pipelines.
 #[derive(Debug)]
 pub(super) struct Fog {
     cover: wgpu::RenderPipeline,

@@ -26,13 +26,13 @@ pub struct Cap {
     pub position: [f64; 3],
     /// Radius of that disc, m.
     pub radius: f64,
-    /// The way out of the surface, of length 1.
+    /// Outward unit normal of the surface.
     pub normal: [f64; 3],
     /// Height above the surface, m.
     pub height: f64,
 }
 
-/// Draws drops; holds what all of them share.
+/// Draws drops; holds the pipelines of all.
 #[derive(Debug)]
 pub struct CapPainter {
     tools: Arc<Tools>,

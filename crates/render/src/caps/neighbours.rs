@@ -3,7 +3,7 @@
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// A drop has at most so many.
+/// Most neighbours of a drop.
 const MOST: usize = 24;
 
 /// For each disc (place and radius) those that it nearly touches: less than `gap` between them. Where neighbours begin in the

@@ -1,4 +1,4 @@
-// A floor that cannot be told from the backdrop but by the shadows on it.
+// A floor in the colours of the backdrop, visible only by the shadows on it.
 #import light
 #import full_screen
 

@@ -1,4 +1,4 @@
-//! A particle of a fluid, as it is drawn.
+//! Particles of a fluid, as they are drawn.
 
 use crate::Stage;
 use crate::buffer::{filled, storage};
@@ -24,7 +24,7 @@ pub struct Droplet {
     pub reach: f64,
     /// Foam on it: 0 none, 1 white.
     pub foam: f64,
-    /// A number of its own, which tells its pattern of foam from others'.
+    /// Seed of its pattern of foam.
     pub id: u64,
 }
 
@@ -60,11 +60,11 @@ impl Droplet {
 /// Particles on the device that are drawn in one go.
 #[derive(Debug, Clone)]
 pub(super) enum Batch {
-    /// So many, which is in `told` too, at [`COUNT`].
-    Counted { instances: wgpu::Buffer, told: wgpu::Buffer, count: u32 },
-    /// As many as four numbers on the device tell: corners, particles, the firsts of both, from byte `at` of `told` on. From byte `splats`
-    /// on it has the groups of threads that splat them, and at [`COUNT`] how many they are.
-    Told { instances: wgpu::Buffer, told: wgpu::Buffer, at: u64, splats: u64 },
+    /// A known number, which is in `draw_args` too, at [`COUNT`].
+    Counted { instances: wgpu::Buffer, draw_args: wgpu::Buffer, count: u32 },
+    /// A number known on the GPU: from byte `at` of `draw_args` the arguments of an indirect draw, from byte `splats` those of an
+    /// indirect dispatch that splats them, and their number at [`COUNT`].
+    Indirect { instances: wgpu::Buffer, draw_args: wgpu::Buffer, at: u64, splats: u64 },
 }
 
 /// See [`SPLAT_COUNT`].
@@ -76,15 +76,17 @@ impl Batch {
         let count = all.len() as u32;
         let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE;
         let instances = filled(gpu, "droplets", bytemuck::cast_slice(all), usage);
-        let mut told = [0; COUNT + 1];
-        told[COUNT] = count;
-        Self::Counted { instances, told: storage(gpu, "how many droplets", &told), count }
+        let mut draw_args = [0; COUNT + 1];
+        draw_args[COUNT] = count;
+        Self::Counted { instances, draw_args: storage(gpu, "how many droplets", &draw_args), count }
     }
 
-    /// The particles, and the numbers that tell at [`COUNT`] how many.
+    /// The particles, and the buffer with their number at [`COUNT`].
     pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         match self {
-            Self::Counted { instances, told, .. } | Self::Told { instances, told, .. } => [instances, told],
+            Self::Counted { instances, draw_args, .. } | Self::Indirect { instances, draw_args, .. } => {
+                [instances, draw_args]
+            }
         }
     }
 
@@ -92,7 +94,7 @@ impl Batch {
     pub fn splat(&self, pass: &mut wgpu::ComputePass<'_>) {
         match self {
             Self::Counted { count, .. } => pass.dispatch_workgroups(count.div_ceil(SPLAT_GROUP), 1, 1),
-            Self::Told { told, splats, .. } => pass.dispatch_workgroups_indirect(told, *splats),
+            Self::Indirect { draw_args, splats, .. } => pass.dispatch_workgroups_indirect(draw_args, *splats),
         }
     }
 
@@ -103,9 +105,9 @@ impl Batch {
                 pass.set_vertex_buffer(0, instances.slice(..));
                 pass.draw(0..4, 0..*count);
             }
-            Self::Told { instances, told, at, .. } => {
+            Self::Indirect { instances, draw_args, at, .. } => {
                 pass.set_vertex_buffer(0, instances.slice(..));
-                pass.draw_indirect(told, *at);
+                pass.draw_indirect(draw_args, *at);
             }
         }
     }

@@ -1,4 +1,4 @@
-// What the passes over pixels know of the fluid (settings.rs).
+// Bindings of the passes over pixels.
 #import view
 
 @group(1) @binding(0) var<uniform> fluid: FluidUniforms;
@@ -16,7 +16,7 @@ fn place_at(pixel: vec2i, distance: f32) -> vec3f {
     return view.eye.xyz + distance * view.forward.xyz + away.x * right - away.y * up;
 }
 
-// How many pixels smoothing looks to each side at a distance.
+// Radius of the smoothing at a distance, pixels.
 fn width_in_pixels(distance: f32) -> i32 {
     return i32(clamp(fluid.smoothing.x / pixel_size(distance), 1.0, fluid.smoothing.w));
 }

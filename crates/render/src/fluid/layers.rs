@@ -1,4 +1,4 @@
-//! The pictures between the passes.
+//! Intermediate textures between the passes.
 
 use crate::shared::SUMS;
 use crate::{DEPTH_FORMAT, RenderError};
@@ -14,7 +14,7 @@ pub(super) const NORMAL: TextureFormat = TextureFormat::R32Uint;
 /// Linear light.
 pub(super) const SHADED: TextureFormat = TextureFormat::Rgba16Float;
 
-/// The pictures between the passes, for one size of target.
+/// Intermediate textures between the passes, for one size of target.
 #[derive(Debug)]
 pub(super) struct Layers {
     pub size: [u32; 2],
@@ -28,7 +28,7 @@ pub(super) struct Layers {
     pub splats: Option<Splats>,
 }
 
-/// What compute shaders draw particles into, for one size of target.
+/// Buffers into which compute shaders draw particles, for one size of target.
 #[derive(Debug)]
 pub(super) struct Splats {
     /// A number a pixel: see splat_depth.wgsl.

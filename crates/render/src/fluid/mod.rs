@@ -1,5 +1,5 @@
-//! Water in screen space: particles are drawn as they are, what is nearest is smoothed in the picture, and the surface that comes of
-//! it is shaded (van der Laan, Green and Sainz, Screen Space Fluid Rendering with Curvature Flow, 2009; the flood paper of 2021).
+//! Screen-space water: particles are drawn, their nearest surface is smoothed in the picture, and the resulting surface
+//! is shaded (van der Laan, Green and Sainz, Screen Space Fluid Rendering with Curvature Flow, 2009; the flood paper of 2021).
 //!
 //! ```text
 //! depth      particles as sprites, the nearest surface of them          fluid_depth.wgsl

@@ -61,7 +61,7 @@ fn along(@builtin(global_invocation_id) id: vec3u) {
         sum += weight * (taken(left, right, here) + taken(right, left, here));
         weights += 2.0 * weight;
         if weight > 0.0 {
-            // Only what is on the surface tells of its slope.
+            // Only pixels of the surface determine its slope.
             if !left.beyond {
                 range = widened(range, left.there);
             }

@@ -1,4 +1,4 @@
-//! What all fluids share: pipelines, layouts.
+//! The painter of fluids: pipelines and layouts.
 
 use super::layers::{DISTANCE, THICKNESS};
 use super::{Fluid, FluidStyle};
@@ -7,7 +7,7 @@ use crate::shared::{DropletInstance, buffer_layout};
 use crate::{Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 
-/// Draws fluids; holds what all of them share.
+/// Draws fluids; holds the pipelines of all.
 #[derive(Debug, Clone)]
 pub struct FluidPainter {
     pub(super) depth: wgpu::RenderPipeline,

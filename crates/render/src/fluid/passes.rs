@@ -77,11 +77,11 @@ impl Fluid {
             .droplets
             .iter()
             .map(|batch| {
-                let [instances, told] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
+                let [instances, draw_args] = batch.buffers().map(wgpu::Buffer::as_entire_binding);
                 let bound = [
                     ("fluid", self.settings.as_entire_binding()),
                     ("droplets", instances),
-                    ("told", told),
+                    ("draw_args", draw_args),
                     (name, numbers.as_entire_binding()),
                 ];
                 splat.layout.bind(&frame.gpu.device, &bound)

@@ -1,4 +1,4 @@
-//! A small picture of a pond against one that was looked at.
+//! A small picture of a pond against its reference.
 
 use super::{Droplet, FluidPainter, FluidPass, FluidStyle};
 use crate::{Backdrop, BallPainter, BallStyle, Camera, ColourTable, Drawable, Light, Renderer, Stage, Target};

@@ -8,7 +8,7 @@ use crate::{Drawable, HeightField, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 use glam::{DVec2, DVec3};
 
-/// How well particles must cover a place at the border for water to be there: half of what the middle of a shore has, since beyond
+/// Least sum of weights of particles at a wet position of the border: half of that at the middle of a shore, since beyond
 /// the border there are none.
 pub(super) const COVERED: f64 = 0.3;
 
@@ -45,13 +45,13 @@ impl WaterSides {
         Self { pipeline: descriptor.opaque(gpu), stage: *stage, buffer: None }
     }
 
-    /// Takes the water of these particles at the borders of this ground instead of that before.
+    /// Replaces the faces by those of these particles at the borders of this terrain.
     pub fn fill(&mut self, gpu: &Gpu, field: &HeightField, droplets: &[Droplet]) {
         let all = faces(&self.stage, field, droplets);
         self.buffer = (!all.is_empty()).then(|| (instances(gpu, "sides of water", &all), all.len() as u32));
     }
 
-    /// Takes those of water that lies on the device, as it is when the picture is drawn.
+    /// Replaces the faces by those of water in GPU memory, in its state when the picture is drawn.
     pub fn draw_from(&mut self, water: &DeviceWater) {
         self.buffer = water.faces();
     }

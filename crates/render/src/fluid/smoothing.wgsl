@@ -1,4 +1,4 @@
-// What the filters of depth share: they read distances, 0 where there is no fluid, and write them.
+// Bindings of the filters of depth: they read distances, 0 where there is no fluid, and write them.
 #import fluid
 
 @group(1) @binding(1) var distances: texture_2d<f32>;

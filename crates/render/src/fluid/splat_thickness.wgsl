@@ -7,7 +7,7 @@
 
 @group(1) @binding(1) var<storage, read> droplets: array<DropletInstance>;
 // How many there are, at SPLAT_COUNT.
-@group(1) @binding(2) var<storage, read> told: array<u32>;
+@group(1) @binding(2) var<storage, read> draw_args: array<u32>;
 // Four sums a pixel, and which of them are beyond what they hold.
 @group(1) @binding(3) var<storage, read_write> sums: array<atomic<u32>>;
 
@@ -37,7 +37,7 @@ fn splat(droplet: DropletInstance, quad: Quad, pixel: vec2i, size: vec2f) {
 @compute @workgroup_size(SPLAT_GROUP)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) thread: u32) {
     let size = ceil(0.5 * view.frame.xy);
-    if id.x < told[SPLAT_COUNT] {
+    if id.x < draw_args[SPLAT_COUNT] {
         let droplet = droplets[id.x];
         let quad = matter_quad(droplet);
         let box = box_of(quad, size);

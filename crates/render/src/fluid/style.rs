@@ -1,12 +1,12 @@
-//! How a fluid looks.
+//! Styles of fluids.
 
 use crate::Stage;
 use crate::shared::FluidUniforms;
 
-/// How the nearest surface of the particles is smoothed.
+/// Smoothing of the nearest surface of the particles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Smoothing {
-    /// Not at all: the particles are seen.
+    /// None: the particles are visible.
     None,
     /// Bilateral Gaussian, rows and columns, so many times: the flood paper's.
     Bilateral(u32),
@@ -15,30 +15,30 @@ pub enum Smoothing {
     NarrowRange,
 }
 
-/// How a fluid looks. Lengths are those of the world.
+/// The style of a fluid. Lengths are those of the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FluidStyle {
-    /// How depth is smoothed.
+    /// Smoothing of depth.
     pub smoothing: Smoothing,
     /// Half the width of the smoothing, m: a few radii of the particles.
     pub width: f64,
-    /// How far depths of one surface may part from pixel to pixel, m; standard deviation of the bilateral filter's range.
+    /// Largest difference of depth between pixels of one surface, m; standard deviation of the bilateral filter's range.
     pub range: f64,
-    /// What is farther than that is taken to be this much farther, m: how round edges are.
+    /// Depth difference to which larger ones are clamped, m: roundness of edges.
     pub rounding: f64,
-    /// The most pixels that smoothing looks to each side.
+    /// Largest radius of the smoothing, pixels.
     pub most_pixels: u32,
-    /// Part of red, green and blue light that is lost in a metre, 1/m.
+    /// Absorption of red, green and blue light, 1/m.
     pub absorption: [f32; 3],
-    /// What deep water gives back of full light.
+    /// Reflectance of deep water.
     pub colour: [f32; 3],
-    /// Depth over which a film of water begins to be seen, m: a thinner one does not close.
+    /// Depth from which a film of water becomes visible, m: a thinner one does not close.
     pub film: f64,
     /// Strength of the sun's highlight.
     pub highlight: f32,
     /// Its exponent: the greater, the smaller.
     pub exponent: f32,
-    /// How well foam hides what is below: 0 draws none.
+    /// Opacity of foam: 0 draws none.
     pub foam: f32,
     /// South-western and north-eastern corner, m, beyond which it is not drawn: where the ground is cut off, water is too.
     pub within: Option<[[f64; 2]; 2]>,
@@ -63,13 +63,13 @@ impl FluidStyle {
         }
     }
 
-    /// The same water so much more turbid, or clearer: seen so many times shallower.
+    /// The same water with its turbidity multiplied.
     pub fn turbid(self, times: f64) -> Self {
         Self { absorption: self.absorption.map(|part| part * times as f32), film: self.film / times, ..self }
     }
 
     /// The same as shaders have it.
-    pub(super) fn look(&self, stage: &Stage) -> FluidUniforms {
+    pub(super) fn uniforms(&self, stage: &Stage) -> FluidUniforms {
         let [red, green, blue] = self.absorption;
         let [own_red, own_green, own_blue] = self.colour;
         let [width, range, rounding] = [self.width, self.range, self.rounding].map(|length| stage.length(length));

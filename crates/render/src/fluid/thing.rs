@@ -24,9 +24,9 @@ pub struct Fluid {
     pub(super) along_columns: wgpu::Buffer,
     pub(super) droplets: Vec<Batch>,
     layers: Option<Layers>,
-    /// Whether compute shaders draw the particles.
+    /// True where compute shaders draw the particles.
     splats: bool,
-    /// Where passes are timed, what each took.
+    /// Times of the passes, where they are measured.
     times: Option<Vec<(FluidPass, Duration)>>,
     /// A pass that a test leaves out.
     #[cfg(test)]
@@ -39,7 +39,7 @@ impl Fluid {
             painter,
             stage,
             style,
-            settings: uniform(gpu, "fluid", &style.look(&stage)),
+            settings: uniform(gpu, "fluid", &style.uniforms(&stage)),
             along_rows: uniform(gpu, "along rows", &Direction { step: [1, 0], unused: [0; 2] }),
             along_columns: uniform(gpu, "along columns", &Direction { step: [0, 1], unused: [0; 2] }),
             droplets: Vec::new(),
@@ -51,18 +51,18 @@ impl Fluid {
         }
     }
 
-    /// Takes these particles instead of those before. What has no finite place is left out.
+    /// Replaces the particles. Those without finite position are left out.
     pub fn fill(&mut self, gpu: &Gpu, droplets: impl IntoIterator<Item = Droplet>) {
         let all: Vec<DropletInstance> = droplets.into_iter().filter_map(|droplet| droplet.drawn(&self.stage)).collect();
         self.droplets = all.chunks(MOST).map(|part| Batch::counted(gpu, part)).collect();
     }
 
-    /// Takes water that lies on the device instead of the particles before, as it is when the picture is drawn.
+    /// Replaces the particles by water in GPU memory, in its state when the picture is drawn.
     pub fn draw_from(&mut self, water: &DeviceWater) {
         self.droplets = water.droplets().into_iter().collect();
     }
 
-    /// Has compute shaders draw the particles, or raster units, which do without this: no GPU has been measured with the former.
+    /// Draws the particles by compute shaders instead of raster units, the default: no GPU has been measured with the former.
     pub fn splat(&mut self, splats: bool) {
         self.splats = splats;
     }
@@ -78,7 +78,7 @@ impl Fluid {
         self.times.as_deref().unwrap_or_default()
     }
 
-    /// Where compute shaders draw the particles, if they do.
+    /// Buffers of the compute shaders that draw the particles, if they do.
     pub(super) fn splats<'a>(&self, layers: &'a Layers) -> Option<&'a Splats> {
         layers.splats.as_ref().filter(|_| self.splats)
     }
@@ -110,7 +110,7 @@ impl Fluid {
         let next = frame.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let encoder = std::mem::replace(frame.encoder, next);
         frame.gpu.queue.submit([encoder.finish()]);
-        // A lost device is told of where the picture is read.
+        // A lost device is an error where the picture is read.
         let _ = frame.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
 }

@@ -11,15 +11,15 @@ use std::collections::HashMap;
 pub(super) const DISC: f64 = 1.4;
 /// Their thickness over their width.
 pub(super) const FLATNESS: f64 = 0.12;
-/// How far a particle looks, and its water is spread, in distances between particles.
+/// Radius of the neighbour search, and of the spread of a particle's water, in spacings.
 pub(super) const REACH: f64 = 2.0;
-/// Steeper than this no water stands.
+/// Steepest slope of a water surface.
 pub(super) const STEEPEST: f64 = 1.0;
-/// How often it is looked whether some does: each time what is within reach of each particle.
+/// Passes of the limitation of slopes, each over the neighbours of each particle.
 const SETTLINGS: usize = 12;
-/// How little neighbours must be spread for planes to be level, in squares of their distance: spread evenly they have 0.4.
+/// Least second moment of neighbours for a fitted plane, in squares of their distance: 0.4 where they are even.
 pub(super) const LEVEL: f64 = 0.02;
-/// How fast water runs together within a disc's reach when air begins to be trapped, and when it is to the full, m/s.
+/// Convergence of the water within a disc's reach at which air begins to be trapped, and from which it is to the full, m/s.
 pub(super) const TRAPPED: [f64; 2] = [1.2, 5.0];
 /// Sum of poly6 weights (3.1 in closed water) from which on there is foam, and from which on all of it: drops that run alone have none.
 pub(super) const CLOSED: [f64; 2] = [1.6, 2.8];
@@ -28,7 +28,7 @@ pub(super) const ENERGY: [f64; 2] = [0.5, 6.0];
 /// Time in which foam falls to a third, s.
 pub(super) const LIFE: f64 = 4.0;
 
-/// Makes discs that lie in the water's surface of the particles of shallow water, and balls of those in the air. Remembers the
+/// Makes discs in the water's surface from the particles of shallow water, and balls from those in the air. Stores the
 /// foam on them from picture to picture, so that it goes with the water and fades.
 #[derive(Debug, Clone, Default)]
 pub struct Water {
@@ -122,7 +122,7 @@ fn on_ground(set: &ParticleSet, ground: &[usize], slope: impl Fn([f64; 2]) -> [f
     droplets
 }
 
-/// Takes down what stands steeper than water can: where scheme sph-swe piles particles up before a wall, it finds columns of great
+/// Limits the slope of the surface: where scheme sph-swe piles particles up before a wall, it finds columns of great
 /// height. The ground's slope comes on top.
 fn settle(cells: &Cells<2>, columns: &mut Vec<Column>) {
     let bounded = |own: &Column, all: &[Column]| {
@@ -179,7 +179,7 @@ fn foam_around(own: &Column, cells: &Cells<2>, columns: &[Column], droplets: &[D
     sum / weights
 }
 
-/// Where a value is between two: 0 at the first, 1 at the second (Ihmsen et al. 2012, eq. 1).
+/// Linear step between two values: 0 at the first, 1 at the second (Ihmsen et al. 2012, eq. 1).
 fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }

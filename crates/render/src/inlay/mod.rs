@@ -6,7 +6,7 @@
 use crate::{Target, shaders};
 use corpuscle_gpu::{Gpu, GpuError, GroupLayout, Image, texture_2d, wgpu};
 
-/// Lays pictures into passes that draw into one format; holds what all pictures share.
+/// Lays pictures into passes that draw into one format; holds the pipelines of all.
 #[derive(Debug)]
 pub struct InlayPainter {
     finished: wgpu::RenderPipeline,

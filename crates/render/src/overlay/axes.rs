@@ -6,7 +6,7 @@ use corpuscle_drawing::bars::label;
 use corpuscle_drawing::svg::Anchor;
 use corpuscle_drawing::ticks;
 
-/// Length of a tick, how far from the edge its number stands, and the axis's name from the numbers, CSS pixels.
+/// Length of a tick, distance of its number from the edge, and of the axis's name from the numbers, CSS pixels.
 const TICK: f64 = 6.0;
 const NUMBER: f64 = 18.0;
 const NAME: f64 = 24.0;

@@ -1,6 +1,6 @@
-//! The sides of a flat box, what stands in it, and marked places.
+//! The sides of a flat box, pistons, and marks.
 
-use super::{Border, LineLook, Mark, Page};
+use super::{Border, LineStyle, Mark, Page};
 
 /// Thickness of a piston, width of its rod, and how far that reaches beyond its length, CSS pixels.
 const PISTON: f64 = 16.0;
@@ -10,24 +10,24 @@ const GRIP: f64 = 10.0;
 const MARK: f64 = 4.5;
 const RING: f64 = 2.0;
 
-impl LineLook {
-    /// Name of its style.
+impl LineStyle {
+    /// Its class in the style sheet.
     pub(super) fn class(self) -> &'static str {
         match self {
             Self::Wall => "wall",
-            Self::HotWall => "wall-hot",
-            Self::Open => "wall-open",
+            Self::ThermalWall => "wall-hot",
+            Self::Periodic => "wall-open",
             Self::Partition => "partition",
-            Self::Way => "way",
+            Self::Trajectory => "trajectory",
         }
     }
 
-    /// Half its width, CSS pixels: what lies at a wall touches its edge.
+    /// Half its width, CSS pixels: balls at a wall touch its inner edge.
     fn half_width(self) -> f64 {
         match self {
             Self::Wall => 1.5,
-            Self::HotWall => 2.0,
-            Self::Open | Self::Partition | Self::Way => 0.0,
+            Self::ThermalWall => 2.0,
+            Self::Periodic | Self::Partition | Self::Trajectory => 0.0,
         }
     }
 }
@@ -40,10 +40,10 @@ pub(super) fn draw(page: &mut Page<'_>, borders: &[Border]) {
         }
     }
     for border in borders {
-        if let Border::Line { look, ends, outwards } = border {
+        if let Border::Line { style, ends, outwards } = border {
             let Some(ends) = places(page, *ends) else { continue };
-            let moved = ends.map(|end| beyond(end, *outwards, look.half_width()));
-            page.svg.line(moved[0], moved[1], look.class());
+            let moved = ends.map(|end| beyond(end, *outwards, style.half_width()));
+            page.svg.line(moved[0], moved[1], style.class());
         }
     }
 }
@@ -67,26 +67,26 @@ pub(super) fn draw_mark(page: &mut Page<'_>, mark: &Mark) {
     match mark {
         Mark::Start(place) => {
             if let Some(place) = page.place(*place) {
-                page.svg.circle(place, MARK, "way-start");
+                page.svg.circle(place, MARK, "trajectory-start");
             }
         }
         Mark::Ring(place, radius) => {
             let beside = [place[0] + radius, place[1], place[2]];
             if let (Some(place), Some(beside)) = (page.place(*place), page.place(beside)) {
                 let radius = (beside[0] - place[0]).hypot(beside[1] - place[1]);
-                page.svg.circle(place, (radius + RING).max(MARK), "way-end");
+                page.svg.circle(place, (radius + RING).max(MARK), "trajectory-end");
             }
         }
     }
 }
 
-/// Two places, m, on the page.
+/// Two points, m, on the page.
 fn places(page: &Page<'_>, ends: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     let [one, other] = ends.map(|[x, y]| page.place([x, y, 0.0]));
     Some([one?, other?])
 }
 
-/// A place on the page moved along a direction of the world, whose y is up.
+/// A position on the page moved along a direction of the world, whose y is up.
 fn beyond([x, y]: [f64; 2], [right, up]: [f64; 2], far: f64) -> [f64; 2] {
     [x + far * right, y - far * up]
 }

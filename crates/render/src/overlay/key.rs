@@ -1,14 +1,14 @@
-//! What colours and lines mean.
+//! The legend of colours and lines.
 
-use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineLook, MARGIN, Overlay, Page};
+use super::{Axes, HEIGHT, Key, KeyPlace, LETTER, LineStyle, MARGIN, Overlay, Page};
 use crate::ColourTable;
 use corpuscle_drawing::bars::value_bar;
 use corpuscle_drawing::colour::hex;
 use corpuscle_drawing::svg::Anchor;
 
-/// Width of a bar of colours.
+/// Width of a colour bar.
 const BAR: f64 = 230.0;
-/// Height of a row, and space between two things in one.
+/// Height of a row, and space between two entries in one.
 const ROW: f64 = 23.0;
 const GAP: f64 = 30.0;
 /// Where a column begins to the right of the axes, and a row below them.
@@ -18,11 +18,11 @@ const BELOW: f64 = 66.0;
 const SAMPLE: f64 = 24.0;
 const TO_NAME: f64 = 9.0;
 
-/// One thing that is told.
+/// An entry of the legend.
 enum Entry<'a> {
     Values(&'a str, &'a ColourTable),
     Kind(&'a str, [u8; 3]),
-    Line(LineLook, &'a str),
+    Line(LineStyle, &'a str),
 }
 
 impl Overlay {
@@ -32,7 +32,7 @@ impl Overlay {
             Some(Key::Kinds(kinds)) => kinds.iter().map(|(name, colour)| Entry::Kind(name, *colour)).collect(),
             None => Vec::new(),
         };
-        entries.extend(self.lines.iter().map(|(look, name)| Entry::Line(*look, name)));
+        entries.extend(self.lines.iter().map(|(style, name)| Entry::Line(*style, name)));
         if entries.is_empty() {
             return;
         }
@@ -88,7 +88,7 @@ impl Entry<'_> {
         }
     }
 
-    /// Draws it from a place on; in a row the name of values stands before their bar, in a column above it.
+    /// Draws it from a position on; in a row the name of values stands before their bar, in a column above it.
     fn draw(&self, page: &mut Page<'_>, [left, top]: [f64; 2], in_a_row: bool) {
         let name_at = |from: f64| [from + TO_NAME, top + 13.0];
         match self {
@@ -103,8 +103,8 @@ impl Entry<'_> {
                 page.svg.circles([([left + 7.0, top + 8.0], 7.0)], &hex(*colour), "balls");
                 page.svg.text(name_at(left + 14.0), Anchor::Start, "over", name);
             }
-            Self::Line(look, name) => {
-                page.svg.line([left, top + 8.0], [left + SAMPLE, top + 8.0], look.class());
+            Self::Line(style, name) => {
+                page.svg.line([left, top + 8.0], [left + SAMPLE, top + 8.0], style.class());
                 page.svg.text(name_at(left + SAMPLE), Anchor::Start, "over", name);
             }
         }

@@ -1,4 +1,4 @@
-//! What lies over a picture: title, time, the key of colours, scale bar, axes.
+//! The overlay of a picture: title, time, legend, scale bar, axes.
 
 mod axes;
 mod borders;
@@ -14,31 +14,31 @@ use corpuscle_gpu::Image;
 
 /// Height of a picture in CSS pixels: letters keep their part of it.
 const HEIGHT: f64 = 720.0;
-/// Space between the picture's border and what lies over it.
+/// Margin between the picture's border and the overlay.
 const MARGIN: f64 = 26.0;
 /// Width of a letter.
 const LETTER: f64 = 7.0;
 
-/// What lies over a picture. Empty texts are left out.
+/// The overlay of a picture. Empty texts are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overlay {
-    /// What is seen.
+    /// Title.
     pub title: String,
     /// The time.
     pub time: String,
     /// What colours mean.
     pub key: Option<Key>,
-    /// Where that is told.
+    /// Position of the legend.
     pub key_place: KeyPlace,
-    /// What lines mean, told with the colours.
-    pub lines: Vec<(LineLook, String)>,
-    /// Something to know about the picture, in small letters in its lower right corner.
+    /// Legend of the lines, drawn with that of the colours.
+    pub lines: Vec<(LineStyle, String)>,
+    /// A remark, in small letters in the lower right corner.
     pub remark: String,
     /// The sides of a flat box, and what stands in it.
     pub borders: Vec<Border>,
-    /// Places that are marked.
+    /// Marks.
     pub marks: Vec<Mark>,
-    /// Texts at places, m.
+    /// Texts at positions, m.
     pub labels: Vec<([f64; 3], String)>,
     /// A bar of a round length, with this unit (empty in reduced units), where the lens is to scale.
     pub scale_bar: Option<String>,
@@ -55,7 +55,7 @@ pub enum Key {
     Kinds(Vec<(String, [u8; 3])>),
 }
 
-/// Where the key of colours and lines stands.
+/// Position of the legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum KeyPlace {
     /// In the lower left corner of the picture.
@@ -67,50 +67,50 @@ pub enum KeyPlace {
     Beside,
 }
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LineLook {
+pub enum LineStyle {
     /// A wall.
     Wall,
-    /// A wall at a temperature.
-    HotWall,
-    /// No wall: a dashed line.
-    Open,
+    /// A thermal wall.
+    ThermalWall,
+    /// A periodic side: a dashed line.
+    Periodic,
     /// A thin wall inside.
     Partition,
-    /// A way.
-    Way,
+    /// A trajectory.
+    Trajectory,
 }
 
 /// A side of a flat box, or what stands in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Border {
-    /// A line between two places, m, moved out of the box by half its width.
+    /// A line between two points, m, moved out of the box by half its width.
     Line {
-        /// How it looks.
-        look: LineLook,
-        /// Where it begins and ends, m.
+        /// Its style.
+        style: LineStyle,
+        /// Its ends, m.
         ends: [[f64; 2]; 2],
-        /// The way out of the box, of length 1; 0 inside.
+        /// Outward unit normal of the box; 0 inside.
         outwards: [f64; 2],
     },
     /// A block that moves, with a rod.
     Piston {
-        /// Where the face that looks into the box begins and ends, m.
+        /// Ends of its inner face, m.
         ends: [[f64; 2]; 2],
-        /// The way out of the box, of length 1.
+        /// Outward unit normal of the box.
         outwards: [f64; 2],
         /// Length of the rod, m.
         rod: f64,
     },
 }
 
-/// A marked place.
+/// A mark.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mark {
-    /// A white dot: where a way begins.
+    /// A white dot: the start of a trajectory.
     Start([f64; 3]),
-    /// A ring round something of this radius, m: what went the way.
+    /// A ring round a ball of this radius, m: the ball of the trajectory.
     Ring([f64; 3], f64),
 }
 
@@ -123,7 +123,7 @@ pub struct Axes {
     pub to: [f64; 3],
     /// Unit of lengths; empty in reduced units.
     pub unit: String,
-    /// How many times larger than they are lengths along z are drawn.
+    /// Exaggeration of lengths along z.
     pub heights: f64,
 }
 
@@ -135,7 +135,7 @@ struct Page<'a> {
     camera: &'a Camera,
 }
 
-/// Where things are on a page.
+/// Projection of the world to a page.
 struct Sheet<'a> {
     size: [f64; 2],
     stage: &'a Stage,
@@ -143,7 +143,7 @@ struct Sheet<'a> {
 }
 
 impl Sheet<'_> {
-    /// Where a place of the world, m, is on the page.
+    /// Position on the page of a point of the world, m.
     fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         let [width, height] = self.size;
         let [x, y] = self.camera.project(self.stage, width / height, point)?;
@@ -152,7 +152,7 @@ impl Sheet<'_> {
 }
 
 impl Page<'_> {
-    /// Where a place of the world, m, is on the page.
+    /// Position on the page of a point of the world, m.
     fn place(&self, point: [f64; 3]) -> Option<[f64; 2]> {
         Sheet { size: self.size, stage: self.stage, camera: self.camera }.place(point)
     }
@@ -208,7 +208,7 @@ fn panel(svg: &mut Svg, place: [f64; 2], size: [f64; 2]) {
     svg.rectangle(place, size, "panel");
 }
 
-/// What the numbers of axes are divided by, and its name, where the longest has this length.
+/// Divisor of the numbers of axes, and prefix of their unit, where the longest axis has this length.
 fn axis_unit(longest: f64, unit: &str) -> (f64, String) {
     if unit.is_empty() {
         return (1.0, String::new());

@@ -1,4 +1,4 @@
-//! From a signed distance to a mesh.
+//! Meshes from signed distances.
 //!
 //! Dual contouring (Ju, Losasso, Schaefer & Warren, SIGGRAPH 2002): a vertex in each cell of a grid that the surface crosses, a
 //! quad for each edge of the grid that it crosses. Vertices are moved to where the planes through a cell's crossings meet by
@@ -14,7 +14,7 @@ const FEWEST: usize = 7;
 const HALVINGS: usize = 12;
 const MOVES: usize = 24;
 
-/// Corners of triangles, three by three: place, m, and the way out.
+/// Corners of triangles, three by three: position, m, and outward normal.
 pub(super) type Corners = Vec<([f64; 3], [f64; 3])>;
 
 type Point = [f64; 3];
@@ -39,9 +39,9 @@ pub(super) fn mesh(shape: &SolidShape) -> Corners {
         let quad = if inside_first { quad } else { [quad[3], quad[2], quad[1], quad[0]] };
         let centre: Point = std::array::from_fn(|k| quad.iter().map(|corner| corner[k]).sum::<f64>() / 4.0);
         let corner = |number: usize| {
-            // Looked at a little within its quad, so that an edge keeps its two sides.
+            // Sampled a little within its quad, so that an edge keeps its two normals.
             let at: Point = std::array::from_fn(|k| 0.9 * quad[number][k] + 0.1 * centre[k]);
-            (quad[number], grid.way_out(at))
+            (quad[number], grid.normal_at(at))
         };
         corners.extend([0, 1, 2, 0, 2, 3].map(corner));
     }
@@ -81,8 +81,8 @@ impl<'a> Grid<'a> {
         std::array::from_fn(|k| self.from[k] + self.cell[k] * node[k] as f64)
     }
 
-    /// The way out of the solid at a place: the slope of the distance, of length 1.
-    fn way_out(&self, at: Point) -> Point {
+    /// The outward unit normal at a position: the normalised gradient of the distance.
+    fn normal_at(&self, at: Point) -> Point {
         let step = 0.02 * self.cell.iter().copied().fold(f64::INFINITY, f64::min);
         let slope: Point = std::array::from_fn(|k| {
             let [mut before, mut after] = [at; 2];
@@ -110,7 +110,7 @@ impl<'a> Grid<'a> {
                     continue;
                 }
                 let at = self.crossing(self.place(node), axis, inside_first);
-                let plane = (at, self.way_out(at));
+                let plane = (at, self.normal_at(at));
                 self.cells_round(&(node, axis))
                     .into_iter()
                     .flatten()

@@ -10,7 +10,7 @@ use crate::{Drawable, Renderer, Stage, Through, shaders, static_layer};
 use corpuscle_gpu::{Gpu, GroupLayout, SharedStruct, wgpu};
 use corpuscle_model::SolidShape;
 
-/// What a solid looks like.
+/// Style of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SolidStyle {
     /// Opaque: colour (sRGB), and how much the surface shines, from 0 to 1.
@@ -32,7 +32,7 @@ pub struct Solid {
     state: u64,
 }
 
-/// What is behind a thing that lets light through, as a group.
+/// The opaque background of a transparent thing, as a bind group.
 #[derive(Debug)]
 pub(crate) struct Behind {
     pub(crate) layout: GroupLayout,

@@ -1,4 +1,4 @@
-//! The ground as a shaded mesh, finer near the eye.
+//! The terrain as a shaded mesh, finer near the camera.
 
 mod field;
 mod natural;
@@ -27,7 +27,7 @@ pub struct Terrain {
     plain: wgpu::RenderPipeline,
     /// True where it is drawn without shadows and grain.
     quick: bool,
-    /// What it looks like: another number after each change, and for each ground.
+    /// Number of its appearance: a new one after each change, and for each terrain.
     state: u64,
     cast: wgpu::RenderPipeline,
     layout: GroupLayout,
@@ -108,7 +108,7 @@ impl Terrain {
         Ok(())
     }
 
-    /// Whether it is drawn without shadows and grain from now on: much less work.
+    /// Sets whether it is drawn without shadows and grain: much less work.
     pub fn draw_quickly(&mut self, quick: bool) {
         if quick != self.quick {
             self.state = static_layer::new_state();
@@ -196,7 +196,7 @@ fn upload_heights(gpu: &Gpu, stage: &Stage, field: &HeightField) -> Result<wgpu:
     upload(gpu, "heights", field.size(), wgpu::TextureFormat::R32Float, bytemuck::cast_slice(&heights))
 }
 
-/// Slopes; beyond all bounds at nodes without height, so that all quads that meet there are told from the others.
+/// Slopes; beyond all bounds at nodes without height, so that all quads that meet there can be recognised.
 fn upload_slopes(gpu: &Gpu, field: &HeightField) -> Result<wgpu::TextureView, RenderError> {
     let slope =
         |index: usize| if field.heights[index].is_finite() { field.slope(index) } else { [f16::MAX.to_f32(), 0.0] };

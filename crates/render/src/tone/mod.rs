@@ -7,7 +7,7 @@ use crate::target::PICTURE_FORMAT;
 use crate::{Target, shaders};
 use corpuscle_gpu::{Gpu, GroupLayout, Image, texture_2d, wgpu};
 
-/// Averages samples, presses highlights, lays the overlay over.
+/// Averages samples, compresses highlights, and lays the overlay over.
 #[derive(Debug)]
 pub(crate) struct Tone {
     pipeline: wgpu::RenderPipeline,

@@ -24,7 +24,7 @@ fn brightness(colour: vec3f) -> f32 {
     return dot(colour, vec3f(0.299, 0.587, 0.114));
 }
 
-// A pixel whose neighbours' brightness tells of an edge through it, mixed along the edge: with one sample a pixel edges are steps
+// A pixel whose neighbours' brightness shows an edge through it, mixed along the edge: with one sample a pixel edges are steps
 // otherwise (FXAA: Lottes 2009, the short variant, with pixels in place of samples between them).
 fn softened(pixel: vec2u) -> vec3f {
     let last = vec2i(textureDimensions(light)) - 1;

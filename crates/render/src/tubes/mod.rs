@@ -1,4 +1,4 @@
-//! Round tubes along lines: the way of a ball, the edges of a box.
+//! Round tubes along lines: trajectories, edges of a box.
 
 use crate::buffer::instances;
 use crate::colour::linear;
@@ -7,7 +7,7 @@ use crate::shared::{TubeInstance, buffer_layout};
 use crate::{Drawable, Renderer, Stage, shaders};
 use corpuscle_gpu::{Gpu, SharedStruct, wgpu};
 
-/// How a line looks.
+/// Style of a tube.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TubeStyle {
     /// Colour, sRGB.
@@ -20,7 +20,7 @@ pub struct TubeStyle {
     pub shaded: bool,
 }
 
-/// Draws tubes; holds what all of them share.
+/// Draws tubes; holds the pipelines of all.
 #[derive(Debug)]
 pub struct TubePainter {
     opaque: wgpu::RenderPipeline,

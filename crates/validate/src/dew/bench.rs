@@ -35,7 +35,7 @@ const SPACING: f64 = 2e-3;
 
 const GLASS: Material = Material { conductivity: 1.4, heat_capacity: 750.0, density: 2500.0 };
 
-/// After so many steps the lattice has gone. A step at a time; on a GPU more, as each look brings the air back.
+/// After so many steps the lattice has gone. A step at a time; on a GPU more, as each check of the time reads the air back.
 const MEASURING: Measuring = Measuring { name: "", dimensions: 3, settling: 40, steps: [1.001, 20.0], seconds: 8.0 };
 
 fn rate(name: &'static str, side: usize, options: &BenchOptions) -> Vec<Rate> {

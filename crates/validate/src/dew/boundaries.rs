@@ -23,7 +23,7 @@ pub(super) const BOUNDARIES: Case = Case {
     run: boundaries,
 };
 
-/// Distance of particles, m, and speed of sound, m/s.
+/// Spacing, m, and speed of sound, m/s.
 const D: f64 = 1e-3;
 const SOUND: f64 = 1.0;
 
@@ -102,7 +102,7 @@ fn pressed() -> [Pressed; 4] {
     ]
 }
 
-/// What came of it.
+/// Results of a run.
 struct Found {
     /// Signed distance of the deepest air at any time, in spacings.
     deepest: f64,
@@ -177,14 +177,14 @@ fn press(case: &Pressed, walls: WallTreatment) -> Result<Found, ModelError> {
     dew.stir(|_| case.velocity);
     let mut dew = ready(dew)?;
     let (mut deepest, mut gaps, mut layers, mut spent) = (f64::INFINITY, Vec::new(), Vec::new(), 0.0);
-    let looks = (150.0 / reduction()) as u32;
-    for look in 1..=looks {
+    let samples = (150.0 / reduction()) as u32;
+    for sample in 1..=samples {
         let start = Instant::now();
-        advance(&mut dew, f64::from(look) / f64::from(looks) * LASTING / reduction() * D / SOUND)?;
+        advance(&mut dew, f64::from(sample) / f64::from(samples) * LASTING / reduction() * D / SOUND)?;
         spent += start.elapsed().as_secs_f64();
         let distances: Vec<f64> = dew.air().iter().map(|particle| (case.distance)(particle.position)).collect();
         deepest = distances.iter().copied().fold(deepest, f64::min);
-        if 2 * look > looks {
+        if 2 * sample > samples {
             let room = case.size.iter().product::<f64>() - solid_volume;
             gaps.push(gap(case, &distances, room));
             layers.push(first_layer(dew.air(), &distances));

@@ -1,4 +1,4 @@
-//! Water and energy of a run in which everything happens that moves them.
+//! Balances of water and energy of a run with all processes.
 
 use super::{advance, ledger_rounding, ready, rows};
 use crate::{Case, Options, Row};

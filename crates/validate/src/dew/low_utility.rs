@@ -1,4 +1,4 @@
-//! What air of low utility, taken out, changes: next to nothing but the time.
+//! Removal of air of low utility: results hardly change, the computing time does.
 
 use super::ledger::{LOW_UTILITY, SCENE, dew_by_chance, gauge};
 use super::{advance, rows};

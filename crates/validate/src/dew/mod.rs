@@ -48,7 +48,7 @@ pub(crate) const CASES: &[Case] = &[
     plate::PLATE,
 ];
 
-/// Moves air on to a time.
+/// Advances air to a time.
 fn advance(dew: &mut Dew, time: f64) -> Result<(), ModelError> {
     dew.advance_to(time, &AtomicBool::new(false))
 }

@@ -1,4 +1,4 @@
-//! Heat and vapour through air whose particles stand in no order: settled, stirred, or at random.
+//! Heat and vapour through air with disordered particles: settled, stirred, or at random.
 
 use super::{advance, ledger_rounding, ready, rows};
 use crate::device::{is_reduced, reduced};
@@ -54,7 +54,7 @@ const STIRRED: f64 = 0.5;
 const SPEED: f64 = 0.02;
 
 impl Packing {
-    /// Arranges the air of a column, periodic across over a `width`; `start` tells temperature, K, and vapour at a place.
+    /// Arranges the air of a column, periodic across over a `width`; `start` gives temperature, K, and vapour at a position.
     pub(super) fn arrange(
         self,
         dew: &mut Dew,

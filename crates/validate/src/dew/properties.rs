@@ -43,7 +43,7 @@ fn fluxes(gap: &Gap, conductivity: impl Fn(f64) -> f64, diffused: impl Fn(f64) -
 }
 
 fn measure() -> Result<Vec<Row>, ModelError> {
-    // The air's properties are told at the warm plate, so that those of the cold one are far from them.
+    // The air's properties are given at the warm plate, so that those of the cold one are far from them.
     let plates = [5.0, 45.0].map(|celsius| ZERO_CELSIUS + celsius);
     let pressure = 80_000.0;
     let ambient = HumidAir::with_relative_humidity(plates[1], pressure, 0.0);

@@ -1,4 +1,4 @@
-//! Drops on an upright pane: when they slide, what merging keeps, and how sizes are spread.
+//! Drops on an upright pane: onset of sliding, conservation in merging, and distribution of sizes.
 
 use super::rows;
 use crate::device::refuse_on_gpu;
@@ -209,7 +209,7 @@ fn largest_speed_error() -> f64 {
     HELD.into_iter().map(error).fold(0.0, f64::max)
 }
 
-/// How far the way in 0.1 s differs in one call and in a thousand.
+/// Difference of the distance in 0.1 s between one call and a thousand.
 fn largest_way_error() -> f64 {
     let way = |case, calls: u32| {
         let (mut drops, _) = heavy(case);

@@ -92,21 +92,21 @@ const GAP: f64 = 0.005;
 const WIDTH: f64 = 0.006;
 const UNEVEN_WIDTH: f64 = 0.0044;
 
-/// The swing outside: W/(m2 K), s, °C, K; and after how many periods it is looked at for one, at reduced and full size.
+/// The swing outside: W/(m2 K), s, °C, K; and after how many periods it is sampled for one, at reduced and full size.
 const TRANSFER: f64 = 200.0;
 const PERIOD: f64 = 16.0;
 const MEAN: f64 = START;
 const AMPLITUDE: f64 = 20.0;
 const PERIODS: [u32; 2] = [1, 8];
 
-/// Periods before the one that is looked at; at reduced size the swing has not settled then.
+/// Periods before the one that is sampled; at reduced size the swing has not settled then.
 fn periods_before() -> u32 {
     if is_reduced() { PERIODS[0] } else { PERIODS[1] }
 }
 
-/// Rows of the swing's table in a period, by which its amplitude is 5e-5 smaller, and looks at the slab.
+/// Rows of the swing's table in a period, by which its amplitude is 5e-5 smaller, and samples of the slab.
 const ROWS: u32 = 256;
-const LOOKS: u32 = 32;
+const SAMPLES: u32 = 32;
 
 /// The slab after the swing, and the largest error of the swing in it over that outside.
 fn swing(side: &str, spacing: f64, width: f64, factor: f64) -> Result<(Dew, f64), ModelError> {
@@ -130,8 +130,8 @@ fn swing(side: &str, spacing: f64, width: f64, factor: f64) -> Result<(Dew, f64)
     let inner = inner_swing();
     let swings: Vec<Complex64> = depths.iter().map(|depth| inner * (wave_number(SLAB) * depth).cosh()).collect();
     let mut worst = 0.0_f64;
-    for look in 0..LOOKS {
-        advance(&mut dew, PERIOD / factor * (f64::from(periods_before()) + f64::from(look) / f64::from(LOOKS)))?;
+    for sample in 0..SAMPLES {
+        advance(&mut dew, PERIOD / factor * (f64::from(periods_before()) + f64::from(sample) / f64::from(SAMPLES)))?;
         let angle = Complex64::cis(TAU * factor * dew.stepped_until() / PERIOD);
         for (swing, kelvin) in swings.iter().zip(dew.temperatures()) {
             worst = worst.max(((kelvin - ZERO_CELSIUS - MEAN) / AMPLITUDE - (swing * angle).re).abs());

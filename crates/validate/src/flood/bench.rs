@@ -76,7 +76,7 @@ pub(crate) const BENCHES: &[Bench] = &[
 /// Water and the ground that it waves over.
 pub type BenchWater = (Box<dyn FloodModel>, Arc<Terrain>);
 
-/// The water of a bench of the flood, by its name: for whoever draws it. None for any other bench.
+/// The water of a bench of the flood, by its name, to be drawn. None for any other bench.
 ///
 /// # Errors
 /// Those of setting it up.
@@ -90,7 +90,7 @@ pub fn bench_water(name: &str) -> Result<Option<BenchWater>, ModelError> {
     })
 }
 
-/// Two steps at a time; 64 on a GPU, as each look brings the water back.
+/// Two steps at a time; 64 on a GPU, as each sample brings the water back.
 const MEASURING: Measuring = Measuring { name: "", dimensions: 2, settling: 1, steps: [2.0, 64.0], seconds: 10.0 };
 
 fn sph_swe_rate(name: &'static str, particles: usize, options: &BenchOptions) -> Vec<Rate> {
@@ -134,7 +134,7 @@ fn ground(particles: usize) -> Arc<Terrain> {
     Arc::new(Terrain::gridded(bounds, 2.0, |x, y| 0.2 * (0.31 * x).sin() * (0.23 * y).cos()))
 }
 
-/// Water between walls with particles 1 m apart, without friction. Its maps are never looked at.
+/// Water between walls with particles 1 m apart, without friction. Its maps are not used.
 fn basin(scheme: Scheme) -> Settings {
     Settings {
         scheme,

@@ -1,22 +1,22 @@
-//! Reading what was measured, and watching gauges to compare with it.
+//! Reading of measured series, and sampling of gauges to compare with them.
 
 use corpuscle_model::{AdvanceObserver, Chart, ChartAxis, ChartSeries, ChartStyle, Model, ModelError, ModelProgress};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The gauges of a flood, looked at in even steps of time from its start.
+/// The gauges of a flood, sampled at equal intervals from its start.
 pub(super) struct Watched {
-    /// Time between looks, s.
-    look: f64,
+    /// Interval of the samples, s.
+    interval: f64,
     rows: Vec<Vec<f64>>,
 }
 
 impl AdvanceObserver for Watched {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         // The nearest multiple may be the time itself.
-        let nearest = (time / self.look).round();
-        let next = if nearest * self.look > time { nearest } else { nearest + 1.0 };
-        Some(next * self.look)
+        let nearest = (time / self.interval).round();
+        let next = if nearest * self.interval > time { nearest } else { nearest + 1.0 };
+        Some(next * self.interval)
     }
 
     fn gauges(&mut self, _: f64, row: &[f64]) {
@@ -29,36 +29,37 @@ impl AdvanceObserver for Watched {
 }
 
 impl Watched {
-    /// Runs a flood from its start to `until` s and looks at its gauges every `look` s.
-    pub fn run(flood: &mut impl Model, until: f64, look: f64) -> Result<Self, ModelError> {
-        let mut watched = Self { look, rows: vec![flood.gauge_row()] };
-        let last = (until / look).round() * look;
+    /// Runs a flood from its start to `until` s and samples its gauges every `interval` s.
+    pub fn run(flood: &mut impl Model, until: f64, interval: f64) -> Result<Self, ModelError> {
+        let mut watched = Self { interval, rows: vec![flood.gauge_row()] };
+        let last = (until / interval).round() * interval;
         flood.advance_with(last, &AtomicBool::new(false), &mut watched)?;
         Ok(watched)
     }
 
-    /// What the looks saw, from the start on, and when, s.
+    /// Times, s, and rows of the samples from the start on.
     pub fn rows(&self) -> impl Iterator<Item = (f64, &[f64])> {
-        self.rows.iter().enumerate().map(|(number, row)| (number as f64 * self.look, &row[..]))
+        self.rows.iter().enumerate().map(|(number, row)| (number as f64 * self.interval, &row[..]))
     }
 
-    /// What a column read at `time` s, linearly between the looks before and after.
+    /// Value of a column at `time` s, linear between the samples before and after.
     pub fn at(&self, time: f64, column: usize) -> f64 {
         let last = (self.rows.len() - 1) as f64;
-        let look = (time / self.look).clamp(0.0, last - 1e-9);
-        let (before, part) = (look as usize, look.fract());
+        let sample = (time / self.interval).clamp(0.0, last - 1e-9);
+        let (before, part) = (sample as usize, sample.fract());
         self.rows[before][column] * (1.0 - part) + self.rows[before + 1][column] * part
     }
 
-    /// Time of the first look at which a column was `least` or more, s; infinite where none was.
+    /// Time of the first sample at which a column was `least` or more, s; infinite where none was.
     pub fn first(&self, column: usize, least: f64) -> f64 {
-        let look = self.rows.iter().position(|row| row[column] >= least);
-        look.map_or(f64::INFINITY, |look| look as f64 * self.look)
+        let sample = self.rows.iter().position(|row| row[column] >= least);
+        sample.map_or(f64::INFINITY, |sample| sample as f64 * self.interval)
     }
 
     /// A column over time, and beside it what was measured, as `[time, value]` in order of time, on its unit.
     pub fn chart(&self, column: usize, place: &str, quantity: &str, unit: &str, measured: Vec<[f64; 2]>) -> Chart {
-        let computed = self.rows.iter().enumerate().map(|(look, row)| [look as f64 * self.look, row[column]]).collect();
+        let computed =
+            self.rows.iter().enumerate().map(|(sample, row)| [sample as f64 * self.interval, row[column]]).collect();
         let series =
             |name: &str, style, points| ChartSeries { name: name.into(), style, points, ..ChartSeries::default() };
         let axis = |label: &str, unit: &str| ChartAxis { label: label.into(), unit: unit.into(), logarithmic: false };

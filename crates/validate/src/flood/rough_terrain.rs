@@ -51,7 +51,7 @@ fn rough_terrain(_: &Options) -> Vec<Row> {
 fn measured(control: &str) -> Result<Vec<[f64; 2]>, ModelError> {
     let (scene, settings, terrain) = built_in(ROUGH_TERRAIN.name, &[("flood.sph_swe.control_force", control)])?;
     let mut flood = ready(SphSweFlood::new(&settings, scene.seed, Path::new("."), terrain)?)?;
-    let look = |(time, ..): (f64, &str, &str)| {
+    let sample = |(time, ..): (f64, &str, &str)| {
         flood.advance_to(time, &AtomicBool::new(false))?;
         let particles = flood.particles();
         let count = particles.len() as f64;
@@ -60,5 +60,5 @@ fn measured(control: &str) -> Result<Vec<[f64; 2]>, ModelError> {
         let fastest = particles.iter().map(|particle| particle.speed()).fold(0.0, f64::max);
         Ok([variance.sqrt() / mean, fastest])
     };
-    times().map(look).collect()
+    times().map(sample).collect()
 }

@@ -34,7 +34,7 @@ fn cylinder(_: &Options) -> Vec<Row> {
     rows(CYLINDER.name, none_inside(CYLINDER.name, |x, y| (x - 91.0).hypot(y - 45.0) - 9.0))
 }
 
-/// Runs the scene of a case and looks after each step how deep any particle is inside; `distance` is that from the solid, m, negative inside.
+/// Runs the scene of a case and measures after each step how deep any particle is inside; `distance` is that from the solid, m, negative inside.
 fn none_inside(case: &'static str, distance: impl Fn(f64, f64) -> f64) -> Result<Vec<Row>, ModelError> {
     let (scene, settings, terrain) = built_in(case, &[])?;
     let until = scene.run.until_s;

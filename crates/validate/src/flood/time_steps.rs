@@ -8,7 +8,7 @@ use corpuscle_scene::{Circle, Finer, TimeSteps};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Simulated between two looks at the clock, s.
+/// Simulated time between two readings of the clock, s.
 const STRETCH: f64 = 1.0;
 
 /// Stretches that both run in turn, after one that does not count.

@@ -21,7 +21,7 @@ fn brownian(_: &Options) -> Vec<Row> {
     rows(BROWNIAN.name, measure())
 }
 
-/// Kinetic energies and places of the heavy ball at equal times.
+/// Kinetic energies and positions of the heavy ball at equal times.
 struct Watched {
     step: f64,
     /// Of the heavy ball over the light ones' mean, as far as both move relative to the centre of mass.
@@ -39,8 +39,8 @@ fn watch(time: f64, step: f64) -> Result<Watched, ModelError> {
     let total = MASS + LIGHT as f64;
     let per_light = (1.0 - 1.0 / total) / (1.0 - MASS / total);
     let mut watched = Watched { step, energy: Vec::new(), place: Vec::new() };
-    for look in 0..(time / step) as u64 {
-        advance(&mut gas, settled + look as f64 * step)?;
+    for sample in 0..(time / step) as u64 {
+        advance(&mut gas, settled + sample as f64 * step)?;
         let heavy = 0.5 * MASS * gas.states()[0].1.iter().map(|v| v * v).sum::<f64>();
         let light = (gas.kinetic_energy() - heavy) / LIGHT as f64;
         watched.energy.push(heavy / light * per_light);

@@ -1,4 +1,4 @@
-//! How often balls collide, and how far they wander.
+//! Collision rate and self-diffusion of balls.
 
 use super::{SEED, advance};
 use super::{measured_fluid, rows, theory, time_of};
@@ -37,17 +37,17 @@ fn collision_rate<const D: usize>(packing: f64) -> Result<Row, ModelError> {
     Ok(Row::at_most(ENSKOG.name, &measure, error, "", 0.01))
 }
 
-/// Places of all balls, as if the box did not repeat, at equal times.
+/// Unwrapped positions of all balls at equal times.
 fn places<const D: usize>(gas: &mut Gas<D>, step: f64, count: usize) -> Result<Vec<Vec<[f64; D]>>, ModelError> {
     let start = corpuscle_model::Model::time(gas);
-    let place = |look: usize| {
-        advance(gas, start + look as f64 * step)?;
+    let place = |sample: usize| {
+        advance(gas, start + sample as f64 * step)?;
         Ok(gas.unwrapped())
     };
     (0..count).map(place).collect()
 }
 
-/// Mean-square displacement over `lag` looks of some of the balls, averaged over all times to start from.
+/// Mean-square displacement over `lag` samples of some of the balls, averaged over all times to start from.
 fn displacement<const D: usize>(places: &[Vec<[f64; D]>], lag: usize, balls: std::ops::Range<usize>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for pair in places.windows(lag + 1) {
@@ -71,15 +71,15 @@ fn slope<const D: usize>(places: &[Vec<[f64; D]>], lags: [usize; 2], step: f64) 
     Estimate::of(&(0..parts).map(of).collect::<Vec<_>>())
 }
 
-/// Self-diffusion of balls from lags of once and twice `lag`, which is longer than the slowest whirl in the box lasts; watched for so
+/// Self-diffusion of balls from lags of once and twice `lag`, which is longer than the slowest vortex in the box lasts; sampled for so
 /// many lags.
 fn diffusion(packing: f64, lag: f64, lags: usize) -> Result<Vec<Row>, ModelError> {
-    let (count, looks) = (4000, 4);
+    let (count, samples) = (4000, 4);
     let mut gas = Setup::<3>::fluid(count, packing).seed(SEED).build()?;
     advance(&mut gas, time_of::<3>(50.0, packing))?;
-    let step = lag / looks as f64;
-    let places = places(&mut gas, step, lags * looks + 1)?;
-    let found = slope(&places, [looks, 2 * looks], step);
+    let step = lag / samples as f64;
+    let places = places(&mut gas, step, lags * samples + 1)?;
+    let found = slope(&places, [samples, 2 * samples], step);
     let images = theory::slowed_by_images(gas.volume().cbrt(), theory::enskog_viscosity(packing));
     let ratio = (found.mean + images) / theory::enskog_diffusion(packing);
     let error = (ratio / theory::diffusion_over_enskog(packing) - 1.0).abs();

@@ -1,4 +1,4 @@
-//! Looking at a gas does not change it.
+//! Output does not change the solution of a gas.
 
 use super::{SEED, advance, rows};
 use crate::{Case, Options, Row};

@@ -1,4 +1,4 @@
-//! A gas that cools by its own collisions.
+//! Cooling of a granular gas.
 
 use super::{advance, rows, theory};
 use crate::{Case, Options, Row};
@@ -26,7 +26,7 @@ fn granular(_: &Options) -> Vec<Row> {
     rows(GRANULAR.name, measure())
 }
 
-/// How far speeds are from Maxwell's in a gas that cools: a2 of van Noije & Ernst, eq. 18.
+/// Deviation of the speeds from Maxwell's in a cooling gas: a2 of van Noije & Ernst, eq. 18.
 fn kurtosis(d: f64) -> f64 {
     let e = RESTITUTION;
     16.0 * (1.0 - e) * (1.0 - 2.0 * e * e) / (9.0 + 24.0 * d + (8.0 * d - 41.0) * e + 30.0 * e * e * (1.0 - e))
@@ -37,22 +37,22 @@ fn cooling<const D: usize>(count: usize, runs: u64) -> Result<Vec<Row>, ModelErr
     // Each collision takes (1 - e^2) T on average; for each ball there are rate / 2 of them, and d T / 2 of energy.
     let loss = (1.0 - RESTITUTION * RESTITUTION) * (1.0 + 3.0 / 16.0 * kurtosis(D as f64));
     let tau = 2.0 * D as f64 / (theory::collision_rate::<D>(PACKING) * loss);
-    let (fall, looks) = (9.0, 90);
-    let (mut roots, mut times) = (vec![0.0; looks + 1], Vec::new());
+    let (fall, samples) = (9.0, 90);
+    let (mut roots, mut times) = (vec![0.0; samples + 1], Vec::new());
     let mut unbalanced = 0.0_f64;
     for seed in 1..=runs {
         let mut gas = Setup::<D>::fluid(count, PACKING).restitution(RESTITUTION).seed(seed).build()?;
         let start = gas.temperature();
-        for (look, mean) in roots.iter_mut().enumerate() {
-            advance(&mut gas, fall * tau * look as f64 / looks as f64)?;
+        for (sample, mean) in roots.iter_mut().enumerate() {
+            advance(&mut gas, fall * tau * sample as f64 / samples as f64)?;
             *mean += (start / gas.temperature()).sqrt() / runs as f64;
         }
         times.push(fall / ((start / gas.temperature()).sqrt() - 1.0));
         unbalanced = unbalanced.max(gas.ledger().balances[0].relative_error().abs());
     }
     let found = Estimate::of(&times);
-    let line = |look: usize| 1.0 + (roots[looks] - 1.0) * look as f64 / looks as f64;
-    let bent = (0..=looks).map(|look| (roots[look] / line(look) - 1.0).abs()).fold(0.0, f64::max);
+    let line = |sample: usize| 1.0 + (roots[samples] - 1.0) * sample as f64 / samples as f64;
+    let bent = (0..=samples).map(|sample| (roots[sample] / line(sample) - 1.0).abs()).fold(0.0, f64::max);
     let row = |measure: &str, value: f64, bound: f64| {
         Row::at_most(GRANULAR.name, &format!("{measure}_{D}d"), value, "", bound)
     };

@@ -83,7 +83,7 @@ fn long_run() -> Result<Vec<Row>, ModelError> {
     ])
 }
 
-/// Deepest overlap at the moments of one ball's hits, when balls touch: a first run tells when, a second stops there.
+/// Deepest overlap at the moments of one ball's hits, when balls touch: a first run finds the times, a second stops there.
 fn at_hits() -> Result<Row, ModelError> {
     let mut setup = classroom();
     setup.follow = Some(0);

@@ -1,4 +1,4 @@
-//! Two gases, side by side, mix.
+//! Mixing of two gases.
 
 use super::{SEED, advance, rows};
 use crate::{Case, Options, Row};
@@ -33,8 +33,8 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let full = COUNT as f64 * 2_f64.ln();
     let start = gas.mixing_entropy() / full;
     // Diffusion takes side^2 / (pi^2 D), about 700, to even out; balls forget their cell within about 100.
-    let entropies = (0..60).map(|look| {
-        advance(&mut gas, 7000.0 + 200.0 * f64::from(look))?;
+    let entropies = (0..60).map(|sample| {
+        advance(&mut gas, 7000.0 + 200.0 * f64::from(sample))?;
         Ok(gas.mixing_entropy() / full)
     });
     let end = Estimate::of(&entropies.collect::<Result<Vec<f64>, ModelError>>()?);

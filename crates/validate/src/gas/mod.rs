@@ -32,7 +32,7 @@ pub(crate) const CASES: &[Case] = &[
 /// Seed of everything random.
 const SEED: u64 = 1;
 
-/// Moves a gas on to a time.
+/// Advances a gas to a time.
 fn advance<const D: usize>(gas: &mut Gas<D>, time: f64) -> Result<(), ModelError> {
     gas.advance_to(time, &AtomicBool::new(false))
 }
@@ -56,10 +56,10 @@ fn measured_fluid<const D: usize>(
 ) -> Result<Gas<D>, ModelError> {
     let from = time_of::<D>(settled, packing);
     let lasting = time_of::<D>(measured, packing);
-    let mut gas = setup.seed(SEED).measured(from, lasting / LOOKS).build()?;
+    let mut gas = setup.seed(SEED).measured(from, lasting / SAMPLES).build()?;
     advance(&mut gas, from + lasting)?;
     Ok(gas)
 }
 
-/// Looks at a gas while averages are taken.
-const LOOKS: f64 = 100.0;
+/// Samples of a gas over an average.
+const SAMPLES: f64 = 100.0;

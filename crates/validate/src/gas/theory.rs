@@ -1,4 +1,4 @@
-//! What is known of hard disks and balls, in units of their diameter and mass and of the temperature.
+//! Theory of hard disks and balls, in units of their diameter and mass and of the temperature.
 
 use corpuscle_gas::ball_volume;
 pub(super) use corpuscle_gas::theory::compressibility;
@@ -33,7 +33,7 @@ pub(super) fn diffusion_over_enskog(packing: f64) -> f64 {
     1.0 + 0.054034 * x + 6.3656 * x * x - 10.9425 * x.powi(3)
 }
 
-/// What the images of a ball in a periodic cube of this side take off its self-diffusion (Duenweg & Kremer, J. Chem. Phys. 99, 1993,
+/// Correction of the self-diffusion of a ball for its images in a periodic cube of this side (Duenweg & Kremer, J. Chem. Phys. 99, 1993,
 /// 6983; Yeh & Hummer, J. Phys. Chem. B 108, 2004, 15873).
 pub(super) fn slowed_by_images(side: f64, viscosity: f64) -> f64 {
     2.837_297 / (6.0 * PI * viscosity * side)

@@ -6,7 +6,7 @@ use super::{ModelKind, Opened, Opening, Recorded};
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{PictureSettings, Scenery, Studio, Subject, dew::DewPicture};
+use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, dew::DewPicture};
 use corpuscle_model::ModelError;
 use corpuscle_output::DewReport;
 use corpuscle_scene::{Dew, Scene, SceneKind};
@@ -14,7 +14,7 @@ use corpuscle_scene::{Dew, Scene, SceneKind};
 /// Memory for each particle, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
 const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
 
-/// Dew as the workbench knows it.
+/// The model kind of dew.
 pub(super) struct Kind;
 
 /// The air and solids of a scene.
@@ -22,7 +22,7 @@ fn dew(scene: &Scene) -> Result<&Dew, ModelError> {
     scene.dew().ok_or_else(|| ModelError::Setup("it is not the scene of dew".into()))
 }
 
-/// Whether pictures show the air, and not but what lies on solids: where these are kept clear of it in different ways.
+/// True where pictures show the air instead of the drops: where boundary treatments are compared.
 pub(crate) fn shows_air(dew: &Dew) -> bool {
     dew.solid.windows(2).any(|pair| pair[0].treatment != pair[1].treatment)
 }
@@ -62,11 +62,11 @@ impl ModelKind for Kind {
     #[cfg(feature = "pictures")]
     fn pictures(
         &self,
-        studio: &Studio,
+        context: &DrawContext,
         scenery: &Scenery,
         _settings: &PictureSettings,
     ) -> Result<Box<dyn Subject>, Error> {
-        Ok(Box::new(DewPicture::new(studio, dew(scenery.scene())?, scenery.surfaces())))
+        Ok(Box::new(DewPicture::new(context, dew(scenery.scene())?, scenery.surfaces())))
     }
 
     fn shows_particles(&self, scene: &Scene) -> bool {

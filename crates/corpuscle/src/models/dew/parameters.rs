@@ -23,19 +23,19 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
             "Temperature",
             "°C",
             [0.0, 60.0],
-            "Of the air at the start and of what comes in, if that has none of its own",
+            "Of the initial air, and of inflowing air without its own",
         )
         .number(
             "dew.air.relative_humidity",
             "Relative humidity",
             "",
             [0.05, 1.0],
-            "Vapour pressure over that of saturation",
+            "Vapour pressure over saturation pressure",
         )
-        .number("dew.air.dew_point_c", "Dew point", "°C", [-10.0, 50.0], "Temperature at which it would be saturated");
+        .number("dew.air.dew_point_c", "Dew point", "°C", [-10.0, 50.0], "Temperature at which the air is saturated");
     for (number, side) in SIDES.into_iter().enumerate() {
         if let dew::Face::Inflow(inflow) = dew.faces.along(Axis::ALL[number / 2])[number % 2] {
-            incoming(builder, dew, side, inflow);
+            inflowing(builder, dew, side, inflow);
         }
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let path = format!("dew.faces.{side}.inflow.velocity_m_per_s.{axis}");
@@ -45,24 +45,24 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
                 (true, true) => [0.01, 2.0],
                 (true, false) => [-2.0, -0.01],
             };
-            let hint = "Velocity of the air that comes in here";
+            let hint = "Velocity of the air that flows in here";
             builder.number(&*path, &format!("Wind at {side} along {name}"), "m/s", range, hint).live(&path, blow);
         }
     }
     for number in 0..dew.fan.len() {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let path = format!("dew.fan.{number}.velocity_m_per_s.{axis}");
-            let hint = "The velocity to which it drives the air";
+            let hint = "Velocity to which the fan drives the air";
             builder.number(&*path, &format!("Fan along {name}"), "m/s", [-2.0, 2.0], hint).live(&path, drive);
         }
     }
     builder.group("Tilt");
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let path = format!("dew.gravity_m_per_s2.{axis}");
-        let hint = "Gravity along x or y tilts the box: drops slide that way, and air sinks that way where it may";
+        let hint = "Gravity along x or y tilts the box: drops slide, and cold air sinks, in that direction";
         builder.number(&*path, &format!("Gravity along {name}"), "m/s²", [-9.81, 9.81], hint).live(&path, tilt);
     }
-    // Where a scene gives them, the contact angle stays between the other two.
+    // The contact angle stays between the other two where the scene gives them.
     let contact = dew.drops.contact_angle_deg;
     let [receding, advancing] =
         [dew.drops.receding_angle_deg.unwrap_or(20.0), dew.drops.advancing_angle_deg.unwrap_or(140.0)];
@@ -89,26 +89,26 @@ pub(super) fn parameters(builder: &mut Builder, dew: &Dew) {
             [contact, 0.5 * (contact + 180.0)],
             "The smaller, down to the contact angle, the smaller the drops that slide",
         )
-        .scaled("dew.drops.friction", "Friction that holds drops", "", "Less, and smaller drops slide");
+        .scaled("dew.drops.friction", "Friction that holds drops", "", "The smaller, the smaller the drops that slide");
     builder
         .group("Method")
         .number(
             "dew.time_factor",
-            "Faster than reality",
+            "Time factor",
             "",
             [1.0, 50.0],
-            "Solids warm and gather water so many times faster",
+            "Acceleration of the temperatures of solids and of the water on them",
         )
         .live("dew.time_factor", go_faster)
-        .add("dew.scheme", "Scheme", "", "Which laws of transport hold", Control::Choice(SCHEMES))
+        .add("dew.scheme", "Scheme", "", "Laws of heat and vapour transport", Control::Choice(SCHEMES))
         .add(
             "dew.boundary.treatment",
-            "Air kept out by",
+            "Boundary treatment",
             "",
-            "How air is kept out of solids",
+            "Method that keeps air out of solids",
             Control::Choice(TREATMENTS),
         )
-        .between("dew.spacing_m", "Distance of particles", "m", [0.5, 2.0], "Half of it: eight times the particles");
+        .between("dew.spacing_m", "Spacing", "m", [0.5, 2.0], "Half the spacing: eight times the particles");
 }
 
 fn solids(builder: &mut Builder, dew: &Dew) {
@@ -121,15 +121,15 @@ fn solids(builder: &mut Builder, dew: &Dew) {
                 &format!("Temperature of {}", solid.name),
                 "°C",
                 [-10.0, 60.0],
-                "Held, where the scene holds it; another solid is brought to it, and goes on from there",
+                "Prescribed where the scene prescribes it; any other solid is set to it once",
             )
             .live(&path("temperature_c"), warm)
-            .number(path("rotation_deg.1"), "Turned about y", "°", [-90.0, 90.0], "Tilts what stands upright");
+            .number(path("rotation_deg.1"), "Rotation about y", "°", [-90.0, 90.0], "Tilts an upright solid");
         sources(builder, solid, path);
     }
 }
 
-/// What heats and cools a solid.
+/// Parameters of the heater of a solid and of the heat that it exchanges with the outside.
 fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> String) {
     let heater = solid.heater.iter().flat_map(|heater| {
         [("power_w", ("W", 10.0), &heater.power_w), ("power_w_per_m2", ("W/m²", 1000.0), &heater.power_w_per_m2)]
@@ -137,7 +137,7 @@ fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> Str
     for (key, unit, power) in heater {
         if let Some(power) = power {
             let path = path(&format!("heater.{key}"));
-            let hint = "What its heater gives, evenly all through it";
+            let hint = "Power of its heater, uniform over the solid";
             builder.series(&path, "Heater", unit, hint, power, [heat, heat_times]);
         }
     }
@@ -145,7 +145,7 @@ fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> Str
         let path = path(key);
         builder.number(&*path, name, unit, range, hint).live(&path, change);
     };
-    let air = "Of the air beyond the side of the box that it reaches";
+    let air = "Of the air outside the side of the box that the solid reaches";
     add("outside.temperature_c", "Temperature outside", "°C", [-30.0, 60.0], air, cool_outside);
     let wind = "5 to 10 in still air, 25 in wind";
     add("outside.h_w_per_m2_k", "Heat transfer outside", "W/(m² K)", [0.0, 200.0], wind, change_transfer);
@@ -155,20 +155,20 @@ fn sources(builder: &mut Builder, solid: &dew::Solid, path: impl Fn(&str) -> Str
     add("radiation.surroundings_c", "Surroundings", "°C", [-60.0, 500.0], room, change_surroundings);
 }
 
-/// Temperature and humidity of the air that comes in; where the scene leaves them out they are those of the air at the start.
-fn incoming(builder: &mut Builder, dew: &Dew, side: &str, inflow: &AirInflow) {
+/// Temperature and humidity of the inflowing air; by default those of the initial air.
+fn inflowing(builder: &mut Builder, dew: &Dew, side: &str, inflow: &AirInflow) {
     let path = |key: &str| format!("dew.faces.{side}.inflow.{key}");
     let (warmth, humidity) = (path("temperature_c"), path("relative_humidity"));
     let own = [inflow.relative_humidity, inflow.dew_point_c, inflow.mixing_ratio].into_iter().flatten().count();
     builder.or(&warmth, dew.air.temperature_c);
-    let hint = "Of the air that comes in here; it keeps its vapour, or its relative humidity where that is told";
+    let hint = "Of the air that flows in here; its vapour is kept, or its relative humidity where that is given";
     builder.number(&*warmth, &format!("Temperature at {side}"), "°C", [0.0, 60.0], hint).live(&warmth, warm_inlet);
     if own == 0
         && let (Some(relative), None) = (dew.air.relative_humidity, inflow.temperature_c)
     {
         builder.or(&humidity, relative);
     }
-    let hint = "Of the air that comes in here: vapour pressure over that of saturation";
+    let hint = "Of the air that flows in here: vapour pressure over saturation pressure";
     let name = format!("Relative humidity at {side}");
     builder.number(&*humidity, &name, "", [0.05, 1.0], hint).live(&humidity, moisten_inlet);
 }

@@ -7,7 +7,7 @@ use crate::Error;
 use crate::ground::ground;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{PictureSettings, Scenery, Studio, Subject, flood::FloodPicture};
+use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, flood::FloodPicture};
 use corpuscle_flood::default_spacing;
 use corpuscle_model::ModelError;
 use corpuscle_output::{Report, Summary, compare_extent};
@@ -22,7 +22,7 @@ const BYTES_PER_PARTICLE: f64 = 1000.0;
 /// Memory for each wet particle of scheme voronoi, bytes, 533 measured by the bench `flood/voronoi-60k`: column, slopes, faces and work space.
 const BYTES_PER_CELL_OF_WATER: f64 = 560.0;
 
-/// The flood as the workbench knows it.
+/// The model kind of floods.
 pub(super) struct Kind;
 
 fn no_flood() -> ModelError {
@@ -82,23 +82,23 @@ impl ModelKind for Kind {
     #[cfg(feature = "pictures")]
     fn pictures(
         &self,
-        studio: &Studio,
+        context: &DrawContext,
         scenery: &Scenery,
         settings: &PictureSettings,
     ) -> Result<Box<dyn Subject>, Error> {
         let FloodScene { flood, .. } = scenery.scene().flood().ok_or_else(no_flood)?;
         let terrain = scenery.terrain().ok_or_else(no_flood)?;
-        Ok(Box::new(FloodPicture::new(studio, flood, terrain, settings.ground.clone(), settings.heights)?))
+        Ok(Box::new(FloodPicture::new(context, flood, terrain, settings.ground.clone(), settings.heights)?))
     }
 }
 
-/// More particles than this over a run are days of computation.
+/// Largest number of particles over a run without a warning: more take days.
 const MOST_TO_COME: f64 = 2e8;
 
-/// A deeper layer over all the terrain, m, is more than any flood brings.
+/// Largest accepted volume of inflow over the area of the terrain, m: no flood brings more.
 const MOST_LAYER: f64 = 1e5;
 
-/// Water that the inflows of a flood bring in until a time, s, in m3; relative paths are taken from `folder`.
+/// Volume that the inflows of a flood add until a time, s, in m3; relative paths are taken from `folder`.
 fn volume_of_inflows(flood: &Flood, until: f64, folder: &Path) -> Result<f64, Error> {
     let mut volume = 0.0;
     for inflow in &flood.inflow {
@@ -107,7 +107,7 @@ fn volume_of_inflows(flood: &Flood, until: f64, folder: &Path) -> Result<f64, Er
     Ok(volume)
 }
 
-/// Refuses discharges that no machine could follow, most likely a slip of the unit.
+/// Refuses discharges too large to be computed, most likely a wrong unit.
 fn check_inflow(flood: &Flood, until: f64, terrain: &Terrain, folder: &Path) -> Result<(), Error> {
     let volume = volume_of_inflows(flood, until, folder)?;
     if flood.scheme == Scheme::Voronoi {
@@ -134,7 +134,7 @@ fn check_inflow(flood: &Flood, until: f64, terrain: &Terrain, folder: &Path) -> 
     Err(ModelError::Setup(what).into())
 }
 
-/// Finds out before the run, not at its end, that the observed extent cannot be used.
+/// Checks before the run, not at its end, that the observed extent can be used.
 fn check_observed_extent(flood: &Flood, terrain: &Terrain) -> Result<(), Error> {
     if let Some(observed) = &flood.observed_extent {
         let grid = terrain.map_grid();

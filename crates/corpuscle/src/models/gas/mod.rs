@@ -6,7 +6,7 @@ use super::{COLLISIONS, ModelKind, Opened, Opening, Recorded};
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{PictureSettings, Scenery, Studio, Subject, gas::GasPicture};
+use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, gas::GasPicture};
 use corpuscle_model::ModelError;
 use corpuscle_output::GasReport;
 use corpuscle_scene::{Gas, Scene, SceneKind, Units};
@@ -14,7 +14,7 @@ use corpuscle_scene::{Gas, Scene, SceneKind, Units};
 /// Memory for each ball, bytes: 340 measured where no frames are written, and room to write them.
 const BYTES_PER_BALL: f64 = 500.0;
 
-/// The gas as the workbench knows it.
+/// The model kind of gases.
 pub(super) struct Kind;
 
 /// The gas of a scene.
@@ -69,7 +69,7 @@ impl ModelKind for Kind {
     #[cfg(feature = "pictures")]
     fn pictures(
         &self,
-        _studio: &Studio,
+        _context: &DrawContext,
         scenery: &Scenery,
         _settings: &PictureSettings,
     ) -> Result<Box<dyn Subject>, Error> {

@@ -5,14 +5,14 @@ use corpuscle_gas::LiveChange;
 use corpuscle_scene::{Axis, Gas, Species, Wall};
 use std::f64::consts::PI;
 
-/// Ways to move a gas on, as a scene writes them; the step of the last is set apart.
+/// Methods of a gas: names, and values as a scene writes them. The step of the last is a parameter of its own.
 const METHODS: &[(&str, &str)] = &[
     ("event driven", "\"event-driven\""),
     ("list (as published)", "\"list\""),
     ("equal steps of 0.02", "{ fixed-step = { time_step_s = 0.02 } }"),
 ];
-const STARTS: &[(&str, &str)] = &[("anywhere", "\"random\""), ("on a lattice", "\"lattice\"")];
-const SPEEDS: &[(&str, &str)] = &[("after Maxwell", "\"maxwell\""), ("all the same", "\"equal\"")];
+const STARTS: &[(&str, &str)] = &[("random", "\"random\""), ("on a lattice", "\"lattice\"")];
+const SPEEDS: &[(&str, &str)] = &[("Maxwell distribution", "\"maxwell\""), ("equal", "\"equal\"")];
 
 pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
     // The ball that is followed must be there.
@@ -29,27 +29,39 @@ pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
                 path("temperature"),
                 "Temperature at the start",
                 "",
-                "How fast they begin: the mean energy of a ball",
+                "Initial temperature, from the mean energy of a ball",
             )
             .between(path("radius"), "Radius", "", [0.1 * wider.min(1.0), wider], "Radius of a ball")
             .scaled(path("mass"), "Mass", "", "Mass of a ball")
-            .add(path("speeds"), "Speeds at the start", "", "How speeds are spread at first", Control::Choice(SPEEDS))
-            .add(path("start"), "Places at the start", "", "Where balls begin", Control::Choice(STARTS));
+            .add(
+                path("speeds"),
+                "Speeds at the start",
+                "",
+                "Initial distribution of the speeds",
+                Control::Choice(SPEEDS),
+            )
+            .add(
+                path("start"),
+                "Positions at the start",
+                "",
+                "Initial positions of the balls",
+                Control::Choice(STARTS),
+            );
     }
     builder
         .group("Motion")
         .number(
             "gas.restitution",
-            "Restitution",
+            "Coefficient of restitution",
             "",
             [0.5, 1.0],
-            "Speed of parting over that of meeting: below 1 a collision takes energy",
+            "Speed of separation over speed of approach: below 1 a collision dissipates energy",
         )
         .add(
             "gas.method",
             "Method",
             "",
-            "How the gas is moved on: the exact ways, or equal steps, which let balls overlap",
+            "The first two are exact; equal steps let balls overlap",
             Control::Choice(METHODS),
         );
     for axis in Axis::ALL.into_iter().take(gas.dimensions()) {
@@ -61,12 +73,12 @@ pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
                 Wall::Thermal { .. } => {
                     let key = path("thermal.temperature");
                     builder
-                        .group(format!("Wall {side}, held at a temperature"))
+                        .group(format!("Thermal wall {side}"))
                         .scaled(
                             &*key,
                             "Temperature",
                             "",
-                            "What leaves the wall has the speeds of a gas at this temperature",
+                            "Balls leave the wall with the speeds of a gas at this temperature",
                         )
                         .live(&key, warm_wall);
                 }
@@ -74,7 +86,7 @@ pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
                     let key = path("piston.pressure");
                     builder
                         .group(format!("Piston {side}"))
-                        .scaled(&*key, "Pressure outside", "", "What presses the piston into the gas")
+                        .scaled(&*key, "Pressure outside", "", "Pressure behind the piston")
                         .live(&key, press_piston)
                         .scaled(path("piston.mass"), "Mass", "", "Mass of the piston");
                 }
@@ -92,10 +104,10 @@ pub(super) fn parameters(builder: &mut Builder, gas: &Gas) {
     }
 }
 
-/// Packing up to which balls are offered more room or company, shared by all species; far below what can be set up.
+/// Packing fraction of all species up to which larger or more balls are offered; far below what can be set up.
 const FULL: [f64; 2] = [0.6, 0.42];
 
-/// How many times more volume the balls of a species may fill.
+/// Factor by which the volume of the balls of a species may grow.
 fn room(gas: &Gas, species: &Species) -> f64 {
     let box_volume: f64 = gas.size.iter().product();
     let own =
@@ -110,7 +122,7 @@ fn room(gas: &Gas, species: &Species) -> f64 {
     (full / filled).max(1.0)
 }
 
-/// The wall that a path names, as its axis and its end.
+/// The wall that a path names: its axis and its end.
 fn wall_of(path: &str) -> [usize; 2] {
     let side = path.split('.').nth(2).unwrap_or_default();
     let axis = ["x", "y", "z"].iter().position(|axis| side.starts_with(axis)).unwrap_or_default();

@@ -1,9 +1,9 @@
-//! Pictures of dew: drops on solids in a dim room, against which they show; and air round solids, where ways to keep it out are
+//! Pictures of dew: drops on solids in a dim room, against which they show; and air round solids, where boundary treatments are
 //! compared.
 
 mod section;
 
-use super::{Moment, OwnView, Shown, Studio, Subject};
+use super::{DrawContext, Moment, OwnView, Shown, Subject};
 use crate::Error;
 use crate::models::dew::shows_air;
 use corpuscle_drawing::text;
@@ -13,18 +13,18 @@ use corpuscle_scene::Dew;
 use corpuscle_scene::dew::Material;
 use section::Section;
 
-/// How far beside the way that the wet side looks the eye stands, and how high, radians; and how wide the lens is.
+/// Azimuth of the camera from the normal of the wet side, its elevation, and field of view, radians.
 const BESIDE: f64 = 0.45;
 const RAISED: f64 = 0.2;
 const FIELD_OF_VIEW: f64 = 0.5;
 const MARGIN: f64 = 0.09;
-/// How far the sun stands to the left of the eye, radians.
+/// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -1.0;
-/// From where solids are seen that look to no side together, radians.
+/// Default azimuth of the camera for solids without a common wet side, radians.
 const NO_SIDE: f64 = -1.9;
-/// The clearest glass still takes a little, most of it red.
+/// Light that the clearest glass transmits: least of red.
 const GLASS: [u8; 3] = [232, 242, 238];
-/// What is not glass.
+/// Colour of solids that are not glass.
 const MATT: [u8; 3] = [150, 152, 156];
 
 /// Draws dew.
@@ -34,19 +34,19 @@ pub(crate) enum DewPicture {
 }
 
 impl DewPicture {
-    pub(crate) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+    pub(crate) fn new(context: &DrawContext, dew: &Dew, surfaces: &[Surface]) -> Self {
         match shows_air(dew) {
-            true => Self::Section(Section::new(studio, dew, surfaces)),
-            false => Self::Room(Room::new(studio, dew, surfaces)),
+            true => Self::Section(Section::new(context, dew, surfaces)),
+            false => Self::Room(Room::new(context, dew, surfaces)),
         }
     }
 }
 
 impl Subject for DewPicture {
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+    fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         match self {
-            Self::Room(room) => room.draw(studio, title, moment),
-            Self::Section(section) => section.draw(studio, title, moment),
+            Self::Room(room) => room.draw(context, title, moment),
+            Self::Section(section) => section.draw(context, title, moment),
         }
     }
 
@@ -60,12 +60,12 @@ pub(crate) struct Room {
     stage: Stage,
     solids: Vec<Solid>,
     floor: Floor,
-    /// From where it is seen, radians.
+    /// Azimuth of the camera, radians.
     azimuth: f64,
 }
 
 impl Room {
-    fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+    fn new(context: &DrawContext, dew: &Dew, surfaces: &[Surface]) -> Self {
         let corner = |pick: fn(f64, f64) -> f64, side: usize, start: f64| {
             std::array::from_fn(|k| surfaces.iter().map(|surface| surface.shape.bounds[side][k]).fold(start, pick))
         };
@@ -78,30 +78,30 @@ impl Room {
             solid.map_or(SolidStyle::Opaque(MATT, 0.6), |solid| style(&solid.material))
         };
         let solids =
-            surfaces.iter().map(|surface| Solid::new(&studio.renderer, &stage, &surface.shape, style(surface)));
-        let floor = Floor::new(&studio.renderer, stage.from.z - 0.002 * stage.unit());
+            surfaces.iter().map(|surface| Solid::new(&context.renderer, &stage, &surface.shape, style(surface)));
+        let floor = Floor::new(&context.renderer, stage.from.z - 0.002 * stage.unit());
         Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
     }
 
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+    fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let own = OwnView {
             direction: [self.azimuth, RAISED],
             field_of_view: FIELD_OF_VIEW,
             margin: MARGIN,
             margins: [2.0 * MARGIN; 4],
         };
-        let camera = studio.camera(&self.stage, &own, moment.frame.time);
-        let light = studio.lit(Light::dim_room().from_azimuth(self.azimuth + SUN));
+        let camera = context.camera(&self.stage, &own, moment.frame.time);
+        let light = context.lit(Light::dim_room().from_azimuth(self.azimuth + SUN));
         let drops: Vec<Cap> = moment.frame.sets.iter().filter(|set| set.name == "drops").flat_map(caps).collect();
         let faces_eye = |cap: &&Cap| {
             let eye: [f64; 3] = camera.eye.into();
             (0..3).map(|k| cap.normal[k] * (eye[k] - cap.position[k])).sum::<f64>() > 0.0
         };
-        let gpu = studio.renderer.gpu();
-        // Those on the far side are seen through the solid, so they come before it.
+        let gpu = context.renderer.gpu();
+        // Drops on the far side are seen through the solid, so they are drawn before it.
         let far = drops.iter().filter(|cap| !faces_eye(cap)).copied();
-        let mut far = studio.caps.caps(gpu, &self.stage, far);
-        let mut near = studio.caps.caps(gpu, &self.stage, drops.iter().filter(faces_eye).copied());
+        let mut far = context.caps.caps(gpu, &self.stage, far);
+        let mut near = context.caps.caps(gpu, &self.stage, drops.iter().filter(faces_eye).copied());
         let mut things: Vec<&mut dyn Drawable> = vec![&mut self.floor, &mut far];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut near);
@@ -111,11 +111,11 @@ impl Room {
             axes: Some(Axes { from: self.stage.from.into(), to: self.stage.to.into(), unit: "m".into(), heights: 1.0 }),
             ..Overlay::default()
         };
-        studio.take(&self.stage, &camera, &light, &mut things, overlay)
+        context.take(&self.stage, &camera, &light, &mut things, overlay)
     }
 }
 
-/// What a solid of a material looks like.
+/// Style of a solid of a material.
 fn style(material: &Material) -> SolidStyle {
     let Material::Named(name) = material else { return SolidStyle::Opaque(MATT, 0.6) };
     match name.as_str() {
@@ -127,7 +127,7 @@ fn style(material: &Material) -> SolidStyle {
     }
 }
 
-/// The azimuth that the wet patches of all solids look to, where they look anywhere together.
+/// Azimuth of the mean normal of the wet patches of all solids; none where they have no common side.
 fn wet_side(surfaces: &[Surface]) -> f64 {
     let mut sum = [0.0; 2];
     for surface in surfaces {

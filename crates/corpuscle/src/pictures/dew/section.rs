@@ -1,8 +1,8 @@
-//! Air round solids that are kept clear of it in different ways: seen across, to scale, air coloured by temperature.
+//! Section of the air round solids with different boundary treatments: to scale, air coloured by temperature.
 
 use super::{MATT, caps};
 use crate::Error;
-use crate::pictures::{Look, Moment, Shown, Studio};
+use crate::pictures::{DrawContext, Moment, Quality, Shown};
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_drawing::text;
 use corpuscle_model::{ParticleSet, Surface, Values};
@@ -30,10 +30,10 @@ pub(crate) struct Section {
 }
 
 impl Section {
-    pub(super) fn new(studio: &Studio, dew: &Dew, surfaces: &[Surface]) -> Self {
+    pub(super) fn new(context: &DrawContext, dew: &Dew, surfaces: &[Surface]) -> Self {
         let stage = Stage::new([0.0; 3], dew.size_m);
         let style = SolidStyle::Opaque(MATT, 0.3);
-        let solids = surfaces.iter().map(|surface| Solid::new(&studio.renderer, &stage, &surface.shape, style));
+        let solids = surfaces.iter().map(|surface| Solid::new(&context.renderer, &stage, &surface.shape, style));
         let of_solids = surfaces.iter().filter_map(|surface| surface.scalar("temperature_k")).flatten();
         let low = of_solids.map(|kelvin| kelvin - ZERO_CELSIUS).fold(dew.air.temperature_c - 1.0, f64::min);
         let colours =
@@ -46,25 +46,25 @@ impl Section {
         Self { stage, solids: solids.collect(), colours, radius: RADIUS * dew.spacing_m, labels }
     }
 
-    pub(super) fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
-        let gpu = studio.renderer.gpu();
+    pub(super) fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+        let gpu = context.renderer.gpu();
         let stage = self.stage;
-        let camera = studio.hand.moved(Camera::front(&stage, studio.aspect(), MARGINS));
+        let camera = context.camera_offset.moved(Camera::front(&stage, context.aspect(), MARGINS));
         let sets = |name: &'static str| moment.frame.sets.iter().filter(move |set| set.name == name);
-        let shading = if studio.look == Look::Simple { Shading::Matt } else { Shading::Full };
+        let shading = if context.quality == Quality::Simple { Shading::Matt } else { Shading::Full };
         let style = BallStyle { gloss: 0.4, shading, ..BallStyle::new(self.colours.clone()) };
         let mut air = match moment.on_device {
             Some(air) => {
                 let shows = BallsOfDevice { radius: RADIUS, raise: 1.0, value: ValueOfDevice::Temperature };
-                studio.balls.balls_of_device(gpu, &stage, &style, air, shows)?
+                context.balls.balls_of_device(gpu, &stage, &style, air, shows)?
             }
             None => {
                 let balls = |(place, kelvin): (&[f64; 3], &f64)| (*place, self.radius, kelvin - ZERO_CELSIUS);
                 let air = sets("air").flat_map(|set| set.position.iter().zip(temperatures(set)).map(balls));
-                studio.balls.balls(gpu, &stage, &style, air)
+                context.balls.balls(gpu, &stage, &style, air)
             }
         };
-        let mut drops = studio.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
+        let mut drops = context.caps.caps(gpu, &stage, sets("drops").flat_map(caps));
         let overlay = Overlay {
             title: title.into(),
             time: format!("t = {}", text::time(moment.frame.time)),
@@ -77,7 +77,7 @@ impl Section {
         let mut things: Vec<&mut dyn Drawable> = vec![&mut air];
         things.extend(self.solids.iter_mut().map(|solid| solid as &mut dyn Drawable));
         things.push(&mut drops);
-        studio.take(&stage, &camera, &studio.lit(Light::studio().from_azimuth(-2.2)), &mut things, overlay)
+        context.take(&stage, &camera, &context.lit(Light::studio().from_azimuth(-2.2)), &mut things, overlay)
     }
 }
 

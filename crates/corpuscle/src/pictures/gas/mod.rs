@@ -3,7 +3,7 @@
 mod page;
 mod sides;
 
-use super::{Look, Moment, OwnView, Shown, Studio, Subject};
+use super::{DrawContext, Moment, OwnView, Quality, Shown, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
 use corpuscle_model::{Container, Frame, ParticleSet};
@@ -14,28 +14,28 @@ use corpuscle_render::{
 use corpuscle_scene::{Gas, padded};
 use sides::Plates;
 
-/// From where a box in space is seen, radians: to the right of its front, from above; and how wide the lens is.
+/// Default azimuth and elevation of the camera in three dimensions (to the right of the front, from above), and field of view, radians.
 const DIRECTION: [f64; 2] = [-1.02, 0.36];
-/// Room for axes round the box in space, part of the picture.
+/// Margin for axes in three dimensions, fraction of the picture.
 const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.085, margins: [0.12, 0.12, 0.16, 0.09] };
-/// In the plane: at the left, at the right, below and above, parts of its height; with the key beside the box, and below it.
+/// Margins in two dimensions: left, right, below and above, fractions of the height; with the legend beside the box, and below it.
 const BESIDE: [f64; 4] = [0.11, 0.38, 0.095, 0.095];
 const BELOW: [f64; 4] = [0.11, 0.06, 0.16, 0.095];
-/// The same where whoever shows the picture puts the key above the box.
+/// The same where the window draws the legend above the box.
 const IN_WINDOW: [f64; 4] = [0.12, 0.05, 0.12, 0.11];
-/// More entries of a key than this do not stand in a row.
+/// Most entries of a legend in a row.
 const MOST_IN_A_ROW: usize = 4;
-/// How far the sun stands to the left of the eye, radians.
+/// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -0.9;
 /// Least radius of a ball that is drawn, pixels of a picture 1080 pixels high, in the plane and in space; and in any picture.
 const LEAST_RADIUS: [f64; 2] = [2.4, 4.5];
 const LEAST_OF_ALL: f64 = 1.2;
-/// Balls are not enlarged beyond this part of the mean distance between them.
+/// Largest radius of enlarged balls over the mean distance between them.
 const CLOSEST: f64 = 0.2;
-/// Ink of edges, and the colour of a ball's way.
+/// Colours of edges and of trajectories.
 const INK: [u8; 3] = [0x46, 0x52, 0x5e];
-const WAY: [u8; 3] = [0xc2, 0x18, 0x5b];
+const TRAJECTORY: [u8; 3] = [0xc2, 0x18, 0x5b];
 
 /// Draws a gas.
 pub(crate) struct GasPicture {
@@ -45,7 +45,7 @@ pub(crate) struct GasPicture {
     floor: Option<Floor>,
 }
 
-/// Where the things of one picture are.
+/// Camera and stage of one picture.
 struct View {
     stage: Stage,
     camera: Camera,
@@ -60,36 +60,36 @@ impl Subject for GasPicture {
         }
     }
 
-    fn draw(&mut self, studio: &Studio, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
+    fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
         let key = gas_key(&self.gas, moment.frame);
-        let view = self.view(studio, moment, &key);
+        let view = self.view(context, moment, &key);
         let flat = self.gas.dimensions() == 2;
         let light = match flat {
-            true => Light::paper_of(studio.paper),
-            false => studio.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
+            true => Light::paper_of(context.paper),
+            false => context.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
-        let overlay = self.overlay(studio, title, moment, &key, &view);
+        let overlay = self.overlay(context, title, moment, &key, &view);
         let stage = &view.stage;
-        let mut balls = self.balls(studio, &view, moment, &key);
-        let ways = moment.paths.iter().map(|path| {
+        let mut balls = self.balls(context, &view, moment, &key);
+        let trajectories = moment.paths.iter().map(|path| {
             let so_far = path.times.partition_point(|time| *time <= moment.frame.time);
             &path.points[..so_far.min(path.points.len())]
         });
-        let mut ways = tubes(studio, stage, WAY, [2.2, 0.002], ways);
+        let mut trajectories = tubes(context, stage, TRAJECTORY, [2.2, 0.002], trajectories);
         let mut things: Vec<&mut dyn Drawable> = Vec::new();
-        let mut edges = sides::edges(&self.gas, studio, &view);
+        let mut edges = sides::edges(&self.gas, context, &view);
         things.extend(balls.iter_mut().map(|set| set as &mut dyn Drawable));
-        things.push(&mut ways);
+        things.push(&mut trajectories);
         if !flat {
-            if studio.look == Look::Full {
-                let floor = self.floor.get_or_insert_with(|| Floor::new(&studio.renderer, stage.from.z));
+            if context.quality == Quality::Full {
+                let floor = self.floor.get_or_insert_with(|| Floor::new(&context.renderer, stage.from.z));
                 floor.lay_at(stage.from.z);
                 things.push(floor);
             }
             things.extend(edges.iter_mut().map(|edges| edges as &mut dyn Drawable));
-            things.extend(self.plates.of(&self.gas, studio, &view, moment.frame.time));
+            things.extend(self.plates.of(&self.gas, context, &view, moment.frame.time));
         }
-        studio.take(stage, &view.camera, &light, &mut things, overlay)
+        context.take(stage, &view.camera, &light, &mut things, overlay)
     }
 }
 
@@ -98,27 +98,27 @@ impl GasPicture {
         Self { gas, plates: Plates::default(), floor: None }
     }
 
-    /// Where it is seen from. What moves does not move the camera.
-    fn view(&self, studio: &Studio, moment: &Moment<'_>, key: &GasKey) -> View {
+    /// The camera. Moving walls do not move it.
+    fn view(&self, context: &DrawContext, moment: &Moment<'_>, key: &GasKey) -> View {
         let size = padded(&self.gas.size);
         let container = moment.container.unwrap_or(Container { from: [0.0; 3], to: size });
         let stage = Stage::new(
             std::array::from_fn(|k| container.from[k].min(0.0)),
             std::array::from_fn(|k| container.to[k].max(size[k])),
         );
-        let aspect = studio.aspect();
+        let aspect = context.aspect();
         if self.gas.dimensions() > 2 {
-            let camera = studio.camera(&stage, &OWN_VIEW, moment.frame.time);
+            let camera = context.camera(&stage, &OWN_VIEW, moment.frame.time);
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
-        if !studio.overlaid {
-            let camera = studio.hand.moved(Camera::plan(&stage, aspect, IN_WINDOW));
+        if !context.overlaid {
+            let camera = context.camera_offset.moved(Camera::plan(&stage, aspect, IN_WINDOW));
             return View { stage, camera, container, key_place: KeyPlace::Corner };
         }
         let places = [(KeyPlace::Below, BELOW), (KeyPlace::Beside, BESIDE)];
         let [below, beside] = places.map(|(key_place, margins)| View {
             stage,
-            camera: studio.hand.moved(Camera::plan(&stage, aspect, margins)),
+            camera: context.camera_offset.moved(Camera::plan(&stage, aspect, margins)),
             container,
             key_place,
         });
@@ -127,15 +127,15 @@ impl GasPicture {
     }
 
     /// The sets of balls, each in its colours.
-    fn balls(&self, studio: &Studio, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
-        let shading = match (self.gas.dimensions(), studio.look) {
+    fn balls(&self, context: &DrawContext, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
+        let shading = match (self.gas.dimensions(), context.quality) {
             (2, _) => Shading::Discs,
-            (_, Look::Simple) => Shading::Matt,
-            (_, Look::Full) => Shading::Full,
+            (_, Quality::Simple) => Shading::Matt,
+            (_, Quality::Full) => Shading::Full,
         };
         let style = |number: usize| BallStyle {
             shading,
-            least_radius: self.least_radius(studio, moment.frame, view) as f32,
+            least_radius: self.least_radius(context, moment.frame, view) as f32,
             ..BallStyle::new(match key {
                 GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),
                 GasKey::Speed { most, .. } => speeds(*most),
@@ -146,39 +146,39 @@ impl GasPicture {
         let sets = moment.frame.sets.iter().enumerate();
         sets.map(|(number, set)| {
             let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], speed(set, at)));
-            studio.balls.balls(studio.renderer.gpu(), &view.stage, &style(number), balls)
+            context.balls.balls(context.renderer.gpu(), &view.stage, &style(number), balls)
         })
         .collect()
     }
 
-    /// Least radius of a ball that is drawn, samples: one that can be seen, but not so large that balls run into each other.
-    fn least_radius(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
+    /// Least drawn radius of a ball, samples: visible, but not so large that balls overlap.
+    fn least_radius(&self, context: &DrawContext, frame: &Frame, view: &View) -> f64 {
         let dimensions = self.gas.dimensions();
         let of_1080 = LEAST_RADIUS[usize::from(dimensions > 2)];
-        let samples = f64::from(studio.target.samples);
-        let seen = (of_1080 * f64::from(studio.target.size[1]) / 1080.0).max(LEAST_OF_ALL) * samples;
+        let samples = f64::from(context.target.samples);
+        let seen = (of_1080 * f64::from(context.target.size[1]) / 1080.0).max(LEAST_OF_ALL) * samples;
         let room: f64 = (0..dimensions).map(|k| view.container.to[k] - view.container.from[k]).product();
         let count = frame.sets.iter().map(ParticleSet::len).sum::<usize>().max(1) as f64;
         let spacing = (room / count).powf(1.0 / dimensions as f64);
-        seen.min(CLOSEST * spacing / sample_height(studio, view)).max(0.5 * samples)
+        seen.min(CLOSEST * spacing / sample_height(context, view)).max(0.5 * samples)
     }
 
-    /// How much larger than it is the smallest ball is drawn.
-    fn enlarged(&self, studio: &Studio, frame: &Frame, view: &View) -> f64 {
+    /// Enlargement of the smallest ball.
+    fn enlarged(&self, context: &DrawContext, frame: &Frame, view: &View) -> f64 {
         let smallest = frame.sets.iter().flat_map(|set| &set.radius).copied().fold(f64::INFINITY, f64::min);
-        (self.least_radius(studio, frame, view) * sample_height(studio, view) / smallest).max(1.0)
+        (self.least_radius(context, frame, view) * sample_height(context, view) / smallest).max(1.0)
     }
 }
 
 /// Height of a sample in the middle of the stage, m.
-fn sample_height(studio: &Studio, view: &View) -> f64 {
+fn sample_height(context: &DrawContext, view: &View) -> f64 {
     let tall = match view.camera.lens {
         Lens::Orthographic { height } => height,
         Lens::Perspective { field_of_view } => {
             2.0 * (view.camera.eye - view.camera.target).length() * (0.5 * field_of_view).tan()
         }
     };
-    tall / f64::from(studio.target.size[1] * studio.target.samples)
+    tall / f64::from(context.target.size[1] * context.target.samples)
 }
 
 /// Height of the world in a picture to scale, m.
@@ -196,18 +196,18 @@ fn speeds(most: f64) -> ColourTable {
 
 /// Lines of a colour; `thick` is their width in pixels of a picture 1080 pixels high, and their radius as a part of the stage.
 fn tubes<'a>(
-    studio: &Studio,
+    context: &DrawContext,
     stage: &Stage,
     colour: [u8; 3],
     thick: [f64; 2],
     lines: impl IntoIterator<Item = &'a [[f64; 3]]>,
 ) -> Tubes {
-    let samples = f64::from(studio.target.samples) * f64::from(studio.target.size[1]) / 1080.0;
+    let samples = f64::from(context.target.samples) * f64::from(context.target.size[1]) / 1080.0;
     let style = TubeStyle {
         colour,
         radius: thick[1] * stage.unit(),
         least_radius: (0.5 * thick[0] * samples) as f32,
         shaded: thick[1] > 0.0,
     };
-    studio.tubes.tubes(studio.renderer.gpu(), stage, &style, lines)
+    context.tubes.tubes(context.renderer.gpu(), stage, &style, lines)
 }

@@ -1,19 +1,19 @@
-//! What lies over the picture of a gas.
+//! The overlay of the picture of a gas.
 
 use super::{GasPicture, View, sides, speeds};
-use crate::pictures::{Moment, Studio};
+use crate::pictures::{DrawContext, Moment};
 use corpuscle_drawing::text;
 use corpuscle_output::GasKey;
-use corpuscle_render::{Axes, Key, LineLook, Mark, Overlay};
+use corpuscle_render::{Axes, Key, LineStyle, Mark, Overlay};
 use corpuscle_scene::{Axis, Units, Wall};
 
-/// Balls that are drawn larger than they are by no more than this need no remark.
+/// Largest enlargement of balls without a remark.
 const HARDLY: f64 = 1.15;
 
 impl GasPicture {
     pub(super) fn overlay(
         &self,
-        studio: &Studio,
+        context: &DrawContext,
         title: &str,
         moment: &Moment<'_>,
         key: &GasKey,
@@ -35,7 +35,7 @@ impl GasPicture {
             key: Some(key),
             key_place: view.key_place,
             lines: self.lines(moment),
-            remark: self.remark(studio, moment, view),
+            remark: self.remark(context, moment, view),
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
             marks: if flat { self.marks(moment) } else { Vec::new() },
             labels: Vec::new(),
@@ -49,22 +49,26 @@ impl GasPicture {
         }
     }
 
-    /// The lines that are in the picture, in words.
-    fn lines(&self, moment: &Moment<'_>) -> Vec<(LineLook, String)> {
+    /// The legend of the lines in the picture.
+    fn lines(&self, moment: &Moment<'_>) -> Vec<(LineStyle, String)> {
         let axes = Axis::ALL.into_iter().take(self.gas.dimensions());
         let walls: Vec<&Wall> = axes.flat_map(|axis| self.gas.walls.along(axis)).collect();
         let flat = self.gas.dimensions() == 2;
         let followed = moment.paths.iter().any(|path| !path.points.is_empty());
         let found = [
-            (followed, LineLook::Way, "way of one ball"),
-            (walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })), LineLook::HotWall, "wall at a temperature"),
-            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineLook::Open, "periodic side"),
+            (followed, LineStyle::Trajectory, "trajectory of one ball"),
+            (
+                walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })),
+                LineStyle::ThermalWall,
+                "wall at a temperature",
+            ),
+            (flat && walls.iter().any(|wall| matches!(wall, Wall::Periodic)), LineStyle::Periodic, "periodic side"),
         ];
-        found.into_iter().filter(|(there, ..)| *there).map(|(_, look, name)| (look, name.into())).collect()
+        found.into_iter().filter(|(there, ..)| *there).map(|(_, style, name)| (style, name.into())).collect()
     }
 
-    fn remark(&self, studio: &Studio, moment: &Moment<'_>, view: &View) -> String {
-        let enlarged = self.enlarged(studio, moment.frame, view);
+    fn remark(&self, context: &DrawContext, moment: &Moment<'_>, view: &View) -> String {
+        let enlarged = self.enlarged(context, moment.frame, view);
         let mut radii = moment.frame.sets.iter().flat_map(|set| &set.radius);
         let first = radii.next();
         let alike = radii.all(|radius| Some(radius) == first);
@@ -75,7 +79,7 @@ impl GasPicture {
         }
     }
 
-    /// Where the way began, and the ball that goes it.
+    /// Marks of the start of the trajectory and of its ball.
     fn marks(&self, moment: &Moment<'_>) -> Vec<Mark> {
         let mut marks: Vec<Mark> =
             moment.paths.iter().filter_map(|path| path.points.first()).map(|start| Mark::Start(*start)).collect();

@@ -1,18 +1,18 @@
 //! The sides of the box of a gas, and the wall across it.
 
 use super::{INK, View, tubes};
-use crate::pictures::Studio;
+use crate::pictures::DrawContext;
 use corpuscle_model::SolidShape;
-use corpuscle_render::{Border, Drawable, LineLook, Solid, SolidStyle, Tubes, box_edges};
+use corpuscle_render::{Border, Drawable, LineStyle, Solid, SolidStyle, Tubes, box_edges};
 use corpuscle_scene::{Axis, Gas, Partition, Wall};
 use std::sync::Arc;
 
 /// Width of edges, pixels of a picture 1080 pixels high.
 const EDGE: f64 = 2.0;
-/// Colour of what is held at a temperature, and what plates let through.
-const HOT: [u8; 3] = [0xd5, 0x5e, 0x00];
+/// Colour of thermal walls, and light that plates transmit.
+const THERMAL_WALL: [u8; 3] = [0xd5, 0x5e, 0x00];
 const PLATE: [u8; 3] = [214, 223, 234];
-/// Thickness of a plate, part of the stage.
+/// Thickness of a plate, fraction of the stage.
 const THICK: f64 = 0.012;
 
 fn moves(wall: &Wall) -> bool {
@@ -24,7 +24,7 @@ fn standing(gas: &Gas, time: f64) -> Option<&Partition> {
     gas.partition.as_ref().filter(|partition| partition.lifted_at_s.is_none_or(|lifted| time < lifted))
 }
 
-/// Sides and partition of a flat box. Where one side moves the others are as long as its way.
+/// Sides and partition of a flat box. Where one side moves the others are as long as its range.
 pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
     let mut borders = Vec::new();
     let stage = [<[f64; 3]>::from(view.stage.from), view.stage.to.into()];
@@ -37,11 +37,11 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
             let ends = [place(span[0][along]), place(span[1][along])];
             let mut outwards = [0.0; 2];
             outwards[across] = if end == 0 { -1.0 } else { 1.0 };
-            let line = |look| Border::Line { look, ends, outwards };
+            let line = |style| Border::Line { style, ends, outwards };
             borders.push(match wall {
-                Wall::Fixed => line(LineLook::Wall),
-                Wall::Periodic => line(LineLook::Open),
-                Wall::Thermal { .. } => line(LineLook::HotWall),
+                Wall::Fixed => line(LineStyle::Wall),
+                Wall::Periodic => line(LineStyle::Periodic),
+                Wall::Thermal { .. } => line(LineStyle::ThermalWall),
                 Wall::Moving { .. } | Wall::Motion(_) | Wall::Piston { .. } => {
                     Border::Piston { ends, outwards, rod: (stage[end][across] - container[end][across]).abs() }
                 }
@@ -55,7 +55,7 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
         let stretches = hole.map_or(vec![[low, high]], |[from, to]| vec![[low, from], [to, high]]);
         let place = |at: f64| if across == 0 { [partition.at, at] } else { [at, partition.at] };
         borders.extend(stretches.into_iter().map(|stretch| Border::Line {
-            look: LineLook::Partition,
+            style: LineStyle::Partition,
             ends: stretch.map(place),
             outwards: [0.0; 2],
         }));
@@ -64,7 +64,7 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
 }
 
 /// The edges of a box in space; those of sides at a temperature in its colour.
-pub(super) fn edges(gas: &Gas, studio: &Studio, view: &View) -> Vec<Tubes> {
+pub(super) fn edges(gas: &Gas, context: &DrawContext, view: &View) -> Vec<Tubes> {
     let (from, to) = (view.container.from, view.container.to);
     let is_hot = |edge: &Vec<[f64; 3]>| {
         Axis::ALL.into_iter().any(|axis| {
@@ -76,8 +76,10 @@ pub(super) fn edges(gas: &Gas, studio: &Studio, view: &View) -> Vec<Tubes> {
         })
     };
     let (hot, cold): (Vec<_>, Vec<_>) = box_edges(from, to).into_iter().partition(is_hot);
-    [(INK, EDGE, cold), (HOT, 2.0 * EDGE, hot)]
-        .map(|(colour, width, edges)| tubes(studio, &view.stage, colour, [width, 0.0], edges.iter().map(Vec::as_slice)))
+    [(INK, EDGE, cold), (THERMAL_WALL, 2.0 * EDGE, hot)]
+        .map(|(colour, width, edges)| {
+            tubes(context, &view.stage, colour, [width, 0.0], edges.iter().map(Vec::as_slice))
+        })
         .into()
 }
 
@@ -94,7 +96,7 @@ impl Plates {
     pub(super) fn of(
         &mut self,
         gas: &Gas,
-        studio: &Studio,
+        context: &DrawContext,
         view: &View,
         time: f64,
     ) -> impl Iterator<Item = &mut dyn Drawable> + use<'_> {
@@ -104,7 +106,8 @@ impl Plates {
         self.kept = if same {
             before
         } else {
-            let solid = |shape: &SolidShape| Solid::new(&studio.renderer, &view.stage, shape, SolidStyle::Glass(PLATE));
+            let solid =
+                |shape: &SolidShape| Solid::new(&context.renderer, &view.stage, shape, SolidStyle::Glass(PLATE));
             shapes.iter().map(|shape| (shape.bounds, solid(shape))).collect()
         };
         self.kept.iter_mut().map(|(_, solid)| solid as &mut dyn Drawable)

@@ -4,7 +4,7 @@ use corpuscle_model::{Column, Values};
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-/// A name that lasts as long as the program, as columns have it. Files have few different ones; each is kept once.
+/// A name with static lifetime, as columns have it. Files have few different ones; each is leaked once.
 pub(super) fn lasting(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

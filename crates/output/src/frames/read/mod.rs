@@ -5,7 +5,7 @@ mod csv;
 mod vtp;
 mod xyz;
 
-use crate::RecordError;
+use crate::OutputError;
 use corpuscle_model::Frame;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -24,14 +24,14 @@ impl FrameFiles {
     /// `time_of`, which is given the number of the frame.
     ///
     /// # Errors
-    /// [`RecordError::NoFrames`] where the run wrote none; [`RecordError::Read`], [`RecordError::Content`] where `frames.pvd`
+    /// [`OutputError::NoFrames`] where the run wrote none; [`OutputError::Read`], [`OutputError::Content`] where `frames.pvd`
     /// cannot be used.
-    pub fn list(run: &Path, time_of: impl Fn(usize) -> f64) -> Result<Self, RecordError> {
+    pub fn list(run: &Path, time_of: impl Fn(usize) -> f64) -> Result<Self, OutputError> {
         let folder = run.join("frames");
         let collection = folder.join("frames.pvd");
         let files = if collection.exists() {
-            let text = fs::read_to_string(&collection).map_err(RecordError::read(&collection))?;
-            let files = collected(&text).map_err(|what| RecordError::content(&collection, what))?;
+            let text = fs::read_to_string(&collection).map_err(OutputError::read(&collection))?;
+            let files = collected(&text).map_err(|what| OutputError::content(&collection, what))?;
             files.into_iter().map(|(time, name)| (time, folder.join(name))).collect()
         } else {
             let ending = if folder.join("frame_000000.xyz").exists() { "xyz" } else { "csv" };
@@ -41,7 +41,7 @@ impl FrameFiles {
                 .map(|index| (time_of(index), path(index)))
                 .collect::<Vec<_>>()
         };
-        if files.is_empty() { Err(RecordError::NoFrames { path: run.to_owned() }) } else { Ok(Self { files }) }
+        if files.is_empty() { Err(OutputError::NoFrames { path: run.to_owned() }) } else { Ok(Self { files }) }
     }
 
     /// Times of the frames, s.
@@ -59,19 +59,19 @@ impl FrameFiles {
     /// particles). Units do not stand in these files; columns have none.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Content`] where a file is damaged or not one of these.
+    /// [`OutputError::Read`], [`OutputError::Content`] where a file is damaged or not one of these.
     ///
     /// # Panics
     /// Where there is no frame of this number.
-    pub fn read(&self, index: usize) -> Result<Frame, RecordError> {
+    pub fn read(&self, index: usize) -> Result<Frame, OutputError> {
         let (time, path) = &self.files[index];
-        let text = fs::read_to_string(path).map_err(RecordError::read(path))?;
+        let text = fs::read_to_string(path).map_err(OutputError::read(path))?;
         let frame = match path.extension().and_then(OsStr::to_str) {
             Some("csv") => csv::read(&text, *time),
             Some("xyz") => xyz::read(&text),
             _ => vtp::read(&text),
         };
-        frame.map_err(|what| RecordError::content(path, what))
+        frame.map_err(|what| OutputError::content(path, what))
     }
 }
 

@@ -9,7 +9,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::Read;
 
-/// What every file has; other arrays of point data are the model's own.
+/// Arrays that every file has; other arrays of point data are the model's own.
 const KNOWN: [&str; 5] = ["set", "id", "velocity", "radius", "mass"];
 
 /// An array in the appended section.

@@ -1,4 +1,4 @@
-//! Particles from extended XYZ, as it is written here.
+//! Particles from extended XYZ, as [`crate::frames`] writes it.
 
 use super::columns::column;
 use crate::frames::xyz::FIRST;
@@ -31,7 +31,7 @@ pub(super) fn read(text: &str) -> Result<Frame, String> {
     Ok(Frame { time, sets: sets.into_iter().map(whole).collect() })
 }
 
-/// What follows a key up to the next space.
+/// The word that follows a key.
 fn word_after<'a>(about: &'a str, key: &str) -> Option<&'a str> {
     about.split_whitespace().find_map(|word| word.strip_prefix(key))
 }

@@ -86,18 +86,18 @@ fn paint(balls: &Balls, paper: &Paper, size: [f64; 2], fineness: f64) -> Result<
 }
 
 fn draw_way(svg: &mut Svg, balls: &Balls, paper: &Paper) {
-    for class in ["way-under", "way"] {
-        if !balls.way.is_empty() {
-            svg.path(balls.way.iter().map(|point| paper.of(*point)), false, class);
+    for class in ["trajectory-under", "trajectory"] {
+        if !balls.trajectory.is_empty() {
+            svg.path(balls.trajectory.iter().map(|point| paper.of(*point)), false, class);
         }
     }
-    if let Some(start) = balls.way.first() {
-        svg.circle(paper.of(*start), 4.0, "way-start");
+    if let Some(start) = balls.trajectory.first() {
+        svg.circle(paper.of(*start), 4.0, "trajectory-start");
     }
     if let Some(disc) = &balls.followed {
         let radius = (disc.radius * paper.scale).max(3.0);
         let fill = |[r, g, b]: Colour| format!("fill:rgb({r},{g},{b})");
-        svg.styled_circle(paper.of(disc.position), radius, "way-end", &fill(disc.colour));
+        svg.styled_circle(paper.of(disc.position), radius, "trajectory-end", &fill(disc.colour));
     }
 }
 

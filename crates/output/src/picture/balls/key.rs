@@ -1,4 +1,4 @@
-//! What the picture's colours, lines and lengths mean.
+//! The legend of the picture: colours, lines and scale bar.
 
 use super::{Balls, Key, Side};
 use crate::picture::bars::{scale_bar, value_bar};
@@ -8,7 +8,7 @@ use crate::picture::svg::{Anchor, Svg};
 const SPACE_OF_LETTER: f64 = 6.8;
 
 impl Balls {
-    /// Draws the key from `left_top` on; gives its lower end.
+    /// Draws the legend from `left_top` on; returns its lower end.
     pub(super) fn draw_key(&self, svg: &mut Svg, [left, top]: [f64; 2], width: f64, scale: Option<f64>) -> f64 {
         let end = match &self.key {
             Key::Kinds(kinds) => draw_kinds(svg, kinds, [left, top], 0.7 * width),
@@ -20,7 +20,7 @@ impl Balls {
         self.draw_marks(svg, [left, end + 12.0])
     }
 
-    /// The lines that are in the picture, in words.
+    /// The legend of the lines in the picture.
     fn draw_marks(&self, svg: &mut Svg, [left, top]: [f64; 2]) -> f64 {
         let has = |side: Side| self.sides.iter().take(self.dimensions).flatten().any(|found| *found == side);
         let mut x = left;
@@ -29,11 +29,11 @@ impl Balls {
             svg.text([x + 29.0, top + 4.0], Anchor::Start, "small", text);
             x += 47.0 + text.chars().count() as f64 * SPACE_OF_LETTER;
         };
-        if !self.way.is_empty() {
-            mark(svg, "way", "way of one ball");
+        if !self.trajectory.is_empty() {
+            mark(svg, "trajectory", "trajectory of one ball");
         }
         if has(Side::Open) {
-            mark(svg, "wall-open", "periodic: what leaves comes in opposite");
+            mark(svg, "wall-open", "periodic side");
         }
         if has(Side::Hot) {
             mark(svg, "wall-hot", "wall at a temperature");

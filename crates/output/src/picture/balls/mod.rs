@@ -41,7 +41,7 @@ pub(crate) struct Across {
     pub hole: Option<[Vec<f64>; 2]>,
 }
 
-/// What the colours of balls mean.
+/// The legend of the colours of balls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Key {
     /// Each kind of balls has its own: name and colour.
@@ -68,8 +68,8 @@ pub(crate) struct Balls {
     pub sides: [[Side; 2]; 3],
     pub partition: Option<Across>,
     pub discs: Vec<Disc>,
-    /// The way of one ball, and which it is.
-    pub way: Vec<[f64; 3]>,
+    /// Trajectory of one ball, and the ball.
+    pub trajectory: Vec<[f64; 3]>,
     pub followed: Option<Disc>,
     pub key: Key,
     /// Unit of lengths, for the scale bar; empty in reduced units.

@@ -6,7 +6,7 @@ use crate::picture::colour::mix;
 use crate::picture::png::data_url;
 use crate::picture::svg::{Figure, Svg};
 
-/// The eye looks from this direction: turned to the right of the front, and raised, in radians.
+/// Azimuth of the camera to the right of the front, and its elevation, radians.
 const TURNED: f64 = 0.55;
 const RAISED: f64 = 0.33;
 
@@ -92,9 +92,9 @@ pub(super) fn picture(balls: &Balls, shown_at: f64) -> Result<Figure, String> {
     svg.image([0.0, 0.0], eye.size, &url, 1.0);
     draw_faces(&mut svg, balls, &eye);
     draw_edges(&mut svg, balls, &eye, true);
-    if !balls.way.is_empty() {
-        for class in ["way-under", "way"] {
-            svg.path(balls.way.iter().map(|point| eye.see(*point).place), false, class);
+    if !balls.trajectory.is_empty() {
+        for class in ["trajectory-under", "trajectory"] {
+            svg.path(balls.trajectory.iter().map(|point| eye.see(*point).place), false, class);
         }
     }
     Ok(svg.finish(eye.size, "Balls in their box"))

@@ -1,4 +1,4 @@
-//! Axes of charts: where values lie, and what is printed along them.
+//! Axes of charts: positions of values, and their labels.
 
 use crate::picture::ticks;
 use corpuscle_model::ChartAxis;
@@ -56,7 +56,7 @@ impl Axis {
         }
     }
 
-    /// The part of the way from the low to the high end at which a value lies; none for a value without a place.
+    /// Position of a value between the low end (0) and the high end (1); none for a value that the axis cannot show.
     pub(super) fn part(&self, value: f64) -> f64 {
         let value = match self.logarithmic {
             true if value > 0.0 => value.log10(),
@@ -76,7 +76,7 @@ impl Axis {
         values.into_iter().map(|value| (value, ticks::label(value / scale, self.step / scale))).collect()
     }
 
-    /// What stands beside the axis: `Distance, 10⁻⁹ m`.
+    /// The label of the axis: `Distance, 10⁻⁹ m`.
     pub(super) fn label(&self, axis: &ChartAxis) -> String {
         let power = if self.power == 0 { String::new() } else { power_of_ten(self.power) };
         let unit = [power, axis.unit.clone()].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");

@@ -10,7 +10,7 @@ const RIGHT: f64 = 16.0;
 const BOTTOM: f64 = 44.0;
 const SPACE_OF_LETTER: f64 = 6.6;
 
-/// Where the chart is drawn.
+/// The drawing area of a chart.
 struct Plot {
     x: Axis,
     y: Axis,
@@ -24,7 +24,7 @@ impl Plot {
         [left + self.x.part(x) * (right - left), bottom - self.y.part(y) * (bottom - top)]
     }
 
-    /// The lower edge, or the place of 0 where that is within.
+    /// The lower edge, or the position of 0 where that is within.
     fn base(&self) -> f64 {
         let [top, bottom] = [self.left_top[1], self.right_bottom[1]];
         let zero = bottom - self.y.part(0.0) * (bottom - top);
@@ -60,7 +60,7 @@ fn draw_legend(svg: &mut Svg, chart: &Chart, top: f64, width: f64) -> f64 {
             (x, baseline) = (0.0, baseline + 17.0);
         }
         let y = baseline - 4.0;
-        let (class, style) = look(series, number);
+        let (class, style) = class_and_style(series, number);
         match series.style {
             ChartStyle::Line | ChartStyle::Dashes => svg.styled_path([[x, y], [x + 18.0, y]], false, &class, &style),
             ChartStyle::Points => svg.styled_circle([x + 9.0, y], 3.2, &class, &style),
@@ -73,7 +73,7 @@ fn draw_legend(svg: &mut Svg, chart: &Chart, top: f64, width: f64) -> f64 {
 }
 
 /// Class and style of a series: its number's colour, or its own.
-fn look(series: &ChartSeries, number: usize) -> (String, String) {
+fn class_and_style(series: &ChartSeries, number: usize) -> (String, String) {
     let number = number % 6;
     let own = |property: &str| series.colour.as_ref().map(|colour| format!("{property}:{colour}"));
     match series.style {
@@ -152,7 +152,7 @@ fn draw_axes(svg: &mut Svg, plot: &Plot, chart: &Chart) {
 }
 
 fn draw_series(svg: &mut Svg, plot: &Plot, series: &ChartSeries, number: usize, logarithmic: bool) {
-    let (class, style) = look(series, number);
+    let (class, style) = class_and_style(series, number);
     match series.style {
         ChartStyle::Line | ChartStyle::Dashes => {
             svg.styled_path(series.points.iter().map(|point| plot.place(*point)), false, &class, &style);
@@ -182,7 +182,7 @@ fn draw_bars(svg: &mut Svg, plot: &Plot, series: &ChartSeries, logarithmic: bool
         if !(left.is_finite() && right.is_finite() && top.is_finite()) {
             continue;
         }
-        // A hair of space between bars.
+        // A little space between bars.
         let gap = if right - left > 4.0 { 0.5 } else { 0.0 };
         svg.styled_path(corners([left + gap, top], [right - gap, plot.base()]), true, class, style);
     }

@@ -8,7 +8,7 @@ use super::view::{Vector, dot, normalised};
 pub(crate) struct Cap {
     /// Middle of the covered disk, m.
     pub position: Vector,
-    /// The way out of the solid.
+    /// The outward normal of the solid.
     pub normal: Vector,
     /// Radius of the covered disk, m.
     pub radius: f64,
@@ -31,7 +31,7 @@ pub(super) fn light(screen: &Screen) -> Vector {
     normalised(std::array::from_fn(|axis| 0.7 * view.up[axis] - 0.45 * view.right[axis] - 0.9 * view.ahead[axis]))
 }
 
-/// Draws drops over the picture of the solids. `mist` tells what part of each pixel is covered by a film of drops too small to be known.
+/// Draws drops over the picture of the solids. `mist` is the fraction of each pixel that drops too small to be followed cover.
 pub(super) fn draw(screen: &Screen, caps: &[Cap], hits: &[Hit], mut mist: Vec<f64>, colours: &mut [Vector]) {
     let mut order: Vec<&Cap> = caps.iter().filter(|cap| dot(cap.normal, screen.view.ahead) < 0.0).collect();
     // The farthest first.

@@ -1,4 +1,4 @@
-//! Solids with what is on them: drops true to scale, or a field in colours.
+//! Pictures of solids: drops true to scale, or a field in colours.
 
 mod drops;
 mod field;
@@ -22,14 +22,14 @@ use view::dot;
 /// Solids to be drawn.
 pub(crate) struct SolidsPicture<'a> {
     pub surfaces: &'a [Surface],
-    /// Corners of the room: what of a solid is beyond is not seen.
+    /// Corners of the room; parts of solids beyond are cut off.
     pub room: [Vector; 2],
     pub view: View,
     /// Largest width and height, CSS pixels.
     pub most: [f64; 2],
 }
 
-/// Colour of a solid that faces the light, and of what is behind solids.
+/// Colour of a solid that faces the light, and of the background.
 const SOLID: Vector = [116.0, 139.0, 152.0];
 const BEHIND: Vector = [240.0, 243.0, 246.0];
 
@@ -162,7 +162,7 @@ fn bar_below(width: f64, top: f64, words: f64) -> [f64; 2] {
     if width < BESIDE { [width.max(110.0) - 8.0, top + words + 4.0] } else { [width - 8.0, top + 6.0] }
 }
 
-/// Solids without anything on them.
+/// The solids alone.
 fn plain(screen: &Screen, hits: &[Hit]) -> Vec<Vector> {
     let light = light(screen);
     let colour = |hit: &Hit| match hit.solid {

@@ -1,23 +1,23 @@
-//! Where the rays of a view meet solids: by steps as long as the distance to the surface (Hart 1996).
+//! Ray marching of solids by their signed distances (sphere tracing, Hart 1996).
 
 use super::view::{Vector, View, along, normalised};
 use corpuscle_model::SolidShape;
 use rayon::prelude::*;
 
-/// Most steps of a ray; one that has not met by then passes close by.
+/// Most steps of a ray; one without a hit by then passes close by.
 const MOST_STEPS: u32 = 120;
 
-/// A ray has met where it is as near as this, in pixels.
+/// Distance of a hit, pixels.
 const MET: f64 = 0.1;
 
-/// What a pixel shows of solids.
+/// The hit of a pixel's ray.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
-    /// Which solid; none where there is nothing.
+    /// The solid; none where there is no hit.
     pub solid: Option<usize>,
     pub place: Vector,
     pub normal: Vector,
-    /// How far ahead.
+    /// Depth along the view, m.
     pub depth: f64,
     /// Part of the pixel that the solid covers.
     pub cover: f64,
@@ -96,7 +96,7 @@ impl Screen {
         Hit { solid: None, place, normal: self.slope(solid, place), depth: depths[0] + way.min(leave), cover }
     }
 
-    /// The way out of a solid near its surface, by differences.
+    /// The outward normal of a solid near its surface, by differences.
     fn slope(&self, solid: &SolidShape, place: Vector) -> Vector {
         let step = 0.5 * self.pixel;
         let slope: Vector = std::array::from_fn(|axis| {

@@ -1,8 +1,8 @@
-//! From where solids are seen.
+//! Views of solids.
 
 use corpuscle_model::Surface;
 
-/// A place or direction in space.
+/// A position or direction in space.
 pub(crate) type Vector = [f64; 3];
 
 pub(super) fn dot(a: Vector, b: Vector) -> f64 {
@@ -32,7 +32,7 @@ pub(crate) struct View {
     pub ahead: Vector,
 }
 
-/// Water on one side of a solid, over all of it, from which on it is seen square on.
+/// Fraction of the water that one side must have for a view square to it.
 const MOSTLY: f64 = 0.6;
 
 impl View {
@@ -55,7 +55,7 @@ impl View {
         Self::looking(Self::fullest(std::slice::from_ref(surface), |_| amount.to_vec()).0)
     }
 
-    /// The direction in which the fullest side is looked at, and its part of all.
+    /// The view direction to the side with most water, and its fraction of all water.
     fn fullest(surfaces: &[Surface], amount: impl Fn(&Surface) -> Vec<f64>) -> (Vector, f64) {
         let (mut sides, mut all) = ([[0.0; 2]; 3], 0.0);
         for surface in surfaces {

@@ -8,10 +8,10 @@ use corpuscle_scene::{Axis, Dew};
 /// Colour of solids.
 const SOLID: Colour = [0x6b, 0x78, 0x85];
 
-/// The key ends at the speed that all but this part of the air stays below: few particles do not darken the others.
+/// Fraction of the air that may be faster than the last colour, so that few particles do not darken the others.
 const FASTEST_PART: f64 = 0.005;
 
-/// Fewer particles in the slice are no picture of a flow.
+/// Fewest particles in a slice that is drawn.
 const FEWEST: usize = 300;
 
 /// The slice across the shortest side of the box; none where particle files show no air, or little of it, or it is at rest.
@@ -54,7 +54,7 @@ pub(super) fn slice(dew: &Dew, model: &dyn Model) -> Result<Option<Figure>, Stri
         sides,
         partition: None,
         discs,
-        way: Vec::new(),
+        trajectory: Vec::new(),
         followed: None,
         key: Key::Speed { most, unit: "m/s" },
         unit: "m",

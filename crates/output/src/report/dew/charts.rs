@@ -22,16 +22,16 @@ pub(super) fn over_time(table: &GaugeTable, dew: &Dew) -> Vec<Chart> {
         ("water_per_area", "Water on the solids", "g/m²", 1e3, of_faces_too("water_per_area_kg_per_m2")),
         ("number_of_drops", "Drops", "", 1.0, one("drops.number")),
         ("largest_drop", "Radius of the largest drop", "mm", 1e3, one("drops.largest_radius_m")),
-        ("heat_flow", "Heat that the solids take from the air", "W", 1.0, of_solids("heat_flow_W")),
+        ("heat_flow", "Heat flow from the air to the solids", "W", 1.0, of_solids("heat_flow_W")),
         ("water_left", "Water that ran off", "mg", 1e6, one("drops.left_kg")),
-        ("heat_given", "Heat that held solids gave", "J", 1.0, of_solids("heat_given_J")),
+        ("heat_given", "Heat from solids at a held temperature", "J", 1.0, of_solids("heat_given_J")),
         ("heat_from_heater", "Heat from heaters", "J", 1.0, of_solids("heat_from_heater_J")),
-        ("heat_from_outside", "Heat from outside (below 0 it is lost)", "J", 1.0, of_solids("heat_from_outside_J")),
-        ("heat_by_radiation", "Heat by radiation (below 0 it is lost)", "J", 1.0, of_solids("heat_by_radiation_J")),
+        ("heat_from_outside", "Heat from outside (negative: lost)", "J", 1.0, of_solids("heat_from_outside_J")),
+        ("heat_by_radiation", "Heat by radiation (negative: lost)", "J", 1.0, of_solids("heat_by_radiation_J")),
         ("solid_temperature", "Mean temperature of the solids", "K", 1.0, of_faces_too("mean_temperature_K")),
-        ("nearest_air", "Nearest air (below 0 it is inside)", "mm", 1e3, of_solids("nearest_air_m")),
+        ("nearest_air", "Nearest air (negative: inside)", "mm", 1e3, of_solids("nearest_air_m")),
         ("gap", "Vacuum before the surface", "mm", 1e3, of_solids("gap_m")),
-        ("wall_pairs", "Pairs of air and wall in a step: the cost", "", 1.0, of_solids("wall_pairs")),
+        ("wall_pairs", "Pairs of air and wall per step", "", 1.0, of_solids("wall_pairs")),
     ];
     kinds.into_iter().filter_map(|kind| chart(table, kind)).collect()
 }

@@ -10,7 +10,7 @@ pub(super) fn time(value: f64) -> String {
     format!("{} s", number(value))
 }
 
-/// The handful of numbers that come first.
+/// The key figures.
 pub(super) fn key_figures(table: &GaugeTable, summary: &Summary, dew: &Dew) -> Vec<KeyFigure> {
     let last = |header: &str| table.column(header).and_then(|values| values.last().copied()).unwrap_or(f64::NAN);
     let first = last("drops.first_at_s");
@@ -23,7 +23,7 @@ pub(super) fn key_figures(table: &GaugeTable, summary: &Summary, dew: &Dew) -> V
         figure("Covered", format!("{} mm²", number(1e6 * last("solids.covered_area_m2"))), "by drops, at the end"),
         figure("On the solids", format!("{} mg", number(1e6 * last("water.on_solids_kg"))), "water, at the end"),
     ];
-    // Of the solid that was fogged first, and of that which was clear again last.
+    // Of the solid that fogged first, and of the one that cleared last.
     let times = |quantity: &str| -> Vec<(&str, f64)> {
         let all = dew.solid.iter().map(|solid| (solid.name.as_str(), last(&format!("{}.{quantity}", solid.name))));
         all.filter(|(_, at)| at.is_finite()).collect()
@@ -41,14 +41,14 @@ pub(super) fn key_figures(table: &GaugeTable, summary: &Summary, dew: &Dew) -> V
     figures
 }
 
-/// Name and value of what was run.
+/// Names and values of the facts of the run.
 pub(super) fn run_facts(dew: &Dew, summary: &Summary) -> Vec<(&'static str, String)> {
     let size: Vec<String> = dew.size_m.iter().map(|length| number(1e3 * length)).collect();
     let rate = summary.particle_steps_per_s.unwrap_or(0.0);
     vec![
         ("Model", summary.model.clone()),
         ("Box", format!("{} mm", size.join(" × "))),
-        ("Distance of particles", format!("{} mm", number(1e3 * dew.spacing_m))),
+        ("Spacing", format!("{} mm", number(1e3 * dew.spacing_m))),
         ("Time factor", number(dew.time_factor)),
         ("Simulated time", format!("{} ({})", time(summary.simulated_time_s), how_it_ended(summary))),
         ("Particles", number(summary.particles as f64).replace(".0", "")),

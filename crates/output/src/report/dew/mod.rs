@@ -1,4 +1,4 @@
-//! The report of dew: how much water is where, in what drops, and since when.
+//! The report of dew: amounts of water, sizes of drops and times of wetting.
 
 mod air;
 mod charts;
@@ -8,7 +8,7 @@ mod picture;
 use super::{folder_name, moments, parts, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png, svg_url};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::Model;
 use corpuscle_scene::{Dew, Scene};
 use std::fs;
@@ -28,7 +28,7 @@ pub struct DewReport<'a> {
 /// Figures with the names of their files.
 type Figures = Vec<(String, Figure)>;
 
-/// What is drawn for the report.
+/// The figures of the report.
 struct Drawn {
     drops: Option<Figure>,
     air: Option<Figure>,
@@ -42,9 +42,9 @@ impl<'a> DewReport<'a> {
     /// The report of a run into `folder`. `model` shows the time of the picture.
     ///
     /// # Errors
-    /// [`RecordError::Content`] where the scene is not one of dew.
-    pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, RecordError> {
-        let no_dew = || RecordError::content(&folder.join("scene.toml"), "it is not the scene of dew");
+    /// [`OutputError::Content`] where the scene is not one of dew.
+    pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, OutputError> {
+        let no_dew = || OutputError::content(&folder.join("scene.toml"), "it is not the scene of dew");
         Ok(Self { folder, scene, dew: scene.dew().ok_or_else(no_dew)?, model })
     }
 
@@ -52,8 +52,8 @@ impl<'a> DewReport<'a> {
     /// `pictures/frame_NNNNNN.svg`, with the number of the particle file.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write_moment(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write_moment(&self) -> Result<(), OutputError> {
         let number = moments::frame_number(self.model.time(), self.scene.run.frame_period_s());
         if !moments::numbers(&self.scene.run).contains(&number) {
             return Ok(());
@@ -68,18 +68,18 @@ impl<'a> DewReport<'a> {
     /// Writes `pictures/*.png` and `report.html`.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let scene = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
         let table = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let drawn = self.draw(&table)?;
         let page = self.page(&summary, &table, &drawn, &scene);
         write_bytes(&self.folder.join("report.html"), page.as_bytes())
     }
 
-    fn draw(&self, table: &GaugeTable) -> Result<Drawn, RecordError> {
+    fn draw(&self, table: &GaugeTable) -> Result<Drawn, OutputError> {
         self.make_folder()?;
         let mut charts = charts::over_time(table, self.dew);
         charts.extend(self.model.charts());
@@ -100,13 +100,13 @@ impl<'a> DewReport<'a> {
         Ok(drawn)
     }
 
-    fn make_folder(&self) -> Result<(), RecordError> {
+    fn make_folder(&self) -> Result<(), OutputError> {
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))
     }
 
-    fn drawing(&self, what: String) -> RecordError {
-        RecordError::content(&self.folder.join("pictures"), what)
+    fn drawing(&self, what: String) -> OutputError {
+        OutputError::content(&self.folder.join("pictures"), what)
     }
 
     fn page(&self, summary: &Summary, table: &GaugeTable, drawn: &Drawn, scene: &str) -> String {

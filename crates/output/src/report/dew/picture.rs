@@ -62,7 +62,7 @@ fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<Vec<(String, Figure)>
     let view = View::square_on(surface, &most);
     let picture = SolidsPicture { surfaces: std::slice::from_ref(surface), room, view, most: MAP };
     let name = &surface.name;
-    // Where a solid is clear again the maps tell how wet it was.
+    // Where a solid is clear again the maps show how wet it was.
     let water = column("water_kg_per_m2");
     let is_wet = water.iter().any(|&water| water > 1e-3 * most.iter().copied().fold(0.0, f64::max));
     let grams = |values: Vec<f64>| values.into_iter().map(|value| 1e3 * value).collect::<Vec<_>>();
@@ -73,13 +73,14 @@ fn maps_of(surface: &Surface, room: [Vector; 2]) -> Result<Vec<(String, Figure)>
         ]
     } else {
         [
-            picture.field(&grams(most), &format!("{name}: the most water that there was, g/m²"))?,
-            picture.field(&column("wet_for_s"), &format!("{name}: for how long it was wet, s"))?,
+            picture.field(&grams(most), &format!("{name}: largest amount of water, g/m²"))?,
+            picture.field(&column("wet_for_s"), &format!("{name}: duration of wetting, s"))?,
         ]
     };
     let file = name.replace(' ', "_");
     let mut maps = vec![(format!("{file}_water"), first), (format!("{file}_covered"), second)];
-    let times = [("fogged_at", "when drops covered a tenth first, s"), ("clear_at", "when it was clear again, s")];
+    let times =
+        [("fogged_at", "time when drops first covered a tenth, s"), ("clear_at", "time when it was clear again, s")];
     for (which, title) in times {
         let times = column(&format!("{which}_s"));
         // Where nothing happened there is no time.

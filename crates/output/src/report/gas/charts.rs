@@ -1,21 +1,21 @@
-//! Gauges over time, those that belong together in one chart.
+//! Charts of gauges over time, related gauges in one chart.
 
 use crate::GaugeTable;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn};
 use corpuscle_scene::{Gas, Speeds, Units};
 
-/// What is charted, and the quantities that belong there; in the report's order.
+/// Charts and their quantities, in the order of the report.
 const KINDS: [(&str, &[(&str, &str)]); 10] = [
     ("Pressure", &[("pressure_virial", "from collisions"), ("pressure_walls", "on the walls")]),
     ("Pressure on the walls", &[("pressure", "")]),
     ("Temperature", &[("temperature", "")]),
-    ("Energy", &[("kinetic_energy", "kinetic"), ("energy", "all"), ("work", "work and heat")]),
-    ("Place of the wall", &[("position", "")]),
-    ("Collisions of a ball in a unit of time", &[("collision_rate", "")]),
+    ("Energy", &[("kinetic_energy", "kinetic"), ("energy", "total"), ("work", "work and heat")]),
+    ("Position of the wall", &[("position", "")]),
+    ("Collisions of a ball per unit of time", &[("collision_rate", "")]),
     ("Mean free path", &[("mean_free_path", "")]),
     ("Entropy of mixing", &[("mixing_entropy", "")]),
     ("Agreement with Maxwell: p-value", &[("maxwell_p_value", "")]),
-    ("Faults of equal steps", &[("overlaps", "overlaps"), ("missed_hits", "missed hits")]),
+    ("Errors of equal steps", &[("overlaps", "overlaps"), ("missed_hits", "missed hits")]),
 ];
 
 /// A chart for each kind of quantity that changes. What the model charts itself has none.

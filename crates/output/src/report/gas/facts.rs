@@ -14,7 +14,7 @@ pub(super) fn time(gas: &Gas, value: f64) -> String {
     if gas.units == Units::Si { format!("{text} s") } else { text.to_owned() }
 }
 
-/// The handful of numbers that come first.
+/// The key figures.
 pub(super) fn key_figures(report: &GasReport<'_>, summary: &Summary) -> Vec<KeyFigure> {
     let gas = report.gas;
     let whole = |value: f64| number(value).trim_end_matches(".0").to_owned();
@@ -28,12 +28,12 @@ pub(super) fn key_figures(report: &GasReport<'_>, summary: &Summary) -> Vec<KeyF
         KeyFigure {
             label: "Collisions",
             value: whole(collisions),
-            remark: format!("{} a ball", number(2.0 * collisions / summary.particles.max(1) as f64)),
+            remark: format!("{} per ball", number(2.0 * collisions / summary.particles.max(1) as f64)),
         },
         KeyFigure {
             label: "Rate",
             value: format!("{}/s", number(collisions / summary.wall_time_s)),
-            remark: "collisions, all of the run and its files counted".into(),
+            remark: "collisions, over the whole run with its output".into(),
         },
     ];
     if let Some((name, energy)) = summary.ledger.iter().find(|(name, _)| name.starts_with("energy")) {
@@ -58,11 +58,11 @@ pub(super) fn key_figures(report: &GasReport<'_>, summary: &Summary) -> Vec<KeyF
     figures
 }
 
-/// Name and value of what was run.
+/// Names and values of the facts of the run.
 pub(super) fn run_facts(gas: &Gas, summary: &Summary) -> Vec<(&'static str, String)> {
     let method = match gas.method {
-        Method::EventDriven => "from collision to collision (cells and an event queue)".to_owned(),
-        Method::List => "from collision to collision (the published list of nearest events)".to_owned(),
+        Method::EventDriven => "event driven (cells and an event queue)".to_owned(),
+        Method::List => "event driven (the published list of nearest events)".to_owned(),
         Method::FixedStep { time_step_s } => format!("equal steps of {}, all pairs", time(gas, time_step_s)),
     };
     let unit = if gas.units == Units::Si { " m" } else { "" };

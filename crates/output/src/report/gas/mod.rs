@@ -1,4 +1,4 @@
-//! The report of balls in a box: what a teacher would put on a slide.
+//! The report of a gas.
 
 mod charts;
 mod facts;
@@ -10,7 +10,7 @@ pub use picture::gas_key;
 use super::{moments, title_or_folder};
 use crate::picture::{Figure, plot, svg_to_png};
 use crate::whole::write_bytes;
-use crate::{GaugeTable, RecordError, Summary};
+use crate::{GaugeTable, OutputError, Summary};
 use corpuscle_model::{Chart, Model};
 use corpuscle_scene::{Gas, Scene};
 use rayon::prelude::*;
@@ -28,7 +28,7 @@ pub struct GasReport<'a> {
     model: &'a dyn Model,
 }
 
-/// What is drawn for the report.
+/// The figures of the report.
 struct Drawn {
     balls: Figure,
     charts: Vec<(String, Figure)>,
@@ -40,9 +40,9 @@ impl<'a> GasReport<'a> {
     /// The report of a run into `folder`. `scene` has its defaults resolved; `model` shows the time of the picture.
     ///
     /// # Errors
-    /// [`RecordError::Content`] where the scene is not one of a gas.
-    pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, RecordError> {
-        let no_gas = || RecordError::content(&folder.join("scene.toml"), "it is not the scene of a gas");
+    /// [`OutputError::Content`] where the scene is not one of a gas.
+    pub fn new(folder: &'a Path, scene: &'a Scene, model: &'a dyn Model) -> Result<Self, OutputError> {
+        let no_gas = || OutputError::content(&folder.join("scene.toml"), "it is not the scene of a gas");
         Ok(Self { folder, scene, gas: scene.gas().ok_or_else(no_gas)?, model })
     }
 
@@ -50,8 +50,8 @@ impl<'a> GasReport<'a> {
     /// `pictures/frame_NNNNNN.svg`, with the number of the particle file.
     ///
     /// # Errors
-    /// [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write_moment(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write_moment(&self) -> Result<(), OutputError> {
         let number = moments::frame_number(self.model.time(), self.scene.run.frame_period_s());
         if !moments::numbers(&self.scene.run).contains(&number) {
             return Ok(());
@@ -65,11 +65,11 @@ impl<'a> GasReport<'a> {
     /// Writes `pictures/*.png`, `pictures/balls.svg` and `report.html`.
     ///
     /// # Errors
-    /// [`RecordError::Read`], [`RecordError::Write`]; [`RecordError::Content`] for a picture that cannot be drawn.
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`OutputError::Read`], [`OutputError::Write`]; [`OutputError::Content`] for a picture that cannot be drawn.
+    pub fn write(&self) -> Result<(), OutputError> {
         let summary = Summary::read(self.folder)?;
         let scene_path = self.folder.join("scene.toml");
-        let scene_text = fs::read_to_string(&scene_path).map_err(RecordError::read(&scene_path))?;
+        let scene_text = fs::read_to_string(&scene_path).map_err(OutputError::read(&scene_path))?;
         let gauges = GaugeTable::read(&self.folder.join("gauges.csv"))?;
         let mut charts = self.model.charts();
         charts.extend(charts::over_time(self.gas, &self.model.gauge_columns(), &gauges, &charts));
@@ -79,7 +79,7 @@ impl<'a> GasReport<'a> {
         write_bytes(&self.folder.join("report.html"), content.as_bytes())
     }
 
-    fn draw(&self, charts: &[Chart], title: &str) -> Result<Drawn, RecordError> {
+    fn draw(&self, charts: &[Chart], title: &str) -> Result<Drawn, OutputError> {
         self.make_folder()?;
         let balls = picture::balls(self.gas, self.model);
         let subtitle = format!("t = {}", facts::time(self.gas, self.model.time()));
@@ -101,12 +101,12 @@ impl<'a> GasReport<'a> {
         self.folder.join("pictures").join(name)
     }
 
-    fn make_folder(&self) -> Result<(), RecordError> {
+    fn make_folder(&self) -> Result<(), OutputError> {
         let pictures = self.folder.join("pictures");
-        fs::create_dir_all(&pictures).map_err(RecordError::write(&pictures))
+        fs::create_dir_all(&pictures).map_err(OutputError::write(&pictures))
     }
 
-    fn drawing(&self, what: String) -> RecordError {
-        RecordError::content(&self.folder.join("pictures"), what)
+    fn drawing(&self, what: String) -> OutputError {
+        OutputError::content(&self.folder.join("pictures"), what)
     }
 }

@@ -1,17 +1,17 @@
-//! From what a model shows of a gas to the picture of it.
+//! The picture of a gas from its model.
 
 use crate::picture::{Across, Balls, Colour, Disc, Key, Side, from_hex, number, of_part};
 use corpuscle_model::{Container, Frame, Model, ParticleSet};
 use corpuscle_scene::{Axis, Gas, Units, Wall, colour_of_kind, padded};
 use std::collections::BTreeSet;
 
-/// The largest speed that is told apart, over the root mean square at the start.
+/// Speed of the last colour, over the root mean square at the start.
 const FASTEST: f64 = 2.0;
 
-/// What has no colour of its own.
+/// Colour of balls without their own.
 const GREY: Colour = [0x6b, 0x78, 0x85];
 
-/// The gas at the time that the model shows. Kinds of balls are told apart by their colours; balls of one kind by speed.
+/// The picture of a gas at the model's time. Kinds of balls have different colours; balls of a single kind are coloured by speed.
 pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
     let frame = model.frame();
     let container = model.container().unwrap_or(Container { from: [0.0; 3], to: padded(&gas.size) });
@@ -28,7 +28,7 @@ pub(super) fn balls(gas: &Gas, model: &dyn Model) -> Balls {
         sides: Axis::ALL.map(|axis| gas.walls.along(axis).map(side)),
         partition: partition(gas, model.time()),
         discs: frame.sets.iter().enumerate().flat_map(|(kind, set)| discs(gas, kind, set, &key)).collect(),
-        way: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
+        trajectory: model.paths().into_iter().next().map(|path| path.points).unwrap_or_default(),
         followed: gas.follow.and_then(|id| followed(gas, &frame, id, &key)),
         key,
         unit: match gas.units {
@@ -57,7 +57,7 @@ fn partition(gas: &Gas, time: f64) -> Option<Across> {
     })
 }
 
-/// What the colours of a gas mean at a time: its kinds, one for each particle set, or the speed of the only kind.
+/// The legend of the colours of a gas at a time: its kinds, one for each particle set, or the speed of the only kind.
 pub fn gas_key(gas: &Gas, frame: &Frame) -> Key {
     if let [_] = frame.sets[..] {
         let unit = match gas.units {

@@ -1,12 +1,12 @@
-//! Water that is drawn where it lies: discs made on the device of particles on the device. Twin of [`Water`](super::Water), in single
+//! Water drawn from GPU memory: discs made on the GPU from particles there. Twin of [`Water`](super::Water), in single
 //! precision.
 //!
 //! ```text
 //! begin    how many particles there are                             water_begin.wgsl
 //! count    into cells, by the device's sort                         water_count.wgsl
-//! told     how many are drawn                                       water_told.wgsl
+//! draw     arguments of indirect draws and dispatches               water_draw_arguments.wgsl
 //! columns  in the order of the cells, with the ground's slope       water_columns.wgsl
-//! settle   what stands too steep is taken down, until none does     water_settle.wgsl, water_settled.wgsl
+//! settle   slopes are limited, until none is too steep              water_settle.wgsl, water_settled.wgsl
 //! calm     heights and velocities of planes through neighbours      water_calm.wgsl
 //! discs    in the surface, with the foam that comes now             water_discs.wgsl
 //! foam     spread, and remembered by ids                            water_foam.wgsl
@@ -35,16 +35,16 @@ use tasks::{Tasks, entries};
 const CELLS_A_PARTICLE: usize = 4;
 const FEWEST_CELLS: usize = 65_536;
 
-/// Bytes of the numbers that tell the draw and splats.
+/// Bytes of the arguments of indirect draws and dispatches.
 const BYTES: u32 = size_of::<u32>() as u32;
 
-/// Makes discs of the particles of shallow water on the device, and balls of those in the air. Remembers the foam on them from picture
+/// Makes discs from the particles of shallow water on the GPU, and balls from those in the air. Stores the foam on them from picture
 /// to picture.
 #[derive(Debug)]
 pub struct DeviceWater {
     kernels: Kernels,
     stage: Stage,
-    /// How many times higher than they are heights are drawn.
+    /// Exaggeration of heights.
     raise: f64,
     ground: Ground,
     /// Numbers of the picture.
@@ -77,7 +77,7 @@ impl DeviceWater {
         })
     }
 
-    /// Takes these particles at a time, s, not before that of the last call. What is made of them follows on the device.
+    /// Updates the water from these particles at a time, s, not before that of the last call. The discs are made on the GPU.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] for more particles than there is room for.
@@ -104,7 +104,7 @@ impl DeviceWater {
         self.stopwatch = Stopwatch::new(gpu);
     }
 
-    /// What each has taken since, by its name; nothing where the device has no clock.
+    /// Time of each kernel since, by its name; empty where the device has no timer queries.
     pub fn taken(&self) -> impl Iterator<Item = (&'static str, PassTiming)> {
         self.stopwatch.iter().flat_map(Stopwatch::taken)
     }
@@ -113,7 +113,12 @@ impl DeviceWater {
     pub(super) fn droplets(&self) -> Option<Batch> {
         let (_, tasks) = self.drawn.as_ref()?;
         let shared::Memory { instances, groups, .. } = tasks.memory.clone();
-        Some(Batch::Told { instances, told: groups, at: (BYTES * DRAW).into(), splats: (BYTES * SPLATS).into() })
+        Some(Batch::Indirect {
+            instances,
+            draw_args: groups,
+            at: (BYTES * DRAW).into(),
+            splats: (BYTES * SPLATS).into(),
+        })
     }
 
     /// The faces of water at the borders, corner by corner, and how many corners; nothing before the first update.
@@ -152,7 +157,7 @@ fn most_cells(particles: &DeviceParticles) -> usize {
     (CELLS_A_PARTICLE * particles.room).max(FEWEST_CELLS).min(most)
 }
 
-/// Columns and rows of cells over twice `half` m, and their size, m: as wide as a particle looks, or wider where there would be too many.
+/// Columns and rows of cells over twice `half` m, and their size, m: as wide as the radius of the neighbour search, or wider where there would be too many.
 fn cells(half: DVec2, particles: &DeviceParticles) -> [f64; 3] {
     let most = most_cells(particles) as f64;
     let mut cell = REACH * particles.spacing;

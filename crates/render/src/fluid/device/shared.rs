@@ -13,17 +13,17 @@ corpuscle_gpu::declare! {
         pub const BORDER_GROUP: u32 = 64;
         /// Cells whose counts one group of the sort adds up.
         pub const SORT_BLOCK: u32 = corpuscle_gpu::SORT_BLOCK;
-        /// How far a particle looks, and its water is spread, in distances between particles.
+        /// Radius of the neighbour search, and of the spread of a particle's water, in spacings.
         pub const REACH: f32 = water::REACH as f32;
         /// Radius of the discs, in distances between particles.
         pub const DISC: f32 = water::DISC as f32;
         /// Their thickness over their width.
         pub const FLATNESS: f32 = water::FLATNESS as f32;
-        /// Steeper than this no water stands.
+        /// Steepest slope of a water surface.
         pub const STEEPEST: f32 = water::STEEPEST as f32;
-        /// How little neighbours must be spread for planes to be level, in squares of their distance.
+        /// Least second moment of neighbours for a fitted plane, in squares of their distance.
         pub const LEVEL: f32 = water::LEVEL as f32;
-        /// How fast water of a disc runs together where foam begins, and where there is all that comes, m/s.
+        /// Convergence of the water of a disc at which foam begins, and from which it is to the full, m/s.
         pub const TRAPPED: [f32; 2] = single(water::TRAPPED);
         /// The sum of weights of neighbours between which water is taken to be closed.
         pub const CLOSED: [f32; 2] = single(water::CLOSED);
@@ -37,9 +37,9 @@ corpuscle_gpu::declare! {
         pub const ON_GROUND: u32 = 4;
         /// Slot with the same while heights change.
         pub const SETTLING: u32 = 5;
-        /// The number of [`Memory::groups`] from which the draw is told: corners, particles, the firsts of both.
+        /// First of the arguments of the indirect draw in [`Memory::groups`].
         pub const DRAW: u32 = 18;
-        /// The number from which splats are told: groups of threads, in three dimensions, before [`SPLAT_COUNT`](crate::shared::SPLAT_COUNT).
+        /// First of the arguments of the indirect dispatch of splats in [`Memory::groups`], before [`SPLAT_COUNT`](crate::shared::SPLAT_COUNT).
         pub const SPLATS: u32 = crate::shared::SPLAT_COUNT - 3;
     }
     structs {
@@ -47,7 +47,7 @@ corpuscle_gpu::declare! {
         pub struct Settings {
             /// The particles' origin from the middle of the stage, m, with heights as they are drawn.
             pub shift: [f32; 3],
-            /// How many times higher than they are heights are drawn.
+            /// Exaggeration of heights.
             pub raise: f32,
             /// South-west corner of the cells, m.
             pub corner: [f32; 2],
@@ -67,7 +67,7 @@ corpuscle_gpu::declare! {
             pub rows: u32,
             /// Particles that there is room for.
             pub room: u32,
-            /// Foam is remembered by these bits of a particle's id.
+            /// Bits of a particle's id that index the stored foam.
             pub memory: u32,
             /// The part of the foam before that is left.
             pub left: f32,
@@ -75,7 +75,7 @@ corpuscle_gpu::declare! {
             pub unused: f32,
         }
 
-        /// How many there are, and what the passes tell each other.
+        /// Counts, and values passed from pass to pass.
         pub struct Sizes {
             /// Particles. This and the next first: the sort reads them.
             pub particles: u32,
@@ -97,7 +97,7 @@ corpuscle_gpu::declare! {
         /// How many there are.
         storage sizes: Sizes,
         /// Slots of three numbers, of groups: a thread for each particle, a thread for each cell, a group for each block of cells, one group, a thread for
-        /// each particle on the ground, the same while heights change. Then, from [`DRAW`] on, what is drawn, and from [`SPLATS`] on what splats are told.
+        /// each particle on the ground, the same while heights change. Then, from [`DRAW`] on, what is drawn, and from [`SPLATS`] on the arguments of splats.
         storage groups: [u32],
         /// Particles in each cell.
         storage counts: [AtomicU32],

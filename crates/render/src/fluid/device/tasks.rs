@@ -9,7 +9,7 @@ use corpuscle_gpu::{CellSort, DeviceParticles, Gpu, GpuError, Pass, SortSlots, S
 /// Slots of the numbers of groups: see [`Memory::groups`].
 const SLOTS: SortSlots = SortSlots { particles: 0, cells: 1, blocks: 2, once: 3 };
 
-/// Pairs of looks whether some water stands too steep, where some does. After a pair heights are where they were before.
+/// Pairs of passes that limit slopes, at most. After a pair heights are in the buffer where they were before.
 const SETTLINGS: usize = 6;
 
 /// For the particles of one model.
@@ -22,7 +22,7 @@ pub(super) struct Tasks {
     begin: Task,
     count: Task,
     columns: Task,
-    told: Task,
+    draw_arguments: Task,
     settle: [Task; 2],
     settled: Task,
     calm: Task,
@@ -30,7 +30,7 @@ pub(super) struct Tasks {
     foam: [Task; 2],
     levels: Task,
     faces: Task,
-    /// Which of the tables is read next.
+    /// Index of the table that is read next.
     turn: usize,
 }
 
@@ -88,7 +88,7 @@ impl Tasks {
             begin: kernels.begin.on(gpu, &memory),
             count: kernels.count.on(gpu, &memory),
             columns: kernels.columns.on(gpu, &memory),
-            told: kernels.told.on(gpu, &memory),
+            draw_arguments: kernels.draw_arguments.on(gpu, &memory),
             settle: [&memory, &back].map(|memory| kernels.settle.on(gpu, memory)),
             settled: kernels.settled.on(gpu, &memory),
             calm: kernels.calm.on(gpu, &memory),
@@ -103,7 +103,7 @@ impl Tasks {
         })
     }
 
-    /// Takes over the foam of others, with as much memory or less.
+    /// Copies the stored foam of another, with as much memory or less.
     pub fn remember(&self, gpu: &Gpu, before: &Self) {
         let (from, to) = (&before.tables[before.turn], &self.tables[self.turn]);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("foam") });
@@ -123,7 +123,7 @@ impl Tasks {
         self.begin.run(&mut pass, 1);
         self.count.dispatch_indirect(&mut pass, groups, SLOTS.particles);
         self.sort.sort(&mut pass, groups, SLOTS);
-        self.told.run(&mut pass, 1);
+        self.draw_arguments.run(&mut pass, 1);
         self.columns.dispatch_indirect(&mut pass, groups, SLOTS.particles);
         for settle in [&self.settle; SETTLINGS].into_iter().flatten() {
             settle.dispatch_indirect(&mut pass, groups, SETTLING);

@@ -80,9 +80,9 @@ fn send(gpu: &Gpu, set: &ParticleSet, particles: &DeviceParticles) {
 
 /// What is drawn, by ids.
 fn drawn(gpu: &Gpu, water: &DeviceWater) -> Vec<DropletInstance> {
-    let Some(Batch::Told { instances, told, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
-    let told: Vec<u32> = read(gpu, &told, at as usize / 4 + 4).unwrap();
-    let [corners, count, ..] = told[at as usize / 4..] else { panic!("no draw is told") };
+    let Some(Batch::Indirect { instances, draw_args, at, .. }) = water.droplets() else { panic!("nothing is drawn") };
+    let draw_args: Vec<u32> = read(gpu, &draw_args, at as usize / 4 + 4).unwrap();
+    let [corners, count, ..] = draw_args[at as usize / 4..] else { panic!("there are no arguments of a draw") };
     assert_eq!(corners, 4);
     let mut all: Vec<DropletInstance> = read(gpu, &instances, count as usize).unwrap();
     all.sort_by(|a, b| a.matter[3].total_cmp(&b.matter[3]));

@@ -1,4 +1,4 @@
-// Particles tremble, more so in scheme sph-swe; what is seen is what they do together. What is in the air stays as it is.
+// Particles are noisy, more so in scheme sph-swe: their mean motion is drawn. Particles in the air are unchanged.
 #import water_planes
 
 @compute @workgroup_size(GROUP)

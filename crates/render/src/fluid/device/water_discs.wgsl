@@ -1,14 +1,14 @@
-// Discs that lie in the water's surface, and the foam that comes on them now; balls of what is in the air. Twin of `disc` and `in_air`
+// Discs in the water's surface and their new foam; balls of particles in the air. Twin of `disc` and `in_air`
 // in `water.rs`.
 #import water_planes
 #import water_borders
 
-// Foam on what is in the air.
+// Foam on particles in the air.
 const SPRAY = 0.15;
 // Ids by which patterns of foam differ.
 const PATTERNS = 4096u;
 
-// Where a value is between two: 0 at the first, 1 at the second.
+// Linear step between two values: 0 at the first, 1 at the second.
 fn part(value: f32, between: vec2f) -> f32 {
     return clamp((value - between.x) / (between.y - between.x), 0.0, 1.0);
 }
@@ -46,7 +46,7 @@ fn disc(i: u32) -> DropletInstance {
         atomicMax(&sizes.farthest, bitcast<u32>(reach));
     }
     let middle = vec3f(own.xy, fit.here.x) - FLATNESS * radius * normal;
-    // How fast the water of a disc runs together.
+    // Convergence of the water of a disc.
     let closing = -(fit.east.y + fit.north.z) * reach;
     let velocity = bitcast<vec2f>(matter[i].zw);
     foam[i] = part(closing, TRAPPED) * part(0.5 * dot(velocity, velocity), ENERGY) * part(fit.weight, CLOSED);

@@ -1,8 +1,8 @@
-// Foam spreads, and single particles are not flecked; it is what comes now, or what is left of what was. Twin of `foam_around` and
+// Foam spreads, so that single particles do not stand out; it is the new foam, or the rest of the old. Twin of `foam_around` and
 // `Water::keep_foam` in `water.rs`.
 #import water_device
 
-// Less foam is forgotten.
+// Least foam that is stored.
 const LEAST = 0.01;
 
 fn foam_around(i: u32) -> f32 {

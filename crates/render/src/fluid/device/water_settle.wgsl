@@ -1,4 +1,4 @@
-// Takes down what stands steeper than water can. Twin of `settle` in `water.rs`.
+// Limits the slope of the surface. Twin of `settle` in `water.rs`.
 #import water_device
 
 @compute @workgroup_size(GROUP)

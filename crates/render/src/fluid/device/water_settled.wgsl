@@ -1,4 +1,4 @@
-// Where no height has changed, none will: then it is looked no more.
+// Where no height has changed, none will: the remaining passes are skipped.
 #import declared
 
 @compute @workgroup_size(1)

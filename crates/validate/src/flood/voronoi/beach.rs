@@ -45,7 +45,7 @@ const COTANGENT: f64 = 19.85;
 /// Width of a strip in spacings; its long sides are joined.
 const WIDTH: f64 = 5.0;
 
-/// Lines along the strip on which water is looked at.
+/// Lines along the strip on which the water is sampled.
 const LINES: usize = 5;
 
 /// Height of the canonical wave over the depth.

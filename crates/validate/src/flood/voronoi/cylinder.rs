@@ -28,9 +28,9 @@ const DEPTH: f64 = 1.0;
 /// The control sections before and behind the cylinder, m.
 const SECTIONS: [f64; 2] = [8.0, 26.0];
 
-/// When it is looked, s: from the first to the second in so many looks.
+/// Times of the samples, s: from the first to the second, and their number.
 const LOOKED: [f64; 2] = [1.0, 3.0];
-const LOOKS: u32 = 200;
+const SAMPLES: u32 = 200;
 
 /// Positions across a section.
 const ACROSS: u32 = 240;
@@ -77,13 +77,13 @@ fn of_seed(spacing: f64, seed: u64) -> Result<[f64; 2], ModelError> {
     advance(&mut flood, from)?;
     let (before, held) = (flood.gauge_row()[impulse], momentum_between(&flood));
     let mut through = 0.0;
-    for look in 1..=LOOKS {
-        let time = from + (to - from) * f64::from(look) / f64::from(LOOKS);
+    for sample in 1..=SAMPLES {
+        let time = from + (to - from) * f64::from(sample) / f64::from(SAMPLES);
         advance(&mut flood, time)?;
         through += flux(&flood, SECTIONS[0]) - flux(&flood, SECTIONS[1]);
     }
     let on_wall = (flood.gauge_row()[impulse] - before) / (to - from);
-    let lost = through / f64::from(LOOKS) - (momentum_between(&flood) - held) / (to - from);
+    let lost = through / f64::from(SAMPLES) - (momentum_between(&flood) - held) / (to - from);
     Ok([(on_wall / lost - 1.0).abs(), flood.ledger().balances[0].relative_error().abs()])
 }
 

@@ -27,8 +27,8 @@ const TIME: f64 = 5.0 * 3600.0;
 /// Distance of particles, m.
 const SPACING: f64 = 50.0;
 
-/// Time between looks, s.
-const LOOK: f64 = 10.0;
+/// Interval of the samples, s.
+const SAMPLE_PERIOD: f64 = 10.0;
 
 /// Names of the measures at a gauge: of depth and of arrival.
 const MEASURES: [[&str; 2]; 7] = [
@@ -52,7 +52,7 @@ fn of_seed(folder: &Path, seed: u64, options: &Options) -> Result<Vec<Row>, Mode
 fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let case = EA_TEST5.name;
     let peers = table(&folder.join("peers-50m-first-5h.csv"), 1)?;
-    let seen = Watched::run(flood, TIME, LOOK)?;
+    let seen = Watched::run(flood, TIME, SAMPLE_PERIOD)?;
     let mut out = Vec::new();
     for (gauge, (peer, [depth, arrival])) in peers.iter().zip(MEASURES).enumerate() {
         let fv1 = |column: usize| peer.get(column).copied().flatten().unwrap_or(f64::NAN);

@@ -29,8 +29,8 @@ const TIME: f64 = 30.0;
 /// Distance of particles, m.
 const SPACING: f64 = 0.12;
 
-/// Time between looks, s.
-const LOOK: f64 = 0.05;
+/// Interval of the samples, s.
+const SAMPLE_PERIOD: f64 = 0.05;
 
 /// Depth of the bed: flat but for a slope along each side.
 fn bed(_: f64, y: f64) -> f64 {
@@ -45,12 +45,12 @@ fn of_seed(folder: &Path, seed: u64, options: &Options) -> Result<Vec<Row>, Mode
     compare(&mut set_up(&flume(folder)?, seed, &terrain, &water)?, folder, options)
 }
 
-/// Runs the flood and compares it with what was measured.
+/// Runs the flood and compares it with the measurements.
 fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let case = ISOLATED_BUILDING.name;
     let depths = table(&folder.join("building_gauges_h.txt"), 2)?;
     let velocities = table(&folder.join("building_gauges_uv.txt"), 2)?;
-    let seen = Watched::run(flood, TIME, LOOK)?;
+    let seen = Watched::run(flood, TIME, SAMPLE_PERIOD)?;
     let at = |time: f64, column: usize| seen.at(time, column);
     let mut out = Vec::new();
     for gauge in 0..6 {

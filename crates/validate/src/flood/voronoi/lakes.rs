@@ -89,7 +89,7 @@ fn after_many_steps(terrain: &Arc<Terrain>) -> Result<Vec<Row>, ModelError> {
         let mut flood = lake.set_up(terrain, SEEDS[0], stir)?;
         let mut taken = 0;
         while taken < steps {
-            // Some hundred looks.
+            // Some hundred samples.
             let time = flood.time() + 0.01 * steps as f64 * STEP_AT_800M * reduction();
             advance(&mut flood, time)?;
             taken = flood.particle_steps() / flood.wet_cells().count() as u64;
@@ -127,8 +127,8 @@ fn file(path: &Path) -> Result<Arc<Terrain>, ModelError> {
     terrain.map(Arc::new).map_err(|error| ModelError::Setup(error.to_string()))
 }
 
-/// Times within a run at which its energy is looked at.
-const LOOKS: usize = 60;
+/// Samples of the energy within a run.
+const SAMPLES: usize = 60;
 
 struct Lake {
     case: &'static str,
@@ -155,7 +155,7 @@ struct Settled {
     rms: f64,
     /// Farthest level of a cell from the lake's, m.
     level: f64,
-    /// Most energy beyond that at the start, over the latter, at any look.
+    /// Most energy beyond that at the start, over the latter, at any sample.
     gained: f64,
 }
 
@@ -192,15 +192,15 @@ impl Lake {
         let mut flood = self.set_up(terrain, seed, stir)?;
         let start = flood.energy_above_lake(self.level);
         let mut most = f64::NEG_INFINITY;
-        for look in 1..=LOOKS {
-            advance(&mut flood, self.time * look as f64 / LOOKS as f64)?;
+        for sample in 1..=SAMPLES {
+            advance(&mut flood, self.time * sample as f64 / SAMPLES as f64)?;
             most = most.max(flood.energy_above_lake(self.level));
         }
         let gained = if start > 0.0 { most / start - 1.0 } else { 0.0 };
         Ok(self.settled(&flood, gained))
     }
 
-    /// How it stands at its end.
+    /// State at its end.
     fn settled(&self, flood: &VoronoiFlood, gained: f64) -> Settled {
         let (mut moving, mut volume, mut farthest) = (0.0, 0.0, 0.0_f64);
         for cell in flood.wet_cells() {

@@ -28,8 +28,8 @@ const SPACINGS: [f64; 3] = [56.0, 40.0, 28.0];
 /// Simulated time, s.
 const TIME: f64 = 4000.0;
 
-/// Time between looks at the water, s.
-const LOOK: f64 = 2.0;
+/// Interval of the samples, s.
+const SAMPLE_PERIOD: f64 = 2.0;
 
 /// A place of the survey or of the scale model: its name, where it is, the highest level, m, and the arrival, s.
 struct Place {
@@ -46,7 +46,7 @@ fn malpasset(options: &Options) -> Vec<Row> {
     }
 }
 
-/// What a run found.
+/// Results of a run.
 struct Found {
     /// Highest level at each place, m.
     highest: Vec<f64>,
@@ -119,7 +119,7 @@ fn run<'a>(
 fn watch(flood: &mut impl Model, gauges: usize) -> Result<(Vec<f64>, Vec<f64>), ModelError> {
     let mut highest = vec![f64::NEG_INFINITY; gauges];
     let mut arrival = vec![TIME; gauges];
-    for (time, row) in Watched::run(flood, TIME, LOOK)?.rows() {
+    for (time, row) in Watched::run(flood, TIME, SAMPLE_PERIOD)?.rows() {
         for (gauge, row) in row.chunks_exact(4).take(gauges).enumerate() {
             highest[gauge] = highest[gauge].max(row[1]);
             if row[0] >= 0.05 {

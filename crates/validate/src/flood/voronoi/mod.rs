@@ -67,7 +67,7 @@ fn settings(spacing_m: f64, manning: f64, edges: Edges) -> Settings {
         spacing_m: Some(sized(spacing_m)),
         gravity_m_per_s2: GRAVITY,
         manning: Manning::Number(manning),
-        // Maps are not looked at; frames show whatever moves.
+        // Maps are not used; frames show all that moves.
         wet_depth_m: 1e-6,
         edges,
         ..Settings::default()

@@ -85,9 +85,9 @@ fn wrong_volume(seed: u64, spacing: f64, storage: Storage) -> Result<f64, ModelE
     let mut lake: Vec<_> = flood.wet_cells().collect();
     lake.sort_unstable_by(|a, b| b.depth.total_cmp(&a.depth));
     let level = lake.iter().take(10).map(|cell| cell.level).sum::<f64>() / 10.0;
-    let looks = 4 * (SIDE / CELL) as usize;
-    let at = |k: usize| (k as f64 + 0.5) * SIDE / looks as f64;
-    let depths = (0..looks * looks).map(|k| (level - terrain.height(at(k % looks), at(k / looks))).max(0.0));
-    let below = depths.sum::<f64>() * (SIDE / looks as f64).powi(2);
+    let samples = 4 * (SIDE / CELL) as usize;
+    let at = |k: usize| (k as f64 + 0.5) * SIDE / samples as f64;
+    let depths = (0..samples * samples).map(|k| (level - terrain.height(at(k % samples), at(k / samples))).max(0.0));
+    let below = depths.sum::<f64>() * (SIDE / samples as f64).powi(2);
     Ok((below / volume - 1.0).abs())
 }

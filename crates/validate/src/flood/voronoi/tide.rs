@@ -24,7 +24,7 @@ pub(in super::super) const TIDE: Case = Case {
 const LENGTH: f64 = 60.0;
 const WIDTH: f64 = 20.0;
 const PERIOD: f64 = 400.0;
-const LOOKS: u32 = 80;
+const SAMPLES: u32 = 80;
 
 fn measure() -> Result<Vec<Row>, ModelError> {
     let [rmse, water] = worst(of_seed)?;
@@ -47,11 +47,11 @@ fn of_seed(seed: u64) -> Result<[f64; 2], ModelError> {
     };
     let mut flood = set_up(&settings(1.5, 0.05, edges), seed, &terrain, &[water])?;
     let mut squares = 0.0;
-    for look in 1..=LOOKS {
-        let time = 2.0 * PERIOD * f64::from(look) / f64::from(LOOKS);
+    for sample in 1..=SAMPLES {
+        let time = 2.0 * PERIOD * f64::from(sample) / f64::from(SAMPLES);
         advance(&mut flood, time)?;
         let depths = (0..20).map(|k| flood.sample(5.0 + f64::from(k % 5) * 10.0, 2.5 + f64::from(k / 5) * 5.0).depth);
         squares += (depths.sum::<f64>() / 20.0 - level(time)).powi(2);
     }
-    Ok([(squares / f64::from(LOOKS)).sqrt(), flood.ledger().balances[0].relative_error().abs()])
+    Ok([(squares / f64::from(SAMPLES)).sqrt(), flood.ledger().balances[0].relative_error().abs()])
 }

@@ -31,8 +31,8 @@ const TIME: f64 = 40.0;
 /// Distance of particles, m.
 const SPACING: f64 = 0.1;
 
-/// Time between looks, s.
-const LOOK: f64 = 0.02;
+/// Interval of the samples, s.
+const SAMPLE_PERIOD: f64 = 0.02;
 
 /// Water has arrived at this depth, m: the least in the measured series.
 const ARRIVED: f64 = 0.01;
@@ -79,10 +79,10 @@ fn of_seed(folder: &Path, seed: u64, options: &Options) -> Result<Vec<Row>, Mode
     compare(&mut set_up(&channel(), seed, &terrain, &water)?, folder, options)
 }
 
-/// Runs the flood and compares it with what was measured.
+/// Runs the flood and compares it with the measurements.
 fn compare(flood: &mut VoronoiFlood, folder: &Path, options: &Options) -> Result<Vec<Row>, ModelError> {
     let case = TRIANGULAR_OBSTACLE.name;
-    let seen = Watched::run(flood, TIME, LOOK)?;
+    let seen = Watched::run(flood, TIME, SAMPLE_PERIOD)?;
     let mut out = Vec::new();
     for (gauge, place) in PLACES.iter().enumerate() {
         let measured = depths(&folder.join(format!("{}_Experimental.csv", place.file)))?;
@@ -128,7 +128,7 @@ fn evenly(series: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let part = if b[0] > a[0] { (time - a[0]) / (b[0] - a[0]) } else { 0.0 };
         [time, a[1] + part * (b[1] - a[1])]
     };
-    (0..=((last - first) / LOOK) as usize).map(|k| at(first + k as f64 * LOOK)).collect()
+    (0..=((last - first) / SAMPLE_PERIOD) as usize).map(|k| at(first + k as f64 * SAMPLE_PERIOD)).collect()
 }
 
 #[cfg(test)]

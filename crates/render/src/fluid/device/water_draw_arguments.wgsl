@@ -1,4 +1,4 @@
-// After the sort: how many particles there are on the ground and how many are drawn.
+// After the sort: the numbers of particles on the ground and drawn, as arguments of indirect draws and dispatches.
 #import water_device
 
 @compute @workgroup_size(1)

@@ -1,4 +1,4 @@
-//! What lies on the ground of a flood: its natural colours, the water's depth as a map has it, or a picture of the user's.
+//! Surface of the terrain of a flood: natural colours, a map of the depth, or a picture of the user.
 
 use crate::Error;
 use corpuscle_drawing::png::decode_rgba;
@@ -8,13 +8,13 @@ use corpuscle_render::{HeightField, natural_colours};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What lies on the ground of a flood.
+/// Style of the surface of a flood's terrain.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub enum GroundLook {
-    /// Meadow, dry grass, rock, with water that looks like water.
+pub enum GroundStyle {
+    /// Meadow, dry grass and rock, with realistic water.
     #[default]
     Natural,
-    /// The water's depth in classes of colour.
+    /// A map of the depth in classes of colour.
     Depth,
     /// A picture in a PNG file, an aerial photo for one, which covers the ground from corner to corner, north up.
     Picture(PathBuf),
@@ -33,14 +33,14 @@ const BLUES: [[u8; 3]; 7] = [
     [0x11, 0x4c, 0x93],
     [0x0a, 0x2d, 0x63],
 ];
-/// How much of the ground's colour depth leaves, and of its hue what there is beside the water.
+/// Weight of the terrain's colour under the depth, and of its hue where it is dry.
 const SEEN_THROUGH: f32 = 0.12;
 const HUE: f32 = 0.35;
-/// Pixels that depth is drawn with at least, where the ground's cells are few.
+/// Fewest pixels of the map of the depth.
 const PIXELS: f64 = 1e6;
-/// How well particles must cover a place for it to be wet: as at the shore of water that looks like water.
+/// Least sum of weights of particles at a wet position: as at the shore of realistic water.
 const COVERED: f32 = 0.5;
-/// How far a particle's depth reaches, in distances between particles.
+/// Radius over which a particle's depth is averaged, in spacings.
 const REACH: f64 = 2.0;
 
 /// Classes of depth and their colours: seven, each edge about twice the one before.
@@ -48,7 +48,7 @@ const REACH: f64 = 2.0;
 pub(super) struct DepthClasses {
     /// Edges between them, m.
     edges: Vec<f64>,
-    /// Shallower water is not shown, m.
+    /// Least depth that is shown, m.
     least: f64,
 }
 
@@ -75,7 +75,7 @@ impl DepthClasses {
         (depth > self.least).then(|| BLUES[self.edges.partition_point(|edge| *edge <= depth)])
     }
 
-    /// The ground with the depth of particles over it, between the corners of a field.
+    /// The terrain with a map of the depth of particles over it, between the corners of a field.
     pub(super) fn drape<'a>(&self, field: &HeightField, sets: impl Iterator<Item = &'a ParticleSet>) -> Image {
         let ground = natural_colours(field);
         let [columns, rows] = [ground.width, ground.height].map(f64::from);

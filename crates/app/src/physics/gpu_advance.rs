@@ -1,4 +1,4 @@
-//! A scene that steps where it is drawn: while it goes on its particles stay there, and rows of gauges come by themselves.
+//! A scene that is stepped and drawn on one GPU: while it plays its particles stay there, and only rows of gauges are read back.
 
 use super::Shared;
 use super::filming::Filming;
@@ -14,19 +14,24 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// What went wrong.
+/// An error of the model or of the film.
 pub(super) enum Fault {
     OfModel(Error),
     OfFilm(Error),
 }
 
-/// Goes on until it is told to stop, comes to where it waits next, or its particles are to be looked at; gives when they were called back,
+/// Advances until it is stopped, reaches the next pause, or its particles are needed on the host; returns when they were requested,
 /// if they were.
-pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u64) -> Result<Option<Instant>, Fault> {
+pub(super) fn advance(
+    running: &mut Running,
+    shared: &Shared,
+    gpu: &Gpu,
+    number: u64,
+) -> Result<Option<Instant>, Fault> {
     let Running { subject, until, pace, measured, measure_at, rate, probe, probed, filming, known, .. } = running;
     let (from, container) = (subject.time(), subject.simulation().model().container());
-    let Some(simulation) = subject.gliding(gpu) else { return Ok(None) };
-    let glide = RefCell::new(Glide {
+    let Some(simulation) = subject.drawn_in_place(gpu) else { return Ok(None) };
+    let state = RefCell::new(GpuAdvance {
         shared,
         number,
         container,
@@ -34,7 +39,7 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         probed: *probed,
         particles: simulation.model().particles(),
         work: simulation.model().particle_steps(),
-        look_at: (*measure_at, probe.is_some()),
+        release_at: (*measure_at, probe.is_some()),
         slice: Slice { from, began: Instant::now(), before: Duration::ZERO, has_stepped: false },
         pace,
         measured,
@@ -43,9 +48,9 @@ pub(super) fn glide(running: &mut Running, shared: &Shared, gpu: &Gpu, number: u
         film_fault: None,
         recalled: None,
     });
-    let mut show = |glance| glide.borrow_mut().show(glance);
-    let gone = simulation.advance_shown(*until, &shared.stop, &mut GlideObserver(&glide), from, &mut show);
-    let Glide { film_fault, recalled, .. } = glide.into_inner();
+    let mut show = |glance| state.borrow_mut().show(glance);
+    let gone = simulation.advance_shown(*until, &shared.stop, &mut GpuAdvanceObserver(&state), from, &mut show);
+    let GpuAdvance { film_fault, recalled, .. } = state.into_inner();
     gone.map_err(Fault::OfModel)?;
     film_fault.map_or(Ok(recalled), |error| Err(Fault::OfFilm(error)))
 }
@@ -55,36 +60,36 @@ struct Slice {
     /// The time of the last picture, s, and when the steps since began.
     from: f64,
     began: Instant,
-    /// How long before the last ones had.
+    /// The duration of the slice before.
     before: Duration,
     /// Whether any of them is done.
     has_stepped: bool,
 }
 
-struct Glide<'a> {
+struct GpuAdvance<'a> {
     shared: &'a Shared,
     number: u64,
     container: Option<Container>,
     known: Arc<Frame>,
-    /// The water where it was asked for, as it was when the particles last came.
+    /// The water sampled when the particles were last read back.
     probed: Option<Sample>,
     particles: usize,
     /// Particles moved so far.
     work: u64,
-    /// From when on particles may be called back, and whether somebody asks for the water somewhere.
-    look_at: (Instant, bool),
+    /// When particles may be read back next, and whether the water is sampled.
+    release_at: (Instant, bool),
     slice: Slice,
     pace: &'a mut Pace,
     measured: &'a mut Arc<Measures>,
     rate: &'a mut Rate,
     filming: Option<&'a mut Filming>,
     film_fault: Option<Error>,
-    /// When the particles were called back.
+    /// When the particles were requested.
     recalled: Option<Instant>,
 }
 
-impl Glide<'_> {
-    /// Shows the scene as it stands, and waits until it is time to go on; gives up to when, s.
+impl GpuAdvance<'_> {
+    /// Publishes a snapshot and waits until the next slice is due; returns up to what time, s.
     fn show(&mut self, glance: Glance) -> f64 {
         let Slice { from, began, before, has_stepped } = self.slice;
         let (time, worked) = (glance.frame.time, began.elapsed());
@@ -129,37 +134,37 @@ impl Glide<'_> {
 
     /// Simulated time between two rows of gauges, s.
     fn every(&self) -> f64 {
-        let pace = if self.pace.is_behind() { self.pace.real } else { self.pace.asked };
+        let pace = if self.pace.is_behind() { self.pace.real } else { self.pace.requested };
         pace * MEASURE.as_secs_f64()
     }
 }
 
-/// The observer of a glide.
-struct GlideObserver<'a, 'b>(&'a RefCell<Glide<'b>>);
+/// The observer of the advance.
+struct GpuAdvanceObserver<'a, 'b>(&'a RefCell<GpuAdvance<'b>>);
 
-impl AdvanceObserver for GlideObserver<'_, '_> {
+impl AdvanceObserver for GpuAdvanceObserver<'_, '_> {
     fn gauges_after(&self, time: f64) -> Option<f64> {
         let every = self.0.borrow().every();
         (every > 0.0).then(|| ((time / every).floor() + 1.0) * every).filter(|next| *next > time)
     }
 
     fn gauges(&mut self, time: f64, row: &[f64]) {
-        let mut glide = self.0.borrow_mut();
-        let measured = Measures { time, gauges: row.to_vec(), ..(**glide.measured).clone() };
-        *glide.measured = Arc::new(measured);
+        let mut state = self.0.borrow_mut();
+        let measured = Measures { time, gauges: row.to_vec(), ..(**state.measured).clone() };
+        *state.measured = Arc::new(measured);
     }
 
     fn progressed(&mut self, progress: ModelProgress) -> bool {
-        let mut glide = self.0.borrow_mut();
-        glide.particles = progress.particles;
-        glide.slice.has_stepped |= progress.particle_steps > glide.work;
-        glide.work = progress.particle_steps;
-        glide.rate.note(progress.particle_steps);
-        let (from, probes) = glide.look_at;
-        let is_looked_at = probes || glide.shared.follows.load(Ordering::Relaxed);
-        if is_looked_at && Instant::now() >= from {
-            glide.recalled = Some(Instant::now());
+        let mut state = self.0.borrow_mut();
+        state.particles = progress.particles;
+        state.slice.has_stepped |= progress.particle_steps > state.work;
+        state.work = progress.particle_steps;
+        state.rate.note(progress.particle_steps);
+        let (from, probes) = state.release_at;
+        let is_needed = probes || state.shared.follows.load(Ordering::Relaxed);
+        if is_needed && Instant::now() >= from {
+            state.recalled = Some(Instant::now());
         }
-        glide.recalled.is_none()
+        state.recalled.is_none()
     }
 }

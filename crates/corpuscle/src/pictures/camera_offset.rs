@@ -1,33 +1,33 @@
-//! A camera that is moved by hand.
+//! The user's changes of the camera.
 
 use corpuscle_render::{Camera, Lens};
 use glam::DVec3;
 
-/// How high above and how low below the horizon a hand takes the eye, radians.
-const HIGHEST: f64 = 1.54;
-const LOWEST: f64 = -0.35;
+/// Highest and lowest elevation of the camera, radians.
+const MAX_ELEVATION: f64 = 1.54;
+const MIN_ELEVATION: f64 = -0.35;
 
-/// How a camera was moved by hand from where the model shows best.
+/// The user's changes of a camera, relative to the model's default.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hand {
-    /// True for straight from above and to scale, north up.
+pub struct CameraOffset {
+    /// True for a plan from above, to scale, north up.
     pub plan: bool,
-    /// How far the eye was turned round what it looks at: azimuth (from east over north) and height, radians.
+    /// Rotation of the camera round its target: azimuth (from east over north) and elevation, radians.
     pub turn: [f64; 2],
-    /// How far what it looks at was moved, m.
+    /// Shift of the target, m.
     pub shift: [f64; 3],
-    /// How many times nearer it was brought.
+    /// Magnification.
     pub zoom: f64,
 }
 
-impl Default for Hand {
+impl Default for CameraOffset {
     fn default() -> Self {
         Self { plan: false, turn: [0.0; 2], shift: [0.0; 3], zoom: 1.0 }
     }
 }
 
-impl Hand {
-    /// The camera moved so.
+impl CameraOffset {
+    /// A camera with these changes.
     pub(super) fn moved(&self, camera: Camera) -> Camera {
         let camera = if matches!(camera.lens, Lens::Perspective { .. }) { self.turned(camera) } else { camera };
         camera.looking_at(camera.target + DVec3::from(self.shift)).nearer(self.zoom)
@@ -37,15 +37,15 @@ impl Hand {
         let away = camera.eye - camera.target;
         let distance = away.length();
         let azimuth = away.y.atan2(away.x) + self.turn[0];
-        let height = ((away.z / distance).asin() + self.turn[1]).clamp(LOWEST, HIGHEST);
+        let height = ((away.z / distance).asin() + self.turn[1]).clamp(MIN_ELEVATION, MAX_ELEVATION);
         let direction = DVec3::new(azimuth.cos() * height.cos(), azimuth.sin() * height.cos(), height.sin());
         Camera { eye: camera.target + distance * direction, ..camera }
     }
 
-    /// The same turned on by these angles, radians, from where it was turned to at most.
+    /// Adds a rotation by these angles, radians, within the range of elevations; `own_height` is the default elevation.
     pub fn turn_by(&mut self, own_height: f64, [azimuth, height]: [f64; 2]) {
         self.turn[0] += azimuth;
-        self.turn[1] = (self.turn[1] + height).clamp(LOWEST - own_height, HIGHEST - own_height);
+        self.turn[1] = (self.turn[1] + height).clamp(MIN_ELEVATION - own_height, MAX_ELEVATION - own_height);
     }
 }
 
@@ -55,19 +55,19 @@ mod tests {
     use corpuscle_render::Stage;
 
     #[test]
-    fn a_hand_turns_shifts_and_comes_nearer() {
+    fn an_offset_turns_shifts_and_comes_nearer() {
         let stage = Stage::new([0.0; 3], [4.0, 4.0, 2.0]);
         let camera = Camera::orbit(&stage, [0.3, 0.4], 0.5, 1.5, 0.1);
         let far = (camera.eye - camera.target).length();
-        let hand = Hand { turn: [1.0, 0.2], shift: [1.0, 0.0, 0.0], zoom: 2.0, plan: false };
-        let moved = hand.moved(camera);
+        let offset = CameraOffset { turn: [1.0, 0.2], shift: [1.0, 0.0, 0.0], zoom: 2.0, plan: false };
+        let moved = offset.moved(camera);
         let away = moved.eye - moved.target;
         assert!((away.length() - 0.5 * far).abs() < 1e-9);
         assert!((away.y.atan2(away.x) - 1.3).abs() < 1e-9 && ((away.z / away.length()).asin() - 0.6).abs() < 1e-9);
         assert_eq!(moved.target, camera.target + DVec3::X);
-        assert!(Hand::default().moved(camera).eye.distance(camera.eye) < 1e-9);
+        assert!(CameraOffset::default().moved(camera).eye.distance(camera.eye) < 1e-9);
         // Never over the top.
-        let over = Hand { turn: [0.0, 9.0], ..Hand::default() }.moved(camera);
+        let over = CameraOffset { turn: [0.0, 9.0], ..CameraOffset::default() }.moved(camera);
         assert!(over.eye.z < over.target.z + far && over.eye.is_finite());
     }
 }

@@ -1,36 +1,41 @@
-//! How pictures are to be taken, from the command line's words.
+//! Settings of pictures from the options of `run` and `render`.
 
-use crate::args::{CameraKind, LookOptions};
+use crate::args::{CameraKind, PictureOptions};
 use crate::refusal::refuse;
 use anyhow::Result;
-use corpuscle::pictures::{GroundLook, PictureSettings, Viewpoint};
+use corpuscle::pictures::{GroundStyle, PictureSettings, Viewpoint};
 use std::fs;
 use std::path::Path;
 
-/// Columns of a camera's path: the first four must be there.
+/// Columns of a camera path; the first four are required.
 const COLUMNS: [&str; 6] = ["time_s", "bearing_deg", "height_deg", "zoom", "x", "y"];
 
-/// Settings of pictures.
-pub fn picture_settings(size: [u32; 2], samples: u32, look: &LookOptions) -> Result<PictureSettings> {
-    let viewpoints = match &look.camera_path {
+/// The settings of pictures of this size that the options give.
+pub fn picture_settings(size: [u32; 2], samples: u32, options: &PictureOptions) -> Result<PictureSettings> {
+    let viewpoints = match &options.camera_path {
         Some(path) => stations(path)?,
-        None => vec![(0.0, viewpoint(look))],
+        None => vec![(0.0, viewpoint(options))],
     };
-    let ground = match look.ground.as_str() {
-        "natural" => GroundLook::Natural,
-        "depth" => GroundLook::Depth,
-        file => GroundLook::Picture(file.into()),
+    let ground = match options.ground.as_str() {
+        "natural" => GroundStyle::Natural,
+        "depth" => GroundStyle::Depth,
+        file => GroundStyle::Picture(file.into()),
     };
-    Ok(PictureSettings { size, samples, viewpoints, ground, heights: look.heights })
+    Ok(PictureSettings { size, samples, viewpoints, ground, heights: options.heights })
 }
 
-fn viewpoint(look: &LookOptions) -> Viewpoint {
-    Viewpoint { plan: look.camera == CameraKind::Plan, from_deg: look.from, look_at: look.look, zoom: look.zoom }
+fn viewpoint(options: &PictureOptions) -> Viewpoint {
+    Viewpoint {
+        plan: options.camera == CameraKind::Plan,
+        from_deg: options.from,
+        centre: options.centre,
+        zoom: options.zoom,
+    }
 }
 
-/// The stations of a camera's path.
+/// The stations of a camera path, each a time and a viewpoint, from its file.
 fn stations(path: &Path) -> Result<Vec<(f64, Viewpoint)>> {
-    let wrong = |what: String| refuse(format!("the camera's path {}: {what}", path.display()));
+    let wrong = |what: String| refuse(format!("the camera path {}: {what}", path.display()));
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let cells = |line: &str| line.split(',').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
@@ -49,8 +54,8 @@ fn stations(path: &Path) -> Result<Vec<(f64, Viewpoint)>> {
             let limits = "a height from -5 to 89 degrees and a zoom from 0.01 to 1000";
             return Err(wrong(format!("line {} must have {limits}", number + 1)));
         }
-        let look_at = row.get(4..6).map(|place| [place[0], place[1]]);
-        stations.push((row[0], Viewpoint { plan: false, from_deg: Some([row[1], row[2]]), look_at, zoom: row[3] }));
+        let centre = row.get(4..6).map(|position| [position[0], position[1]]);
+        stations.push((row[0], Viewpoint { plan: false, from_deg: Some([row[1], row[2]]), centre, zoom: row[3] }));
     }
     if stations.is_empty() { Err(wrong("it has no stations".into())) } else { Ok(stations) }
 }
