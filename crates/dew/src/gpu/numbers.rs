@@ -9,7 +9,7 @@ use crate::fan::Fan;
 use crate::humid_air::{self, HumidAir, ZERO_CELSIUS};
 use crate::room::Face;
 use crate::settings::{Condensation, Humidity, Mean};
-use corpuscle_sph::kernel::SmoothingKernel;
+use corpuscle_sph::kernel::Kernel;
 
 /// Cells go on beyond faces that air passes by as many smoothing lengths as the air does and one more.
 const CELLS_BEYOND: f64 = BEYOND + 1.0;
@@ -117,8 +117,8 @@ impl Parameters {
 
     /// The shaders' kernels are of distances over h and without their factors.
     fn set_kernels(&mut self, dew: &Dew) {
-        let crate::air::Scale { volume, kernel, to_density, to_gradient, moment, .. } = dew.scale;
-        let (h, [value, slope, laplacian]) = (dew.scale.h(), kernel.device_factors());
+        let crate::air::Scale { volume, to_density, to_gradient, moment, .. } = dew.scale;
+        let (h, [value, slope, laplacian]) = (dew.scale.h(), Kernel::<3>::device_factors(dew.settings.kernel));
         let spread = 2.0 * volume * to_gradient * slope / h.powi(4);
         let laplacian = laplacian / h.powi(5) / moment;
         *self = Self {

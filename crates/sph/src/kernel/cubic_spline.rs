@@ -128,11 +128,6 @@ impl<const D: usize> SmoothingKernel<D> for CubicSpline<D> {
         self.per_h.powi(D as i32 + 2) * (6.0 * Self::SIGMA)
     }
 
-    fn device_factors(&self) -> [f64; 3] {
-        let one = Self::new(0.5);
-        [one.value_factor(), one.slope_factor(), one.laplacian_factor()]
-    }
-
     fn wgsl(&self) -> &'static str {
         include_str!("cubic_spline.wgsl")
     }

@@ -58,10 +58,6 @@ pub trait SmoothingKernel<const D: usize>: Copy + Send + Sync {
     /// Factor of the weight of diffusion.
     fn laplacian_factor(&self) -> f64;
 
-    /// Factors at support 1 of the shapes in [`SmoothingKernel::wgsl`], for value, slope and Laplacian. At support h they are these over h^D, h^(D+1)
-    /// and h^(D+2).
-    fn device_factors(&self) -> [f64; 3];
-
     /// Shapes as WGSL, of q = r/h: `value_shape(q_squared)`, `slope_shape(q)`, `laplacian_shape(q)`.
     fn wgsl(&self) -> &'static str;
 }
@@ -91,13 +87,18 @@ impl<const D: usize> Kernel<D> {
         }
     }
 
+    /// Factors at support 1, for value, slope and Laplacian: those of the shapes in WGSL. At support h they are these over h^D, h^(D+1) and h^(D+2).
+    pub fn device_factors(name: KernelName) -> [f64; 3] {
+        let kernel = Self::new(name, 1.0);
+        [kernel.value_factor(), kernel.slope_factor(), kernel.laplacian_factor()]
+    }
+
     /// The same as a shader's piece: its shapes, and their factors at support 1 as `VALUE_FACTOR`, `SLOPE_FACTOR` and `LAPLACIAN_FACTOR`.
     pub fn device_piece(name: KernelName) -> String {
-        let kernel = Self::new(name, 1.0);
-        let [value, slope, laplacian] = kernel.device_factors();
+        let [value, slope, laplacian] = Self::device_factors(name);
         format!(
             "const VALUE_FACTOR = {value:?}f;\nconst SLOPE_FACTOR = {slope:?}f;\nconst LAPLACIAN_FACTOR = {laplacian:?}f;\n{}",
-            kernel.wgsl()
+            Self::new(name, 1.0).wgsl()
         )
     }
 }
@@ -172,10 +173,6 @@ impl<const D: usize> SmoothingKernel<D> for Kernel<D> {
     #[inline(always)]
     fn laplacian_factor(&self) -> f64 {
         chosen!(self, kernel => kernel.laplacian_factor())
-    }
-
-    fn device_factors(&self) -> [f64; 3] {
-        chosen!(self, kernel => kernel.device_factors())
     }
 
     fn wgsl(&self) -> &'static str {

@@ -107,11 +107,6 @@ impl<const D: usize> SmoothingKernel<D> for Mueller<D> {
         if D == 2 { self.laplacian(0.0) / self.h } else { self.of_laplacian }
     }
 
-    fn device_factors(&self) -> [f64; 3] {
-        let Self { of_value, of_slope, of_laplacian, .. } = Self::new(1.0);
-        [of_value, of_slope, of_laplacian]
-    }
-
     fn wgsl(&self) -> &'static str {
         include_str!("mueller.wgsl")
     }

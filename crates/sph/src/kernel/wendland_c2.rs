@@ -98,11 +98,6 @@ impl<const D: usize> SmoothingKernel<D> for WendlandC2<D> {
         40.0 * self.of_value * self.per_h * self.per_h
     }
 
-    fn device_factors(&self) -> [f64; 3] {
-        let one = Self::new(1.0);
-        [one.value_factor(), one.slope_factor(), one.laplacian_factor()]
-    }
-
     fn wgsl(&self) -> &'static str {
         include_str!("wendland_c2.wgsl")
     }
