@@ -28,14 +28,27 @@ pub use window_program::start_window_program;
 use anyhow::Context;
 use args::{Arguments, Command};
 use clap::Parser;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Parses the arguments of the process, runs their command and returns the exit status; `view` opens the window.
 ///
 /// An error is written to standard error, in one line.
 pub fn run_command_line(view: fn(&ViewOptions) -> anyhow::Result<ExitCode>) -> ExitCode {
-    let arguments = Arguments::parse();
-    match dispatch(&arguments, view) {
+    run_arguments(&Arguments::parse(), view)
+}
+
+/// As [`run_command_line`], for arguments that are not those of the process; the first is the program's name. Where they cannot be parsed
+/// the process ends, as there.
+pub fn run_command_line_on(
+    arguments: impl IntoIterator<Item = OsString>,
+    view: fn(&ViewOptions) -> anyhow::Result<ExitCode>,
+) -> ExitCode {
+    run_arguments(&Arguments::parse_from(arguments), view)
+}
+
+fn run_arguments(arguments: &Arguments, view: fn(&ViewOptions) -> anyhow::Result<ExitCode>) -> ExitCode {
+    match dispatch(arguments, view) {
         Ok(code) => code,
         Err(error) => {
             eprintln!("error: {}", refusal::in_words(&error));

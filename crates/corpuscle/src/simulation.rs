@@ -148,6 +148,38 @@ impl Simulation {
         Ok(summary)
     }
 
+    /// Advances to a time, s, with no other output than rows of gauges, which `sink` takes as they fall due, and the progress towards that time.
+    /// Returns early when `stop` becomes true.
+    ///
+    /// # Errors
+    /// Where the model breaks down or the sink fails.
+    pub fn advance_to(
+        &mut self,
+        time: f64,
+        stop: &AtomicBool,
+        sink: &mut dyn Sink,
+        on_progress: &mut dyn FnMut(&Progress),
+    ) -> Result<(), Error> {
+        let (start, now) = (Instant::now(), self.model.time());
+        let run = &self.scene.run;
+        let gauges = Schedule::new(run.gauge_period_s(), run.until_s);
+        let pauses = Schedule::new(run.until_s / PAUSES, run.until_s);
+        let counted = models::of(&self.scene)?.work();
+        let meter = Meter { start, time: now, particle_steps: self.model.particle_steps(), counted };
+        let observer = RunObserver {
+            sinks: &mut [sink],
+            gauges,
+            pauses,
+            until: time,
+            meter: &meter,
+            on_progress,
+            checkpoints: CheckpointTimer { kept: start, every: f64::INFINITY },
+            glances: Glances { due: &[], seen: now },
+            failed: None,
+        };
+        self.advance(time, stop, observer).map(|_| ())
+    }
+
     fn advance_to_end(
         &mut self,
         sinks: &mut [&mut dyn Sink],

@@ -2,7 +2,8 @@
 
 use corpuscle_scene::{NoData, Terrain as Scene, TerrainFile, TerrainTiles};
 use corpuscle_terrain::{
-    MapBox, Terrain, TerrainError, read_raster, read_raster_part, read_rasters, survey, write_raster,
+    MapBox, Raster, Terrain, TerrainError, read_raster, read_raster_part, read_rasters, survey, write_raster,
+    write_raster_exactly,
 };
 use geotiff_writer::GeoTiffBuilder;
 use ndarray::Array2;
@@ -287,6 +288,23 @@ fn a_part_of_several_files_is_cut_across_their_borders() {
     let elsewhere = MapBox::new([0.0, 0.0, 1.0, 1.0]).unwrap();
     let text = read_rasters(&paths, None, Some(&elsewhere)).unwrap_err().to_string();
     assert!(text.contains("0,0,1,1") && text.contains("covers 535200,"), "{text}");
+}
+
+#[test]
+fn a_raster_in_memory_is_written_with_all_bits() {
+    let folder = Folder::new();
+    let values: Vec<_> = (0..6).map(|count| 1.0 / (1.0 + f64::from(count))).chain([f64::NAN, -9999.0, 0.1]).collect();
+    let raster =
+        Raster::of_values([3, 3], values.clone(), [512_000.5, 204_000.0], [5.0, 2.5], Some("EPSG:27700")).unwrap();
+    write_raster_exactly(folder.path("out.tif"), &raster).unwrap();
+    let written = read_raster(folder.path("out.tif")).unwrap();
+    assert_eq!((written.columns, written.rows), (3, 3));
+    assert_eq!((written.georeference.corner, written.georeference.cell), ([512_000.5, 204_000.0], [5.0, 2.5]));
+    assert_eq!(written.georeference.system.as_ref().unwrap().name, "EPSG:27700");
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&written.values), bits(&values));
+    let nameless = Raster::of_values([3, 3], values, [0.0; 2], [1.0; 2], Some("+proj=utm +zone=32"));
+    assert!(nameless.unwrap_err().to_string().contains("EPSG code"));
 }
 
 #[test]

@@ -10,8 +10,9 @@ mod write;
 pub use field::RasterField;
 pub use survey::{Survey, survey};
 pub use window::{MapBox, Window};
-pub use write::{write_geotiff, write_raster};
+pub use write::{write_geotiff, write_raster, write_raster_exactly};
 
+use crate::system::ReferenceSystem;
 use crate::{Georeference, TerrainError};
 use flate2::read::GzDecoder;
 use std::fs::File;
@@ -37,6 +38,33 @@ pub struct Raster {
     pub georeference: Georeference,
     /// Warnings about it, in sentences.
     pub warnings: Vec<String>,
+}
+
+impl Raster {
+    /// A raster from values in memory: `rows * columns`, row by row from the north-west, not-a-number where there is no data. `corner` is its
+    /// outer corner at the north-west and `cell` the size of a cell `[eastwards, southwards]`, in units of the reference system, which is named
+    /// by its EPSG code as in `EPSG:27700`.
+    ///
+    /// # Errors
+    /// [`TerrainError::ReferenceSystem`] for a name without an EPSG code.
+    pub fn of_values(
+        [columns, rows]: [usize; 2],
+        values: Vec<f64>,
+        corner: [f64; 2],
+        cell: [f64; 2],
+        crs: Option<&str>,
+    ) -> Result<Self, TerrainError> {
+        let plain = Georeference::plain(corner, cell);
+        let georeference = match crs.map(|crs| ReferenceSystem::parse(crs).map(|system| (crs, system))).transpose()? {
+            None => plain,
+            Some((_, system)) if system.epsg.is_some() => plain.with_system(system),
+            Some((crs, _)) => {
+                let what = "a raster in memory needs an EPSG code".into();
+                return Err(TerrainError::ReferenceSystem { crs: crs.into(), what });
+            }
+        };
+        Ok(Self { columns, rows, values, georeference, warnings: Vec::new() })
+    }
 }
 
 /// Reads a raster: GeoTIFF, or ESRI ASCII grid, also compressed with gzip; by content, whatever the file's name.

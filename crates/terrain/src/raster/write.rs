@@ -4,7 +4,7 @@ use super::Raster;
 use crate::{Georeference, MapGrid, TerrainError};
 use corpuscle_atomic_file::WholeFile;
 use geotiff_reader::transform::GeoTransform;
-use geotiff_writer::{Compression, GeoTiffBuilder, Predictor, RasterType};
+use geotiff_writer::{Compression, GeoTiffBuilder, NumericSample, Predictor, RasterType};
 use ndarray::ArrayView2;
 use std::path::Path;
 
@@ -30,15 +30,33 @@ pub fn write_raster(path: impl AsRef<Path>, raster: &Raster, no_data: f32) -> Re
     write(path.as_ref(), &raster.georeference, [raster.columns, raster.rows], &values, no_data)
 }
 
+/// Writes a raster as [`write_geotiff`] does, but with all bits of its values: 64-bit floating point, holes as not-a-number.
+///
+/// # Errors
+/// As [`write_geotiff`].
+pub fn write_raster_exactly(path: impl AsRef<Path>, raster: &Raster) -> Result<(), TerrainError> {
+    write_samples(path.as_ref(), &raster.georeference, [raster.columns, raster.rows], &raster.values, "nan")
+}
+
 fn write(
     path: &Path,
     place: &Georeference,
-    [columns, rows]: [usize; 2],
+    size: [usize; 2],
     values: &[f32],
     no_data: f32,
 ) -> Result<(), TerrainError> {
     let filled: Vec<f32> = values.iter().map(|value| if value.is_nan() { no_data } else { *value }).collect();
-    let array = ArrayView2::from_shape((rows, columns), &filled).map_err(|error| TerrainError::write(path, error))?;
+    write_samples(path, place, size, &filled, &no_data.to_string())
+}
+
+fn write_samples<T: NumericSample>(
+    path: &Path,
+    place: &Georeference,
+    [columns, rows]: [usize; 2],
+    values: &[T],
+    no_data: &str,
+) -> Result<(), TerrainError> {
+    let array = ArrayView2::from_shape((rows, columns), values).map_err(|error| TerrainError::write(path, error))?;
     let builder = builder(place, [columns, rows], no_data);
     let mut file = WholeFile::create(path).map_err(|error| TerrainError::write(path, error))?;
     builder.write_2d_to(&mut file, array).map_err(|error| TerrainError::write(path, error))?;
@@ -46,7 +64,7 @@ fn write(
 }
 
 /// What the file says about itself.
-fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: f32) -> GeoTiffBuilder {
+fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: &str) -> GeoTiffBuilder {
     let transform =
         GeoTransform::from_origin_and_pixel_size(place.corner[0], place.corner[1], place.cell[0], -place.cell[1]);
     let start = GeoTiffBuilder::new(columns as u32, rows as u32);
@@ -54,7 +72,7 @@ fn builder(place: &Georeference, [columns, rows]: [usize; 2], no_data: f32) -> G
     // Without a reference system no key at all is written: a lone raster type reads as an unnamed system.
     let keys = if place.keys.keys.is_empty() { keys } else { keys.raster_type(RasterType::PixelIsArea) };
     keys.transform(transform)
-        .nodata(&no_data.to_string())
+        .nodata(no_data)
         .compression(Compression::Deflate)
         .predictor(Predictor::FloatingPoint)
         .tile_size(TILE, TILE)
