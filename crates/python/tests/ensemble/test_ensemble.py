@@ -352,6 +352,24 @@ def test_interrupt_keeps_what_is_done(kind: str, tmp_path: Path) -> None:
 # The folder
 
 
+def test_tasks_of_a_job_array_run_their_own_members_at_once(finished: ensemble.Ensemble, tmp_path: Path) -> None:
+    text = """
+import sys
+from pathlib import Path
+from corpuscle import ensemble
+plan = ensemble.grid({"flood.level": [0.4, 0.7, 1.0, 1.3], "flood.manning": [0.02, 0.05]})
+ensemble.run("flood/test", plan, Path(sys.argv[1]), members=map(int, sys.argv[2:]))
+"""
+    shares = [["0", "1", "2"], ["3", "4"], ["6", "7"]]
+    tasks = [subprocess.Popen([sys.executable, "-c", text, str(tmp_path / "array"), *share]) for share in shares]
+    assert [task.wait(timeout=60) for task in tasks] == [0, 0, 0]
+    assert ensemble.open(tmp_path / "array").finished == [0, 1, 2, 3, 4, 6, 7]
+    whole = ensemble.run("flood/test", LEVELS, tmp_path / "array")
+    assert statistics_bits(whole) == statistics_bits(finished)
+    with pytest.raises(ensemble.EnsembleError, match="no member 8: they are numbered from 0 to 7"):
+        ensemble.run("flood/test", LEVELS, tmp_path / "array", members=[8])
+
+
 def test_another_plan_or_scene_is_refused(finished: ensemble.Ensemble) -> None:
     before = digest(finished.folder)
     other = LEVELS.copy()

@@ -60,7 +60,10 @@ class Folder:
             raise EnsembleError(f"{path} is a file, not a folder.", remedy="Name another folder.")
         path.mkdir(parents=True, exist_ok=True)
         if not (path / _ABOUT).exists():
-            if others := sorted(entry.name for entry in path.iterdir() if not is_remains(entry.name)):
+            # Another task of a job array may make the folder at the same moment.
+            own = (_ABOUT, _SCENE, _PLAN, _MEMBERS, _INPUTS)
+            names = (entry.name for entry in path.iterdir())
+            if others := sorted(name for name in names if name not in own and not is_remains(name)):
                 raise EnsembleError(
                     f"The folder {path} is no ensemble's: it holds {', '.join(others[:3])}{' and more' if len(others) > 3 else ''}.",
                     remedy="Name another folder, or empty this one.",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import sys
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,6 +47,7 @@ def run(
     folder: str | os.PathLike[str],
     executor: Executor | None = None,
     *,
+    members: Iterable[int] | None = None,
     statistics: Statistics | None = None,
     threads: int = 1,
     retries: int = 0,
@@ -66,11 +68,13 @@ def run(
         are numbered by rows from 0; the table's index does not matter.
     folder : path
         Folder of the ensemble: a new or empty one, or that of the same scene and plan. Workers on other machines must see
-        it under the same absolute path. Only one call at a time may run in it.
+        it under the same absolute path. Calls that run at the same time must have different `members`.
     executor : concurrent.futures.Executor, optional
         Where members run: a ThreadPoolExecutor, a ProcessPoolExecutor, dask.distributed's ``client.get_executor()``,
         mpi4py.futures' MPIPoolExecutor, or any other with `submit` and futures. None is this thread, one member after
         another. The files are the same for any.
+    members : iterable of int, optional
+        Numbers of the members that this call runs, if they are not finished: by default all of the plan. Each task of a job array names its own.
     statistics : Statistics, optional
         Which statistics `Ensemble.report` and `Ensemble.to_netcdf` have. They are stored, and can be changed by a later call.
     threads : int
@@ -108,7 +112,7 @@ def run(
     place = Folder.prepare(Path(folder), scene, checked)
     if statistics is not None:
         place.keep_statistics(statistics.stored())
-    work = _Work(scene, place, threads, retries, progress)
+    work = _Work(scene, place, _chosen(members, len(checked.rows)), threads, retries, progress)
     if executor is None:
         work.here()
     else:
@@ -124,6 +128,7 @@ class _Work:
         self,
         scene: corpuscle.Scene,
         place: Folder,
+        chosen: range | set[int],
         threads: int,
         retries: int,
         progress: Callable[[Progress], object] | bool | None,
@@ -136,11 +141,13 @@ class _Work:
         self._failed: set[int] = set()
         self._lost: list[int] = []
         self._members = len(place.plan.rows)
+        self._finished = 0
         for number, record in enumerate(place.records()):
-            if record is None or not record.finished:
+            if record is not None and record.finished:
+                self._finished += 1
+            elif number in chosen:
                 self._attempts[number] = 0 if record is None else record.attempts
                 self._queue.append(number)
-        self._finished = self._members - len(self._queue)
 
     def here(self) -> None:
         """Runs the members in this thread, one after another."""
@@ -235,6 +242,15 @@ class _Work:
 
     def _kept(self) -> str:
         return f"{self._finished} of {self._members} members are finished and kept."
+
+
+def _chosen(members: Iterable[int] | None, count: int) -> range | set[int]:
+    if members is None:
+        return range(count)
+    chosen = {operator.index(member) for member in members}
+    if wrong := sorted(member for member in chosen if not 0 <= member < count):
+        raise EnsembleError(f"The plan has no member {wrong[0]}: they are numbered from 0 to {count - 1}.", remedy="Name members of the plan.")
+    return chosen
 
 
 def _default_pending(executor: Any) -> int:
