@@ -1,4 +1,4 @@
-"""Rasters from arrays: terrain, roughness, rain, depths at the start."""
+"""What stands for a file of a scene: rasters from arrays, tables."""
 
 from __future__ import annotations
 
@@ -80,6 +80,10 @@ class Raster:
         return cls(values, cell, (x[0] - 0.5 * cell[0], y[0] + 0.5 * cell[1]), _system(array))
 
     @property
+    def _ending(self) -> str:
+        return ".tif"
+
+    @property
     def digest(self) -> str:
         """A hash of all of it, the same for the same raster."""
         known = hashlib.sha256(repr((self.values.shape, self.cell, self.corner, self.crs)).encode())
@@ -97,10 +101,38 @@ class Raster:
         _native.write_raster(Path(path), self.values, self.corner, self.cell, self.crs)
 
 
-def as_raster(value: Any) -> Raster | None:
-    """A raster, for what is given as one; none for other values."""
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """A table that stands where a scene has the path of a CSV file."""
+
+    text: str
+    _ending: str = ".csv"
+
+    @classmethod
+    def of(cls, frame: Any) -> _Table:
+        for name, column in frame.items():
+            if column.dtype.kind == "f" and not np.isfinite(column.to_numpy()).all():
+                row = int(np.argmin(np.isfinite(column.to_numpy())))
+                raise SceneError(f"the table has no finite number in column {name}, row {row}; give one")
+        return cls(frame.to_csv(index=False, lineterminator="\n"))
+
+    @property
+    def digest(self) -> str:
+        return hashlib.sha256(self.text.encode()).hexdigest()[:32]
+
+    def write(self, path: Path) -> None:
+        # Whole or not at all: another process may look for it at the same moment.
+        part = path.with_name(f"{path.name}.{os.getpid()}.part")
+        part.write_bytes(self.text.encode())
+        os.replace(part, path)
+
+
+def as_file(value: Any) -> Raster | _Table | None:
+    """What stands for a file: a raster, or a table as a `pandas.DataFrame`; none for other values."""
     if isinstance(value, Raster):
         return value
+    if hasattr(value, "to_csv") and hasattr(value, "columns"):
+        return _Table.of(value)
     is_grid = hasattr(value, "dims") and hasattr(value, "coords") and getattr(value, "ndim", 0) == 2
     return Raster.of(value) if is_grid else None
 

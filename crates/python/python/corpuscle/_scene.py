@@ -14,7 +14,7 @@ from typing import Any
 
 from . import _native
 from ._errors import SceneError
-from ._raster import as_raster
+from ._raster import as_file
 from ._toml import written
 
 
@@ -35,7 +35,7 @@ class Scene:
     **changes
         Values by their keys, as in ``Scene("flood/valley", **{"flood.manning": 0.04})``. Rows of lists are counted from 0:
         ``"flood.inflow.0.discharge_m3_per_s"``. Numbers, truth values, text, lists, dicts and arrays are understood; where the scene has
-        the path of a raster a `Raster` or a two-dimensional `xarray.DataArray` can be given.
+        the path of a raster a `Raster` or a two-dimensional `xarray.DataArray` can be given, and a `pandas.DataFrame` where it has that of a table.
 
     Raises
     ------
@@ -55,31 +55,31 @@ class Scene:
         self._native = self._parsed()
 
     def _parsed(self, inputs: Path | None = None) -> _native.Scene:
-        """The checked scene; rasters are written into a folder, by default one that is removed when Python ends."""
+        """The checked scene; arrays that stand for files are written into a folder, by default one that is removed when Python ends."""
         changes = [(key, written(key, self._filed(key, value, inputs))) for key, value in self._changes.items()]
         return _native.Scene(self._text, self._name, self._folder, changes)
 
     def _filed(self, key: str, value: Any, inputs: Path | None) -> Any:
-        """The value with the path of a file in place of each raster."""
+        """The value with the path of a file in place of each array that stands for one."""
         if isinstance(value, Mapping):
             return {name: self._filed(f"{key}.{name}", item, inputs) for name, item in value.items()}
         try:
-            raster = as_raster(value)
-            if raster is None:
+            given = as_file(value)
+            if given is None:
                 return value
             folder = inputs or _temporary_folder()
-            path = folder / f"{key.replace('.', '_')}_{raster.digest}.tif"
+            path = folder / f"{key.replace('.', '_')}_{given.digest}{given._ending}"
             if not path.exists():
                 folder.mkdir(parents=True, exist_ok=True)
-                raster.write(path)
+                given.write(path)
         except SceneError as error:
             raise SceneError(f"{key}: {error.message}", key) from error
         return path
 
     @property
-    def _has_rasters(self) -> bool:
+    def _has_files(self) -> bool:
         def has(value: Any) -> bool:
-            return any(map(has, value.values())) if isinstance(value, Mapping) else as_raster(value) is not None
+            return any(map(has, value.values())) if isinstance(value, Mapping) else as_file(value) is not None
 
         return any(map(has, self._changes.values()))
 
@@ -145,7 +145,7 @@ class Scene:
 
 @cache
 def _temporary_folder() -> Path:
-    """The folder of this process for rasters of scenes that are not recorded."""
+    """The folder of this process for arrays of scenes that are not recorded."""
     folder = tempfile.mkdtemp(prefix="corpuscle-")
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return Path(folder)

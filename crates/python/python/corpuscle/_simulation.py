@@ -61,15 +61,17 @@ class Particles(Mapping):
         return len(self.columns["id"])
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The particles as a table: one row for each, vectors as columns ``position_x``, ``position_y``, ``position_z``."""
+        """The particles as a table with the columns of ``corpuscle run --frames csv``: ``set``, ``id``, ``x``, ``y``, ``z``, ``vx``, ...
+
+        A gas can start from it: ``Scene(..., **{"gas.start_file": table})``.
+        """
         pandas = _needs("pandas", "tables")
-        flat: dict[str, np.ndarray] = {}
+        axes = {"position": ("x", "y", "z"), "velocity": ("vx", "vy", "vz")}
+        flat: dict[str, Any] = {"set": self.name}
         for name, values in self.columns.items():
-            if values.ndim == 1:
-                flat[name] = values
-            else:
-                flat.update({f"{name}_{axis}": values[:, place] for place, axis in enumerate("xyz")})
-        return pandas.DataFrame(flat).set_index("id")
+            words = axes.get(name, tuple(f"{name}_{axis}" for axis in "xyz"))
+            flat.update({name: values} if values.ndim == 1 else dict(zip(words, values.T)))
+        return pandas.DataFrame(flat)
 
 
 @dataclass(frozen=True)
@@ -241,8 +243,8 @@ class Simulation:
         Parameters
         ----------
         output : path, optional
-            A new or empty folder for the run's files, as `corpuscle run --output` writes them. By default nothing is written. Rasters of the
-            scene that were given as arrays are written beside it, into `<output>-inputs`.
+            A new or empty folder for the run's files, as `corpuscle run --output` writes them. By default nothing is written. Arrays that
+            stand for files of the scene are written beside it, into `<output>-inputs`.
         frames : {"vtp", "csv", "xyz", "none"}
             Format of the particle files.
         at : dict of float to callable, optional
@@ -271,7 +273,7 @@ class Simulation:
                 f"the simulation has advanced to t = {self.time:g} already, so its files would lack the start; "
                 "open the scene anew and run it with `output`"
             )
-        if output is not None and self.scene._has_rasters:
+        if output is not None and self.scene._has_files:
             self._open_beside(Path(output))
         for moment in sorted(at or {}):
             self.advance(moment, progress=progress)
@@ -280,7 +282,7 @@ class Simulation:
             return json.loads(self._native.run(None if output is None else Path(output), frames, report))
 
     def _open_beside(self, output: Path) -> None:
-        """Opens the scene with its rasters in a folder beside that of the run, so that the run can be resumed and repeated from its files."""
+        """Opens the scene with its arrays in files beside that of the run, so that the run can be resumed and repeated from its files."""
         inputs = output.absolute().with_name(output.name + "-inputs")
         self._native = _native.Simulation(self.scene._parsed(inputs), self._number_of_threads, self.backend == "gpu")
 

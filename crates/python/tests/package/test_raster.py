@@ -1,4 +1,4 @@
-"""Rasters from arrays: the same bits as from files, and what is refused."""
+"""Rasters and tables from arrays: the same bits as from files, and what is refused."""
 
 import pickle
 
@@ -107,3 +107,23 @@ def test_an_uneven_grid_is_refused_by_key():
 def test_a_system_without_a_code_is_refused():
     with pytest.raises(cp.SceneError, match="EPSG"):
         cp.Scene(TEXT, **{"terrain.file.path": cp.Raster(ground(), cell=5.0, crs="+proj=utm +zone=32")})
+
+
+def test_a_gas_goes_on_from_a_table_of_its_balls(gas, tmp_path):
+    first = cp.Simulation(gas)
+    first.run(tmp_path / "run", frames="csv")
+    table = first.frame()["balls"].to_pandas()
+    empty = {"gas.species": [], "gas.follow": 0}
+    given = cp.Scene(gas.toml, **empty, **{"gas.start_file": table})
+    filed = cp.Scene(gas.toml, **empty, **{"gas.start_file": max((tmp_path / "run/frames").glob("*.csv"))})
+    states = []
+    for scene in (given, filed):
+        simulation = cp.Simulation(pickle.loads(pickle.dumps(scene)))
+        np.testing.assert_array_equal(simulation.frame()["balls"]["velocity"], first.frame()["balls"]["velocity"])
+        simulation.run()
+        states.append(simulation.frame()["balls"]["position"])
+    np.testing.assert_array_equal(*states)
+    table.loc[3, "x"] = np.nan
+    with pytest.raises(cp.SceneError, match="column x, row 3") as caught:
+        cp.Scene(gas.toml, **empty, **{"gas.start_file": table})
+    assert caught.value.key == "gas.start_file"

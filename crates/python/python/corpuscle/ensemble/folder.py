@@ -25,8 +25,8 @@ class Folder:
     """An ensemble's folder on disk.
 
     It has `ensemble.json` (version of the format, chosen statistics), `scene.toml`, `plan.csv`, and for each member
-    that was run `members/NNNNNN/` with `maps.npz`, `gauges.csv` and `member.json`. Rasters that the scene was given
-    as arrays are in `inputs`.
+    that was run `members/NNNNNN/` with `maps.npz`, `gauges.csv` and `member.json`. Arrays that the scene was
+    given for files are in `inputs`.
     """
 
     path: Path
@@ -132,8 +132,8 @@ def _store(path: Path, text: str, difference: Any, folder: Path, what: str) -> N
 
 
 def _scene_text(scene: corpuscle.Scene, path: Path) -> str:
-    """The scene as TOML; rasters that were given as arrays are files in the ensemble's folder."""
-    if getattr(scene, "_has_rasters", False):
+    """The scene as TOML; arrays that stand for files are written into the ensemble's folder."""
+    if getattr(scene, "_has_files", False):
         return str(scene._parsed(path / _INPUTS).toml)  # type: ignore[attr-defined]
     return str(scene.toml)
 
