@@ -324,7 +324,7 @@ class Simulation:
             yield self.time
 
     def change(self, **changes: Any) -> None:
-        """Changes values while it runs, by their keys: ``simulation.change(**{"gas.gravity.1": -9.8})``.
+        """Changes values while it runs, by their keys: ``simulation.change(**{"flood.manning": 0.06})``.
 
         Raises
         ------
