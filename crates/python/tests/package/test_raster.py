@@ -46,6 +46,8 @@ def test_an_array_gives_the_bits_of_a_file(tmp_path):
 def test_an_array_of_xarray_keeps_its_place_and_system():
     x, y = 512000.0 + 5.0 * np.arange(50), 204000.0 + 5.0 * np.arange(40)
     heights = xarray.DataArray(ground(), {"y": y, "x": x}, ("y", "x"), attrs={"crs": "EPSG:27700"})
+    np.testing.assert_array_equal(cp.Raster.of(heights).values, ground()[::-1])
+    np.testing.assert_array_equal(cp.Raster.of(heights[::-1]).values, ground()[::-1])
     scene = cp.Scene(TEXT, **{"terrain.file.path": heights, "flood.inflow.0.at": [512100.0, 204080.0]})
     simulation = cp.Simulation(scene)
     simulation.run()
