@@ -164,8 +164,7 @@ impl Simulation {
         let run = &self.scene.run;
         let gauges = Schedule::new(run.gauge_period_s(), run.until_s);
         let pauses = Schedule::new(run.until_s / PAUSES, run.until_s);
-        let counted = models::of(&self.scene)?.work();
-        let meter = Meter { start, time: now, particle_steps: self.model.particle_steps(), counted };
+        let meter = self.meter(start)?;
         let observer = RunObserver {
             sinks: &mut [sink],
             gauges,
@@ -178,6 +177,12 @@ impl Simulation {
             failed: None,
         };
         self.advance(time, stop, observer).map(|_| ())
+    }
+
+    /// The state at the start of a part of the run, to measure its rate.
+    fn meter(&self, start: Instant) -> Result<Meter, Error> {
+        let counted = models::of(&self.scene)?.work();
+        Ok(Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted })
     }
 
     fn advance_to_end(
@@ -196,8 +201,7 @@ impl Simulation {
             let schedules = if self.glances(&**sink) { &mut glances } else { &mut pictures };
             schedules[number] = sink.picture_period().map(|period| Schedule::new(period, until));
         }
-        let counted = models::of(&self.scene)?.work();
-        let meter = Meter { start, time: self.model.time(), particle_steps: self.model.particle_steps(), counted };
+        let meter = self.meter(start)?;
         if !self.resumed {
             for sink in &mut *sinks {
                 sink.gauges(self.model.time(), &self.model.gauge_row())?;

@@ -49,15 +49,18 @@ pub fn maps(py: Python<'_>, maps: Vec<Map>) -> PyResult<Bound<'_, PyList>> {
     Ok(list)
 }
 
-/// The grid of the maps: x of the columns, y of the rows, the name of the reference system.
+/// The grid of the maps: x of the columns, y of the rows, the name of the reference system, and metres in a unit of x and y; none for degrees.
 pub fn grid<'py>(py: Python<'py>, terrain: &Terrain) -> PyResult<Bound<'py, PyAny>> {
     let MapGrid { columns, rows, georeference, .. } = terrain.map_grid();
     let x: Vec<_> = (0..*columns).map(|column| georeference.centre(column, 0)[0]).collect();
     let y: Vec<_> = (0..*rows).map(|row| georeference.centre(0, row)[1]).collect();
     let system = georeference.system.as_ref();
     let name = system.map(|system| system.name.clone());
-    let is_geographic = system.is_some_and(|system| system.geographic);
-    Ok((x.into_pyarray(py), y.into_pyarray(py), name, is_geographic).into_pyobject(py)?.into_any())
+    let metres = match system {
+        Some(system) => (!system.geographic).then_some(system.metres_per_unit),
+        None => Some(1.0),
+    };
+    Ok((x.into_pyarray(py), y.into_pyarray(py), name, metres).into_pyobject(py)?.into_any())
 }
 
 /// Charts as [{name, title, x, y, note, series: [(name, points, errors)]}].

@@ -16,6 +16,11 @@ pub fn run_error(py: Python<'_>, message: &str) -> PyErr {
     raise(py, "RunError", message, None).unwrap_or_else(|failed| failed)
 }
 
+/// A `corpuscle.SceneError` with a message.
+pub fn scene_error(py: Python<'_>, message: &str) -> PyErr {
+    raise(py, "SceneError", message, None).unwrap_or_else(|failed| failed)
+}
+
 /// The key and the line of a scene that an error names.
 fn place(error: &Error) -> Option<(String, Option<usize>)> {
     let Error::Scene(error) = error else { return None };
@@ -38,5 +43,7 @@ fn raise(py: Python<'_>, class: &str, message: &str, place: Option<(String, Opti
 pub fn panicked(cause: &(dyn std::any::Any + Send)) -> PyErr {
     let text = cause.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| cause.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".into());
-    PyRuntimeError::new_err(format!("a fault of this program, which its makers want to know of: {text}"))
+    PyRuntimeError::new_err(format!(
+        "the program failed by a mistake of its own: {text}; please report it with the scene"
+    ))
 }

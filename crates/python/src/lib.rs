@@ -21,7 +21,7 @@ mod _native {
     use super::{builtin_scenes, raster::write_raster, run_command_line, scene::Scene, simulation::Simulation};
 }
 
-/// Names, titles and models of the built-in scenes.
+/// Names and texts of the built-in scenes.
 #[pyfunction]
 fn builtin_scenes() -> Vec<(&'static str, &'static str)> {
     corpuscle::scene::scenes().map(|scene| (scene.name, scene.text)).collect()

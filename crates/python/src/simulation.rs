@@ -1,14 +1,14 @@
 //! Simulations: opened scenes that advance.
 
 use crate::arrays;
-use crate::error::{exception, run_error};
-use crate::scene::Scene;
+use crate::error::{exception, run_error, scene_error};
 use crate::watch::watched;
 use corpuscle::model::{Balance, ModelError};
 use corpuscle::models::of;
-use corpuscle::output::{Clock, FrameFormat, Summary, write_picture};
-use corpuscle::parameters::{as_number, parameters, value_at};
+use corpuscle::output::{FrameFormat, Summary, write_picture};
+use corpuscle::parameters::{as_number, parameters, set, value_at};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
+use corpuscle::scene::Scene;
 use corpuscle::{Error, Progress, Recorder, Sink};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
@@ -17,7 +17,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, TryLockError};
-use toml::{Table, Value};
 
 /// Rows of gauges since the simulation was opened.
 #[derive(Default)]
@@ -52,34 +51,46 @@ struct State {
     /// The run's folder, where one is written.
     recorder: Option<Recorder>,
     rows: Rows,
-    /// The scene with its live changes.
-    document: Table,
+    /// Live changes of the scene: keys, and values as written in TOML.
+    changes: Vec<(String, String)>,
 }
 
 impl State {
     fn new((simulation, recorder): (corpuscle::Simulation, Option<Recorder>)) -> Result<Self, Error> {
-        let document = simulation.scene().to_toml()?.parse().unwrap_or_default();
         // A resumed run has written its rows so far.
         let rows = if recorder.is_none() { Rows::beginning(&simulation) } else { Rows::default() };
-        Ok(Self { simulation, recorder, rows, document })
+        Ok(Self { simulation, recorder, rows, changes: Vec::new() })
+    }
+
+    /// The scene with the live changes so far, and with one more.
+    fn changed(&self, more: Option<(&str, &str)>) -> Result<(Vec<(String, String)>, Scene), Error> {
+        let mut changes = self.changes.clone();
+        if let Some((key, value)) = more {
+            set(&mut changes, key, Some(value.into()));
+        }
+        let text = self.simulation.scene().to_toml()?;
+        let scene = Scene::parse(&text, "the scene", &changes)?;
+        Ok((changes, scene))
     }
 
     fn change(&mut self, key: &str, value: &str) -> Result<(), Error> {
-        let Self { simulation, document, .. } = self;
-        let offered = parameters(simulation.scene(), simulation.scene(), document.clone())?;
-        let known = offered.groups.iter().flat_map(|group| &group.parameters).filter(|known| known.live.is_some());
-        let Some(found) = known.clone().find(|known| known.path == key) else {
-            let keys: Vec<_> = known.map(|known| known.path.as_str()).collect();
+        let (_, now) = self.changed(None)?;
+        let document = now.to_toml()?.parse().unwrap_or_default();
+        let offered = parameters(self.simulation.scene(), &now, document)?;
+        let live = || offered.groups.iter().flat_map(|group| &group.parameters).filter(|known| known.live.is_some());
+        let Some(found) = live().find(|known| known.path == key) else {
+            let keys: Vec<_> = live().map(|known| known.path.as_str()).collect();
             let what = format!("{key} cannot be changed while it runs; {}", listed(&keys));
             return Err(ModelError::Setup(what).into());
         };
+        let (changes, _) = self.changed(Some((key, value)))?;
         let numbers = |path: &str| value_at(&offered.document, path).and_then(as_number);
         let Some(change) = found.live.and_then(|live| live(key, value, &numbers)) else {
             let what = format!("{key} = {value}: this is no value of it; give a number, as in the scene");
             return Err(ModelError::Setup(what).into());
         };
-        change(simulation)?;
-        note(document, key, value);
+        change(&mut self.simulation)?;
+        self.changes = changes;
         Ok(())
     }
 }
@@ -126,6 +137,12 @@ impl Simulation {
         Ok(py.detach(|| self.threads.install(|| read(state))))
     }
 
+    /// Refuses what the files of a run that was resumed would lack.
+    fn refuse_resumed(&self, py: Python<'_>) -> PyResult<()> {
+        let what = "a resumed run goes on by `run` alone, so that its files are complete; open its scene anew for this";
+        if self.lock(py)?.recorder.is_some() { Err(run_error(py, what)) } else { Ok(()) }
+    }
+
     fn opened(
         py: Python<'_>,
         threads: Option<usize>,
@@ -145,7 +162,7 @@ impl Simulation {
     /// Opens a scene on the CPU or, with `gpu`, on a GPU.
     #[new]
     #[pyo3(signature = (scene, threads=None, gpu=false))]
-    fn new(py: Python<'_>, scene: &Scene, threads: Option<usize>, gpu: bool) -> PyResult<Self> {
+    fn new(py: Python<'_>, scene: &crate::scene::Scene, threads: Option<usize>, gpu: bool) -> PyResult<Self> {
         let (folder, scene) = (&scene.folder, scene.scene.clone());
         Self::opened(py, threads, move || {
             let mut simulation = corpuscle::Simulation::open(scene, folder)?;
@@ -194,6 +211,7 @@ impl Simulation {
     /// Advances to a time, s.
     #[pyo3(signature = (time, on_progress=None))]
     fn advance(&self, py: Python<'_>, time: f64, on_progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        self.refuse_resumed(py)?;
         self.watch(py, on_progress, |state, stop, report| {
             let State { simulation, rows, .. } = state;
             simulation.advance_to(time, stop, rows, report)
@@ -305,12 +323,13 @@ impl Simulation {
 
     /// Takes back a state of the same scene.
     fn restore(&self, py: Python<'_>, saved: &[u8]) -> PyResult<()> {
-        let restored = self.read(py, |state| {
-            state.simulation.restore(Clock { time_s: 0.0, wall_time_s: 0.0 }, saved)?;
+        self.refuse_resumed(py)?;
+        let restored = self.read(py, |state| -> Result<(), ModelError> {
+            state.simulation.model_mut().restore(saved)?;
             state.rows = Rows::beginning(&state.simulation);
             Ok(())
         })?;
-        restored.map_err(|error| exception(py, &error))
+        restored.map_err(|error| exception(py, &error.into()))
     }
 
     /// A picture as an array of rows, columns and red, green, blue, opacity.
@@ -343,7 +362,9 @@ fn format_of(py: Python<'_>, name: &str) -> PyResult<FrameFormat> {
         "csv" => Ok(FrameFormat::Csv),
         "xyz" => Ok(FrameFormat::Xyz),
         "none" => Ok(FrameFormat::None),
-        _ => Err(run_error(py, &format!("frames = {name:?} is not known; give \"vtp\", \"csv\", \"xyz\" or \"none\""))),
+        _ => {
+            Err(scene_error(py, &format!("frames = {name:?} is not known; give \"vtp\", \"csv\", \"xyz\" or \"none\"")))
+        }
     }
 }
 
@@ -351,33 +372,9 @@ fn json(py: Python<'_>, summary: &Summary) -> PyResult<String> {
     serde_json::to_string(summary).map_err(|error| run_error(py, &format!("the summary cannot be written: {error}")))
 }
 
-/// Keeps a live change, for the next one that depends on other values.
-fn note(document: &mut Table, key: &str, value: &str) {
-    let parsed = format!("v = {value}").parse::<Table>().ok().and_then(|mut table| table.remove("v"));
-    let Some(parsed) = parsed else { return };
-    let mut words = key.split('.').peekable();
-    let mut place = match words.next().and_then(|word| document.get_mut(word)) {
-        Some(place) => place,
-        None => return,
-    };
-    for word in words {
-        let next = match place {
-            Value::Table(table) => Some(table.entry(word).or_insert(Value::Float(f64::NAN))),
-            Value::Array(rows) => word.parse::<usize>().ok().and_then(|row| rows.get_mut(row)),
-            _ => None,
-        };
-        match next {
-            Some(next) => place = next,
-            None => return,
-        }
-    }
-    *place = parsed;
-}
-
 fn listed(keys: &[&str]) -> String {
-    if keys.is_empty() {
-        "values cannot be changed so".into()
-    } else {
-        format!("keys that can be: {}", keys.join(", "))
+    match keys {
+        [] => "no value of this scene can: open it anew with the change".into(),
+        keys => format!("what can: {}", keys.join(", ")),
     }
 }

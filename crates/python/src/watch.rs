@@ -1,4 +1,4 @@
-//! Long work that Python waits for: the lock of the interpreter is released, Ctrl-C and progress are looked after.
+//! Long work that Python waits for: the lock of the interpreter is released, Ctrl-C stops it, and progress is reported.
 
 use crate::error::panicked;
 use corpuscle::Progress;
@@ -8,10 +8,10 @@ use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Thread};
 use std::time::Duration;
 
-/// Longest wait between two looks for Ctrl-C.
-const PATIENCE: Duration = Duration::from_millis(50);
+/// Longest time between two checks for Ctrl-C.
+const CHECKED_EVERY: Duration = Duration::from_millis(50);
 
-/// What the working thread tells the waiting one.
+/// What the working thread passes to the waiting one.
 struct Shared {
     progress: Mutex<Option<Progress>>,
     has_ended: AtomicBool,
@@ -54,11 +54,16 @@ pub fn watched<T: Send>(
             })
         });
         let mut raised = None;
-        while !shared.has_ended.load(Ordering::Acquire) {
-            py.detach(|| thread::park_timeout(PATIENCE));
-            if let Err(error) = py.check_signals().and_then(|()| tell(on_progress, shared.take())) {
+        loop {
+            py.detach(|| thread::park_timeout(CHECKED_EVERY));
+            // Read before the progress, so that the last one is reported.
+            let has_ended = shared.has_ended.load(Ordering::Acquire);
+            if let Err(error) = py.check_signals().and_then(|()| report(on_progress, shared.take())) {
                 stop.store(true, Ordering::Relaxed);
                 raised.get_or_insert(error);
+            }
+            if has_ended {
+                break;
             }
         }
         let done = py.detach(|| working.join()).map_err(|cause| panicked(&*cause))?;
@@ -69,7 +74,7 @@ pub fn watched<T: Send>(
     })
 }
 
-fn tell(on_progress: Option<&Bound<'_, PyAny>>, progress: Option<Progress>) -> PyResult<()> {
+fn report(on_progress: Option<&Bound<'_, PyAny>>, progress: Option<Progress>) -> PyResult<()> {
     if let (Some(call), Some(progress)) = (on_progress, progress) {
         let Progress { time, until, particles, particle_steps_per_s, left_s, .. } = progress;
         call.call1((time, until, particles, particle_steps_per_s, left_s))?;

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _native
 from ._errors import SceneError
+from ._files import write_text
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,15 +122,12 @@ class _Table:
         return hashlib.sha256(self.text.encode()).hexdigest()[:32]
 
     def write(self, path: Path) -> None:
-        # Whole or not at all: another process may look for it at the same moment.
-        part = path.with_name(f"{path.name}.{os.getpid()}.part")
-        part.write_bytes(self.text.encode())
-        os.replace(part, path)
+        write_text(path, self.text)
 
 
 def as_file(value: Any) -> Raster | _Table | None:
     """What stands for a file: a raster, or a table as a `pandas.DataFrame`; none for other values."""
-    if isinstance(value, Raster):
+    if isinstance(value, (Raster, _Table)):
         return value
     if hasattr(value, "to_csv") and hasattr(value, "columns"):
         return _Table.of(value)

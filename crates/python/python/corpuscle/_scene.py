@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import atexit
+import copy
 import difflib
 import os
 import shutil
 import tempfile
 from collections.abc import Mapping
 from functools import cache
+from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import Any
 
@@ -51,37 +52,17 @@ class Scene:
         text, name, base = _read(source)
         self._text, self._name = text, name
         self._folder = Path(folder).absolute() if folder is not None else base
-        self._changes = dict(changes)
+        self._changes = {key: _kept(key, value) for key, value in changes.items()}
         self._native = self._parsed()
 
     def _parsed(self, inputs: Path | None = None) -> _native.Scene:
         """The checked scene; arrays that stand for files are written into a folder, by default one that is removed when Python ends."""
-        changes = [(key, written(key, self._filed(key, value, inputs))) for key, value in self._changes.items()]
+        changes = [(key, written(key, _filed(key, value, inputs))) for key, value in self._changes.items()]
         return _native.Scene(self._text, self._name, self._folder, changes)
-
-    def _filed(self, key: str, value: Any, inputs: Path | None) -> Any:
-        """The value with the path of a file in place of each array that stands for one."""
-        if isinstance(value, Mapping):
-            return {name: self._filed(f"{key}.{name}", item, inputs) for name, item in value.items()}
-        try:
-            given = as_file(value)
-            if given is None:
-                return value
-            folder = inputs or _temporary_folder()
-            path = folder / f"{key.replace('.', '_')}_{given.digest}{given._ending}"
-            if not path.exists():
-                folder.mkdir(parents=True, exist_ok=True)
-                given.write(path)
-        except SceneError as error:
-            raise SceneError(f"{key}: {error.message}", key) from error
-        return path
 
     @property
     def _has_files(self) -> bool:
-        def has(value: Any) -> bool:
-            return any(map(has, value.values())) if isinstance(value, Mapping) else as_file(value) is not None
-
-        return any(map(has, self._changes.values()))
+        return any(map(_holds_file, self._changes.values()))
 
     @property
     def name(self) -> str:
@@ -110,8 +91,8 @@ class Scene:
 
     @property
     def changes(self) -> dict[str, Any]:
-        """The changes that were given."""
-        return dict(self._changes)
+        """The changes that were given; arrays that stand for files as `Raster` or as a table of text."""
+        return copy.deepcopy(self._changes)
 
     def changed(self, **changes: Any) -> Scene:
         """The scene with more changes; a key that was changed before takes the new value.
@@ -122,7 +103,8 @@ class Scene:
             As `Scene` does.
         """
         other = object.__new__(Scene)
-        other.__setstate__({**self.__getstate__(), "_changes": {**self._changes, **changes}})
+        kept = {key: _kept(key, value) for key, value in changes.items()}
+        other.__setstate__({**self.__getstate__(), "_changes": {**self._changes, **kept}})
         return other
 
     def __getstate__(self) -> dict[str, Any]:
@@ -143,12 +125,46 @@ class Scene:
         return f"Scene({self._name!r}{changes})"
 
 
+def _kept(key: str, value: Any) -> Any:
+    """The value as it is now: a copy, or what stands for a file."""
+    if isinstance(value, Mapping):
+        return {name: _kept(f"{key}.{name}", item) for name, item in value.items()}
+    try:
+        given = as_file(value)
+    except SceneError as error:
+        raise SceneError(f"{key}: {error.message}", key) from error
+    return copy.deepcopy(value) if given is None else given
+
+
+def _holds_file(kept: Any) -> bool:
+    return any(map(_holds_file, kept.values())) if isinstance(kept, Mapping) else as_file(kept) is not None
+
+
+def _filed(key: str, kept: Any, inputs: Path | None) -> Any:
+    """The value with the path of a file in place of each array that stands for one."""
+    if isinstance(kept, Mapping):
+        return {name: _filed(f"{key}.{name}", item, inputs) for name, item in kept.items()}
+    given = as_file(kept)
+    if given is None:
+        return kept
+    folder = inputs or _temporary_folder()
+    path = folder / f"{key.replace('.', '_')}_{given.digest}{given._ending}"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            given.write(path)
+        except SceneError as error:
+            raise SceneError(f"{key}: {error.message}", key) from error
+    return path
+
+
 @cache
 def _temporary_folder() -> Path:
     """The folder of this process for arrays of scenes that are not recorded."""
-    folder = tempfile.mkdtemp(prefix="corpuscle-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return Path(folder)
+    folder = Path(tempfile.mkdtemp(prefix="corpuscle-"))
+    # Unlike those of `atexit` these run when a worker process ends, and never in a child of the process that asked for them.
+    Finalize(None, shutil.rmtree, args=(folder,), kwargs={"ignore_errors": True}, exitpriority=0)
+    return folder
 
 
 # A forked process has a folder of its own: that of its parent goes with the parent.

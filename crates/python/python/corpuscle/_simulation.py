@@ -191,11 +191,13 @@ class Simulation:
         self.scene = scene if isinstance(scene, Scene) else Scene(scene)
         self._number_of_threads = _threads(threads)
         self._native = _native.Simulation(self.scene._native, self._number_of_threads, backend == "gpu")
+        self._is_touched = False
 
     @classmethod
     def _resumed(cls, folder: str | os.PathLike[str], threads: int | None) -> Simulation:
         made = object.__new__(cls)
         made._number_of_threads = _threads(threads)
+        made._is_touched = False
         made._native = _native.Simulation.resume(Path(folder), made._number_of_threads)
         made.scene = Scene(Path(folder) / "scene.toml")
         return made
@@ -274,6 +276,8 @@ class Simulation:
                 "open the scene anew and run it with `output`"
             )
         if output is not None and self.scene._has_files:
+            if self._is_touched:
+                raise RunError("the simulation was changed before its run with `output`; give the changes to the scene, or leave `output` out")
             self._open_beside(Path(output))
         for moment in sorted(at or {}):
             self.advance(moment, progress=progress)
@@ -310,8 +314,8 @@ class Simulation:
         with reporter(progress) as report:
             self._native.advance(min(target, until), report)
 
-    def steps_of(self, period: float) -> Iterator[float]:
-        """Times at multiples of a period, to each of which the simulation has advanced: ``for t in simulation.steps_of(0.5): ...``."""
+    def every(self, period: float) -> Iterator[float]:
+        """Times at multiples of a period, to each of which the simulation has advanced: ``for t in simulation.every(0.5): ...``."""
         if not period > 0.0:
             raise RunError(f"a period of {period} does not end; give one above 0")
         count = int(self.time / period) + 1
@@ -333,6 +337,7 @@ class Simulation:
         """
         for key, value in changes.items():
             self._native.change(key, written(key, value))
+            self._is_touched = True
 
     def frame(self) -> Frame:
         """The particles now."""
@@ -363,8 +368,8 @@ class Simulation:
         grid = self._native.grid()
         if not given or grid is None:
             return xarray.Dataset()
-        x, y, system, is_geographic = grid
-        coordinates = {"y": ("y", y, _axis("y", is_geographic)), "x": ("x", x, _axis("x", is_geographic))}
+        x, y, system, metres = grid
+        coordinates = {"y": ("y", y, _axis("y", metres)), "x": ("x", x, _axis("x", metres))}
         variables = {}
         for name, title, unit, values in given:
             variables[name] = (("y", "x"), values, {"long_name": title, "units": unit or "1"})
@@ -416,6 +421,7 @@ class Simulation:
             Where the bytes are damaged or belong to another scene.
         """
         self._native.restore(state)
+        self._is_touched = True
 
     def __repr__(self) -> str:
         return f"<Simulation of {self.scene.name}: t = {self.time:g} of {self.until:g}, {self.particles} particles>"
@@ -462,12 +468,14 @@ def _needs(package: str, extra: str) -> Any:
         raise ImportError(f"this needs {package}; install it with `pip install corpuscle[{extra}]`") from error
 
 
-def _axis(name: str, is_geographic: bool) -> dict[str, str]:
-    if not is_geographic:
-        words = {"x": "Easting", "y": "Northing"}
-        return {"standard_name": f"projection_{name}_coordinate", "long_name": words[name], "units": "m", "axis": name.upper()}
-    word, unit = ("longitude", "degrees_east") if name == "x" else ("latitude", "degrees_north")
-    return {"standard_name": word, "long_name": word.capitalize(), "units": unit, "axis": name.upper()}
+def _axis(name: str, metres: float | None) -> dict[str, str]:
+    """Attributes of a coordinate whose unit is so many metres, in the convention CF; degrees for none."""
+    if metres is None:
+        word, unit = ("longitude", "degrees_east") if name == "x" else ("latitude", "degrees_north")
+        return {"standard_name": word, "long_name": word.capitalize(), "units": unit, "axis": name.upper()}
+    words = {"x": "Easting", "y": "Northing"}
+    unit = "m" if metres == 1.0 else f"{metres!r} m"
+    return {"standard_name": f"projection_{name}_coordinate", "long_name": words[name], "units": unit, "axis": name.upper()}
 
 
 def _with_system(dataset: xarray.Dataset, system: str | None) -> xarray.Dataset:

@@ -30,8 +30,9 @@ sys.path.insert(0, FAKE)
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [FAKE, os.environ.get("PYTHONPATH")]))  # for worker processes
 
 import corpuscle  # noqa: E402
+from corpuscle import _files as files  # noqa: E402
 from corpuscle import ensemble  # noqa: E402
-from corpuscle.ensemble import export, files, member, streaming  # noqa: E402
+from corpuscle.ensemble import export, member, streaming  # noqa: E402
 
 LEVELS = ensemble.grid({"flood.level": [0.4, 0.7, 1.0, 1.3], "flood.manning": [0.02, 0.05]})
 
@@ -422,7 +423,7 @@ def test_a_file_is_whole_or_not_there(tmp_path: Path) -> None:
 
 def test_remains_of_a_killed_process_are_removed(tmp_path: Path) -> None:
     script = (
-        "import os, signal, sys\nfrom pathlib import Path\nfrom corpuscle.ensemble import files\n"
+        "import os, signal, sys\nfrom pathlib import Path\nfrom corpuscle import _files as files\n"
         "with files.replacing(Path(sys.argv[1])) as part:\n"
         "    part.write_text('half')\n    os.kill(os.getpid(), signal.SIGKILL)\n"
     )

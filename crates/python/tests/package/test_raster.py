@@ -1,6 +1,9 @@
 """Rasters and tables from arrays: the same bits as from files, and what is refused."""
 
+import os
 import pickle
+import subprocess
+import sys
 
 import corpuscle as cp
 import numpy as np
@@ -68,6 +71,46 @@ def test_a_recorded_run_keeps_its_rasters(tmp_path):
     again = cp.Simulation(cp.Scene(tmp_path / "run/scene.toml"))
     again.run(tmp_path / "again")
     assert (tmp_path / "run/gauges.csv").read_bytes() == (tmp_path / "again/gauges.csv").read_bytes()
+
+
+def test_a_change_before_a_recorded_run_is_not_lost(tmp_path):
+    simulation = cp.Simulation(cp.Scene(TEXT, **{"terrain.file.path": cp.Raster(ground(), cell=5.0)}))
+    simulation.change(**{"flood.manning": 0.1})
+    with pytest.raises(cp.RunError, match="give the changes to the scene"):
+        simulation.run(tmp_path / "run")
+
+
+def test_arrays_that_are_changed_later_do_not_change_the_scene():
+    heights, rows = ground(), np.array([[0.0, 5.0], [20.0, 6.0]])
+    grid = xarray.DataArray(heights, {"y": 5.0 * np.arange(40)[::-1], "x": 5.0 * np.arange(50)}, ("y", "x"))
+    scene = cp.Scene(TEXT, **{"terrain.file.path": grid, "flood.inflow.0.discharge_m3_per_s": rows})
+    before = scene.toml
+    heights[:] = 0.0
+    rows[:] = 0.0
+    assert pickle.loads(pickle.dumps(scene)).toml == scene.changed().toml == before
+
+
+def test_worker_processes_leave_no_files_behind(tmp_path):
+    text = """
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
+import corpuscle as cp, numpy as np
+def toml(scene):
+    return scene.changed(seed=3).toml
+if __name__ == "__main__":
+    scene = cp.Scene(open("scene.toml").read(), **{"terrain.file.path": cp.Raster(np.random.rand(9, 9), cell=5.0)})
+    for kind in ("fork", "spawn"):
+        with ProcessPoolExecutor(2, multiprocessing.get_context(kind)) as processes:
+            assert len(list(processes.map(toml, [scene] * 4))) == 4
+    print(scene.toml)
+"""
+    (tmp_path / "scene.toml").write_text(TEXT)
+    (tmp_path / "script.py").write_text(text)
+    (tmp_path / "tmp").mkdir()
+    environment = {**os.environ, "TMPDIR": str(tmp_path / "tmp")}
+    done = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0 and "tmp/corpuscle-" in done.stdout, done.stderr
+    assert list((tmp_path / "tmp").glob("corpuscle-*")) == []
 
 
 def test_a_scene_with_a_raster_survives_pickling():

@@ -113,7 +113,7 @@ def test_functions_are_called_at_their_times(gas):
     seen = []
     cp.Simulation(gas).run(at={1.5: lambda running: seen.append(running.time), 0.25: lambda running: seen.append(running.time)})
     assert seen == [0.25, 1.5]
-    assert list(cp.Simulation(gas).steps_of(0.75)) == [0.75, 1.5, 2.0]
+    assert list(cp.Simulation(gas).every(0.75)) == [0.75, 1.5, 2.0]
 
 
 def test_a_live_change_changes_the_physics(gas):
@@ -129,8 +129,13 @@ def test_a_live_change_changes_the_physics(gas):
     assert temperature[1] > 1.5 * temperature[0]
     with pytest.raises(cp.SceneError, match=key):
         heated.change(**{"gas.species.0.radius": 2.0})
-    with pytest.raises(cp.Error, match="hot"):
+    with pytest.raises(cp.SceneError, match="hot"):
         heated.change(**{key: "hot"})
+    with pytest.raises(cp.SceneError) as caught:
+        heated.change(**{key: -1.0})
+    assert caught.value.key == key
+    with pytest.raises(cp.SceneError, match="no value of this scene can"):
+        cp.Simulation(gas).change(**{"gas.species.0.radius": 2.0})
 
 
 def test_a_saved_state_goes_on_to_the_same_bits(flood):
@@ -180,6 +185,12 @@ def test_a_simulation_in_use_says_so(flood):
     assert failures and "advances at the moment" in failures[0]
 
 
+def test_the_end_is_reported(gas):
+    reports = []
+    cp.Simulation(gas).run(progress=lambda time, until, *_: reports.append((time, until)))
+    assert reports[-1] == (2.0, 2.0)
+
+
 def test_an_exception_of_a_callback_stops_the_run(gas):
     def stop(*_):
         raise KeyError("enough")
@@ -211,6 +222,8 @@ except KeyboardInterrupt:
     assert rest.endswith("stopped\n")
     resumed = cp.resume(tmp_path / "run")
     assert 0.0 < resumed.time < 60.0
+    with pytest.raises(cp.RunError, match="by `run` alone"):
+        resumed.advance(by=0.1)
     assert resumed.run()["status"] == "done"
     whole = cp.Simulation(long)
     whole.run(tmp_path / "whole")

@@ -30,7 +30,7 @@ pub fn write_raster(path: impl AsRef<Path>, raster: &Raster, no_data: f32) -> Re
     write(path.as_ref(), &raster.georeference, [raster.columns, raster.rows], &values, no_data)
 }
 
-/// Writes a raster as [`write_geotiff`] does, but with all bits of its values: 64-bit floating point, holes as not-a-number.
+/// Writes a raster as [`write_geotiff`] does, but with all bits of its values: 64-bit floating point, cells without data as not-a-number.
 ///
 /// # Errors
 /// As [`write_geotiff`].

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import EnsembleError, MissingPackage, require
-from .files import replacing
+from .._files import replacing
 
 if TYPE_CHECKING:
     import xarray

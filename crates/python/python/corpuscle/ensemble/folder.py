@@ -10,7 +10,7 @@ from typing import Any
 import corpuscle
 
 from .errors import EnsembleError
-from .files import is_remains, read_json, remove_remains, write_json, write_text
+from .._files import is_remains, read_json, remove_remains, write_json, write_text
 from .member import Member
 from .plans import Plan
 

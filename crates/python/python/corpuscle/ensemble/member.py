@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import corpuscle
 
 from .errors import EnsembleError
-from .files import read_json, remove_remains, replacing, write_json
+from .._files import read_json, remove_remains, replacing, write_json
 
 if TYPE_CHECKING:
     import pandas

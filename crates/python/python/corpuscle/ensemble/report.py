@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from .errors import require
 from .export import chosen_gauges, chosen_maps, chosen_thresholds
-from .files import replacing
+from .._files import replacing
 
 if TYPE_CHECKING:
     import xarray

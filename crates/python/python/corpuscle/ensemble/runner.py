@@ -156,21 +156,21 @@ class _Work:
 
     def on(self, executor: Executor, pending: int) -> None:
         """Runs the members on an executor, at most `pending` submitted at once."""
-        flying: dict[Future[Member], Task] = {}
+        submitted: dict[Future[Member], Task] = {}
         try:
-            while self._queue or flying:
-                while self._queue and len(flying) < pending:
+            while self._queue or submitted:
+                while self._queue and len(submitted) < pending:
                     task = self._task(self._queue[0])
-                    flying[executor.submit(compute, task)] = task
+                    submitted[executor.submit(compute, task)] = task
                     self._queue.popleft()
-                done, _ = wait(flying, return_when=FIRST_COMPLETED)
-                for future in sorted(done, key=lambda future: flying[future].member):
-                    self._take(future, flying[future])
-                    del flying[future]
+                done, _ = wait(submitted, return_when=FIRST_COMPLETED)
+                for future in sorted(done, key=lambda future: submitted[future].member):
+                    self._take(future, submitted[future])
+                    del submitted[future]
         except BrokenExecutor as error:
-            raise self._broken(error, flying) from error
+            raise self._broken(error, submitted) from error
         finally:
-            for future in flying:
+            for future in submitted:
                 future.cancel()
         if self._lost:
             raise WorkerLost(
@@ -201,10 +201,10 @@ class _Work:
                     remedy="See that the workers have the same packages installed and that the executor is open, then call run again.",
                 ) from error
             record = record_failure(task, error)
-        self._see(task.member)
+        self._await_record(task.member)
         self._settle(record)
 
-    def _see(self, number: int) -> None:
+    def _await_record(self, number: int) -> None:
         """Waits until the member's record is seen here."""
         end = time.monotonic() + _SEEN_WITHIN_S
         while self._place.record(number) is None:
@@ -227,9 +227,9 @@ class _Work:
         if self._progress is not None:
             self._progress(Progress(self._finished, len(self._failed), self._members))
 
-    def _broken(self, error: BaseException, flying: dict[Future[Member], Task]) -> WorkerLost:
+    def _broken(self, error: BaseException, submitted: dict[Future[Member], Task]) -> WorkerLost:
         """The error of an executor that ended; counts what its workers had finished."""
-        running = sorted(task.member for task in flying.values())
+        running = sorted(task.member for task in submitted.values())
         records = list(self._place.records())
         self._finished = sum(record is not None and record.finished for record in records)
         unfinished = [number for number in running if records[number] is None]
