@@ -22,7 +22,7 @@ pub struct Balance {
     pub outflow: f64,
     /// Amount now.
     pub now: f64,
-    /// Amount below which there is only rounding error; 0 where there is none.
+    /// What an error is set against at least: of momentum the sum of its magnitudes; 0 where amounts have one sign.
     pub least: f64,
 }
 

@@ -53,6 +53,17 @@ fn balls_never_overlap_in_three_dimensions() {
     }
 }
 
+/// The momentum ledger says what is there, rounding errors included, and not what should be there.
+#[test]
+fn the_momentum_ledger_is_what_the_balls_have() {
+    let mut gas = Setup::<3>::fluid(200, 0.3).build().unwrap();
+    advance(&mut gas, 5.0);
+    let ledger = gas.ledger();
+    let balance = ledger.balances.iter().find(|balance| balance.quantity == "momentum").unwrap();
+    assert_eq!(balance.now, gas.momentum().iter().sum::<f64>());
+    assert!(balance.now != balance.initial && balance.relative_error().abs() < 1e-13, "{balance:?}");
+}
+
 /// The same final bits for frames far apart, close together, and none.
 fn independent_of_frames<const D: usize>(setup: Setup<D>, end: f64) {
     let mut none = setup.clone().build().unwrap();

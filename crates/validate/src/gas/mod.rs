@@ -1,8 +1,10 @@
 //! Cases of the gas model.
 
 mod adiabatic;
+mod atmosphere;
 pub(crate) mod bench;
 mod brownian;
+mod effusion;
 mod enskog;
 mod equation_of_state;
 mod figure;
@@ -11,6 +13,7 @@ mod granular;
 mod maxwell;
 mod mixing;
 mod theory;
+mod wall_pressure;
 
 use crate::{Case, Row};
 use corpuscle_gas::{Gas, Setup};
@@ -27,6 +30,9 @@ pub(crate) const CASES: &[Case] = &[
     mixing::MIXING,
     frames::FRAME_INDEPENDENCE,
     brownian::BROWNIAN,
+    atmosphere::ATMOSPHERE,
+    effusion::EFFUSION,
+    wall_pressure::WALL_PRESSURE,
 ];
 
 /// Seed of everything random.
