@@ -68,6 +68,7 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
         profile_bins: written.measure.profile_bins,
         pair_distance: written.measure.pair_distance,
         pair_bins: written.measure.pair_bins,
+        lag_collisions: written.measure.lag_collisions,
     };
     let mut made = setup.build()?;
     let colours = written.ball.iter().map(|ball| (&ball.name, &ball.colour));

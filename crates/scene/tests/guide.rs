@@ -237,6 +237,7 @@ fn full_gas(method: Method) -> Scene {
             profile_bins: 1,
             pair_distance: Some(1.0),
             pair_bins: 1,
+            lag_collisions: 1.0,
         },
         start_file: Some("a".into()),
         ball: vec![Ball {

@@ -32,6 +32,7 @@ impl<const D: usize> Gas<D> {
         }
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         world.followed = setup.followed(&starts);
+        world.moments = setup.keeps_momentum_and_energy().then(Default::default);
         let partition = setup.partition.is_some().then(|| world.walls.len() - 1);
         let largest = setup.largest_speeds(&sets, &world);
         let measures = Measures::new(&setup, sets.len(), largest);

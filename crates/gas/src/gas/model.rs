@@ -2,6 +2,7 @@
 
 use super::Gas;
 use super::observe::{collision_rate, mean_free_path, pressure_virial};
+use crate::measure::Estimate;
 use crate::measure::charts::Context;
 use corpuscle_model::{
     Balance, Chart, Container, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Path,
@@ -51,8 +52,25 @@ impl<const D: usize> Gas<D> {
         }
         let mut gauges: Vec<_> =
             rows.into_iter().map(|(name, unit, value)| ("gas".into(), name, unit, value)).collect();
+        gauges.extend(self.transport_gauges());
         gauges.extend(self.wall_gauges());
         gauges.extend(self.set_gauges());
+        gauges
+    }
+
+    /// Viscosity and thermal conductivity with their standard errors, where they are measured.
+    fn transport_gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
+        let mut gauges = Vec::new();
+        if self.measures_transport() {
+            let (viscosity, unit) = (self.viscosity(), if D == 2 { "N_s_per_m" } else { "Pa_s" });
+            gauges.push(("gas".into(), "viscosity", unit, viscosity.mean));
+            gauges.push(("gas".into(), "viscosity_standard_error", unit, viscosity.error));
+        }
+        if self.measures_transport() && self.has_one_mass() {
+            let (conductivity, unit) = (self.conductivity(), if D == 2 { "W_per_K" } else { "W_per_m_K" });
+            gauges.push(("gas".into(), "conductivity", unit, conductivity.mean));
+            gauges.push(("gas".into(), "conductivity_standard_error", unit, conductivity.error));
+        }
         gauges
     }
 
@@ -96,8 +114,10 @@ impl<const D: usize> Gas<D> {
             gauges.push((set.name.clone(), "temperature", "K", temperature));
             gauges.push((set.name.clone(), "mean_square_displacement", "m2", displacements[number]));
             let late = self.measures.started.is_finite() && self.mean_square_displacement(number).len() > 3;
-            let diffusion = if late { self.diffusion(number) } else { f64::NAN };
-            gauges.push((set.name.clone(), "diffusion", "m2_per_s", diffusion));
+            let none = Estimate { mean: f64::NAN, error: f64::NAN };
+            let diffusion = if late { self.diffusion(number) } else { none };
+            gauges.push((set.name.clone(), "diffusion", "m2_per_s", diffusion.mean));
+            gauges.push((set.name.clone(), "diffusion_standard_error", "m2_per_s", diffusion.error));
             if let Some(&beyond) = beyond.get(number) {
                 gauges.push((set.name.clone(), "beyond_partition", "", beyond));
             }

@@ -3,13 +3,17 @@
 use super::Gas;
 use crate::hash::Hash;
 use crate::measure::estimate::{average, change, duration};
+use crate::measure::transport::growth;
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
 use crate::method::{Mover, Nearest};
-use crate::world::speed;
+use crate::world::{Moments, speed};
 use corpuscle_model::ExactSum;
 
 /// Samples over which current values such as the pressure are averaged.
 const RECENT: usize = 10;
+
+/// Parts of the second half of the time, from which the error of a diffusion coefficient is found.
+const DIFFUSION_PARTS: usize = 10;
 
 impl<const D: usize> Gas<D> {
     /// The time shown, counted in the window.
@@ -292,8 +296,9 @@ impl<const D: usize> Gas<D> {
         moving.map(|sample| [sample.time - self.measures.started, sample.displacement[set]]).collect()
     }
 
-    /// Diffusion coefficient of a set: slope of the second half of its mean-square displacement over 2 x dimensions (Einstein 1905).
-    pub fn diffusion(&self, set: usize) -> f64 {
+    /// Diffusion coefficient of a set: slope of the second half of its mean-square displacement over 2 x dimensions (Einstein 1905). Its
+    /// error is from slopes of parts of that half.
+    pub fn diffusion(&self, set: usize) -> Estimate {
         let rows = self.mean_square_displacement(set);
         let late = &rows[rows.len() / 2..];
         let count = late.len() as f64;
@@ -301,7 +306,72 @@ impl<const D: usize> Gas<D> {
         let (time, value) = (mean(0), mean(1));
         let above: f64 = late.iter().map(|row| (row[0] - time) * (row[1] - value)).sum();
         let below: f64 = late.iter().map(|row| (row[0] - time).powi(2)).sum();
-        above / below / (2 * D) as f64
+        let parts = DIFFUSION_PARTS.min(late.len() - 1);
+        let edge = |part: usize| late[part * (late.len() - 1) / parts];
+        let slopes: Vec<f64> = (0..parts)
+            .map(|part| (edge(part), edge(part + 1)))
+            .map(|(start, end)| (end[1] - start[1]) / (end[0] - start[0]))
+            .collect();
+        Estimate { mean: above / below, error: Estimate::of(&slopes).error }.times(1.0 / (2 * D) as f64)
+    }
+
+    /// Shear viscosity since averages began, from the growth of Helfand's moments; not a number where walls, gravity or loss change momentum
+    /// or energy, where the gas moves as a whole or its temperature is held, and before there are enough samples. In two dimensions it has no limit at late times.
+    pub fn viscosity(&self) -> Estimate {
+        let shears = Moments::shears(D);
+        let growth = self.growth(|sample| {
+            std::array::from_fn::<_, 3, _>(|k| if k < shears { sample.moments.momentum[k] } else { 0.0 })
+        });
+        // The mean is over three moments, of which there is one in two dimensions.
+        growth.times(3.0 / shears as f64 / self.thermal_volume())
+    }
+
+    /// Thermal conductivity since averages began, as [`Gas::viscosity`]; not a number for balls of several masses, whose flow of heat depends
+    /// on how it is told from their diffusion.
+    pub fn conductivity(&self) -> Estimate {
+        if !self.has_one_mass() {
+            return Estimate { mean: f64::NAN, error: f64::NAN };
+        }
+        let growth = self.growth(|sample| sample.moments.energy);
+        growth.times(3.0 / D as f64 / (self.thermal_volume() * self.mean_temperature()))
+    }
+
+    /// Whether viscosity and thermal conductivity are measured.
+    pub(super) fn measures_transport(&self) -> bool {
+        self.mover.world().moments.is_some()
+    }
+
+    pub(super) fn has_one_mass(&self) -> bool {
+        let kinds = &self.mover.world().kinds;
+        kinds.windows(2).all(|pair| pair[0].mass == pair[1].mass)
+    }
+
+    fn growth(&self, moments: impl Fn(&Sample) -> [f64; 3]) -> Estimate {
+        let samples = self.measures.since_started();
+        let held = self.live.thermostat.is_some();
+        if samples.len() < 2 || !self.measures_transport() || held || self.drifts() {
+            return Estimate { mean: f64::NAN, error: f64::NAN };
+        }
+        let collisions_per_time = collision_rate(samples) / self.len() as f64;
+        growth(samples, self.setup.measure.lag_collisions / collisions_per_time, moments)
+    }
+
+    /// True where the gas moves as a whole, and carries momentum and energy along.
+    fn drifts(&self) -> bool {
+        let world = self.mover.world();
+        let magnitudes: f64 =
+            (0..world.balls.len()).map(|ball| world.mass(ball) * speed(&world.balls[ball].velocity)).sum();
+        speed(&self.momentum()) > 1e-9 * magnitudes
+    }
+
+    fn mean_temperature(&self) -> f64 {
+        let samples = self.measures.since_started();
+        if samples.len() < 2 { f64::NAN } else { average(samples, |sample| sample.temperature) }
+    }
+
+    /// Volume times temperature as an energy.
+    fn thermal_volume(&self) -> f64 {
+        self.volume() * self.setup.boltzmann * self.mean_temperature()
     }
 
     /// Distances and g there, since averages began.
@@ -384,6 +454,7 @@ impl<const D: usize> Gas<D> {
             collisions: world.tally.collisions,
             virial: world.tally.virial,
             path: world.tally.path + under_way,
+            moments: world.moments_at(now),
             walls: world.wall_tallies.iter().map(|tally| tally.momentum.value()).collect(),
             areas: world.walls.iter().map(|wall| area(wall.axis)).collect(),
             displacement: Vec::new(),
@@ -446,5 +517,46 @@ impl<const D: usize> Gas<D> {
     /// Pressure on the walls over the last samples.
     pub(super) fn recent_pressure_walls(&self, recent: &[Sample]) -> f64 {
         self.pressure_walls_of(recent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Amount, Setup, Species};
+    use corpuscle_model::Model;
+    use std::sync::atomic::AtomicBool;
+
+    /// Sums over the balls of momentum along the first of two axes times place along the second, and of energy times place.
+    fn sums(gas: &crate::Gas<3>) -> [f64; 6] {
+        let mut sums = [0.0; 6];
+        for (number, (position, velocity)) in gas.states().iter().enumerate() {
+            let mass = gas.body(number).1;
+            for (k, (a, b)) in [(0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+                sums[k] += mass * velocity[a] * position[b];
+            }
+            let energy = 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>();
+            (0..3).for_each(|axis| sums[3 + axis] += energy * position[axis]);
+        }
+        sums
+    }
+
+    /// In a part of a box that no ball leaves the moments are what their definition says.
+    #[test]
+    fn moments_are_momentum_and_energy_times_place() {
+        let region = Some([[40.0; 3], [44.0; 3]]);
+        let heavy = Species { region, mass: 3.0, radius: 0.3, ..Species::new("heavy", Amount::Count(20)) };
+        let setup = Setup::<3>::new([84.0; 3]).periodic().species(heavy);
+        let light = Species { region, radius: 0.4, ..Species::new("light", Amount::Count(20)) };
+        let mut gas = setup.species(light).seed(3).build().unwrap();
+        let before = sums(&gas);
+        for time in [0.5, 1.3, 4.0] {
+            gas.advance_to(time, &AtomicBool::new(false)).unwrap();
+            let moments = gas.mover.world().moments_at(gas.now());
+            let found = [moments.momentum, moments.energy].concat();
+            for (k, (now, before)) in sums(&gas).iter().zip(&before).enumerate() {
+                assert!((now - before - found[k]).abs() < 1e-9, "{k} at {time}: {} and {}", now - before, found[k]);
+            }
+        }
+        assert!(gas.collisions() > 20, "{}", gas.collisions());
     }
 }

@@ -5,7 +5,7 @@ use super::live_change::LiveTally;
 use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
-use crate::world::{Ball, NONE, Record, Tally, Wall, WallTally, World};
+use crate::world::{Ball, Moments, NONE, Record, Tally, Wall, WallTally, World};
 use corpuscle_model::ExactSum;
 use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,7 @@ struct SavedWorld {
     tally: Tally,
     wall_tallies: Vec<WallTally>,
     standstill: u32,
+    moments: Option<Moments>,
     random: u128,
     bends: Vec<(f64, Vec<f64>)>,
 }
@@ -136,6 +137,7 @@ impl SavedWorld {
             tally: world.tally.clone(),
             wall_tallies: world.wall_tallies.clone(),
             standstill: world.standstill,
+            moments: world.moments,
             random: world.random.get_word_pos(),
             bends: bends.map(|(time, place)| (*time, place.to_vec())).collect(),
         }
@@ -181,6 +183,7 @@ impl SavedWorld {
         world.low = vector(&self.low, 0)?;
         world.length = vector(&self.length, 0)?;
         (world.now, world.origin, world.standstill) = (self.now, self.origin, self.standstill);
+        world.moments = self.moments;
         world.tally = self.tally.clone();
         world.wall_tallies.clone_from(&self.wall_tallies);
         world.random.set_word_pos(self.random);

@@ -36,6 +36,11 @@ impl Measures {
         &self.samples[first..]
     }
 
+    /// Samples since averages began, or began anew.
+    pub fn since_started(&self) -> &[Sample] {
+        if self.started.is_nan() { &[] } else { self.after(self.started) }
+    }
+
     /// Mean of a value between two samples, over equal parts of the time from `from` on.
     pub fn estimate(&self, from: f64, value: impl Fn(&[Sample]) -> f64) -> Estimate {
         let samples = self.after(from);

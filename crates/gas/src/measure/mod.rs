@@ -7,6 +7,7 @@ mod maxwell;
 mod mixing;
 mod pairs;
 mod sample;
+pub(crate) mod transport;
 
 pub use estimate::Estimate;
 pub(crate) use maxwell::{Maxwell, p_value};

@@ -1,5 +1,6 @@
 //! The gas at one time.
 
+use crate::world::Moments;
 use serde::{Deserialize, Serialize};
 
 /// Sums and means at one time.
@@ -15,6 +16,8 @@ pub(crate) struct Sample {
     pub collisions: u64,
     pub virial: f64,
     pub path: f64,
+    /// What momentum and energy have moved since the start; 0 where that is not measured.
+    pub moments: Moments,
     /// Momentum given to each wall since the start.
     pub walls: Vec<f64>,
     /// Area of each wall.

@@ -215,6 +215,9 @@ pub struct Measure {
     pub pair_distance: Option<f64>,
     /// Bins of g(r).
     pub pair_bins: usize,
+    /// Collisions of each ball in the lag from which, to twice that, the growth of moments gives viscosity and thermal conductivity.
+    /// After it nothing must be left of the flows at its start: in dense fluids that lasts tens of collisions.
+    pub lag_collisions: f64,
 }
 
 impl Default for Measure {
@@ -227,6 +230,7 @@ impl Default for Measure {
             profile_bins: 50,
             pair_distance: None,
             pair_bins: 100,
+            lag_collisions: 40.0,
         }
     }
 }
@@ -261,6 +265,12 @@ impl<const D: usize> Setup<D> {
     /// True where the box repeats along an axis.
     pub(crate) fn repeats_along(&self, axis: usize) -> bool {
         self.sides[axis][0] == Side::Periodic
+    }
+
+    /// True where nothing but the balls themselves changes their momentum and energy.
+    pub(crate) fn keeps_momentum_and_energy(&self) -> bool {
+        let repeats = (0..D).all(|axis| self.repeats_along(axis)) && self.partition.is_none();
+        repeats && self.restitution == 1.0 && self.gravity == [0.0; D]
     }
 
     /// All sides periodic.

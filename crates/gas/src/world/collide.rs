@@ -23,7 +23,7 @@ impl<const D: usize> World<D> {
     pub fn collide<M: Mode>(&mut self, a: usize, b: usize) {
         let flown = self.now - self.balls[a].time.max(self.balls[b].time);
         for ball in [a, b] {
-            self.tally.path += speed(&self.balls[ball].velocity) * (self.now - self.balls[ball].time);
+            self.book_flight(ball);
             self.bring::<M>(ball);
         }
         let (me, other) = (&self.balls[a], &self.balls[b]);
@@ -45,6 +45,14 @@ impl<const D: usize> World<D> {
             approach -= (kind_a.radius + kind_b.radius) * self.field.growth * apart2.sqrt();
         }
         let impulse = elasticity * reduced * approach / apart2;
+        if let Some(moments) = &mut self.moments {
+            let velocity = &self.balls[a].velocity;
+            let mut gain = 0.0;
+            for axis in 0..D {
+                gain += impulse * apart[axis] * (velocity[axis] + 0.5 * impulse / kind_a.mass * apart[axis]);
+            }
+            moments.collide(&apart, impulse, gain);
+        }
         for axis in 0..D {
             self.balls[a].velocity[axis] += impulse / kind_a.mass * apart[axis];
             self.balls[b].velocity[axis] -= impulse / kind_b.mass * apart[axis];

@@ -1,8 +1,8 @@
 //! What a wall does to a ball that hits it.
 
+use super::World;
 use super::contact::Mode;
 use super::wall::{Facing, Wall};
-use super::{World, speed};
 use crate::random::{flux, normal};
 use corpuscle_model::ExactSum;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ impl<const D: usize> World<D> {
     /// A ball that touches a wall now rebounds.
     pub fn hit<M: Mode>(&mut self, ball: usize, wall: usize) {
         let flown = self.now - self.balls[ball].time.max(self.walls[wall].since);
-        self.tally.path += speed(&self.balls[ball].velocity) * (self.now - self.balls[ball].time);
+        self.book_flight(ball);
         self.bring::<M>(ball);
         let axis = self.walls[wall].axis;
         let (mass, radius) = (self.mass(ball), self.radius(ball));

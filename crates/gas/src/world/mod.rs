@@ -4,12 +4,14 @@ mod ball;
 mod collide;
 mod contact;
 mod hit;
+mod moments;
 mod wall;
 
 pub(crate) use ball::{Ball, Kind, NONE, Record};
 pub(crate) use collide::{Rebound, speed};
 pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straight};
 pub(crate) use hit::WallTally;
+pub(crate) use moments::Moments;
 pub(crate) use wall::{Facing, Wall, first_contact};
 
 use corpuscle_model::ExactSum;
@@ -51,6 +53,8 @@ pub(crate) struct World<const D: usize> {
     pub standstill: u32,
     /// For thermal walls.
     pub random: ChaCha8Rng,
+    /// What momentum and energy have moved; none where walls, loss or gravity change them.
+    pub moments: Option<Moments>,
     /// The ball whose path is kept, and the path.
     pub followed: Option<Followed<D>>,
 }
@@ -102,6 +106,7 @@ impl<const D: usize> World<D> {
             wall_tallies: Vec::new(),
             standstill: 0,
             random: rand::SeedableRng::seed_from_u64(0),
+            moments: None,
             followed: None,
         }
     }
@@ -138,10 +143,32 @@ impl<const D: usize> World<D> {
         (ball.position, ball.velocity, ball.time) = (position, velocity, self.now);
     }
 
+    /// Counts a ball's flight up to now in the sums over paths.
+    #[inline(always)]
+    pub fn book_flight(&mut self, ball: usize) {
+        let Ball { velocity, time, kind, .. } = self.balls[ball];
+        let flown = self.now - time;
+        self.tally.path += speed(&velocity) * flown;
+        if let Some(moments) = &mut self.moments {
+            moments.fly(self.kinds[kind as usize].mass, &velocity, flown);
+        }
+    }
+
+    /// The moments at a time of the window, with the flights that are under way.
+    pub fn moments_at(&self, time: f64) -> Moments {
+        let mut moments = self.moments.unwrap_or_default();
+        if self.moments.is_some() {
+            for ball in &self.balls {
+                moments.fly(self.kinds[ball.kind as usize].mass, &ball.velocity, time - ball.time);
+            }
+        }
+        moments
+    }
+
     /// Moves all balls along their paths to now, and makes now the beginning of the window.
     pub fn begin_window<M: Mode>(&mut self) {
         for ball in 0..self.balls.len() {
-            self.tally.path += speed(&self.balls[ball].velocity) * (self.now - self.balls[ball].time);
+            self.book_flight(ball);
             self.bring::<M>(ball);
             self.balls[ball].time = 0.0;
             self.records[ball].collided -= self.now;

@@ -68,7 +68,31 @@ fn diffusion_is_told_for_each_species() {
     let mut gas = Setup::<3>::fluid(500, 0.3).measured(1.0, 0.2).build().unwrap();
     advance(&mut gas, 21.0);
     let diffusion = gas.diffusion(0);
-    assert!((0.14..0.23).contains(&diffusion), "{diffusion}");
+    assert!((0.14..0.23).contains(&diffusion.mean) && diffusion.error < 0.02, "{diffusion:?}");
+}
+
+/// Viscosity and thermal conductivity at packing 0.3 after Enskog, as in the validation case.
+const VISCOSITY: f64 = 0.7324;
+const CONDUCTIVITY: f64 = 3.0869;
+
+#[test]
+fn viscosity_and_conductivity_are_told_where_nothing_else_changes_momentum() {
+    let mut setup = Setup::<3>::fluid(200, 0.3).seed(2).measured(2.0, 0.25);
+    setup.measure.lag_collisions = 10.0;
+    let mut gas = setup.build().unwrap();
+    advance(&mut gas, 1202.0);
+    let (viscosity, conductivity) = (gas.viscosity(), gas.conductivity());
+    assert!((viscosity.mean - VISCOSITY).abs() < 3.0 * viscosity.error, "{viscosity:?}");
+    assert!((conductivity.mean - CONDUCTIVITY).abs() < 3.0 * conductivity.error, "{conductivity:?}");
+    assert!(viscosity.error < 0.05 * VISCOSITY && conductivity.error < 0.05 * CONDUCTIVITY);
+    let mut walled = Setup::<3>::new([6.0; 3]).species(Species::new("balls", Amount::Count(50)));
+    walled.seed = 1;
+    let mut walled = walled.measured(0.0, 0.1).build().unwrap();
+    advance(&mut walled, 20.0);
+    assert!(
+        walled.viscosity().mean.is_nan()
+            && walled.gauge_columns().iter().all(|column| !column.quantity.contains("viscosity"))
+    );
 }
 
 #[test]

@@ -233,6 +233,9 @@ pub struct Measure {
     pub pair_distance: Option<f64>,
     /// Bins of g(r).
     pub pair_bins: usize,
+    /// Collisions of each ball in the lag from which, to twice that, the growth of Helfand's moments gives viscosity and thermal
+    /// conductivity.
+    pub lag_collisions: f64,
 }
 
 impl Default for Measure {
@@ -244,6 +247,7 @@ impl Default for Measure {
             profile_bins: 50,
             pair_distance: None,
             pair_bins: 100,
+            lag_collisions: 40.0,
         }
     }
 }

@@ -13,6 +13,7 @@ mod granular;
 mod maxwell;
 mod mixing;
 mod theory;
+mod transport;
 mod wall_pressure;
 
 use crate::{Case, Row};
@@ -33,6 +34,7 @@ pub(crate) const CASES: &[Case] = &[
     atmosphere::ATMOSPHERE,
     effusion::EFFUSION,
     wall_pressure::WALL_PRESSURE,
+    transport::TRANSPORT,
 ];
 
 /// Seed of everything random.

@@ -27,6 +27,13 @@ pub(super) fn enskog_viscosity(packing: f64) -> f64 {
     dilute * excluded * (1.0 / collisions + 0.8 + 0.7614 * collisions)
 }
 
+/// Enskog's thermal conductivity of balls (Chapman & Cowling 1970, section 16.42).
+pub(super) fn enskog_conductivity(packing: f64) -> f64 {
+    let dilute = 1.02513 * 75.0 / (64.0 * PI.sqrt());
+    let (excluded, collisions) = (4.0 * packing, 4.0 * packing * contact_value::<3>(packing));
+    dilute * excluded * (1.0 / collisions + 1.2 + 0.7574 * collisions)
+}
+
 /// Self-diffusion of balls over Enskog's by molecular dynamics, for an infinite system: Erpenbeck & Wood, Phys. Rev. A 43 (1991) 4254.
 pub(super) fn diffusion_over_enskog(packing: f64) -> f64 {
     let x = density::<3>(packing) / 2_f64.sqrt();

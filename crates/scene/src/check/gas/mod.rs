@@ -113,6 +113,7 @@ impl Check {
         if let Some(distance) = measure.pair_distance {
             self.above("gas.measure.pair_distance", distance, 0.0)?;
         }
+        self.above("gas.measure.lag_collisions", measure.lag_collisions, 0.0)?;
         self.axis(gas, "gas.measure.profile_axis", measure.profile_axis)?;
         let bins = [
             ("speed_bins", measure.speed_bins),
