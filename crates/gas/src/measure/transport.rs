@@ -19,7 +19,7 @@ pub(crate) fn growth<const N: usize>(samples: &[Sample], lag: f64, moments: impl
     let step = duration(samples) / intervals as f64;
     let lag = (lag / step).ceil().max(1.0);
     let longest_part = intervals as f64 / LEAST_PARTS as f64;
-    if !(2.0 * lag * LAGS_PER_PART as f64 <= longest_part) {
+    if 2.0 * lag * LAGS_PER_PART as f64 > longest_part {
         return none;
     }
     let lag = lag as usize;
