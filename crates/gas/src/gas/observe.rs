@@ -316,7 +316,8 @@ impl<const D: usize> Gas<D> {
     }
 
     /// Shear viscosity since averages began, from the growth of Helfand's moments; not a number where walls, gravity or loss change momentum
-    /// or energy, where the gas moves as a whole or its temperature is held, and before there are enough samples. In two dimensions it has no limit at late times.
+    /// or energy, where the gas moves as a whole or its temperature is held, and before there are enough samples. In two dimensions it has
+    /// no limit at late times.
     pub fn viscosity(&self) -> Estimate {
         let shears = Moments::shears(D);
         let growth = self.growth(|sample| {

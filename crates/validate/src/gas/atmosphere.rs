@@ -1,6 +1,6 @@
 //! A gas that comes to rest in gravity.
 
-use super::{advance, rows};
+use super::{advance, rows, standard_errors_off};
 use crate::{Case, Options, Row};
 use corpuscle_gas::{Amount, Estimate, Setup, Species, Speeds, ball_volume};
 use corpuscle_model::ModelError;
@@ -31,7 +31,6 @@ const STEP: f64 = 30.0;
 const LAYERS: usize = 8;
 
 /// What one gas shows, on average over time.
-#[derive(Clone)]
 struct Seen {
     temperature: f64,
     height: f64,
@@ -52,18 +51,21 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let of = |value: &dyn Fn(&Seen) -> f64| Estimate::of(&seen.iter().map(value).collect::<Vec<_>>());
     let temperature = of(&|seen| seen.temperature).mean;
     let law = barometric(temperature);
-    let apart = |found: Estimate, known: f64| (found.mean - known).abs() / found.error;
     let row = |measure: &str, value: f64, bound: f64| Row::at_most(ATMOSPHERE.name, measure, value, "", bound);
     let height = of(&|seen| seen.height);
-    let layers = (0..LAYERS).map(|layer| apart(of(&|seen| seen.layers[layer]), law.layers[layer]));
-    // 11 degrees of freedom: 3.1 standard errors for one in a hundred, 4.0 for one of eight.
+    let layers = (0..LAYERS).map(|layer| standard_errors_off(of(&|seen| seen.layers[layer]), law.layers[layer]));
+    // 11 degrees of freedom: 3.1 standard errors have a chance of one in a hundred; 4.0 in one of eight layers, one in sixty.
     Ok(vec![
-        row("height_off_by_standard_errors", apart(height, law.height), 3.1),
+        row("height_off_by_standard_errors", standard_errors_off(height, law.height), 3.1),
         row("height_standard_error", height.error / height.mean, 3e-3),
         row("layers_off_by_standard_errors", layers.fold(0.0, f64::max), 4.0),
-        row("temperature_above_and_below_apart_by_standard_errors", apart(of(&|seen| seen.above_over_below), 1.0), 3.1),
-        row("kurtosis_above_off_by_standard_errors", apart(of(&|seen| seen.kurtosis[0]), 3.0), 3.1),
-        row("kurtosis_below_off_by_standard_errors", apart(of(&|seen| seen.kurtosis[1]), 3.0), 3.1),
+        row(
+            "temperature_above_and_below_apart_by_standard_errors",
+            standard_errors_off(of(&|seen| seen.above_over_below), 1.0),
+            3.1,
+        ),
+        row("kurtosis_above_off_by_standard_errors", standard_errors_off(of(&|seen| seen.kurtosis[0]), 3.0), 3.1),
+        row("kurtosis_below_off_by_standard_errors", standard_errors_off(of(&|seen| seen.kurtosis[1]), 3.0), 3.1),
     ])
 }
 
@@ -119,7 +121,7 @@ struct Law {
 /// Steps in which the law is integrated; centres are a radius away from floor and ceiling at least.
 const STEPS: usize = 4000;
 
-/// Hydrostatic balance dP/dz = -m g n of balls at rest, P = n T Z, Z after Carnahan & Starling, J. Chem. Phys. 51 (1969) 635, equation 8.
+/// Hydrostatic balance dP/dz = -m g n of balls at rest, P = n T Z, Z after Carnahan & Starling.
 fn barometric(temperature: f64) -> Law {
     let step = (HEIGHT - 1.0) / STEPS as f64;
     let column = |ground: f64| {
@@ -147,18 +149,19 @@ fn barometric(temperature: f64) -> Law {
     law
 }
 
-/// d(packing Z)/d(packing) after Carnahan & Starling: that of x (1 + x + x^2 - x^3) / (1 - x)^3.
+/// d(packing Z)/d(packing), Z after Carnahan & Starling.
 fn stiffness(x: f64) -> f64 {
     (1.0 + 4.0 * x + 4.0 * x * x - 4.0 * x.powi(3) + x.powi(4)) / (1.0 - x).powi(4)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::theory;
     use super::*;
 
     #[test]
     fn stiffness_is_the_slope_of_the_pressure() {
-        let pressure = |x: f64| x * (1.0 + x + x * x - x.powi(3)) / (1.0 - x).powi(3);
+        let pressure = |x: f64| x * theory::carnahan_starling(x);
         for x in [0.01, 0.2, 0.45] {
             let slope = (pressure(x + 1e-5) - pressure(x - 1e-5)) / 2e-5;
             assert!((stiffness(x) / slope - 1.0).abs() < 1e-7);

@@ -1,6 +1,6 @@
 //! Two gases that leave a box through a small hole.
 
-use super::{advance, rows};
+use super::{advance, rows, standard_errors_off};
 use crate::{Case, Options, Row};
 use corpuscle_gas::{Amount, Estimate, Partition, Setup, Side, Species};
 use corpuscle_model::ModelError;
@@ -46,15 +46,14 @@ fn measure() -> Result<Vec<Row>, ModelError> {
     let rates = (1..=SEEDS).map(rates).collect::<Result<Vec<_>, _>>()?;
     let of = |value: &dyn Fn(&[f64; 2]) -> f64| Estimate::of(&rates.iter().map(value).collect::<Vec<_>>());
     let row = |measure: &str, value: f64, bound: f64| Row::at_most(EFFUSION.name, measure, value, "", bound);
-    let apart = |found: Estimate, known: f64| (found.mean - known).abs() / found.error;
     let ratio = of(&|rates| rates[0] / rates[1]);
     let (light, heavy) = (of(&|rates| rates[0]), of(&|rates| rates[1]));
     // 7 degrees of freedom: 3.5 standard errors for one in a hundred.
     Ok(vec![
-        row("ratio_off_by_standard_errors", apart(ratio, (MASSES[1] / MASSES[0]).sqrt()), 3.5),
+        row("ratio_off_by_standard_errors", standard_errors_off(ratio, (MASSES[1] / MASSES[0]).sqrt()), 3.5),
         row("ratio_standard_error", ratio.error / ratio.mean, 0.03),
-        row("light_rate_off_by_standard_errors", apart(light, rate(MASSES[0])), 3.5),
-        row("heavy_rate_off_by_standard_errors", apart(heavy, rate(MASSES[1])), 3.5),
+        row("light_rate_off_by_standard_errors", standard_errors_off(light, rate(MASSES[0])), 3.5),
+        row("heavy_rate_off_by_standard_errors", standard_errors_off(heavy, rate(MASSES[1])), 3.5),
         row("light_rate_standard_error", light.error / light.mean, 0.02),
     ])
 }

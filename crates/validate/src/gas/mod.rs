@@ -17,7 +17,7 @@ mod transport;
 mod wall_pressure;
 
 use crate::{Case, Row};
-use corpuscle_gas::{Gas, Setup};
+use corpuscle_gas::{Estimate, Gas, Setup};
 use corpuscle_model::{Model, ModelError};
 use std::sync::atomic::AtomicBool;
 
@@ -48,6 +48,11 @@ fn advance<const D: usize>(gas: &mut Gas<D>, time: f64) -> Result<(), ModelError
 /// Time in which a ball of a fluid as of [`Setup::fluid`] has so many collisions.
 fn time_of<const D: usize>(collisions: f64, packing: f64) -> f64 {
     collisions / theory::collision_rate::<D>(packing)
+}
+
+/// How many standard errors a mean is from what is known.
+fn standard_errors_off(found: Estimate, known: f64) -> f64 {
+    (found.mean - known).abs() / found.error
 }
 
 /// Rows of a case, or the row of its failure.

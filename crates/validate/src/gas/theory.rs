@@ -10,6 +10,11 @@ fn density<const D: usize>(packing: f64) -> f64 {
     packing / ball_volume::<D>(0.5)
 }
 
+/// Compressibility of balls by an equation of state that the gas does not use: Carnahan & Starling, J. Chem. Phys. 51 (1969) 635, equation 8.
+pub(super) fn carnahan_starling(x: f64) -> f64 {
+    (1.0 + x + x * x - x.powi(3)) / (1.0 - x).powi(3)
+}
+
 /// Enskog's collisions of a ball in a unit of time.
 pub(super) fn collision_rate<const D: usize>(packing: f64) -> f64 {
     theory::collision_rate::<D>(packing, 0.5, 1.0)

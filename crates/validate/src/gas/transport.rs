@@ -1,6 +1,6 @@
 //! Viscosity and thermal conductivity.
 
-use super::{advance, rows, theory, time_of};
+use super::{advance, rows, standard_errors_off, theory, time_of};
 use crate::{Case, Options, Row};
 use corpuscle_gas::{Estimate, Setup};
 use corpuscle_model::ModelError;
@@ -49,7 +49,7 @@ fn at(packing: f64) -> Result<Vec<Row>, ModelError> {
             Row::at_most(TRANSPORT.name, &format!("{name}_{measure}_{:.0}", 100.0 * packing), value, "", bound)
         };
         // 5 degrees of freedom: 4.0 standard errors for one in a hundred.
-        rows.push(row("off_by_standard_errors", (ratio.mean - 1.0).abs() / ratio.error, 4.0));
+        rows.push(row("off_by_standard_errors", standard_errors_off(ratio, 1.0), 4.0));
         rows.push(row("standard_error", ratio.error, 0.02));
     }
     Ok(rows)

@@ -1,6 +1,6 @@
 //! Pressure on walls.
 
-use super::{advance, rows, time_of};
+use super::{advance, rows, standard_errors_off, theory, time_of};
 use crate::{Case, Options, Row};
 use corpuscle_gas::{Amount, Estimate, Setup, Species, ball_volume};
 use corpuscle_model::ModelError;
@@ -50,7 +50,7 @@ fn at(name: u32, packing: f64) -> Result<Vec<Row>, ModelError> {
     };
     // 7 degrees of freedom: 3.5 standard errors for one in a hundred.
     Ok(vec![
-        row("off_by_standard_errors", (found.mean - 1.0).abs() / found.error, 3.5),
+        row("off_by_standard_errors", standard_errors_off(found, 1.0), 3.5),
         row("standard_error", found.error, 5e-3),
     ])
 }
@@ -71,6 +71,6 @@ fn over_theory(packing: f64, seed: u64) -> Result<f64, ModelError> {
     }
     let density = middle as f64 / ((SAMPLES + 1) as f64 * (MIDDLE[1] - MIDDLE[0]) * side * side);
     let x = density * ball_volume::<3>(0.5);
-    let pressure = density * gas.temperature() * (1.0 + x + x * x - x.powi(3)) / (1.0 - x).powi(3);
+    let pressure = density * gas.temperature() * theory::carnahan_starling(x);
     Ok(gas.pressure_walls().mean / pressure)
 }
