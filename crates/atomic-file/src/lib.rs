@@ -61,6 +61,21 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut WholeFile) -> io::Result
     file.finish()
 }
 
+/// Writes a file by code that opens it itself: `write` is given the path of the temporary file, which is there and empty.
+///
+/// # Errors
+/// What `write` or the system says; what stood at `path` before is untouched then.
+pub fn write_whole_by_path<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<(), E> {
+    let file = temporary_beside(path)?;
+    write(file.path())?;
+    file.as_file().sync_data()?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
 /// How the names of temporary files begin.
 const IN_THE_MAKING: &str = ".writing-";
 
@@ -97,6 +112,20 @@ mod tests {
         let error = write_whole(&path, |file| {
             file.write_all(b"half of the new")?;
             Err(io::ErrorKind::StorageFull.into())
+        });
+        assert_eq!(error.unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_file_opened_by_its_path_appears_whole_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_whole_by_path(&path, |temporary| fs::write(temporary, b"old")).unwrap();
+        let error = write_whole_by_path(&path, |temporary| {
+            fs::write(temporary, b"half of the new")?;
+            Err(io::Error::from(io::ErrorKind::StorageFull))
         });
         assert_eq!(error.unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(fs::read(&path).unwrap(), b"old");

@@ -32,6 +32,8 @@ pub enum Command {
     Run(RunOptions),
     /// Draw pictures of a finished run into its folder
     Render(RenderOptions),
+    /// Write a run's maps, gauges or particles in another format
+    Export(ExportOptions),
     /// Open the window: watch a scene and change it while it runs
     View(ViewOptions),
     /// List the built-in scenes, show one, or copy one to edit
@@ -42,6 +44,8 @@ pub enum Command {
     Validate(ValidateOptions),
     /// Measure rates on this machine
     Bench(BenchOptions),
+    /// Run a scene many times with changed values; probabilities, percentiles and means
+    Ensemble(EnsembleOptions),
     /// Terrain models: download, describe, cut out
     #[command(subcommand)]
     Terrain(TerrainCommand),
@@ -239,6 +243,16 @@ pub struct RenderOptions {
     pub picture: PictureOptions,
 }
 
+#[derive(Debug, Args)]
+pub struct ExportOptions {
+    /// The folder of a run
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Files to write: maps as .nc, gauges as .parquet, particles as .vtkhdf or .xyz; an existing file is not overwritten
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+}
+
 /// The options of `corpuscle view`.
 #[derive(Debug, Args)]
 pub struct ViewOptions {
@@ -369,4 +383,20 @@ pub struct BenchOptions {
     /// Where to compute
     #[arg(long, value_enum, default_value = "auto")]
     pub backend: Backend,
+}
+
+#[derive(Debug, Args)]
+pub struct EnsembleOptions {
+    /// The plan, a TOML file: a scene, what changes, and how it is sampled
+    #[arg(value_name = "PLAN.toml")]
+    pub plan: PathBuf,
+    /// Folder of the ensemble [default: the plan's name in runs/]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// Run this member alone, as a task of a job array does; without, those that are missing run and the results are written
+    #[arg(long, value_name = "K")]
+    pub member: Vec<usize>,
+    /// Members at the same time [default: one on each thread]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub at_once: Option<usize>,
 }

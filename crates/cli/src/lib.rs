@@ -5,6 +5,8 @@
 mod args;
 mod bench;
 mod check;
+mod ensemble;
+mod export;
 mod interrupt;
 mod output;
 mod picture_options;
@@ -64,11 +66,13 @@ fn dispatch(arguments: &Arguments, view: fn(&ViewOptions) -> anyhow::Result<Exit
     match &arguments.command {
         Command::Run(options) => run::run(options, arguments.json),
         Command::Render(options) => render::render(options, arguments.json),
+        Command::Export(options) => export::export(options, arguments.json),
         Command::View(options) => view(options),
         Command::Scenes(options) => scenes::scenes(options, arguments.json),
         Command::Check(options) => check::check(options, arguments.json),
         Command::Validate(options) => validate::validate(options, arguments.json),
         Command::Bench(options) => bench::bench(options, arguments.json),
+        Command::Ensemble(options) => ensemble::ensemble(options, arguments),
         Command::Terrain(command) => terrain::terrain(command, arguments.json),
     }
 }

@@ -38,6 +38,31 @@ impl Bar {
     }
 }
 
+/// The progress bar of an ensemble.
+pub struct MemberBar(ProgressBar);
+
+impl MemberBar {
+    /// A bar at its beginning.
+    pub fn new() -> anyhow::Result<Self> {
+        Ok(Self(Bar::new()?.0))
+    }
+
+    /// Shows the progress of the members after so much time.
+    pub fn show(&self, progress: &corpuscle_ensemble::Progress, elapsed: Duration) {
+        let &corpuscle_ensemble::Progress { members, ended, failed, part } = progress;
+        let left = elapsed.as_secs_f64() * (1.0 - part) / part;
+        let left = if left.is_finite() { format!(", {} left", duration(left)) } else { String::new() };
+        let failed = if failed > 0 { format!(", {failed} failed") } else { String::new() };
+        self.0.set_position((part * TICKS as f64) as u64);
+        self.0.set_message(format!("{ended} of {members} members{failed}{left}"));
+    }
+
+    /// Removes the bar.
+    pub fn clear(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
 /// Does work of unknown duration under a spinner that shows the time elapsed.
 pub fn while_shown<T>(what: &str, work: impl FnOnce() -> T) -> anyhow::Result<T> {
     let spinner = ProgressBar::new_spinner();

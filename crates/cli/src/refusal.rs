@@ -1,5 +1,7 @@
 //! Errors caused by the input.
 
+use corpuscle_ensemble::EnsembleError;
+use corpuscle_export::ExportError;
 use std::fmt;
 
 /// An error of the input: exit status 2.
@@ -21,7 +23,10 @@ pub fn refuse(what: impl Into<String>) -> anyhow::Error {
 
 /// True for an error of the input.
 pub fn is_refusal(error: &anyhow::Error) -> bool {
-    error.is::<Refusal>() || error.downcast_ref::<corpuscle::Error>().is_some_and(corpuscle::Error::is_refusal)
+    error.is::<Refusal>()
+        || error.downcast_ref::<corpuscle::Error>().is_some_and(corpuscle::Error::is_refusal)
+        || error.downcast_ref::<EnsembleError>().is_some_and(EnsembleError::is_refusal)
+        || error.downcast_ref::<ExportError>().is_some_and(ExportError::is_refusal)
 }
 
 /// The error with its causes as one paragraph; a cause whose text the message already has is left out.

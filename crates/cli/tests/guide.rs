@@ -38,7 +38,8 @@ fn anchor(heading: &str) -> String {
 #[test]
 fn every_option_and_command_is_told() {
     let told = page("command-line.md");
-    let plain = ["run", "render", "view", "check", "scenes", "validate", "bench"].map(|command| vec![command]);
+    let plain =
+        ["run", "render", "export", "view", "check", "scenes", "validate", "bench"].map(|command| vec![command]);
     let terrain = ["fetch", "info", "clip"].map(|command| vec!["terrain", command]);
     for words in plain.into_iter().chain(terrain) {
         let command = words.join(" ");

@@ -43,8 +43,14 @@ pub enum OutputError {
         path: PathBuf,
     },
     /// The run wrote no particle files.
-    #[error("{} holds no particle files, so there is nothing to draw; run its scene.toml again with `--frames vtp`", path.display())]
+    #[error("{} holds no particle files; run its scene.toml again with `--frames vtp`", path.display())]
     NoFrames {
+        /// The folder of the run.
+        path: PathBuf,
+    },
+    /// The run wrote no maps.
+    #[error("{} holds no maps; floods write them, a depth map at each frame and the others at the end of the run", path.display())]
+    NoMaps {
         /// The folder of the run.
         path: PathBuf,
     },

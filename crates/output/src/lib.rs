@@ -24,11 +24,13 @@ pub use album::put_into_report;
 pub use checkpoint::Clock;
 pub use error::OutputError;
 pub use extent::{ExtentScores, compare_extent, write_extent, write_run_up};
-pub use frames::{FrameFiles, FrameFormat};
+pub use frames::{FrameFiles, FrameFormat, write_extended_xyz};
 pub use gauges::GaugeTable;
+pub use maps::MapFiles;
 pub use picture::Key as GasKey;
 pub use report::{
-    DewReport, GasReport, PlainReport, Report, ValidatedCase, ValidatedMeasure, ValidationReport, gas_key,
+    DewReport, EnsembleMap, EnsembleReport, EnsembleTable, GasReport, PlainReport, Report, ValidatedCase,
+    ValidatedMeasure, ValidationReport, gas_key,
 };
 pub use run_folder::{RunFolder, followed_paths, next_run_folder};
 pub use stills::write_picture;

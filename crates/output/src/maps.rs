@@ -3,7 +3,7 @@
 use crate::OutputError;
 use crate::number::Shortest;
 use crate::whole::write_whole;
-use corpuscle_terrain::{MapGrid, write_geotiff};
+use corpuscle_terrain::{MapGrid, Survey, survey, write_geotiff};
 use geotiff_reader::GeoTiffFile;
 use std::fs;
 use std::io::{self, Write};
@@ -29,6 +29,97 @@ pub(crate) fn read_map(path: &Path) -> Result<Vec<f32>, OutputError> {
     };
     let values = read().map_err(|error| OutputError::content(path, error))?;
     Ok(values.iter().map(|value| if *value == NO_DATA { f32::NAN } else { *value }).collect())
+}
+
+/// The maps in a run's folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapFiles {
+    folder: PathBuf,
+    names: Vec<String>,
+    times: Vec<f64>,
+}
+
+impl MapFiles {
+    /// The maps of a run, finished or not.
+    ///
+    /// # Errors
+    /// [`OutputError::NoMaps`] where the run wrote none; [`OutputError::Read`], [`OutputError::Content`] where `maps/times.csv` cannot be
+    /// used.
+    pub fn list(run: &Path) -> Result<Self, OutputError> {
+        let folder = run.join("maps");
+        let times = read_times(&folder)?;
+        let names = names_in(&folder)?;
+        if times.is_empty() && names.is_empty() {
+            return Err(OutputError::NoMaps { path: run.to_owned() });
+        }
+        Ok(Self { folder, names, times })
+    }
+
+    /// Names of the maps of the whole run, sorted: `max_depth`. A run that has not ended has none.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Times of the maps of single times, s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Name of the map of single times.
+    pub fn name_over_time(&self) -> &'static str {
+        SNAPSHOT
+    }
+
+    /// Grid on which all of them are.
+    ///
+    /// # Errors
+    /// [`OutputError::Map`] where the first file cannot be read.
+    pub fn grid(&self) -> Result<Survey, OutputError> {
+        Ok(survey(match self.names.first() {
+            Some(name) => self.path(name),
+            None => snapshot_path(&self.folder, 0),
+        })?)
+    }
+
+    /// Reads a map of the whole run: values row by row from the north-west, not-a-number where there is no data.
+    ///
+    /// # Errors
+    /// [`OutputError::Content`], naming the file.
+    pub fn read(&self, name: &str) -> Result<Vec<f32>, OutputError> {
+        read_map(&self.path(name))
+    }
+
+    /// Reads a map of one of the times, as [`MapFiles::read`] does.
+    ///
+    /// # Errors
+    /// [`OutputError::Content`], naming the file.
+    pub fn read_at(&self, index: usize) -> Result<Vec<f32>, OutputError> {
+        read_map(&snapshot_path(&self.folder, index))
+    }
+
+    /// File of a map of the whole run.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.tif"))
+    }
+
+    /// File of a map of one of the times.
+    pub fn path_at(&self, index: usize) -> PathBuf {
+        snapshot_path(&self.folder, index)
+    }
+}
+
+/// Names of the maps of the whole run in a folder, sorted; none where there is no such folder.
+fn names_in(folder: &Path) -> Result<Vec<String>, OutputError> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(OutputError::read(folder))?,
+    };
+    let name = |entry: fs::DirEntry| entry.file_name().to_str()?.strip_suffix(".tif").map(str::to_owned);
+    let number_in = |name: &String| name.strip_prefix(SNAPSHOT)?.strip_prefix('_')?.parse::<usize>().ok();
+    let is_snapshot = |name: &String| number_in(name).is_some();
+    let mut names: Vec<String> = entries.flatten().filter_map(name).filter(|name| !is_snapshot(name)).collect();
+    names.sort();
+    Ok(names)
 }
 
 /// File of the depth map of a frame.

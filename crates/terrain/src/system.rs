@@ -98,6 +98,11 @@ impl ReferenceSystem {
         }
     }
 
+    /// The system as well-known text (WKT 1), if it has an EPSG code that is in the tables.
+    pub fn well_known_text(&self) -> Option<&'static str> {
+        Some(crs_definitions::from_code(self.epsg?)?.wkt)
+    }
+
     /// Adds the system to GeoTIFF keys; a PROJ string cannot be said there.
     pub(crate) fn write_keys(&self, keys: &mut GeoKeyDirectory) {
         let Some(code) = self.epsg else { return };

@@ -271,6 +271,38 @@ fn a_map_comes_back_with_the_place_and_the_system_of_the_terrain() {
 }
 
 #[test]
+fn a_large_map_has_overviews_of_its_own_cells_before_its_data() {
+    let (folder, path) = temporary("dem.tif");
+    let [columns, rows] = [700, 300];
+    let samples = Array2::from_elem((rows, columns), 1.0_f32);
+    let large = GeoTiffBuilder::new(columns as u32, rows as u32).pixel_scale(10.0, 20.0).origin(1000.0, 5000.0);
+    large.projected_epsg(27700).write_2d(&path, samples.view()).unwrap();
+    let values: Vec<f32> = (0..rows * columns).map(|cell| if cell % 5 == 2 { f32::NAN } else { cell as f32 }).collect();
+    let out = folder.path().join("depth.tif");
+    write_geotiff(&out, open(&path).map_grid(), &values, -9999.0).unwrap();
+
+    let bytes = std::fs::read(&out).unwrap();
+    let layout = "LAYOUT=IFDS_BEFORE_DATA";
+    assert!(String::from_utf8_lossy(&bytes[..200]).contains(layout), "it is not cloud-optimised");
+    let file = GeoTiffFile::open(&out).unwrap();
+    assert_eq!((file.width(), file.height(), file.overview_count()), (700, 300, 2));
+    for (index, step) in [2, 4].into_iter().enumerate() {
+        let overview = file.read_overview::<f32>(index).unwrap();
+        assert_eq!(overview.shape(), [rows.div_ceil(step), columns.div_ceil(step)]);
+        for (place, value) in overview.iter().enumerate() {
+            let [row, column] = [place / columns.div_ceil(step), place % columns.div_ceil(step)];
+            let cell = values[row * step * columns + column * step];
+            assert_eq!(*value, if cell.is_nan() { -9999.0 } else { cell }, "step {step}, row {row}, column {column}");
+        }
+    }
+    // One that a tile has all of needs none.
+    write(&path, &builder(), |v| v as f32);
+    let small = open(&path);
+    write_geotiff(&out, small.map_grid(), &[0.5; COLUMNS * ROWS], -9999.0).unwrap();
+    assert_eq!(GeoTiffFile::open(&out).unwrap().overview_count(), 0);
+}
+
+#[test]
 fn a_map_that_cannot_be_written_is_an_error_and_leaves_the_old_file() {
     let (folder, path) = temporary("dem.tif");
     write(&path, &builder(), |v| v as f32);

@@ -8,6 +8,7 @@ mod xyz;
 
 pub(crate) use patches::write as write_surface;
 pub use read::FrameFiles;
+pub use xyz::write as write_extended_xyz;
 
 use crate::OutputError;
 use crate::number::Shortest;

@@ -9,9 +9,12 @@ use std::io::{self, Write};
 /// Columns that every file begins with.
 pub(super) const FIRST: &str = "species:S:1:pos:R:3:id:I:1:velo:R:3:radius:R:1:mass:R:1";
 
-/// Writes a frame; with the box round the particles, where there is one. A set is a species, with `_` for spaces in its name; a set without a column
-/// that another set has gets `NaN` there.
-pub(super) fn write(file: &mut impl Write, frame: &Frame, container: Option<&Container>) -> io::Result<()> {
+/// Writes a frame as extended XYZ; with the box round the particles, where there is one. A set is a species, with `_` for spaces in its name; a set
+/// without a column that another set has gets `NaN` there.
+///
+/// # Errors
+/// What the system says where it cannot be written.
+pub fn write(file: &mut impl Write, frame: &Frame, container: Option<&Container>) -> io::Result<()> {
     let columns = own_columns(frame);
     writeln!(file, "{}", frame.sets.iter().map(ParticleSet::len).sum::<usize>())?;
     if let Some(container) = container {

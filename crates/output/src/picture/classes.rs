@@ -88,6 +88,13 @@ impl Classes {
         }
     }
 
+    /// Classes of a probability, 0 to 1.
+    pub(crate) fn of_probability() -> Self {
+        let edges = vec![0.05, 0.2, 0.4, 0.6, 0.8, 0.95];
+        let labels = edges.iter().map(|edge| format!("{:.0} %", 100.0 * edge)).collect();
+        Self::new(Ramp::Depth, "Probability".into(), edges, labels)
+    }
+
     fn new(ramp: Ramp, title: String, edges: Vec<f64>, labels: Vec<String>) -> Self {
         let all = ramp.colours();
         let count = edges.len() + 1;

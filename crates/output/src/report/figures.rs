@@ -72,7 +72,7 @@ pub(super) const FIELDS: [FieldKind; 5] = [
 ];
 
 /// Name of the relief on a page that shows it several times.
-const RELIEF: &str = "relief";
+pub(super) const RELIEF: &str = "relief";
 
 /// All figures of a report.
 pub(super) struct Figures {
@@ -126,13 +126,9 @@ impl Figures {
         })
     }
 
-    /// What must stand on the page before any map: the relief, once.
+    /// What must stand on the page before any map.
     pub(super) fn relief_definition(&self) -> String {
-        format!(
-            "<svg width=\"0\" height=\"0\" style=\"position:absolute\" aria-hidden=\"true\"><defs><image \
-             id=\"{RELIEF}\" width=\"1\" height=\"1\" preserveAspectRatio=\"none\" href=\"{}\"/></defs></svg>\n",
-            self.relief_url
-        )
+        relief_definition(&self.relief_url)
     }
 
     /// The pictures that stand in files of their own: name and PNG.
@@ -146,6 +142,14 @@ impl Figures {
         all.extend(self.charts.iter().cloned());
         all.into_par_iter().map(|(name, figure)| Ok((name, svg_to_png(&figure.with_margin(16.0))?))).collect()
     }
+}
+
+/// What must stand on a page before any map: the relief, once, from its URL.
+pub(super) fn relief_definition(url: &str) -> String {
+    format!(
+        "<svg width=\"0\" height=\"0\" style=\"position:absolute\" aria-hidden=\"true\"><defs><image id=\"{RELIEF}\" \
+         width=\"1\" height=\"1\" preserveAspectRatio=\"none\" href=\"{url}\"/></defs></svg>\n"
+    )
 }
 
 /// One field's map: the first over the whole width of the page, the others over half of it.

@@ -1,6 +1,7 @@
 //! The reports of runs, one for each model.
 
 mod dew;
+mod ensemble;
 mod facts;
 mod figures;
 mod gas;
@@ -22,6 +23,7 @@ use figures::{FIELDS, FieldKind, Figures};
 use snapshots::Snapshot;
 
 pub use dew::DewReport;
+pub use ensemble::{EnsembleMap, EnsembleReport, EnsembleTable};
 pub use gas::{GasReport, gas_key};
 pub use plain::PlainReport;
 use std::f64::consts::TAU;

@@ -17,8 +17,8 @@ pub(super) struct KeyFigure {
 }
 
 /// A table: head and rows of cells.
-pub(super) struct Table {
-    pub head: Vec<&'static str>,
+pub(super) struct Table<H = &'static str> {
+    pub head: Vec<H>,
     pub rows: Vec<Vec<String>>,
 }
 
@@ -145,12 +145,13 @@ fn shell_word(word: &str) -> String {
 }
 
 /// A table whose first column has the row headers.
-pub(super) fn table(table: &Table) -> String {
+pub(super) fn table<H: AsRef<str>>(table: &Table<H>) -> String {
     let cell = |(index, text): (usize, &String)| match index {
         0 => format!("<th scope=\"row\">{}</th>", escape(text)),
         _ => format!("<td>{}</td>", escape(text)),
     };
-    let head: String = table.head.iter().map(|text| format!("<th scope=\"col\">{text}</th>")).collect();
+    let head: String =
+        table.head.iter().map(|text| format!("<th scope=\"col\">{}</th>", escape(text.as_ref()))).collect();
     let rows: String = table
         .rows
         .iter()

@@ -1,19 +1,22 @@
-//! GeoTIFF, written with the `geotiff-writer` library.
+//! Cloud-optimised GeoTIFF, written with the `geotiff-writer` library.
 
 use super::Raster;
 use crate::{Georeference, MapGrid, TerrainError};
 use corpuscle_atomic_file::WholeFile;
 use geotiff_reader::transform::GeoTransform;
-use geotiff_writer::{Compression, GeoTiffBuilder, NumericSample, Predictor, RasterType};
+use geotiff_writer::{CogBuilder, Compression, GeoTiffBuilder, NumericSample, Predictor, RasterType, Resampling};
 use ndarray::ArrayView2;
 use std::path::Path;
 
 /// Side of a tile in the file, cells.
 const TILE: u32 = 256;
 
-/// Writes a map as GeoTIFF: 32-bit floating point, Deflate, tiled, with the place and the reference system of `grid`.
+/// Writes a map as cloud-optimised GeoTIFF: 32-bit floating point, Deflate, tiled, with the place and the reference system of `grid`.
 /// `values` are `rows * columns`, row by row from the north-west; those that are not a number are written as `no_data`,
 /// which the file names. The file appears whole or not at all.
+///
+/// One that is larger than a tile has overviews: every second cell, every fourth, and so on, until one tile has all. They take cells as
+/// they are, since a mean is a value that no cell has.
 ///
 /// # Errors
 /// [`TerrainError::Write`] where the folder, the disk or the number of values does not allow it.
@@ -59,8 +62,18 @@ fn write_samples<T: NumericSample>(
     let array = ArrayView2::from_shape((rows, columns), values).map_err(|error| TerrainError::write(path, error))?;
     let builder = builder(place, [columns, rows], no_data);
     let mut file = WholeFile::create(path).map_err(|error| TerrainError::write(path, error))?;
-    builder.write_2d_to(&mut file, array).map_err(|error| TerrainError::write(path, error))?;
+    let optimised =
+        CogBuilder::new(builder).overview_levels(overviews(columns.max(rows))).resampling(Resampling::NearestNeighbor);
+    optimised.write_2d_to(&mut file, array).map_err(|error| TerrainError::write(path, error))?;
     file.finish().map_err(|error| TerrainError::write(path, error))
+}
+
+/// Steps, in cells, of the overviews of a raster with so many cells along its longer side: powers of two, until one tile has it all.
+fn overviews(side: usize) -> Vec<u32> {
+    (1..u32::BITS)
+        .map(|power| 1 << power)
+        .take_while(|step| side.div_ceil(*step as usize / 2) > TILE as usize)
+        .collect()
 }
 
 /// What the file says about itself.

@@ -49,6 +49,11 @@ impl FrameFiles {
         self.files.iter().map(|(time, _)| *time)
     }
 
+    /// The files.
+    pub fn paths(&self) -> impl ExactSizeIterator<Item = &Path> {
+        self.files.iter().map(|(_, path)| path.as_path())
+    }
+
     /// Number of the frame nearest to a time, s.
     pub fn nearest(&self, time: f64) -> usize {
         let distance = |index: &usize| (self.files[*index].0 - time).abs();
