@@ -25,4 +25,4 @@ pub use gas::{Gas, LiveChange};
 pub use measure::Estimate;
 pub use method::{Nearest, With};
 pub use scene::open;
-pub use setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, ball_volume};
+pub use setup::{Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, Start, ball_volume};

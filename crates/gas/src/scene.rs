@@ -1,6 +1,6 @@
 //! The gas of a scene.
 
-use crate::setup::{Amount, Ball, Measure, Method, Partition, Setup, Side, Species, Speeds, Start, file};
+use crate::setup::{Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, Start, file};
 use crate::{Gas, SetupError};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene as scene;
@@ -70,6 +70,7 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
         pair_bins: written.measure.pair_bins,
         lag_collisions: written.measure.lag_collisions,
     };
+    setup.regions = written.measure.region.iter().map(region).collect();
     let mut made = setup.build()?;
     let colours = written.ball.iter().map(|ball| (&ball.name, &ball.colour));
     for (name, colour) in colours.chain(written.species.iter().map(|species| (&species.name, &species.colour))) {
@@ -104,6 +105,10 @@ fn side(wall: &scene::Wall, end: f64, folder: &Path) -> Result<Side, ModelError>
             Side::Piston { mass: *mass, pressure: *pressure, velocity: *velocity }
         }
     })
+}
+
+fn region<const D: usize>(region: &scene::NamedRegion) -> Region<D> {
+    Region { name: region.name.clone(), from: vector(&region.from), to: vector(&region.to) }
 }
 
 fn ball<const D: usize>(ball: &scene::Ball) -> Ball<D> {

@@ -238,6 +238,7 @@ fn full_gas(method: Method) -> Scene {
             pair_distance: Some(1.0),
             pair_bins: 1,
             lag_collisions: 1.0,
+            region: vec![NamedRegion { name: "a".into(), from: vec![0.0; 2], to: both.clone().unwrap_or_default() }],
         },
         start_file: Some("a".into()),
         ball: vec![Ball {

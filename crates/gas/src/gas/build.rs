@@ -5,8 +5,8 @@ use crate::SetupError;
 use crate::engine::Engine;
 use crate::measure::Measures;
 use crate::method::{FixedStep, List, Mover};
-use crate::setup::{Method, Placed, Setup};
-use crate::world::{Field, Followed, Kind, Rebound, Start, World};
+use crate::setup::{Method, Placed, Region, Setup};
+use crate::world::{CountedRegion, Field, Followed, Kind, Rebound, Start, World};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -33,6 +33,8 @@ impl<const D: usize> Gas<D> {
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         world.followed = setup.followed(&starts);
         world.moments = setup.keeps_momentum_and_energy().then(Default::default);
+        let region = |region: &Region<D>| CountedRegion { from: region.from, to: region.to, virial: 0.0 };
+        world.regions = setup.regions.iter().map(region).collect();
         let partition = setup.partition.is_some().then(|| world.walls.len() - 1);
         let largest = setup.largest_speeds(&sets, &world);
         let measures = Measures::new(&setup, sets.len(), largest);
@@ -114,7 +116,7 @@ impl<const D: usize> Setup<D> {
 
     fn followed(&self, starts: &[Start<D>]) -> Option<Followed<D>> {
         let id = self.follow.filter(|&ball| ball < starts.len())?;
-        Some(Followed { id: id as u32, bends: vec![(0.0, starts[id].position)] })
+        Some(Followed { id: id as u32, collisions: 0, bends: vec![(0.0, starts[id].position)] })
     }
 
     /// Speeds up to which histograms go, for each set: some thermal speeds at the temperature of the whole.

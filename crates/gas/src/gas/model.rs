@@ -2,8 +2,9 @@
 
 use super::Gas;
 use super::observe::{collision_rate, mean_free_path, pressure_virial};
-use crate::measure::Estimate;
 use crate::measure::charts::Context;
+use crate::measure::region::OverTime;
+use crate::measure::{Estimate, Sample};
 use corpuscle_model::{
     Balance, Chart, Container, CpuOnly, Frame, GaugeColumn, Ledger, Map, Model, ModelError, ParticleSet, Path,
 };
@@ -36,6 +37,12 @@ impl<const D: usize> Gas<D> {
         if !world.walls.is_empty() {
             rows.push(("pressure_walls", pressure, rate(&|| self.recent_pressure_walls(&recent))));
         }
+        rows.extend(
+            ["centre_x", "centre_y", "centre_z"]
+                .into_iter()
+                .zip(self.centre_of_mass())
+                .map(|(name, place)| (name, "m", place)),
+        );
         rows.push(("packing", "", self.packing()));
         rows.push(("maxwell_p_value", "", self.maxwell_p_value()));
         if self.sets.len() > 1 {
@@ -55,6 +62,26 @@ impl<const D: usize> Gas<D> {
         gauges.extend(self.transport_gauges());
         gauges.extend(self.wall_gauges());
         gauges.extend(self.set_gauges());
+        gauges.extend(self.region_gauges(&recent));
+        if let Some(followed) = &world.followed {
+            gauges.push((format!("ball {}", followed.id), "collisions", "", followed.collisions as f64));
+        }
+        gauges
+    }
+
+    /// Number and temperature in each region now, pressure and flow over the last samples.
+    fn region_gauges(&self, recent: &[Sample]) -> Vec<(String, &'static str, &'static str, f64)> {
+        let (pressure, flux) = if D == 2 { ("N_per_m", "per_m_s") } else { ("Pa", "per_m2_s") };
+        let mut gauges = Vec::new();
+        for (number, region) in self.setup.regions.iter().enumerate() {
+            let over = OverTime { recent, number };
+            let mut add = |quantity, unit, value| gauges.push((region.name.clone(), quantity, unit, value));
+            add("number", "", over.now().number);
+            add("temperature", "K", over.temperature(D, self.setup.boltzmann));
+            add("pressure", pressure, over.pressure(D));
+            let flows = ["flow_x", "flow_y", "flow_z"].into_iter().take(D).enumerate();
+            flows.for_each(|(axis, name)| add(name, flux, over.flow(axis)));
+        }
         gauges
     }
 
@@ -112,6 +139,7 @@ impl<const D: usize> Gas<D> {
             }
             let temperature = set.mass * squares / (D as f64 * count * self.setup.boltzmann);
             gauges.push((set.name.clone(), "temperature", "K", temperature));
+            gauges.push((set.name.clone(), "kinetic_energy", "J", 0.5 * set.mass * squares));
             gauges.push((set.name.clone(), "mean_square_displacement", "m2", displacements[number]));
             let late = self.measures.started.is_finite() && self.mean_square_displacement(number).len() > 3;
             let none = Estimate { mean: f64::NAN, error: f64::NAN };
@@ -228,6 +256,8 @@ impl<const D: usize> Model for Gas<D> {
             si: self.si,
             extent: world.extent(axis, world.in_window(self.shown)),
             p_value: self.maxwell_p_value(),
+            energies: self.mean_energies(),
+            temperature: self.temperature(),
         };
         self.measures.charts(&context)
     }

@@ -69,12 +69,8 @@ impl<const D: usize> Gas<D> {
     pub fn energy(&self) -> f64 {
         let world = self.mover.world();
         let heights = |ball: usize| -> f64 {
-            let (position, _) = world.state(ball, self.now());
-            let along = |axis: usize| {
-                let unwrapped = position[axis] + f64::from(world.records[ball].image[axis]) * world.field.period[axis];
-                -world.field.gravity[axis] * unwrapped
-            };
-            world.mass(ball) * (0..D).map(along).sum::<f64>()
+            let place = world.unwrapped(ball, self.now());
+            world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * place[axis]).sum::<f64>()
         };
         let potential =
             if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
@@ -100,6 +96,16 @@ impl<const D: usize> Gas<D> {
         let freedom = self.setup.degrees_of_freedom(world.balls.len());
         let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
         2.0 * (self.kinetic_energy() - bound) / (freedom * self.setup.boltzmann)
+    }
+
+    /// Centre of mass at the time shown, as if the box did not repeat.
+    pub fn centre_of_mass(&self) -> [f64; D] {
+        let (world, now) = (self.mover.world(), self.now());
+        let masses: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
+        std::array::from_fn(|axis| {
+            let place = |ball: usize| world.unwrapped(ball, now)[axis];
+            (0..world.balls.len()).map(|ball| world.mass(ball) * place(ball)).collect::<ExactSum>().value() / masses
+        })
     }
 
     /// Area (in three dimensions volume) of the box at the time shown.
@@ -221,6 +227,18 @@ impl<const D: usize> Gas<D> {
         let mut counts = vec![0; self.sets.len()];
         self.mover.world().records.iter().for_each(|record| counts[record.species as usize] += 1);
         counts
+    }
+
+    /// Mean kinetic energy of a ball of each set at the time shown.
+    pub(super) fn mean_energies(&self) -> Vec<f64> {
+        let world = self.mover.world();
+        let mut sums = vec![0.0; self.sets.len()];
+        for ball in 0..world.balls.len() {
+            let velocity = world.state(ball, self.now()).1;
+            let squares: f64 = velocity.iter().map(|v| v * v).sum();
+            sums[world.records[ball].species as usize] += 0.5 * world.mass(ball) * squares;
+        }
+        sums.iter().zip(self.counts()).map(|(sum, count)| sum / count as f64).collect()
     }
 
     /// Radius of the balls, where all have the same.
@@ -461,6 +479,7 @@ impl<const D: usize> Gas<D> {
             displacement: Vec::new(),
             mixing: f64::NAN,
             beyond: Vec::new(),
+            regions: world.sample_regions(now),
         }
     }
 
@@ -485,8 +504,7 @@ impl<const D: usize> Gas<D> {
         for (ball, record) in world.records.iter().enumerate() {
             let (position, velocity) = world.state(ball, now);
             let number = record.id as usize;
-            let images = |axis: usize| position[axis] + f64::from(record.image[axis]) * world.field.period[axis];
-            snapshot.unwrapped[number] = std::array::from_fn(images);
+            snapshot.unwrapped[number] = world.unwrapped(ball, now);
             (snapshot.position[number], snapshot.velocity[number]) = (position, velocity);
             snapshot.set[number] = record.species;
         }

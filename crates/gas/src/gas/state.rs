@@ -49,6 +49,10 @@ struct SavedWorld {
     moments: Option<Moments>,
     random: u128,
     bends: Vec<(f64, Vec<f64>)>,
+    /// Collisions of the followed ball.
+    followed_collisions: u64,
+    /// The virial of each region.
+    regions: Vec<f64>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -140,6 +144,8 @@ impl SavedWorld {
             moments: world.moments,
             random: world.random.get_word_pos(),
             bends: bends.map(|(time, place)| (*time, place.to_vec())).collect(),
+            followed_collisions: world.followed.as_ref().map_or(0, |followed| followed.collisions),
+            regions: world.regions.iter().map(|region| region.virial).collect(),
         }
     }
 
@@ -152,6 +158,7 @@ impl SavedWorld {
             && vectors.iter().all(|&len| len == count * D)
             && self.walls.len() == world.walls.len()
             && self.wall_tallies.len() == world.walls.len()
+            && self.regions.len() == world.regions.len()
             && self.walls.iter().zip(&world.walls).all(|(a, b)| a.axis == b.axis)
             && self.kind.iter().all(|&kind| (kind as usize) < world.kinds.len())
             && self.id.iter().all(|&id| (id as usize) < count);
@@ -187,7 +194,9 @@ impl SavedWorld {
         world.tally = self.tally.clone();
         world.wall_tallies.clone_from(&self.wall_tallies);
         world.random.set_word_pos(self.random);
+        world.regions.iter_mut().zip(&self.regions).for_each(|(region, virial)| region.virial = *virial);
         if let Some(followed) = &mut world.followed {
+            followed.collisions = self.followed_collisions;
             followed.bends = self.bends.iter().filter_map(|(time, place)| Some((*time, vector(place, 0)?))).collect();
         }
         Some(())

@@ -22,6 +22,10 @@ pub(crate) struct Context<'a, const D: usize> {
     /// Box along the profile's axis.
     pub extent: [f64; 2],
     pub p_value: f64,
+    /// Mean kinetic energy of a ball of each set now.
+    pub energies: Vec<f64>,
+    /// Temperature now.
+    pub temperature: f64,
 }
 
 pub(super) fn axis(label: &str, unit: &str) -> ChartAxis {
@@ -53,6 +57,26 @@ impl<const D: usize> Context<'_, D> {
     }
 }
 
+/// Mean kinetic energy of a ball of each set, beside the one that all share in equilibrium (equipartition: Maxwell 1860).
+fn energies<const D: usize>(context: &Context<D>) -> Chart {
+    let count = context.sets.len();
+    let points = context.energies.iter().enumerate().map(|(set, energy)| [(set + 1) as f64, *energy]).collect();
+    let shared = 0.5 * D as f64 * context.setup.boltzmann * context.temperature;
+    let names: Vec<String> =
+        context.sets.iter().enumerate().map(|(set, own)| format!("{}: {}", set + 1, own.name)).collect();
+    Chart {
+        name: "energies".into(),
+        title: "Kinetic energy of a ball of each kind now".into(),
+        x: axis("Kind", ""),
+        y: axis("Mean kinetic energy", context.unit("J")),
+        series: vec![
+            ChartSeries { name: "measured".into(), style: ChartStyle::Bars, points, ..ChartSeries::default() },
+            theory_series("equal shares", vec![[0.5, shared], [count as f64 + 0.5, shared]]),
+        ],
+        note: names.join(", "),
+    }
+}
+
 impl Measures {
     /// All charts that there is something to show in.
     pub fn charts<const D: usize>(&self, context: &Context<D>) -> Vec<Chart> {
@@ -67,6 +91,9 @@ impl Measures {
                 charts.push(self.pair_chart(context));
             }
             charts.push(self.displacement_chart(context));
+        }
+        if context.sets.len() > 1 {
+            charts.push(energies(context));
         }
         charts
     }

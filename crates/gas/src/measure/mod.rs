@@ -6,6 +6,7 @@ mod laws;
 mod maxwell;
 mod mixing;
 mod pairs;
+pub(crate) mod region;
 mod sample;
 pub(crate) mod transport;
 

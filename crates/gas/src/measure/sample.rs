@@ -1,6 +1,6 @@
 //! The gas at one time.
 
-use crate::world::Moments;
+use crate::world::{Moments, RegionSample};
 use serde::{Deserialize, Serialize};
 
 /// Sums and means at one time.
@@ -28,6 +28,8 @@ pub(crate) struct Sample {
     pub mixing: f64,
     /// Balls of each set beyond the partition.
     pub beyond: Vec<f64>,
+    /// Parts of the box in which is measured.
+    pub regions: Vec<RegionSample>,
 }
 
 /// The gas at one time, ball by ball in order of their numbers.

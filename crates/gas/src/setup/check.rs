@@ -48,6 +48,12 @@ impl<const D: usize> Setup<D> {
         if let Some(every) = self.measure.every {
             positive("the time between samples", every)?;
         }
+        for region in &self.regions {
+            for axis in 0..D {
+                let (from, to) = (region.from[axis], region.to[axis]);
+                number(format!("the end of region {:?}", region.name), to, from < to, "above its beginning")?;
+            }
+        }
         for ball in &self.balls {
             let what = |which: &str| format!("the {which} of ball {:?}", ball.name);
             positive(what("radius"), ball.radius)?;

@@ -47,6 +47,19 @@ pub struct Setup<const D: usize> {
     pub follow: Option<usize>,
     /// What is measured.
     pub measure: Measure,
+    /// Parts of the box in which number, temperature, pressure and flow are measured.
+    pub regions: Vec<Region<D>>,
+}
+
+/// A part of the box in which is measured; it stays where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region<const D: usize> {
+    /// Name, unique.
+    pub name: String,
+    /// Corner at the smallest coordinates.
+    pub from: [f64; D],
+    /// Corner at the largest coordinates.
+    pub to: [f64; D],
 }
 
 /// What one side of the box is.
@@ -253,6 +266,7 @@ impl<const D: usize> Setup<D> {
             reversed_at: None,
             follow: None,
             measure: Measure::default(),
+            regions: Vec::new(),
         }
     }
 

@@ -59,9 +59,13 @@ impl<const D: usize> World<D> {
         }
         self.tally.collisions += 1;
         self.tally.virial -= elasticity * reduced * approach;
+        if !self.regions.is_empty() {
+            self.count_in_regions(self.balls[a].position, apart, -elasticity * reduced * approach);
+        }
         self.watch(flown * approach.abs(), apart2);
-        self.note_bend(a);
-        self.note_bend(b);
+        if self.followed.is_some() {
+            self.note_collision(a, b);
+        }
     }
 
     /// 1 + the restitution of this collision; books the energy that it costs of what is in the normal motion.

@@ -62,7 +62,14 @@ impl<const D: usize> World<D> {
         self.balls[ball].velocity = after;
         self.book_hit(wall, mass, &before, &after);
         // The wall pushes the ball's surface, not its centre: with this the virial's pressure is that on the walls.
-        self.tally.virial += radius * mass * (before[axis] - after[axis]).abs();
+        let virial = radius * mass * (before[axis] - after[axis]).abs();
+        self.tally.virial += virial;
+        if !self.regions.is_empty() {
+            let centre = self.balls[ball].position;
+            let mut to_wall = [0.0; D];
+            to_wall[axis] = self.walls[wall].place_at(self.now) - centre[axis];
+            self.count_in_regions(centre, to_wall, virial);
+        }
         self.watch(flown * (before[axis] - push).abs() * radius, radius * radius);
         self.note_bend(ball);
     }

@@ -5,6 +5,7 @@ mod collide;
 mod contact;
 mod hit;
 mod moments;
+mod region;
 mod wall;
 
 pub(crate) use ball::{Ball, Kind, NONE, Record};
@@ -12,6 +13,7 @@ pub(crate) use collide::{Rebound, speed};
 pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straight};
 pub(crate) use hit::WallTally;
 pub(crate) use moments::Moments;
+pub(crate) use region::{CountedRegion, RegionSample};
 pub(crate) use wall::{Facing, Wall, first_contact};
 
 use corpuscle_model::ExactSum;
@@ -55,6 +57,8 @@ pub(crate) struct World<const D: usize> {
     pub random: ChaCha8Rng,
     /// What momentum and energy have moved; none where walls, loss or gravity change them.
     pub moments: Option<Moments>,
+    /// Parts of the box in which pressure is measured.
+    pub regions: Vec<CountedRegion<D>>,
     /// The ball whose path is kept, and the path.
     pub followed: Option<Followed<D>>,
 }
@@ -77,6 +81,8 @@ pub(crate) struct Tally {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Followed<const D: usize> {
     pub id: u32,
+    /// Its collisions with other balls.
+    pub collisions: u64,
     /// Time and place wherever the path was bent; places not a number part two pieces.
     pub bends: Vec<(f64, [f64; D])>,
 }
@@ -107,6 +113,7 @@ impl<const D: usize> World<D> {
             standstill: 0,
             random: rand::SeedableRng::seed_from_u64(0),
             moments: None,
+            regions: Vec::new(),
             followed: None,
         }
     }
@@ -133,6 +140,13 @@ impl<const D: usize> World<D> {
         } else {
             self.field.state::<Straight>(&self.balls[ball], time)
         }
+    }
+
+    /// Place of a ball at a time of the window as if the box did not repeat.
+    pub fn unwrapped(&self, ball: usize, time: f64) -> [f64; D] {
+        let (position, _) = self.state(ball, time);
+        let image = &self.records[ball].image;
+        std::array::from_fn(|axis| position[axis] + f64::from(image[axis]) * self.field.period[axis])
     }
 
     /// Moves a ball along its path to now.
@@ -246,6 +260,17 @@ impl<const D: usize> World<D> {
         if self.followed.is_some() {
             self.note_followed(ball);
         }
+    }
+
+    /// Notes a collision of two balls, if the followed ball is one of them.
+    #[cold]
+    fn note_collision(&mut self, a: usize, b: usize) {
+        let ids = [a, b].map(|ball| self.records[ball].id);
+        if let Some(followed) = self.followed.as_mut().filter(|followed| ids.contains(&followed.id)) {
+            followed.collisions += 1;
+        }
+        self.note_followed(a);
+        self.note_followed(b);
     }
 
     #[cold]

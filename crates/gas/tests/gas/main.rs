@@ -9,5 +9,6 @@ mod exactness;
 mod live_change;
 mod measured;
 mod refused;
+mod regions;
 mod sides;
 mod start;

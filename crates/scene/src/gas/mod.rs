@@ -236,6 +236,21 @@ pub struct Measure {
     /// Collisions of each ball in the lag from which, to twice that, the growth of Helfand's moments gives viscosity and thermal
     /// conductivity.
     pub lag_collisions: f64,
+    /// Parts of the box in which number, temperature, pressure and flow are measured.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub region: Vec<NamedRegion>,
+}
+
+/// A part of the box in which is measured, with sides along the axes; it stays where it is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamedRegion {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Corner at the smallest coordinates.
+    pub from: Vec<f64>,
+    /// Corner at the largest coordinates.
+    pub to: Vec<f64>,
 }
 
 impl Default for Measure {
@@ -248,6 +263,7 @@ impl Default for Measure {
             pair_distance: None,
             pair_bins: 100,
             lag_collisions: 40.0,
+            region: Vec::new(),
         }
     }
 }

@@ -58,18 +58,22 @@ impl Check {
     }
 
     /// A part of the box: in it, and not empty.
-    fn region(&self, gas: &Gas, key: &str, region: &Region) -> Checked {
-        for (end, corner) in [("from", &region.from), ("to", &region.to)] {
+    fn region(&self, gas: &Gas, key: &str, Region { from, to }: &Region) -> Checked {
+        self.corners(gas, key, from, to)
+    }
+
+    fn corners(&self, gas: &Gas, key: &str, all_from: &[f64], all_to: &[f64]) -> Checked {
+        for (end, corner) in [("from", all_from), ("to", all_to)] {
             self.as_many(gas, &format!("{key}.{end}"), Some(corner))?;
         }
         for (axis, &length) in gas.size.iter().enumerate() {
-            let (from, to) = (region.from[axis], region.to[axis]);
+            let (from, to) = (all_from[axis], all_to[axis]);
             self.require(&format!("{key}.from"), from >= 0.0, || "must not lie outside the box, below 0".into())?;
             self.require(&format!("{key}.to"), to <= length, || {
                 format!("must not lie outside the box, above size = {:?}", gas.size)
             })?;
             self.require(&format!("{key}.to"), from < to, || {
-                format!("must be larger than from = {:?} along each axis", region.from)
+                format!("must be larger than from = {all_from:?} along each axis")
             })?;
         }
         Ok(())
@@ -124,6 +128,23 @@ impl Check {
             self.require(&format!("gas.measure.{name}"), (1..=MOST_BINS).contains(&count), || {
                 format!("must be from 1 to {MOST_BINS}")
             })?;
+        }
+        self.measured_regions(gas, measure)
+    }
+
+    /// Regions in which is measured lie in the box, and their columns have names of their own.
+    fn measured_regions(&self, gas: &Gas, measure: &Measure) -> Checked {
+        let walls = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
+        let species = gas.species.iter().map(|species| &species.name).chain(gas.ball.iter().map(|ball| &ball.name));
+        let mut taken: Vec<&str> = species.map(String::as_str).chain(walls).chain(["gas"]).collect();
+        for (number, region) in measure.region.iter().enumerate() {
+            let key = format!("gas.measure.region.{number}");
+            let name = region.name.as_str();
+            self.require(&format!("{key}.name"), !name.trim().is_empty() && !taken.contains(&name), || {
+                format!("`{name}` is empty or taken, by a species, a wall or another region; gauges have this name")
+            })?;
+            taken.push(name);
+            self.corners(gas, &key, &region.from, &region.to)?;
         }
         Ok(())
     }
