@@ -113,7 +113,12 @@ impl<'a> Members<'a> {
     }
 
     fn gauges_of(&self, position: usize) -> Result<GaugeTable, EnsembleError> {
-        read_gauges(&self.folder.member(self.finished[position]))
+        read_gauges(&self.place_of(position))
+    }
+
+    /// Folder of a member by its position among the finished.
+    fn place_of(&self, position: usize) -> PathBuf {
+        self.folder.member(self.finished[position])
     }
 
     /// The number of the member that ran longest, of several the first, by position among the finished.
@@ -209,7 +214,7 @@ struct Computation<'a> {
 impl Computation<'_> {
     fn maps(&self) -> Result<Maps, EnsembleError> {
         let Some(terrain) = self.simulation.terrain() else { return Ok(Maps::default()) };
-        let grid = terrain.map_grid();
+        let (grid, members) = (terrain.map_grid(), self.members);
         let axes = axes(grid);
         let known = self.members.maps();
         let names = self.chosen.maps.clone().unwrap_or_else(|| known.clone());
@@ -223,14 +228,14 @@ impl Computation<'_> {
         let mut maps = Maps::default();
         for (name, thresholds) in &above {
             for threshold in thresholds {
-                let read = |position: usize| read_map(&self.folder_of(position), name, &axes);
+                let read = |position: usize| read_map(&members.place_of(position), name, &axes);
                 let shares = share_above(&self.values(grid, &read), *threshold)?;
                 self.write_map(&format!("{name}_probability_above_{threshold}"), grid, &shares, &mut maps)?;
                 maps.probabilities.push(self.probability(name, *threshold, &shares));
             }
         }
         for name in &names {
-            let read = |position: usize| read_map(&self.folder_of(position), name, &axes);
+            let read = |position: usize| read_map(&members.place_of(position), name, &axes);
             let statistics = self.statistics(name, grid, &self.values(grid, &read), &mut maps)?;
             maps.statistics.push((name.clone(), statistics));
         }
@@ -266,12 +271,12 @@ impl Computation<'_> {
         EnsembleMap { title: title.trim_end().into(), values: seen(shares) }
     }
 
-    fn values<'b, T>(&self, grid: &MapGrid, read: &'b dyn Fn(usize) -> Result<Vec<T>, EnsembleError>) -> Values<'b, T> {
+    fn values<'b, T>(
+        &self,
+        grid: &MapGrid,
+        read: &'b (dyn Fn(usize) -> Result<Vec<T>, EnsembleError> + Sync),
+    ) -> Values<'b, T> {
         Values { members: self.members.finished.len(), cells: grid.columns * grid.rows, read }
-    }
-
-    fn folder_of(&self, position: usize) -> PathBuf {
-        self.members.folder.member(self.members.finished[position])
     }
 
     fn write_map(&self, name: &str, grid: &MapGrid, values: &[f64], maps: &mut Maps) -> Result<(), EnsembleError> {
@@ -295,7 +300,8 @@ impl Computation<'_> {
 
     /// Bands of gauges over time, and the means of the last values of all.
     fn gauges(&self) -> Result<(Vec<Chart>, Option<EnsembleTable>), EnsembleError> {
-        let known = self.members.gauges()?;
+        let members = self.members;
+        let known = members.gauges()?;
         if known.is_empty() {
             return Ok((Vec::new(), None));
         }
@@ -308,7 +314,7 @@ impl Computation<'_> {
         let mut charts = Vec::new();
         for name in &names {
             self.need(name, &known, "gauge")?;
-            let read = |position: usize| Ok(at_times(&self.members.gauges_of(position)?, name, &times));
+            let read = |position: usize| Ok(at_times(&members.gauges_of(position)?, name, &times));
             let values = Values { members: self.members.finished.len(), cells: times.len(), read: &read };
             let moments = moments(&values, Absent::LeftOut)?;
             let bands = percentiles(&values, percents, Absent::LeftOut, MEMORY)?;

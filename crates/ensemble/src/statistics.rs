@@ -16,7 +16,20 @@ pub(crate) struct Values<'a, T> {
     /// Number of values of each.
     pub cells: usize,
     /// Reads the values of a member, by its position among these.
-    pub read: &'a dyn Fn(usize) -> Result<Vec<T>, EnsembleError>,
+    pub read: &'a (dyn Fn(usize) -> Result<Vec<T>, EnsembleError> + Sync),
+}
+
+impl<T: Send> Values<'_, T> {
+    /// Goes through the members in order; as many are read at the same time as there are threads.
+    fn each(&self, mut take: impl FnMut(usize, Vec<T>)) -> Result<(), EnsembleError> {
+        let at_once = rayon::current_num_threads();
+        for first in (0..self.members).step_by(at_once) {
+            let part = (first..self.members.min(first + at_once)).into_par_iter();
+            let read: Vec<Vec<T>> = part.map(self.read).collect::<Result<_, _>>()?;
+            read.into_iter().enumerate().for_each(|(number, values)| take(first + number, values));
+        }
+        Ok(())
+    }
 }
 
 /// What no value counts as.
@@ -54,25 +67,27 @@ pub(crate) struct Moments {
 }
 
 /// The share of members whose value is above a threshold. No value is not above.
-pub(crate) fn share_above<T: Copy + Into<f64>>(
+pub(crate) fn share_above<T: Copy + Into<f64> + Send>(
     values: &Values<'_, T>,
     threshold: f64,
 ) -> Result<Vec<f64>, EnsembleError> {
     let mut counts = vec![0_usize; values.cells];
-    for member in 0..values.members {
-        let read = (values.read)(member)?;
+    values.each(|_, read| {
         counts.iter_mut().zip(read).for_each(|(count, value)| *count += usize::from(value.into() > threshold));
-    }
+    })?;
     Ok(counts.into_iter().map(|count| count as f64 / values.members as f64).collect())
 }
 
 /// Means and standard errors by Welford's method (Technometrics 4, 1962), in the order of members.
-pub(crate) fn moments<T: Copy + Into<f64>>(values: &Values<'_, T>, absent: Absent) -> Result<Moments, EnsembleError> {
+pub(crate) fn moments<T: Copy + Into<f64> + Send>(
+    values: &Values<'_, T>,
+    absent: Absent,
+) -> Result<Moments, EnsembleError> {
     let mut count = vec![0_usize; values.cells];
     let mut mean = vec![0.0; values.cells];
     let mut squares = vec![0.0; values.cells];
-    for member in 0..values.members {
-        for (cell, value) in (values.read)(member)?.into_iter().enumerate() {
+    values.each(|_, read| {
+        for (cell, value) in read.into_iter().enumerate() {
             let value = absent.fill(value.into());
             if value.is_finite() {
                 count[cell] += 1;
@@ -81,7 +96,7 @@ pub(crate) fn moments<T: Copy + Into<f64>>(values: &Values<'_, T>, absent: Absen
                 squares[cell] += difference * (value - mean[cell]);
             }
         }
-    }
+    })?;
     let error = |(count, squares): (&usize, &f64)| match *count {
         0 | 1 => f64::NAN,
         count => (squares / (count - 1) as f64 / count as f64).sqrt(),
@@ -122,12 +137,11 @@ where
     Ok(result)
 }
 
-fn cells_with_a_value<T: Copy + Into<f64>>(values: &Values<'_, T>) -> Result<Vec<usize>, EnsembleError> {
+fn cells_with_a_value<T: Copy + Into<f64> + Send>(values: &Values<'_, T>) -> Result<Vec<usize>, EnsembleError> {
     let mut has_value = vec![false; values.cells];
-    for member in 0..values.members {
-        let read = (values.read)(member)?;
+    values.each(|_, read| {
         has_value.iter_mut().zip(read).for_each(|(has, value)| *has |= !value.into().is_nan());
-    }
+    })?;
     Ok((0..values.cells).filter(|cell| has_value[*cell]).collect())
 }
 
@@ -137,13 +151,12 @@ where
     T: Copy + Into<f64> + Send + Sync,
 {
     let mut all: Vec<T> = Vec::new();
-    for member in 0..values.members {
-        let read = (values.read)(member)?;
+    values.each(|member, read| {
         if all.is_empty() {
             all = vec![read[cells[0]]; cells.len() * values.members];
         }
         cells.iter().enumerate().for_each(|(place, cell)| all[place * values.members + member] = read[*cell]);
-    }
+    })?;
     all.par_chunks_mut(values.members).for_each(|of_cell| {
         of_cell.sort_by(|a, b| {
             let [a, b] = [*a, *b].map(|value| absent.fill(value.into()));
