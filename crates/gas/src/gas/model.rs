@@ -128,6 +128,7 @@ impl<const D: usize> Gas<D> {
         let snapshot = self.snapshot(self.shown);
         let displacements = self.measures.displacements(&snapshot);
         let beyond = self.beyond(&snapshot);
+        let energies = self.energies();
         let mut gauges = Vec::new();
         for (number, set) in self.sets.iter().enumerate() {
             let (mut squares, mut count) = (0.0, 0.0);
@@ -139,7 +140,9 @@ impl<const D: usize> Gas<D> {
             }
             let temperature = set.mass * squares / (D as f64 * count * self.setup.boltzmann);
             gauges.push((set.name.clone(), "temperature", "K", temperature));
-            gauges.push((set.name.clone(), "kinetic_energy", "J", 0.5 * set.mass * squares));
+            if self.sets.len() > 1 {
+                gauges.push((set.name.clone(), "kinetic_energy", "J", energies[number]));
+            }
             gauges.push((set.name.clone(), "mean_square_displacement", "m2", displacements[number]));
             let late = self.measures.started.is_finite() && self.mean_square_displacement(number).len() > 3;
             let none = Estimate { mean: f64::NAN, error: f64::NAN };
@@ -256,7 +259,7 @@ impl<const D: usize> Model for Gas<D> {
             si: self.si,
             extent: world.extent(axis, world.in_window(self.shown)),
             p_value: self.maxwell_p_value(),
-            energies: self.mean_energies(),
+            energies: self.energies().iter().zip(self.counts()).map(|(energy, count)| energy / count as f64).collect(),
             temperature: self.temperature(),
         };
         self.measures.charts(&context)

@@ -229,8 +229,8 @@ impl<const D: usize> Gas<D> {
         counts
     }
 
-    /// Mean kinetic energy of a ball of each set at the time shown.
-    pub(super) fn mean_energies(&self) -> Vec<f64> {
+    /// Kinetic energy of each set at the time shown.
+    pub(super) fn energies(&self) -> Vec<f64> {
         let world = self.mover.world();
         let mut sums = vec![0.0; self.sets.len()];
         for ball in 0..world.balls.len() {
@@ -238,7 +238,7 @@ impl<const D: usize> Gas<D> {
             let squares: f64 = velocity.iter().map(|v| v * v).sum();
             sums[world.records[ball].species as usize] += 0.5 * world.mass(ball) * squares;
         }
-        sums.iter().zip(self.counts()).map(|(sum, count)| sum / count as f64).collect()
+        sums
     }
 
     /// Radius of the balls, where all have the same.

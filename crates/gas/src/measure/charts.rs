@@ -66,8 +66,8 @@ fn energies<const D: usize>(context: &Context<D>) -> Chart {
         context.sets.iter().enumerate().map(|(set, own)| format!("{}: {}", set + 1, own.name)).collect();
     Chart {
         name: "energies".into(),
-        title: "Kinetic energy of a ball of each kind now".into(),
-        x: axis("Kind", ""),
+        title: "Kinetic energy of a ball of each species now".into(),
+        x: axis("Species", ""),
         y: axis("Mean kinetic energy", context.unit("J")),
         series: vec![
             ChartSeries { name: "measured".into(), style: ChartStyle::Bars, points, ..ChartSeries::default() },

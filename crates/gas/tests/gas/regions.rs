@@ -145,3 +145,19 @@ fn collisions_of_the_followed_ball_are_counted_and_kept() {
     let bits = |row: &[f64]| row.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&gas.gauge_row()), bits(&expected));
 }
+
+/// Balls of one name may have different masses.
+#[test]
+fn energies_of_the_kinds_add_up() {
+    let mut setup = Setup::<2>::new([20.0, 20.0]).species(Species::new("light", Amount::Count(50)));
+    for (number, mass) in [2.0, 30.0, 400.0].into_iter().enumerate() {
+        let position = [3.0 + 6.0 * number as f64, 10.0];
+        let ball = corpuscle_gas::Ball { name: "given".into(), position, velocity: [1.0, 0.0], radius: 1.0, mass };
+        setup.balls.push(ball);
+    }
+    let mut gas = setup.build().unwrap();
+    assert!((gauge(&gas, "given.kinetic_energy") - 216.0).abs() < 1e-9);
+    advance(&mut gas, 5.0);
+    let sum = gauge(&gas, "given.kinetic_energy") + gauge(&gas, "light.kinetic_energy");
+    assert!((sum / gas.kinetic_energy() - 1.0).abs() < 1e-12);
+}

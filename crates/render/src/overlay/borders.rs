@@ -18,6 +18,7 @@ impl LineStyle {
             Self::ThermalWall => "wall-hot",
             Self::Periodic => "wall-open",
             Self::Partition => "partition",
+            Self::Region => "region-edge",
             Self::Trajectory => "trajectory",
         }
     }
@@ -27,7 +28,7 @@ impl LineStyle {
         match self {
             Self::Wall => 1.5,
             Self::ThermalWall => 2.0,
-            Self::Periodic | Self::Partition | Self::Trajectory => 0.0,
+            Self::Periodic | Self::Partition | Self::Region | Self::Trajectory => 0.0,
         }
     }
 }

@@ -78,6 +78,8 @@ pub enum LineStyle {
     Periodic,
     /// A thin wall inside.
     Partition,
+    /// An edge of a region in which is measured.
+    Region,
     /// A trajectory.
     Trajectory,
 }

@@ -36,6 +36,7 @@ const CLOSEST: f64 = 0.2;
 /// Colours of edges and of trajectories.
 const INK: [u8; 3] = [0x46, 0x52, 0x5e];
 const TRAJECTORY: [u8; 3] = [0xc2, 0x18, 0x5b];
+const REGION: [u8; 3] = [0x00, 0x70, 0x5f];
 
 /// Draws a gas.
 pub(crate) struct GasPicture {

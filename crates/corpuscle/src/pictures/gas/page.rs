@@ -5,7 +5,7 @@ use crate::pictures::{DrawContext, Moment};
 use corpuscle_drawing::text;
 use corpuscle_output::GasKey;
 use corpuscle_render::{Axes, Key, LineStyle, Mark, Overlay};
-use corpuscle_scene::{Axis, Units, Wall};
+use corpuscle_scene::{Axis, NamedRegion, Units, Wall, padded};
 
 /// Largest enlargement of balls without a remark.
 const HARDLY: f64 = 1.15;
@@ -38,7 +38,7 @@ impl GasPicture {
             remark: self.remark(context, moment, view),
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
             marks: if flat { self.marks(moment) } else { Vec::new() },
-            labels: Vec::new(),
+            labels: self.gas.measure.region.iter().map(label).collect(),
             scale_bar: None,
             axes: Some(Axes {
                 from: view.stage.from.into(),
@@ -55,7 +55,9 @@ impl GasPicture {
         let walls: Vec<&Wall> = axes.flat_map(|axis| self.gas.walls.along(axis)).collect();
         let flat = self.gas.dimensions() == 2;
         let followed = moment.paths.iter().any(|path| !path.points.is_empty());
+        let measured = !self.gas.measure.region.is_empty();
         let found = [
+            (measured, LineStyle::Region, "region in which is measured"),
             (followed, LineStyle::Trajectory, "trajectory of one ball"),
             (
                 walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })),
@@ -88,5 +90,26 @@ impl GasPicture {
             marks.extend(found.map(|at| Mark::Ring(set.position[at], set.radius[at])));
         }
         marks
+    }
+}
+
+/// The name of a region, in the middle of its upper side.
+fn label(region: &NamedRegion) -> ([f64; 3], String) {
+    let (from, to) = (padded(&region.from), padded(&region.to));
+    let mut place: [f64; 3] = std::array::from_fn(|axis| 0.5 * (from[axis] + to[axis]));
+    let upwards = region.to.len() - 1;
+    place[upwards] = to[upwards];
+    (place, region.name.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_a_region_stands_on_its_upper_side() {
+        let region = |from: &[f64], to: &[f64]| NamedRegion { name: "a".into(), from: from.into(), to: to.into() };
+        assert_eq!(label(&region(&[1.0, 2.0], &[4.0, 6.0])), ([2.5, 6.0, 0.0], "a".into()));
+        assert_eq!(label(&region(&[0.0; 3], &[2.0, 4.0, 6.0])), ([1.0, 2.0, 6.0], "a".into()));
     }
 }

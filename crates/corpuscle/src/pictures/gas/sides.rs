@@ -1,10 +1,10 @@
 //! The sides of the box of a gas, and the wall across it.
 
-use super::{INK, View, tubes};
+use super::{INK, REGION, View, tubes};
 use crate::pictures::DrawContext;
 use corpuscle_model::SolidShape;
 use corpuscle_render::{Border, Drawable, LineStyle, Solid, SolidStyle, Tubes, box_edges};
-use corpuscle_scene::{Axis, Gas, Partition, Wall};
+use corpuscle_scene::{Axis, Gas, NamedRegion, Partition, Wall, padded};
 use std::sync::Arc;
 
 /// Width of edges, pixels of a picture 1080 pixels high.
@@ -60,10 +60,21 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
             outwards: [0.0; 2],
         }));
     }
+    borders.extend(gas.measure.region.iter().flat_map(outline));
     borders
 }
 
-/// The edges of a box in space; those of sides at a temperature in its colour.
+/// The edges of a flat region in which is measured.
+fn outline(NamedRegion { from, to, .. }: &NamedRegion) -> [Border; 4] {
+    let corners = [[from[0], from[1]], [to[0], from[1]], [to[0], to[1]], [from[0], to[1]]];
+    std::array::from_fn(|edge| Border::Line {
+        style: LineStyle::Region,
+        ends: [corners[edge], corners[(edge + 1) % 4]],
+        outwards: [0.0; 2],
+    })
+}
+
+/// The edges of a box in space, those of sides at a temperature in its colour, and of the regions in which is measured.
 pub(super) fn edges(gas: &Gas, context: &DrawContext, view: &View) -> Vec<Tubes> {
     let (from, to) = (view.container.from, view.container.to);
     let is_hot = |edge: &Vec<[f64; 3]>| {
@@ -76,7 +87,8 @@ pub(super) fn edges(gas: &Gas, context: &DrawContext, view: &View) -> Vec<Tubes>
         })
     };
     let (hot, cold): (Vec<_>, Vec<_>) = box_edges(from, to).into_iter().partition(is_hot);
-    [(INK, EDGE, cold), (THERMAL_WALL, 2.0 * EDGE, hot)]
+    let regions = gas.measure.region.iter().flat_map(|region| box_edges(padded(&region.from), padded(&region.to)));
+    [(INK, EDGE, cold), (THERMAL_WALL, 2.0 * EDGE, hot), (REGION, EDGE, regions.collect())]
         .map(|(colour, width, edges)| {
             tubes(context, &view.stage, colour, [width, 0.0], edges.iter().map(Vec::as_slice))
         })
@@ -169,5 +181,17 @@ mod tests {
         assert!((shape.distance)([2.0, 1.0, 1.0]) < 0.0);
         assert!((shape.distance)([2.0, 3.0, 3.0]) > 0.0);
         assert!((shape.distance)([2.5, 1.0, 1.0]) > 0.0);
+    }
+
+    #[test]
+    fn a_region_is_outlined_all_round() {
+        let region = NamedRegion { name: "a".into(), from: vec![1.0, 2.0], to: vec![4.0, 6.0] };
+        let edges = outline(&region).map(|border| match border {
+            Border::Line { style: LineStyle::Region, ends, outwards: [0.0, 0.0] } => ends,
+            other => panic!("{other:?}"),
+        });
+        let length = |[one, other]: [[f64; 2]; 2]| (one[0] - other[0]).hypot(one[1] - other[1]);
+        assert_eq!(edges.map(length), [3.0, 4.0, 3.0, 4.0]);
+        assert!((0..4).all(|edge| edges[edge][1] == edges[(edge + 1) % 4][0]), "{edges:?}");
     }
 }

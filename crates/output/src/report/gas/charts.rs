@@ -4,8 +4,11 @@ use crate::GaugeTable;
 use corpuscle_model::{Chart, ChartAxis, ChartSeries, GaugeColumn};
 use corpuscle_scene::{Gas, Speeds, Units};
 
+/// Quantities and their names in the legend.
+type Quantities = &'static [(&'static str, &'static str)];
+
 /// Charts and their quantities, in the order of the report.
-const KINDS: [(&str, &[(&str, &str)]); 10] = [
+const KINDS: [(&str, Quantities); 10] = [
     ("Pressure", &[("pressure_virial", "from collisions"), ("pressure_walls", "on the walls")]),
     ("Pressure on the walls", &[("pressure", "")]),
     ("Temperature", &[("temperature", "")]),
@@ -18,19 +21,63 @@ const KINDS: [(&str, &[(&str, &str)]); 10] = [
     ("Errors of equal steps", &[("overlaps", "overlaps"), ("missed_hits", "missed hits")]),
 ];
 
+/// The same for the species.
+const OF_SPECIES: [(&str, Quantities); 1] = [("Kinetic energy of each species", &[("kinetic_energy", "")])];
+
+/// The same for the regions in which is measured.
+const OF_REGIONS: [(&str, Quantities); 4] = [
+    ("Balls in regions", &[("number", "")]),
+    ("Pressure in regions", &[("pressure", "")]),
+    ("Temperature in regions", &[("temperature", "")]),
+    ("Flow in regions", &[("flow_x", "along x"), ("flow_y", "along y"), ("flow_z", "along z")]),
+];
+
 /// A chart for each kind of quantity that changes. What the model charts itself has none.
 pub(super) fn over_time(gas: &Gas, columns: &[GaugeColumn], table: &GaugeTable, known: &[Chart]) -> Vec<Chart> {
-    let drawn = |(title, quantities): &(&str, &[(&str, &str)])| {
+    let drawn = |(title, quantities): &(&str, Quantities), group: Group| {
         let of_kind = |index: &usize| {
-            is_told(gas, &columns[*index])
-                && quantities.iter().any(|(quantity, _)| columns[*index].quantity == *quantity)
+            let column = &columns[*index];
+            Group::of(gas, column) == group
+                && (group == Group::Region || is_told(gas, column))
+                && quantities.iter().any(|(quantity, _)| column.quantity == *quantity)
         };
         let members: Vec<usize> = (0..columns.len()).filter(of_kind).filter(|index| changes(table, *index)).collect();
-        let name = quantities[0].0;
-        let is_known = known.iter().any(|chart| chart.name == name);
-        (!members.is_empty() && !is_known).then(|| chart(gas, columns, table, (title, quantities), &members))
+        let is_known = group == Group::Gas && known.iter().any(|chart| chart.name == quantities[0].0);
+        let drawn = || chart(gas, columns, table, (title, quantities), &members);
+        let drawn = (!members.is_empty() && !is_known).then(drawn)?;
+        Some(Chart { name: format!("{}{}", group.prefix(), drawn.name), ..drawn })
     };
-    KINDS.iter().filter_map(drawn).collect()
+    let of_gas = KINDS.iter().filter_map(|kind| drawn(kind, Group::Gas));
+    let of_species = OF_SPECIES.iter().filter_map(|kind| drawn(kind, Group::Species));
+    let of_regions = OF_REGIONS.iter().filter_map(|kind| drawn(kind, Group::Region));
+    of_gas.chain(of_species).chain(of_regions).collect()
+}
+
+/// What a column is about, where its chart depends on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Group {
+    Gas,
+    Species,
+    Region,
+}
+
+impl Group {
+    fn of(gas: &Gas, column: &GaugeColumn) -> Self {
+        match column.quantity {
+            _ if gas.measure.region.iter().any(|region| region.name == column.gauge) => Self::Region,
+            "kinetic_energy" if column.gauge != "gas" => Self::Species,
+            _ => Self::Gas,
+        }
+    }
+
+    /// Beginning of the names of its charts.
+    fn prefix(self) -> &'static str {
+        match self {
+            Self::Gas => "",
+            Self::Species => "species_",
+            Self::Region => "regions_",
+        }
+    }
 }
 
 /// False for what says nothing in this gas: one pressure for all of a box with a partition or gravity in it, or else that on
@@ -68,7 +115,7 @@ fn chart(
     gas: &Gas,
     columns: &[GaugeColumn],
     table: &GaugeTable,
-    (title, quantities): (&str, &[(&str, &str)]),
+    (title, quantities): (&str, Quantities),
     members: &[usize],
 ) -> Chart {
     let several = members.iter().any(|index| columns[*index].gauge != columns[members[0]].gauge);
@@ -137,5 +184,35 @@ mod tests {
         let charts = over_time(gas, &columns, &table, &[]);
         assert_eq!(charts[0].series[1].name, "on the walls");
         assert_eq!(charts[1].series[1].name, "heavy");
+    }
+
+    #[test]
+    fn species_and_regions_have_charts_of_their_own() {
+        let text = "run.until_s = 1\n[gas]\nsize = [9, 9]\ngravity = [0, -1]\n[[gas.ball]]\nposition = [1, 1]\nradius = 1\nmass = 1\n\
+                    [[gas.measure.region]]\nname = \"yard\"\nfrom = [0, 0]\nto = [9, 4]";
+        let scene = Scene::parse(text, "test", &[]).unwrap();
+        let column = |gauge: &str, quantity| GaugeColumn { gauge: gauge.into(), quantity, unit: "" };
+        let columns = [
+            column("y_min", "pressure"),
+            column("yard", "pressure"),
+            column("yard", "number"),
+            column("yard", "flow_y"),
+            column("ball", "kinetic_energy"),
+        ];
+        let table = GaugeTable {
+            columns: columns.iter().map(GaugeColumn::header).collect(),
+            times: vec![0.0, 1.0],
+            rows: vec![vec![1.0; 5], vec![2.0; 5]],
+        };
+        let charts = over_time(scene.gas().unwrap(), &columns, &table, &[]);
+        let told: Vec<_> = charts.iter().map(|chart| (&*chart.name, chart.series.len())).collect();
+        let expected = [
+            "pressure_over_time",
+            "species_kinetic_energy_over_time",
+            "regions_number_over_time",
+            "regions_pressure_over_time",
+            "regions_flow_x_over_time",
+        ];
+        assert_eq!(told, expected.map(|name| (name, 1)));
     }
 }
