@@ -11,7 +11,7 @@ const HALO: Color32 = Color32::from_rgba_premultiplied(150, 150, 150, 150);
 /// Colours of thermal walls, trajectories and pistons.
 const THERMAL_WALL: Color32 = Color32::from_rgb(0xe0, 0x6a, 0x10);
 const TRAJECTORY: Color32 = Color32::from_rgb(0xc2, 0x18, 0x5b);
-/// Edges of regions in which is measured, on a light and on a dark ground.
+/// Edges of regions of measurement, on a light and on a dark ground.
 const REGION: [Color32; 2] = [Color32::from_rgb(0x00, 0x70, 0x5f), Color32::from_rgb(0x4d, 0xc9, 0xb0)];
 const PISTON: [Color32; 2] = [Color32::from_rgb(0x6b, 0x78, 0x85), Color32::from_rgb(0x7d, 0x89, 0x96)];
 /// Thickness of a piston and its rod, points.

@@ -28,7 +28,7 @@ pub(crate) struct Sample {
     pub mixing: f64,
     /// Balls of each set beyond the partition.
     pub beyond: Vec<f64>,
-    /// Parts of the box in which is measured.
+    /// Regions of measurement.
     pub regions: Vec<RegionSample>,
 }
 

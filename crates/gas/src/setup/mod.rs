@@ -51,7 +51,7 @@ pub struct Setup<const D: usize> {
     pub regions: Vec<Region<D>>,
 }
 
-/// A part of the box in which is measured; it stays where it is.
+/// A region of measurement: a part of the box; it stays where it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region<const D: usize> {
     /// Name, unique.

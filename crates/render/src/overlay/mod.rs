@@ -78,7 +78,7 @@ pub enum LineStyle {
     Periodic,
     /// A thin wall inside.
     Partition,
-    /// An edge of a region in which is measured.
+    /// An edge of a region of measurement.
     Region,
     /// A trajectory.
     Trajectory,

@@ -241,7 +241,7 @@ pub struct Measure {
     pub region: Vec<NamedRegion>,
 }
 
-/// A part of the box in which is measured, with sides along the axes; it stays where it is.
+/// A region of measurement: a part of the box, with sides along the axes; it stays where it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NamedRegion {

@@ -57,7 +57,7 @@ impl GasPicture {
         let followed = moment.paths.iter().any(|path| !path.points.is_empty());
         let measured = !self.gas.measure.region.is_empty();
         let found = [
-            (measured, LineStyle::Region, "region in which is measured"),
+            (measured, LineStyle::Region, "region of measurement"),
             (followed, LineStyle::Trajectory, "trajectory of one ball"),
             (
                 walls.iter().any(|wall| matches!(wall, Wall::Thermal { .. })),

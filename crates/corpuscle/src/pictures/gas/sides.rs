@@ -64,7 +64,7 @@ pub(super) fn borders(gas: &Gas, view: &View, time: f64) -> Vec<Border> {
     borders
 }
 
-/// The edges of a flat region in which is measured.
+/// The edges of a flat region of measurement.
 fn outline(NamedRegion { from, to, .. }: &NamedRegion) -> [Border; 4] {
     let corners = [[from[0], from[1]], [to[0], from[1]], [to[0], to[1]], [from[0], to[1]]];
     std::array::from_fn(|edge| Border::Line {
@@ -74,7 +74,7 @@ fn outline(NamedRegion { from, to, .. }: &NamedRegion) -> [Border; 4] {
     })
 }
 
-/// The edges of a box in space, those of sides at a temperature in its colour, and of the regions in which is measured.
+/// The edges of a box in space, those of sides at a temperature in its colour, and of the regions of measurement.
 pub(super) fn edges(gas: &Gas, context: &DrawContext, view: &View) -> Vec<Tubes> {
     let (from, to) = (view.container.from, view.container.to);
     let is_hot = |edge: &Vec<[f64; 3]>| {

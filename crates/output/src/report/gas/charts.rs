@@ -24,7 +24,7 @@ const KINDS: [(&str, Quantities); 10] = [
 /// The same for the species.
 const OF_SPECIES: [(&str, Quantities); 1] = [("Kinetic energy of each species", &[("kinetic_energy", "")])];
 
-/// The same for the regions in which is measured.
+/// The same for the regions of measurement.
 const OF_REGIONS: [(&str, Quantities); 4] = [
     ("Balls in regions", &[("number", "")]),
     ("Pressure in regions", &[("pressure", "")]),

@@ -132,7 +132,7 @@ impl Check {
         self.measured_regions(gas, measure)
     }
 
-    /// Regions in which is measured lie in the box, and their columns have names of their own.
+    /// Regions of measurement lie in the box, and their columns have names of their own.
     fn measured_regions(&self, gas: &Gas, measure: &Measure) -> Checked {
         let walls = ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"];
         let species = gas.species.iter().map(|species| &species.name).chain(gas.ball.iter().map(|ball| &ball.name));
