@@ -26,7 +26,8 @@ impl BackgroundDevice {
     /// # Errors
     /// Those of [`Gpu::open`].
     pub fn gpu(&self) -> Result<Gpu, GpuError> {
-        if self.window.kind == GpuKind::Hardware {
+        // A browser opens none while a program runs.
+        if self.window.kind == GpuKind::Hardware || cfg!(target_arch = "wasm32") {
             return Ok(self.window.clone());
         }
         let mut second = self.second.lock().unwrap_or_else(PoisonError::into_inner);

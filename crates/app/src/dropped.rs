@@ -2,7 +2,7 @@
 
 use crate::{Source, Start};
 use corpuscle::scene::{Scene, Terrain as Written, TerrainFile};
-use corpuscle::terrain::Terrain;
+use corpuscle::terrain::{Terrain, in_memory};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,15 +30,23 @@ pub fn open(path: &Path) -> Result<Start, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if ending == "toml" {
         let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
-        return Ok(Start::Scene(Source { name: path.display().to_string(), text, folder, changes: Vec::new() }));
+        return Ok(scene(path, text));
     }
     flood(path).map(Start::Scene)
 }
 
+/// The scene of a dropped file with its text.
+pub fn scene(path: &Path, text: String) -> Start {
+    let folder = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+    Start::Scene(Source { name: path.display().to_string(), text, folder, changes: Vec::new() })
+}
+
 /// A flood over the terrain in a file: water flows in at the head of its valley and leaves over its sides.
 fn flood(path: &Path) -> Result<Source, String> {
-    let path = fs::canonicalize(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let path = match in_memory(path) {
+        Some(_) => path.to_owned(),
+        None => fs::canonicalize(path).map_err(|error| format!("{}: {error}", path.display()))?,
+    };
     let file = Written::File(TerrainFile { path: path.clone(), crs: None, no_data: Default::default() });
     let terrain = Terrain::open(&file, 1, Path::new("")).map_err(|error| error.to_string())?;
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();

@@ -181,5 +181,5 @@ fn pair(ui: &mut Ui, left: (&str, &str), right: (&str, &str)) -> [bool; 2] {
 }
 
 fn live(change: LiveChange) -> Change {
-    Box::new(move |simulation| simulation.change_live(change))
+    Change::Model(vec![change.into()])
 }

@@ -3,7 +3,7 @@
 use egui::{Context, Grid, Modal, RichText};
 
 /// Keys and pointer actions, each with its effect.
-const ROWS: [(&str, &str); 16] = [
+const ROWS: [(&str, &str); 17] = [
     ("Space", "play and pause"),
     ("Right arrow", "one step"),
     ("R", "restart with the parameters as set"),
@@ -18,6 +18,7 @@ const ROWS: [(&str, &str); 16] = [
     ("Drag", "rotate; pan a two-dimensional gas"),
     ("Drag with the right button, or Shift", "pan"),
     ("Wheel", "zoom"),
+    ("Two fingers", "pan and zoom"),
     ("Click", "pick a particle or a position on the terrain, show its values and trajectory; Esc releases it"),
     ("F1 or ?", "this list"),
 ];

@@ -11,6 +11,7 @@ mod gallery;
 mod gas_controls;
 mod help;
 mod icons;
+pub mod link;
 mod meshes;
 mod meter;
 mod offscreen;
@@ -25,14 +26,18 @@ mod snapshot;
 mod spot;
 mod style;
 mod transport;
+#[cfg(not(target_arch = "wasm32"))]
 mod view;
 mod view_state;
+#[cfg(target_arch = "wasm32")]
+pub mod web;
 mod window;
 
 pub use meshes::Meshes;
 pub use meter::Measurement;
 pub use screen::Screen;
 pub use snapshot::{Measures, Snapshot, Wake};
+#[cfg(not(target_arch = "wasm32"))]
 pub use view::{ViewError, view};
 pub use view_state::ViewState;
 pub use window::{Source, Start, Window};

@@ -2,7 +2,8 @@
 
 use crate::Window;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// The first pictures of a scene, for which programs are still compiled, are not counted.
 const WARM_UP: Duration = Duration::from_millis(1500);

@@ -34,6 +34,9 @@ pub struct Over<'a> {
     pub dark: bool,
 }
 
+/// Height in points below which a picture has no key of colours.
+const SMALL: f32 = 260.0;
+
 impl Over<'_> {
     /// Draws the overlay; returns the height of its legend, points.
     pub fn paint(&self) -> f32 {
@@ -49,7 +52,8 @@ impl Over<'_> {
                 self.text(at, Align2::CENTER_CENTER, label, 12.5);
             }
         }
-        let key = self.key();
+        // A small picture, as in another page, would be covered by it.
+        let key = if self.rect.height() < SMALL { 0.0 } else { self.key() };
         let corner = self.rect.right_bottom() - vec2(12.0, 10.0);
         self.text(corner, Align2::RIGHT_BOTTOM, &self.shown.overlay.remark, 11.5);
         key

@@ -3,21 +3,24 @@
 use corpuscle::Sample;
 use corpuscle::gpu::DeviceParticles;
 use corpuscle::model::{Chart, Container, Frame, GaugeColumn, Ledger, Model, Path};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Wakes the window to show a new snapshot; called from any thread.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// A snapshot: the physics at one time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Number of its scene.
     pub number: u64,
     /// The time, and the particles in host memory.
     pub frame: Arc<Frame>,
     /// Particles in GPU memory that are drawn from there.
+    #[serde(skip)]
     pub on_device: Option<DeviceParticles>,
     /// All particles as last read back to the host.
+    #[serde(skip)]
     pub known: Arc<Frame>,
     /// Trajectories of followed particles.
     pub paths: Vec<Path>,
@@ -40,7 +43,7 @@ pub struct Snapshot {
 }
 
 /// Measurements of a model, which cost more than a frame.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Measures {
     /// Time, s.
     pub time: f64,

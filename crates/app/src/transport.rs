@@ -43,6 +43,8 @@ pub struct Transport<'a> {
     pub pictures: f64,
     /// The backend and why it was chosen.
     pub computed_on: Option<&'a str>,
+    /// True in a narrow window, which has no room for rates.
+    pub is_narrow: bool,
 }
 
 impl Transport<'_> {
@@ -59,25 +61,34 @@ impl Transport<'_> {
             press(icons::button(ui, Icon::Restart, "Restart", "R").clicked(), Pressed::Restart);
             press(icons::sized(ui, icon, name, "Space", 36.0, true).clicked(), Pressed::Play);
             press(icons::button(ui, Icon::Step, "One step", "right arrow").clicked(), Pressed::Step);
-            ui.add_space(6.0);
-            let mut times = self.times;
-            let slider = Slider::new(&mut times, PACES[0]..=PACES[1])
-                .logarithmic(true)
-                .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
-                .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
-            ui.spacing_mut().slider_width = 90.0;
-            let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
-            slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
-            press(slider.changed(), Pressed::Pace(times));
+            if let Some(times) = (!self.is_narrow).then(|| self.speed(ui)).flatten() {
+                pressed = Some(Pressed::Pace(times));
+            }
             ui.add_space(6.0);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                self.numbers(ui);
+                if !self.is_narrow {
+                    self.numbers(ui);
+                }
                 if let Some(time) = self.bar(ui) {
                     pressed = Some(Pressed::Seek(time));
                 }
             });
         });
         pressed
+    }
+
+    /// Shows the slider of the speed; returns the multiple chosen.
+    fn speed(&self, ui: &mut Ui) -> Option<f64> {
+        ui.add_space(6.0);
+        let mut times = self.times;
+        let slider = Slider::new(&mut times, PACES[0]..=PACES[1])
+            .logarithmic(true)
+            .custom_formatter(|times, _| format!("{} x", text::short_number(times)))
+            .custom_parser(|words| words.trim_end_matches(['x', ' ']).parse().ok());
+        ui.spacing_mut().slider_width = 90.0;
+        let slider = ui.add(slider).on_hover_text("Speed, as a multiple of the scene's default");
+        slider.widget_info(|| WidgetInfo::slider(true, times, "Speed"));
+        slider.changed().then_some(times)
     }
 
     fn time(&self, time: f64) -> String {

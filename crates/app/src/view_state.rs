@@ -16,6 +16,7 @@ pub struct ViewState {
 
 impl ViewState {
     /// A still of a moment with this camera, with its title and axes.
+    #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "a browser does not wait for it"))]
     pub(crate) fn still(&self, pictures: &mut Pictures, moment: &Moment<'_>) -> Result<Image, Error> {
         self.lift(pictures);
         pictures.still(moment, &self.camera_offset)

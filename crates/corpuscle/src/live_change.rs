@@ -4,9 +4,10 @@ use corpuscle_dew::LiveChange as Dew;
 use corpuscle_flood::LiveChange as Flood;
 use corpuscle_gas::LiveChange as Gas;
 use corpuscle_model::{Model, ModelError};
+use serde::{Deserialize, Serialize};
 
 /// A change of a running model.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum LiveChange {
     /// Of a gas.
     Gas(Gas),

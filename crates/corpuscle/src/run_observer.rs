@@ -7,7 +7,7 @@ use crate::schedule::Schedule;
 use crate::{Error, Progress, Sink};
 use corpuscle_model::{AdvanceObserver, ModelProgress};
 use std::cell::RefCell;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Start of this part of the run, to measure its rate.
 pub(crate) struct Meter {

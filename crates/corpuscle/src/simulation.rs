@@ -13,7 +13,7 @@ use std::any::Any;
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use web_time::Instant;
 
 /// Longest time between two reports of progress or checkpoints.
 const PAUSES: f64 = 1000.0;

@@ -3,10 +3,11 @@
 use crate::as_flood_mut;
 use crate::setup::setup;
 use corpuscle_model::ModelError;
+use serde::{Deserialize, Serialize};
 use std::any::Any;
 
 /// A change of a flood that runs. Inflows and stages are counted as in the scene, from 0; sides are 0 west, 1 east, 2 south, 3 north.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum LiveChange {
     /// An inflow brings so much from now on.
     Discharge {

@@ -1,7 +1,9 @@
 //! The water at a place.
 
+use serde::{Deserialize, Serialize};
+
 /// The water at a place.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Depth, m; 0 where it is dry.
     pub depth: f64,

@@ -2,6 +2,7 @@
 
 use crate::{Gpu, GpuError};
 use bytemuck::{NoUninit, Pod};
+use futures_channel::oneshot;
 use wgpu::BufferUsages;
 
 /// Memory for shaders to work on and to draw from, filled with zeros; it can be written and read from outside. At least one element long, as no
@@ -76,31 +77,54 @@ pub fn read_together<T, const COUNT: usize>(
         }
         start += length;
     }
-    let mapped = map(gpu, &copy, encoder)?;
+    let mapped = Mapping::begin(gpu, copy, encoder).wait()?;
     Ok(std::array::from_fn(|part| taken_as(&mapped[starts[part]..starts[part] + parts[part].1])))
 }
 
-/// Has the device do what fills a buffer of usage `MAP_READ`, and gives what it holds then. Waits for that, and not for what others order
-/// after it.
-///
-/// # Errors
-/// [`GpuError::Lost`].
-pub(crate) fn map(
-    gpu: &Gpu,
-    buffer: &wgpu::Buffer,
-    filling: wgpu::CommandEncoder,
-) -> Result<wgpu::BufferView, GpuError> {
-    let filled = gpu.queue.submit([filling.finish()]);
-    let lost = |reason: String| GpuError::Lost { name: gpu.name.clone(), reason };
-    let (done, answer) = std::sync::mpsc::channel();
-    buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
-        let _ = done.send(result);
-    });
-    let wait = wgpu::PollType::Wait { submission_index: Some(filled), timeout: None };
-    gpu.device.poll(wait).map_err(|error| lost(error.to_string()))?;
-    gpu.check()?;
-    answer.recv().map_err(|error| lost(error.to_string()))?.map_err(|error| lost(error.to_string()))?;
-    buffer.slice(..).get_mapped_range().map_err(|error| lost(error.to_string()))
+/// A read-back that has begun: the device was given what fills a buffer of usage `MAP_READ`.
+pub(crate) struct Mapping {
+    gpu: Gpu,
+    buffer: wgpu::Buffer,
+    filled: wgpu::SubmissionIndex,
+    answer: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl Mapping {
+    /// Has the device do what fills the buffer.
+    pub fn begin(gpu: &Gpu, buffer: wgpu::Buffer, filling: wgpu::CommandEncoder) -> Self {
+        let filled = gpu.queue.submit([filling.finish()]);
+        let (done, answer) = oneshot::channel();
+        buffer.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // Nobody waits for a read-back that was given up.
+            let _ = done.send(result);
+        });
+        Self { gpu: gpu.clone(), buffer, filled, answer }
+    }
+
+    /// What the buffer holds then. Waits for that, and not for what others order after it.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub fn wait(self) -> Result<wgpu::BufferView, GpuError> {
+        let wait = wgpu::PollType::Wait { submission_index: Some(self.filled.clone()), timeout: None };
+        self.gpu.device.poll(wait).map_err(|error| self.lost(error.to_string()))?;
+        pollster::block_on(self.later())
+    }
+
+    /// The same where one may not wait, as in a browser.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`].
+    pub async fn later(mut self) -> Result<wgpu::BufferView, GpuError> {
+        let answer = (&mut self.answer).await;
+        self.gpu.check()?;
+        answer.map_err(|error| self.lost(error.to_string()))?.map_err(|error| self.lost(error.to_string()))?;
+        self.buffer.slice(..).get_mapped_range().map_err(|error| self.lost(error.to_string()))
+    }
+
+    fn lost(&self, reason: String) -> GpuError {
+        GpuError::Lost { name: self.gpu.name.clone(), reason }
+    }
 }
 
 fn buffer(gpu: &Gpu, label: &str, size: u64, usage: BufferUsages) -> wgpu::Buffer {

@@ -1,8 +1,8 @@
 //! Layouts of groups of bindings, read from the shaders that use them.
 
 use crate::reflect::validated;
+use naga::{AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, StorageFormat, TypeInner};
 use std::collections::{BTreeMap, BTreeSet};
-use wgpu::naga::{self, AddressSpace, ImageClass, ImageDimension, ScalarKind, StorageAccess, StorageFormat, TypeInner};
 
 /// The layout of a group of bindings. Names, numbers and types of its bindings stand in WGSL alone; resources are bound by name.
 #[derive(Debug, Clone)]

@@ -39,5 +39,5 @@ pub use steps::{
     ARRIVED, BATCH_START, BROKEN, Batches, GOING, Halt, MOST_STEPS, NEEDS_HOST, SORT_BLOCK, Stepping, from_halves,
     from_pair, to_pair,
 };
-pub use texture::{read_rgba8, texture_2d};
+pub use texture::{read_rgba8, read_rgba8_later, texture_2d};
 pub use wgpu;

@@ -1,10 +1,9 @@
 //! What shaders say of themselves: which bindings they use, how their structures are laid out, and whether they keep to the portable floor.
 
 use crate::{Declaration, Layout};
+use naga::proc::Layouter;
+use naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 use std::collections::{BTreeMap, BTreeSet};
-use wgpu::naga;
-use wgpu::naga::proc::Layouter;
-use wgpu::naga::valid::{Capabilities, GlobalUse, ModuleInfo, ValidationFlags, Validator};
 
 /// Threads in a group at most, on the portable floor.
 const MOST_THREADS: u32 = 256;

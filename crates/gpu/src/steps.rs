@@ -6,7 +6,7 @@
 
 use crate::{Gpu, GpuError, Pass, PassTiming, Stopwatch, submit, wgpu};
 use bytemuck::NoUninit;
-use std::time::Instant;
+use web_time::Instant;
 
 crate::declare! {
     constants {

@@ -1,6 +1,6 @@
 //! Textures to draw into, and back to main memory.
 
-use crate::buffer::map;
+use crate::buffer::Mapping;
 use crate::{Gpu, GpuError, Image};
 
 /// A texture of `size` `[width, height]`, pixels.
@@ -35,8 +35,31 @@ pub fn texture_2d(
 /// # Errors
 /// [`GpuError::Lost`].
 pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError> {
+    let (mapping, size) = begin_reading(gpu, texture);
+    Ok(image(&mapping.wait()?, size))
+}
+
+/// [`read_rgba8`] where one may not wait, as in a browser. What the texture holds now is read, whatever is drawn into it meanwhile.
+pub fn read_rgba8_later(gpu: &Gpu, texture: &wgpu::Texture) -> impl Future<Output = Result<Image, GpuError>> + use<> {
+    let (mapping, size) = begin_reading(gpu, texture);
+    async move { Ok(image(&mapping.later().await?, size)) }
+}
+
+/// Bytes of a row in the buffer that a texture is copied to.
+fn row(width: u32) -> u32 {
+    (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+}
+
+fn image(bytes: &[u8], [width, height]: [u32; 2]) -> Image {
+    let lines = bytes.chunks_exact(row(width) as usize);
+    let rgba = lines.flat_map(|line| &line[..4 * width as usize]).copied().collect();
+    Image { width, height, rgba }
+}
+
+/// Has the device copy a texture to a buffer; gives its size too.
+fn begin_reading(gpu: &Gpu, texture: &wgpu::Texture) -> (Mapping, [u32; 2]) {
     let (width, height) = (texture.width(), texture.height());
-    let row = (4 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let row = row(width);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("read back"),
         size: u64::from(row) * u64::from(height),
@@ -50,7 +73,5 @@ pub fn read_rgba8(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Image, GpuError>
         wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
         texture.size(),
     );
-    let bytes = map(gpu, &buffer, encoder)?;
-    let rgba = bytes.chunks_exact(row as usize).flat_map(|line| &line[..4 * width as usize]).copied().collect();
-    Ok(Image { width, height, rgba })
+    (Mapping::begin(gpu, buffer, encoder), [width, height])
 }

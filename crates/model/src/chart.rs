@@ -1,7 +1,9 @@
 //! What a model measured, to be drawn.
 
+use serde::{Deserialize, Serialize};
+
 /// A chart: one or more series over one pair of axes.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct Chart {
     /// Name as in files: lower case, words joined by `_`: `speed_histogram`.
     pub name: String,
@@ -18,7 +20,7 @@ pub struct Chart {
 }
 
 /// An axis of a chart.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct ChartAxis {
     /// The quantity along it: `Speed`.
     pub label: String,
@@ -29,7 +31,7 @@ pub struct ChartAxis {
 }
 
 /// One series of a chart.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct ChartSeries {
     /// Name for the legend: `Maxwell`.
     pub name: String,
@@ -44,7 +46,7 @@ pub struct ChartSeries {
 }
 
 /// How a series is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, Eq, Default)]
 pub enum ChartStyle {
     /// A line from point to point.
     #[default]

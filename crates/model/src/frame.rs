@@ -1,7 +1,10 @@
 //! Particles at one time, as named columns.
 
+use crate::name::{self, Name};
+use serde::{Deserialize, Serialize};
+
 /// All particles of a model at one time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Frame {
     /// Simulated time, s.
     pub time: f64,
@@ -10,7 +13,7 @@ pub struct Frame {
 }
 
 /// One set of like particles. Every column has one entry for each particle.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParticleSet {
     /// What these particles are, one word: `water`.
     pub name: String,
@@ -41,18 +44,20 @@ impl ParticleSet {
 }
 
 /// A named quantity of each particle.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     /// Name as in files: lower case, words joined by `_`.
-    pub name: &'static str,
+    #[serde(deserialize_with = "name::read")]
+    pub name: Name,
     /// Unit as printed: `m`, `m/s`, `kg`; empty for a number.
-    pub unit: &'static str,
+    #[serde(deserialize_with = "name::read")]
+    pub unit: Name,
     /// The values.
     pub values: Values,
 }
 
 /// Values of a column.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Values {
     /// One number each.
     Scalar(Vec<f64>),

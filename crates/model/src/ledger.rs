@@ -1,19 +1,21 @@
 //! What should be conserved.
 
+use crate::name::{self, Name};
 use serde::{Deserialize, Serialize};
 
 /// The balances of a model.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// One balance for each conserved quantity.
     pub balances: Vec<Balance>,
 }
 
 /// The account of one conserved quantity.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Name with unit, as in files: `water_m3`.
-    pub quantity: &'static str,
+    #[serde(deserialize_with = "name::read")]
+    pub quantity: Name,
     /// Amount at the start.
     pub initial: f64,
     /// Amount that came in since.

@@ -1,7 +1,9 @@
 //! Trajectories of single particles.
 
+use serde::{Deserialize, Serialize};
+
 /// The trajectory of one particle as a polyline.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct Path {
     /// Name for legends: `ball 0`.
     pub name: String,

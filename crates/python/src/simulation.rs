@@ -6,7 +6,7 @@ use crate::watch::watched;
 use corpuscle::model::{Balance, ModelError};
 use corpuscle::models::of;
 use corpuscle::output::{FrameFormat, Summary, write_picture};
-use corpuscle::parameters::{as_number, parameters, set, value_at};
+use corpuscle::parameters::{Current, as_number, parameters, set, value_at};
 use corpuscle::pictures::{Moment, PictureSettings, Pictures};
 use corpuscle::scene::Scene;
 use corpuscle::{Error, Progress, Recorder, Sink};
@@ -84,12 +84,13 @@ impl State {
             return Err(ModelError::Setup(what).into());
         };
         let (changes, _) = self.changed(Some((key, value)))?;
-        let numbers = |path: &str| value_at(&offered.document, path).and_then(as_number);
-        let Some(change) = found.live.and_then(|live| live(key, value, &numbers)) else {
+        let number = |path: &str| value_at(&offered.document, path).and_then(as_number);
+        let current = Current { scene: self.simulation.scene(), number: &number };
+        let Some(change) = found.live.and_then(|live| live(key, value, &current)) else {
             let what = format!("{key} = {value}: this is no value of it; give a number, as in the scene");
             return Err(ModelError::Setup(what).into());
         };
-        change(&mut self.simulation)?;
+        change.make(&mut self.simulation)?;
         self.changes = changes;
         Ok(())
     }

@@ -4,7 +4,7 @@ use crate::pipeline::PipelineDescriptor;
 use crate::static_layer::{StaticLayer, StaticUse};
 use crate::tone::Tone;
 use crate::{Before, Camera, Drawable, Light, RenderError, Stage, Target, Through, View, shaders};
-use corpuscle_gpu::{Gpu, GroupLayout, Image, read_rgba8, wgpu};
+use corpuscle_gpu::{Gpu, GroupLayout, Image, read_rgba8, read_rgba8_later, wgpu};
 use std::sync::PoisonError;
 
 /// The renderer of pictures; holds pipelines and layouts.
@@ -114,6 +114,12 @@ impl Renderer {
     /// [`RenderError::Gpu`] where the device was lost.
     pub fn read(&self, target: &Target) -> Result<Image, RenderError> {
         Ok(read_rgba8(&self.gpu, &target.picture)?)
+    }
+
+    /// [`Renderer::read`] where one may not wait, as in a browser.
+    pub fn read_later(&self, target: &Target) -> impl Future<Output = Result<Image, RenderError>> + use<> {
+        let reading = read_rgba8_later(&self.gpu, &target.picture);
+        async move { Ok(reading.await?) }
     }
 
     fn draw_opaque(

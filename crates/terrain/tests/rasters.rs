@@ -1,6 +1,6 @@
 //! Files in, files out: formats, sample types, layouts, units, no-data.
 
-use corpuscle_terrain::{Raster, Terrain, read_raster, write_geotiff};
+use corpuscle_terrain::{Raster, Terrain, hold_in_memory, read_raster, write_geotiff};
 use flate2::write::GzEncoder;
 use geotiff_reader::GeoTiffFile;
 use geotiff_reader::transform::GeoTransform;
@@ -43,6 +43,28 @@ fn temporary(name: &str) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     (folder, path)
+}
+
+#[test]
+fn a_file_in_memory_is_read_as_from_the_disk() {
+    let (folder, path) = temporary("dem.tif");
+    write(&path, &builder(), |v| v);
+    let grid = folder.path().join("dem.asc");
+    let row = |row| (0..COLUMNS).map(|column| format!("{} ", value(column, row))).collect::<String>();
+    let rows: Vec<_> = (0..ROWS).map(row).collect();
+    let head = format!("ncols {COLUMNS}\nnrows {ROWS}\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
+    std::fs::write(&grid, head + &rows.join("\n")).unwrap();
+    for path in [path, grid] {
+        let held = Path::new("/nowhere").join(path.file_name().unwrap());
+        assert!(read_raster(&held).is_err());
+        hold_in_memory(held.clone(), &std::fs::read(&path).unwrap());
+        let (of_memory, of_disk) = (read_raster(&held).unwrap(), read_raster(&path).unwrap());
+        assert_values(&of_memory);
+        assert_eq!(of_memory.values, of_disk.values);
+        assert_eq!(format!("{:?}", of_memory.georeference), format!("{:?}", of_disk.georeference));
+    }
+    hold_in_memory("/nowhere/broken.tif".into(), b"II*\0broken");
+    assert!(read_raster(Path::new("/nowhere/broken.tif")).is_err());
 }
 
 #[test]

@@ -1,26 +1,108 @@
 //! The thread that draws.
 
-use super::{PausedSettings, RenderJob, RenderResult, SharedQueue};
+use super::drawing::{Drawing, STILL_SIZE};
+use super::{PausedSettings, RenderJob, RenderResult};
 use crate::background_device::BackgroundDevice;
 use crate::files;
 use crate::snapshot::Wake;
 use crate::view_state::moment;
 use corpuscle::Error;
 use corpuscle::gpu::Image;
-use corpuscle::pictures::{PictureSettings, Pictures, Shown};
-use corpuscle_render::RenderError;
+use corpuscle::pictures::Shown;
+use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::PoisonError;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
 
-/// Size of a still, pixels.
-const STILL_SIZE: [u32; 2] = [1920, 1080];
 const FAULT: &str = "an internal error stopped the picture";
 
+/// The pictures that wait to be drawn.
+#[derive(Default)]
+struct JobQueue {
+    /// Stills, each with its folder and the name of its scene.
+    stills: VecDeque<(RenderJob, PathBuf, String)>,
+    /// The newest request for the window's picture, with its number.
+    paused: Option<(u64, RenderJob, PausedSettings)>,
+    /// The number of such requests so far.
+    requests: u64,
+    /// True once the window closes: only stills are drawn then.
+    closed: bool,
+}
+
+/// The queue of the two threads, with the condition variable that wakes the one that draws.
+#[derive(Default)]
+struct SharedQueue {
+    queue: Mutex<JobQueue>,
+    condvar: Condvar,
+}
+
+impl SharedQueue {
+    fn queue(&self) -> MutexGuard<'_, JobQueue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn put<T>(&self, change: impl FnOnce(&mut JobQueue) -> T) -> T {
+        let put = change(&mut self.queue());
+        self.condvar.notify_one();
+        put
+    }
+}
+
+/// The handle of the thread that draws. Dropping it waits for the picture that is being drawn, and for the stills in the queue.
+pub struct OffscreenRenderer {
+    shared: Arc<SharedQueue>,
+    results: Receiver<RenderResult>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl OffscreenRenderer {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// Where the thread cannot be started.
+    pub fn start(device: BackgroundDevice, wake: Wake) -> std::io::Result<Self> {
+        let (sender, results) = channel();
+        let shared = Arc::<SharedQueue>::default();
+        let own = shared.clone();
+        let run = move || run(&own, &sender, &wake, device);
+        let thread = std::thread::Builder::new().name("offscreen".into()).spawn(run)?;
+        Ok(Self { shared, results, thread: Some(thread) })
+    }
+
+    /// Requests a still in a folder, named after a scene.
+    pub fn still(&self, job: RenderJob, folder: PathBuf, name: String) {
+        self.shared.put(|queue| queue.stills.push_back((job, folder, name)));
+    }
+
+    /// Requests the window's picture of a paused scene and returns the number of the request; it replaces an earlier one that is not begun.
+    pub fn draw_paused(&self, job: RenderJob, settings: PausedSettings) -> u64 {
+        self.shared.put(|queue| {
+            queue.requests += 1;
+            queue.paused = Some((queue.requests, job, settings));
+            queue.requests
+        })
+    }
+
+    /// The pictures drawn since the last call, oldest first.
+    pub fn results(&self) -> Vec<RenderResult> {
+        self.results.try_iter().collect()
+    }
+}
+
+impl Drop for OffscreenRenderer {
+    fn drop(&mut self) {
+        self.shared.put(|queue| (queue.paused, queue.closed) = (None, true));
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
 /// Draws what is requested until the queue is closed.
-pub(super) fn run(shared: &SharedQueue, results: &Sender<RenderResult>, wake: &Wake, device: &BackgroundDevice) {
-    let mut thread = Thread { device, scene: None };
+fn run(shared: &SharedQueue, results: &Sender<RenderResult>, wake: &Wake, device: BackgroundDevice) {
+    let mut thread = Thread(Drawing::new(device));
     while let Some(request) = next(shared) {
         // The receiver is gone when the window closes.
         let _ = results.send(thread.render(request));
@@ -51,61 +133,40 @@ fn next(shared: &SharedQueue) -> Option<Request> {
     }
 }
 
-struct Thread<'a> {
-    device: &'a BackgroundDevice,
-    /// The scene that was drawn last, by its number, and its pictures.
-    scene: Option<(u64, Pictures)>,
-}
+/// The thread's own state.
+struct Thread(Drawing);
 
-impl Thread<'_> {
+impl Thread {
     fn render(&mut self, request: Request) -> RenderResult {
         match request {
             Request::Still(job, folder, name) => {
-                RenderResult::Still(self.guarded(|thread| thread.still(&job, &folder, &name)))
+                RenderResult::Still(self.guarded(|drawing| still(drawing, &job, &folder, &name)))
             }
             Request::Paused(number, job, settings) => {
-                RenderResult::Paused(number, self.guarded(|thread| thread.paused(&job, &settings)))
+                RenderResult::Paused(number, self.guarded(|drawing| paused(drawing, &job, &settings)))
             }
         }
     }
 
     /// Draws and turns a panic into an error, so that it does not end the thread.
-    fn guarded<T>(&mut self, draw: impl FnOnce(&mut Self) -> Result<T, Error>) -> Result<T, String> {
-        match catch_unwind(AssertUnwindSafe(|| draw(self))) {
+    fn guarded<T>(&mut self, draw: impl FnOnce(&mut Drawing) -> Result<T, Error>) -> Result<T, String> {
+        match catch_unwind(AssertUnwindSafe(|| draw(&mut self.0))) {
             Ok(done) => done.map_err(|error| error.to_string()),
             Err(_) => {
-                self.scene = None;
+                self.0.forget();
                 Err(FAULT.into())
             }
         }
     }
+}
 
-    fn still(&mut self, job: &RenderJob, folder: &Path, name: &str) -> Result<PathBuf, Error> {
-        let pictures = self.pictures(job, STILL_SIZE, 2)?;
-        let image = job.view_state.still(pictures, &moment(&job.snapshot))?;
-        files::picture(folder, name, &image)
-    }
+fn still(drawing: &mut Drawing, job: &RenderJob, folder: &Path, name: &str) -> Result<PathBuf, Error> {
+    let pictures = drawing.pictures(job, STILL_SIZE, 2)?;
+    let image = job.view_state.still(pictures, &moment(&job.snapshot))?;
+    files::picture(folder, name, &image)
+}
 
-    fn paused(&mut self, job: &RenderJob, settings: &PausedSettings) -> Result<Box<(Shown, Image)>, Error> {
-        let pictures = self.pictures(job, settings.size, settings.samples)?;
-        job.view_state.lift(pictures);
-        let shown =
-            pictures.show(&moment(&job.snapshot), &job.view_state.camera_offset, settings.quality, settings.paper)?;
-        Ok(Box::new((shown, pictures.read()?)))
-    }
-
-    /// What draws a scene, in this size.
-    fn pictures(&mut self, job: &RenderJob, size: [u32; 2], samples: u32) -> Result<&mut Pictures, Error> {
-        let number = job.snapshot.number;
-        if self.scene.as_ref().is_none_or(|(open, _)| *open != number) {
-            // The memory of the last one is free before the next takes its own.
-            self.scene = None;
-            let gpu = self.device.gpu().map_err(RenderError::from)?;
-            let settings = PictureSettings { size, samples, ..PictureSettings::default() };
-            self.scene = Some((number, Pictures::open_scenery(&gpu, &job.scenery, settings)?));
-        }
-        let (_, pictures) = self.scene.as_mut().expect("it was opened above");
-        pictures.resize(size, samples)?;
-        Ok(pictures)
-    }
+fn paused(drawing: &mut Drawing, job: &RenderJob, settings: &PausedSettings) -> Result<Box<(Shown, Image)>, Error> {
+    let (shown, pictures) = drawing.paused(job, settings)?;
+    Ok(Box::new((shown, pictures.read()?)))
 }

@@ -4,7 +4,7 @@ mod slider;
 
 use crate::icons::{self, Icon};
 use corpuscle::parameters::{
-    Builder, Change, Control, Group, Parameter, as_number, largest, multiplied, parameters, set, value_at,
+    Builder, Change, Control, Current, Group, Parameter, as_number, largest, multiplied, parameters, set, value_at,
 };
 use corpuscle::scene::Scene;
 use egui::{Align, ComboBox, Layout, RichText, Ui, WidgetInfo};
@@ -97,8 +97,8 @@ impl Parameters {
         self.changes != self.applied
     }
 
-    /// Shows the parameters; returns the changes made.
-    pub fn ui(&mut self, ui: &mut Ui) -> Vec<Changed> {
+    /// Shows the parameters of a scene that runs; returns the changes made.
+    pub fn ui(&mut self, ui: &mut Ui, scene: &Scene) -> Vec<Changed> {
         let mut done = Vec::new();
         let groups = std::mem::take(&mut self.groups);
         for group in &groups {
@@ -107,8 +107,8 @@ impl Parameters {
             for parameter in &group.parameters {
                 if let Some(value) = self.row(ui, parameter) {
                     self.set(&parameter.path, value.clone());
-                    let numbers = |path: &str| self.number_at(path);
-                    if let Some(change) = parameter.live.and_then(|live| live(&parameter.path, &value, &numbers)) {
+                    let current = Current { scene, number: &|path| self.number_at(path) };
+                    if let Some(change) = parameter.live.and_then(|live| live(&parameter.path, &value, &current)) {
                         let written = self.change_of(&parameter.path);
                         set(&mut self.applied, &parameter.path, written);
                         done.push(Changed::Live(change));

@@ -68,7 +68,7 @@ mod tests {
         let Some(gpu) = require_gpu("a film that follows the view") else { return };
         let name = "gas/free-expansion";
         let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
-        let subject = Subject::live(scene, Path::new(""), Backend::Cpu, &gpu).unwrap();
+        let subject = Subject::live(scene, Path::new(""), Backend::Cpu, Some(&gpu)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("film");
         let mut filming = Filming::begin(&gpu, &subject, &film, 1.0).unwrap();

@@ -3,7 +3,7 @@
 use super::Shared;
 use super::filming::Filming;
 use super::pace::Pace;
-use super::thread::{MEASURE, PICTURES, Rate, Running};
+use super::runner::{MEASURE, PICTURES, Rate, Running};
 use crate::snapshot::{Measures, Snapshot};
 use corpuscle::gpu::Gpu;
 use corpuscle::model::{AdvanceObserver, Container, Frame, ModelProgress};
@@ -12,7 +12,8 @@ use corpuscle::{Error, Sample};
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// An error of the model or of the film.
 pub(super) enum Fault {

@@ -1,10 +1,22 @@
-//! The physics in its own thread: it takes commands, advances in slices of wall-clock time, and publishes snapshots.
+//! The physics: it takes commands, advances in slices of wall-clock time, and publishes snapshots; in its own thread, in a browser in a
+//! worker.
 
+#[cfg(feature = "film")]
+mod filming;
+#[cfg(not(feature = "film"))]
+#[path = "no_films.rs"]
 mod filming;
 mod gpu_advance;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod message;
 mod pace;
+mod runner;
+mod scene_text;
 mod subject;
+#[cfg(not(target_arch = "wasm32"))]
 mod thread;
+#[cfg(target_arch = "wasm32")]
+mod worker;
 
 use crate::background_device::BackgroundDevice;
 use crate::snapshot::{Snapshot, Wake};
@@ -13,12 +25,15 @@ use corpuscle::gpu::Gpu;
 pub use corpuscle::parameters::Change;
 use corpuscle::pictures::{Pictures, Scenery};
 use corpuscle::scene::Scene;
-use corpuscle::terrain::Terrain;
+pub(crate) use runner::open_pictures;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
+#[cfg(not(target_arch = "wasm32"))]
+pub use thread::Physics;
+#[cfg(target_arch = "wasm32")]
+pub use worker::{Physics, serve};
 
 /// Duration of a whole scene at the default pace, s.
 const WHOLE: f64 = 40.0;
@@ -48,10 +63,11 @@ pub enum Backend {
     Gpu,
 }
 
-/// A command to the physics thread.
+/// A command to the physics.
+#[derive(Serialize, Deserialize)]
 pub enum Command {
     /// Open a scene and pause at its start. Relative paths are taken from the folder.
-    Open(Box<Scene>, PathBuf),
+    Open(#[serde(with = "scene_text")] Box<Scene>, PathBuf),
     /// Open a finished run from its folder and pause at its start.
     OpenRun(PathBuf),
     /// Show another time of a finished run, s.
@@ -74,7 +90,7 @@ pub enum Command {
     Change(Change),
 }
 
-/// An event of the physics thread.
+/// An event of the physics.
 pub enum Event {
     /// A scene is open at its start.
     Opened(Box<Opened>),
@@ -96,8 +112,8 @@ pub struct Opened {
     pub number: u64,
     /// The scene with all defaults filled in.
     pub scene: Scene,
-    /// Its pictures.
-    pub pictures: Pictures,
+    /// Its pictures; none where the physics has no device that draws.
+    pub pictures: Option<Pictures>,
     /// What pictures in another thread need of it.
     pub scenery: Scenery,
     /// Names of its gauges, as in files.
@@ -108,8 +124,6 @@ pub struct Opened {
     pub computed_on: Option<String>,
     /// Of a finished run its gauges: times, s, and rows of values.
     pub history: Option<Vec<(f64, Vec<f64>)>>,
-    /// Its terrain, if it has one.
-    pub terrain: Option<Arc<Terrain>>,
     /// End time, s.
     pub end: f64,
 }
@@ -127,15 +141,22 @@ struct Shared {
 }
 
 /// The devices that draw and compute.
-#[derive(Clone, Copy)]
-struct Devices<'a> {
+struct Devices {
     /// The window's.
-    gpu: &'a Gpu,
-    background: &'a BackgroundDevice,
-    backend: Backend,
+    gpu: Gpu,
+    background: BackgroundDevice,
 }
 
 impl Shared {
+    fn new(wake: Wake) -> Self {
+        let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
+        Self { newest: Mutex::default(), view_state: Mutex::default(), follows, stop, wake }
+    }
+
+    fn newest(&self) -> Option<Arc<Snapshot>> {
+        self.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     fn publish(&self, snapshot: Snapshot) {
         *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(snapshot));
         (self.wake)();
@@ -143,76 +164,5 @@ impl Shared {
 
     fn view_state(&self) -> ViewState {
         *self.view_state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// The handle of the physics thread. Dropping it ends the thread.
-pub struct Physics {
-    commands: Option<Sender<Command>>,
-    events: Receiver<Event>,
-    shared: Arc<Shared>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Physics {
-    /// Starts the thread: `gpu` draws pictures and may take the steps too, `background` draws films.
-    ///
-    /// # Errors
-    /// Where the thread cannot be started.
-    pub(crate) fn start(
-        gpu: &Gpu,
-        background: BackgroundDevice,
-        backend: Backend,
-        wake: Wake,
-    ) -> std::io::Result<Self> {
-        let (commands, taken) = channel();
-        let (sender, events) = channel();
-        let (newest, view_state) = (Mutex::default(), Mutex::default());
-        let [follows, stop] = [(); 2].map(|()| AtomicBool::new(false));
-        let shared = Arc::new(Shared { newest, view_state, follows, stop, wake });
-        let (gpu, own) = (gpu.clone(), shared.clone());
-        let run = move || thread::run(&taken, &sender, &own, Devices { gpu: &gpu, background: &background, backend });
-        let thread = std::thread::Builder::new().name("physics".into()).spawn(run)?;
-        Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
-    }
-
-    /// Sends a command. Never waits.
-    pub fn send(&self, command: Command) {
-        if let Some(commands) = &self.commands {
-            // Set before the command is sent, so that it does not end the command's own slice.
-            self.shared.stop.store(true, Ordering::Relaxed);
-            // A thread that has ended has sent an event.
-            let _ = commands.send(command);
-        }
-    }
-
-    /// Sets the camera of films. Never waits.
-    pub fn see(&self, view_state: ViewState) {
-        *self.shared.view_state.lock().unwrap_or_else(PoisonError::into_inner) = view_state;
-    }
-
-    /// Sets whether a particle is followed: the particles are then read back from the GPU regularly. Never waits.
-    pub fn follow(&self, follows: bool) {
-        self.shared.follows.store(follows, Ordering::Relaxed);
-    }
-
-    /// The events since the last call, the oldest first.
-    pub fn events(&self) -> Vec<Event> {
-        self.events.try_iter().collect()
-    }
-
-    /// The newest snapshot.
-    pub fn newest(&self) -> Option<Arc<Snapshot>> {
-        self.shared.newest.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-}
-
-impl Drop for Physics {
-    fn drop(&mut self) {
-        self.commands = None;
-        self.shared.stop.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
     }
 }

@@ -31,18 +31,21 @@ pub(super) struct Recorded {
 }
 
 impl Subject {
-    /// Opens a scene at its start, on a backend, with the device of the window.
-    pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: &Gpu) -> Result<Self, Error> {
+    /// Opens a scene at its start, on a backend, with the device of the window, if there is one.
+    pub fn live(scene: Scene, folder: &Path, backend: Backend, gpu: Option<&Gpu>) -> Result<Self, Error> {
         let mut simulation = Simulation::open(scene, folder)?;
         let choice = |is_gpu, why: &str| Choice { is_gpu, why: why.into() };
-        let choice = match backend {
-            Backend::Auto => simulation.use_best_on(gpu),
-            Backend::Gpu if simulation.model().on_gpu().is_none() => choice(false, "this model runs on the CPU only"),
-            Backend::Gpu => {
+        let choice = match (backend, gpu) {
+            (Backend::Auto | Backend::Gpu, None) => choice(false, "in a browser's worker"),
+            (Backend::Auto, Some(gpu)) => simulation.use_best_on(gpu),
+            (Backend::Gpu, Some(_)) if simulation.model().on_gpu().is_none() => {
+                choice(false, "this model runs on the CPU only")
+            }
+            (Backend::Gpu, Some(gpu)) => {
                 simulation.use_this_gpu(gpu.clone())?;
                 choice(true, &gpu.name)
             }
-            Backend::Cpu => choice(false, "as requested"),
+            (Backend::Cpu, _) => choice(false, "as requested"),
         };
         Ok(Self::Live(Box::new(simulation), choice))
     }
@@ -140,7 +143,7 @@ impl Subject {
     /// Changes what is computed; a finished run stays as it is.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         match self {
-            Self::Live(simulation, _) => change(simulation),
+            Self::Live(simulation, _) => change.make(simulation),
             Self::Recorded(_) => Ok(()),
         }
     }

@@ -1,36 +1,91 @@
-//! The physics thread.
+//! The physics in its own thread.
 
-use super::filming::Filming;
-use super::gpu_advance::{self, Fault};
-use super::pace::Pace;
-use super::subject::Subject;
-use super::{Command, Devices, Event, Opened, Shared, default_pace};
-use crate::snapshot::{Measures, Snapshot};
+use super::runner::Runner;
+use super::{Backend, Command, Devices, Event, Shared};
+use crate::background_device::BackgroundDevice;
+use crate::snapshot::{Snapshot, Wake};
+use crate::view_state::ViewState;
 use corpuscle::gpu::Gpu;
-use corpuscle::model::Frame;
-use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
-use corpuscle::{Error, Sample};
-use corpuscle_render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, PoisonError};
+use std::thread::JoinHandle;
 
-/// Pictures in a second at most.
-pub(super) const PICTURES: f64 = 60.0;
-/// Time between two measurements at least, and how many times longer than one takes.
-pub(super) const MEASURE: Duration = Duration::from_millis(120);
-const MEASURE_SHARE: u32 = 10;
-/// Initial size of pictures; the window resizes them.
-const SMALL: [u32; 2] = [16, 16];
+/// The handle of the physics thread. Dropping it ends the thread.
+pub struct Physics {
+    commands: Option<Sender<Command>>,
+    events: Receiver<Event>,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Physics {
+    /// Starts the thread: `gpu` draws pictures and may take the steps too, `background` draws films.
+    ///
+    /// # Errors
+    /// Where the thread cannot be started.
+    pub(crate) fn start(
+        gpu: &Gpu,
+        background: BackgroundDevice,
+        backend: Backend,
+        wake: Wake,
+    ) -> std::io::Result<Self> {
+        let (commands, taken) = channel();
+        let (sender, events) = channel();
+        let shared = Arc::new(Shared::new(wake));
+        let devices = Devices { gpu: gpu.clone(), background };
+        let runner = Runner::new(sender, shared.clone(), backend, Some(devices));
+        let own = shared.clone();
+        let thread = std::thread::Builder::new().name("physics".into()).spawn(move || run(runner, &taken, &own))?;
+        Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })
+    }
+
+    /// Sends a command. Never waits.
+    pub fn send(&self, command: Command) {
+        if let Some(commands) = &self.commands {
+            // Set before the command is sent, so that it does not end the command's own slice.
+            self.shared.stop.store(true, Ordering::Relaxed);
+            // A thread that has ended has sent an event.
+            let _ = commands.send(command);
+        }
+    }
+
+    /// Sets the camera of films. Never waits.
+    pub fn see(&self, view_state: ViewState) {
+        *self.shared.view_state.lock().unwrap_or_else(PoisonError::into_inner) = view_state;
+    }
+
+    /// Sets whether a particle is followed: the particles are then read back from the GPU regularly. Never waits.
+    pub fn follow(&self, follows: bool) {
+        self.shared.follows.store(follows, Ordering::Relaxed);
+    }
+
+    /// The events since the last call, the oldest first.
+    pub fn events(&self) -> Vec<Event> {
+        self.events.try_iter().collect()
+    }
+
+    /// The newest snapshot.
+    pub fn newest(&self) -> Option<Arc<Snapshot>> {
+        self.shared.newest()
+    }
+}
+
+impl Drop for Physics {
+    fn drop(&mut self) {
+        self.commands = None;
+        self.shared.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
 
 /// Takes commands and advances until the sender of commands is dropped.
-pub(super) fn run(commands: &Receiver<Command>, events: &Sender<Event>, shared: &Arc<Shared>, devices: Devices<'_>) {
-    let mut thread = Thread { events, shared, devices, number: 0, running: None };
+fn run(mut runner: Runner, commands: &Receiver<Command>, shared: &Shared) {
     loop {
-        let next = match thread.time_left() {
+        let next = match runner.time_left() {
             None => commands.recv().map_err(|_| RecvTimeoutError::Disconnected),
             Some(left) => commands.recv_timeout(left),
         };
@@ -38,317 +93,19 @@ pub(super) fn run(commands: &Receiver<Command>, events: &Sender<Event>, shared: 
         // A panic must not end the window.
         let done = catch_unwind(AssertUnwindSafe(|| match next {
             Ok(command) => {
-                thread.take(command);
+                runner.take(command);
                 true
             }
             Err(RecvTimeoutError::Timeout) => {
-                thread.slice();
+                runner.slice();
                 true
             }
             Err(RecvTimeoutError::Disconnected) => false,
         }));
         match done {
             Ok(true) => {}
-            Ok(false) => return thread.end_film(),
-            Err(_) => {
-                thread.running = None;
-                thread.send(Event::Fault("an internal error stopped the scene; open it again".into()));
-            }
+            Ok(false) => return runner.end_film(),
+            Err(_) => runner.broken(),
         }
-    }
-}
-
-struct Thread<'a> {
-    events: &'a Sender<Event>,
-    shared: &'a Arc<Shared>,
-    devices: Devices<'a>,
-    /// Scenes opened so far.
-    number: u64,
-    running: Option<Running>,
-}
-
-/// The scene that is open.
-pub(super) struct Running {
-    pub subject: Subject,
-    playing: bool,
-    /// Time of the next pause, s.
-    pub until: f64,
-    pub pace: Pace,
-    /// When the last slice began.
-    began: Instant,
-    pub measured: Arc<Measures>,
-    /// When it may be measured again.
-    pub measure_at: Instant,
-    pub rate: Rate,
-    /// Position at which the water is sampled.
-    pub probe: Option<[f64; 2]>,
-    pub filming: Option<Filming>,
-    /// The water there, and all particles, as last read back.
-    pub probed: Option<Sample>,
-    pub known: Arc<Frame>,
-}
-
-/// Rate of work.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Rate {
-    /// Work done at the last update, and when that was.
-    noted: (u64, Instant),
-    pub now: f64,
-}
-
-impl Rate {
-    /// Updates the rate with the work done so far.
-    pub fn note(&mut self, work: u64) {
-        let (before, when) = self.noted;
-        let since = when.elapsed().as_secs_f64();
-        // While particles come back from a GPU no work is done.
-        if since > 0.5 && work > before || since > 2.0 {
-            self.now = work.saturating_sub(before) as f64 / since;
-            self.noted = (work, Instant::now());
-        }
-    }
-}
-
-impl Thread<'_> {
-    /// How long to wait for a command before the next slice; none while paused.
-    fn time_left(&self) -> Option<Duration> {
-        let running = self.running.as_ref().filter(|running| running.playing)?;
-        Some(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(running.began.elapsed()))
-    }
-
-    fn send(&self, event: Event) {
-        // The receiver is gone when the window closes.
-        let _ = self.events.send(event);
-        (self.shared.wake)();
-    }
-
-    fn take(&mut self, command: Command) {
-        let command = match command {
-            Command::Open(scene, folder) => {
-                let Devices { gpu, backend, .. } = self.devices;
-                return self.open(|| Subject::live(*scene, &folder, backend, gpu));
-            }
-            Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
-            command => command,
-        };
-        let Some(running) = &mut self.running else { return };
-        match command {
-            Command::Open(..) | Command::OpenRun(..) => {}
-            Command::Seek(time) => {
-                if let Err(error) = running.subject.seek(time) {
-                    self.send(Event::Fault(error.to_string()));
-                }
-            }
-            Command::Play => {
-                running.until = running.subject.next_end();
-                (running.playing, running.began) = (true, Instant::now());
-            }
-            Command::Pause => running.wait(),
-            Command::Probe(place) => running.probe = place,
-            Command::Film(path) => self.film(&path),
-            Command::EndFilm => self.end_film(),
-            Command::Pace(pace) => running.pace.requested = pace,
-            Command::Step(by) => self.step(by),
-            Command::Change(change) => match running.subject.change(change) {
-                Ok(()) => running.measure_at = Instant::now(),
-                Err(error) => self.send(Event::NotChanged(error.to_string())),
-            },
-        }
-        self.publish();
-    }
-
-    fn open(&mut self, subject: impl FnOnce() -> Result<Subject, Error>) {
-        self.end_film();
-        self.running = None;
-        self.number += 1;
-        match subject().and_then(|subject| self.put(subject)) {
-            Ok(opened) => {
-                self.publish();
-                self.send(Event::Opened(Box::new(opened)));
-            }
-            Err(error) => self.send(Event::Refused(error.to_string())),
-        }
-    }
-
-    /// Sets up the opened scene.
-    fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
-        let simulation = subject.simulation();
-        let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
-        let scenery = Scenery::of(simulation);
-        let pictures = Pictures::open_scenery(self.devices.gpu, &scenery, settings)?;
-        let scene = simulation.scene().clone();
-        let now = Instant::now();
-        let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
-        let (history, computed_on) = (subject.history(), subject.computed_on());
-        let terrain = simulation.terrain().cloned();
-        let end = subject.end();
-        self.running = Some(Running {
-            playing: false,
-            until: end,
-            pace: Pace::new(default_pace(end)),
-            began: now,
-            measured: Arc::default(),
-            measure_at: now,
-            rate: Rate { noted: (subject.work(), now), now: 0.0 },
-            probe: None,
-            filming: None,
-            probed: None,
-            known: Arc::new(Frame { time: 0.0, sets: Vec::new() }),
-            subject,
-        });
-        Ok(Opened {
-            number: self.number,
-            scene,
-            pictures,
-            scenery,
-            gauges,
-            warnings,
-            computed_on,
-            history,
-            terrain,
-            end,
-        })
-    }
-
-    fn film(&mut self, path: &Path) {
-        let Some(running) = &mut self.running else { return };
-        let gpu = self.devices.background.gpu().map_err(|error| Error::from(RenderError::from(error)));
-        match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.requested)) {
-            Ok(filming) => {
-                running.filming = Some(filming);
-                self.add_film_picture();
-            }
-            Err(error) => self.send(Event::Filmed(Err(error.to_string()))),
-        }
-    }
-
-    fn step(&mut self, by: f64) {
-        let Some(running) = &mut self.running else { return };
-        running.wait();
-        let to = running.subject.time() + by;
-        if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
-            self.send(Event::Fault(error.to_string()));
-        }
-        self.add_film_picture();
-    }
-
-    /// Advances for a slice of wall-clock time.
-    fn slice(&mut self) {
-        let Some(running) = &mut self.running else { return };
-        let begun = Instant::now();
-        if running.subject.drawn_in_place(self.devices.gpu).is_some() {
-            running.began = begun;
-            return self.advance_on_gpu();
-        }
-        let from = running.subject.time();
-        let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
-        // The pictures of a film are due at fixed times.
-        let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
-        let whole = running.began.elapsed();
-        running.began = begun;
-        let gone = running.subject.advance_to(to, &self.shared.stop);
-        let now = running.subject.time();
-        running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
-        self.add_film_picture();
-        self.went(gone);
-    }
-
-    /// Advances on the GPU that draws, until a command arrives or the particles are needed.
-    fn advance_on_gpu(&mut self) {
-        let Some(running) = &mut self.running else { return };
-        match gpu_advance::advance(running, self.shared, self.devices.gpu, self.number) {
-            Err(Fault::OfModel(error)) => self.went(Err(error)),
-            Err(Fault::OfFilm(error)) => {
-                running.filming = None;
-                self.send(Event::Filmed(Err(error.to_string())));
-                self.went(Ok(()));
-            }
-            Ok(recalled) => {
-                self.went(Ok(()));
-                if let (Some(recalled), Some(running)) = (recalled, &mut self.running) {
-                    running.measure_at = Instant::now() + MEASURE.max(recalled.elapsed() * MEASURE_SHARE);
-                }
-            }
-        }
-    }
-
-    /// Publishes the result of a slice, and pauses at the end or after an error.
-    fn went(&mut self, gone: Result<(), Error>) {
-        let Some(running) = &mut self.running else { return };
-        let event = match gone {
-            Err(error) => Some(Event::Fault(error.to_string())),
-            Ok(()) if running.subject.time() >= running.until => Some(Event::Ended),
-            Ok(()) => None,
-        };
-        if event.is_some() {
-            running.wait();
-        }
-        self.publish();
-        if let Some(event) = event {
-            self.send(event);
-        }
-    }
-
-    /// Adds a picture to the film, where one is recorded and a picture is due.
-    fn add_film_picture(&mut self) {
-        let Some(running) = &mut self.running else { return };
-        let Some(filming) = &mut running.filming else { return };
-        let view_state = self.shared.view_state();
-        if let Err(error) = filming.add_if_due(&running.subject, &view_state) {
-            running.filming = None;
-            self.send(Event::Filmed(Err(error.to_string())));
-        }
-    }
-
-    fn end_film(&mut self) {
-        let filming = self.running.as_mut().and_then(|running| running.filming.take());
-        if let Some(filming) = filming {
-            self.send(Event::Filmed(filming.finish().map_err(|error| error.to_string())));
-        }
-    }
-
-    /// Publishes a snapshot.
-    fn publish(&mut self) {
-        let Some(running) = &mut self.running else { return };
-        match running.snapshot(self.number, self.devices.gpu) {
-            Ok(snapshot) => self.shared.publish(snapshot),
-            Err(error) => self.send(Event::Fault(error.to_string())),
-        }
-    }
-}
-
-impl Running {
-    fn wait(&mut self) {
-        self.playing = false;
-        self.pace.rest();
-        // A paused scene shows its newest measurements.
-        self.measure_at = Instant::now();
-    }
-
-    fn snapshot(&mut self, number: u64, gpu: &Gpu) -> Result<Snapshot, Error> {
-        let now = Instant::now();
-        if now >= self.measure_at {
-            self.measured = Arc::new(self.subject.measures());
-            self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
-        }
-        self.rate.note(self.subject.work());
-        let (frame, paths, container) = self.subject.current();
-        self.known = Arc::new(frame);
-        self.probed = self.probe.and_then(|place| self.subject.water_at(place));
-        Ok(Snapshot {
-            number,
-            particles: self.subject.particles(),
-            frame: self.known.clone(),
-            on_device: self.subject.on_device(gpu)?,
-            known: self.known.clone(),
-            paths,
-            container,
-            playing: self.playing,
-            pace: self.pace.real,
-            behind: self.playing && self.pace.is_behind(),
-            rate: if self.playing { self.rate.now } else { 0.0 },
-            probed: self.probed,
-            measures: self.measured.clone(),
-        })
     }
 }

@@ -11,10 +11,11 @@ use crate::{Screen, style};
 use corpuscle::gpu::GpuKind;
 use corpuscle::pictures::{CameraOffset, Pictures, Quality, Scenery, Shown};
 use corpuscle_render::Lens;
-use egui::{Color32, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
+use egui::{Color32, MultiTouchInfo, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Rotation of the camera per point of pointer motion, radians.
 const TURN: f64 = 0.008;
@@ -240,6 +241,9 @@ impl Picture {
         }
         let Some(shown) = &self.shown else { return };
         let flat = matches!(shown.camera.lens, Lens::Orthographic { .. });
+        if let Some(touch) = ui.input(|input| input.multi_touch()) {
+            return self.follow_fingers(rect, &touch);
+        }
         let shift = ui.input(|input| input.modifiers.shift);
         let (turns, shifts) = (
             response.dragged_by(PointerButton::Primary) && !flat && !shift,
@@ -262,14 +266,34 @@ impl Picture {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let times = f64::from(pinch) * (f64::from(scroll) * 0.004).exp();
             if let Some(pointer) = response.hover_pos().filter(|_| times != 1.0) {
-                let zoom = (self.camera_offset.zoom * times).clamp(ZOOM[0], ZOOM[1]);
-                let off = pointer - rect.center();
-                let towards = point * (f64::from(off.x) * right - f64::from(off.y) * up);
-                let part = 1.0 - self.camera_offset.zoom / zoom;
-                self.camera_offset.zoom = zoom;
-                self.shift_by(part * towards);
+                self.zoom_at(times, pointer, rect);
             }
         }
+    }
+
+    /// Pans with two fingers, and zooms as they part.
+    fn follow_fingers(&mut self, rect: Rect, touch: &MultiTouchInfo) {
+        let Some(shown) = &self.shown else { return };
+        let [right, up] = axes(shown);
+        let point = height(shown) / f64::from(rect.height());
+        let moved = touch.translation_delta;
+        self.shift_by(point * (f64::from(moved.y) * up - f64::from(moved.x) * right));
+        if rect.contains(touch.center_pos) {
+            self.zoom_at(f64::from(touch.zoom_delta), touch.center_pos, rect);
+        }
+    }
+
+    /// Zooms by a factor; what lies under a position stays there.
+    fn zoom_at(&mut self, times: f64, at: Pos2, rect: Rect) {
+        let Some(shown) = &self.shown else { return };
+        let [right, up] = axes(shown);
+        let point = height(shown) / f64::from(rect.height());
+        let zoom = (self.camera_offset.zoom * times).clamp(ZOOM[0], ZOOM[1]);
+        let off = at - rect.center();
+        let towards = point * (f64::from(off.x) * right - f64::from(off.y) * up);
+        let part = 1.0 - self.camera_offset.zoom / zoom;
+        self.camera_offset.zoom = zoom;
+        self.shift_by(part * towards);
     }
 
     fn shift_by(&mut self, by: DVec3) {

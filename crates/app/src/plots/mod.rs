@@ -41,6 +41,9 @@ pub struct Plots {
     time_unit: &'static str,
 }
 
+/// Width in points below which there is one plot.
+const NARROW: f32 = 560.0;
+
 impl Plots {
     /// The plots of a scene that was opened.
     pub fn new(opened: &Opened) -> Self {
@@ -99,12 +102,14 @@ impl Plots {
     /// Shows the plots side by side; returns a table to be saved: its name and its text.
     pub fn ui(&mut self, ui: &mut Ui, snapshot: &Snapshot) -> Option<(String, String)> {
         let gap = 18.0;
-        let width = (ui.available_width() - gap) / self.chosen.len().max(1) as f32;
+        // A phone has room for one.
+        let shown = if ui.available_width() < NARROW { 1 } else { self.chosen.len() };
+        let width = (ui.available_width() - gap * (shown.max(1) - 1) as f32) / shown.max(1) as f32;
         let size = vec2(width, ui.available_height());
         let mut saved = None;
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = gap;
-            for slot in 0..self.chosen.len() {
+            for slot in 0..shown.min(self.chosen.len()) {
                 ui.allocate_ui_with_layout(size, egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.set_width(width);
                     if let Some(table) = self.slot(ui, slot, snapshot) {

@@ -19,15 +19,15 @@ impl Window {
             }
         }
         if pressed(Key::G) {
-            self.panels.scenes = !self.panels.scenes;
+            self.panels.toggle(|panels| &mut panels.scenes, self.is_narrow);
         }
         if pressed(Key::P) {
-            self.panels.parameters = !self.panels.parameters;
+            self.panels.toggle(|panels| &mut panels.parameters, self.is_narrow);
         }
         if pressed(Key::L) {
-            self.panels.plots = !self.panels.plots;
+            self.panels.toggle(|panels| &mut panels.plots, self.is_narrow);
         }
-        if pressed(Key::V) {
+        if cfg!(feature = "film") && pressed(Key::V) {
             self.film();
         }
         if pressed(Key::S) {

@@ -15,18 +15,19 @@ use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
 use crate::gas_controls::GasControls;
 use crate::offscreen::OffscreenRenderer;
-use crate::physics::{Backend, Command, Opened, Physics, default_pace};
+use crate::physics::{Backend, Command, Opened, Physics, default_pace, open_pictures};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
-use crate::{Screen, help, style};
+use crate::{Screen, help, link, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// The window and all that it shows.
 pub struct Window {
@@ -50,6 +51,10 @@ pub struct Window {
     folder: PathBuf,
     /// Whether a scene plays as soon as it is open.
     plays: bool,
+    /// True where the picture and its controls are shown alone.
+    is_embedded: bool,
+    /// True where the window is narrow.
+    is_narrow: bool,
 }
 
 /// A scene or run being opened.
@@ -67,6 +72,22 @@ struct Panels {
     parameters: bool,
     plots: bool,
 }
+
+impl Panels {
+    /// Shows a panel or hides it; in a narrow window it is alone.
+    fn toggle(&mut self, which: fn(&mut Self) -> &mut bool, is_narrow: bool) {
+        let shown = !*which(self);
+        if is_narrow {
+            *self = Self { scenes: false, parameters: false, plots: false };
+        }
+        *which(self) = shown;
+    }
+}
+
+/// Width of a window in points below which it is narrow, as on a phone: one panel at a time lies below the picture.
+const NARROW: f32 = 640.0;
+/// Height of that panel over the height of the window.
+const SHEET: f32 = 0.42;
 
 /// How long a notice is shown.
 const NOTICE: Duration = Duration::from_secs(4);
@@ -116,6 +137,8 @@ impl Window {
             clock: PictureClock::default(),
             folder: PathBuf::from("."),
             plays: true,
+            is_embedded: false,
+            is_narrow: false,
         };
         match start {
             Start::Welcome => {}
@@ -181,6 +204,28 @@ impl Window {
         self.fault.as_deref()
     }
 
+    /// Shows an error until the user closes it.
+    pub fn show_error(&mut self, what: String) {
+        self.fault = Some(what);
+    }
+
+    /// Shows a notice for a while.
+    pub fn notify(&mut self, what: String) {
+        self.notice = Some((what, Instant::now()));
+    }
+
+    /// Shows the picture with its controls alone, as within another page.
+    pub fn embed(&mut self) {
+        self.is_embedded = true;
+        self.panels = Panels { scenes: false, parameters: false, plots: false };
+    }
+
+    /// The link to the scene as it is shown, with its changes ([`crate::link`]); none for a run, or a scene that is not built in.
+    pub fn link(&self) -> Option<String> {
+        let open = self.open.as_ref().filter(|open| !open.recorded)?;
+        link::to(&open.source, open.parameters.changes())
+    }
+
     /// Plays or pauses the scene.
     pub fn play(&mut self, playing: bool) {
         if let Some(open) = &mut self.open {
@@ -192,7 +237,15 @@ impl Window {
     fn take(&mut self, opened: Opened) {
         let Some(pending) = self.pending.take() else { return };
         let plots = Plots::new(&opened);
-        let Opened { number, scene, pictures, scenery, terrain, end, computed_on, .. } = opened;
+        let Opened { number, scene, pictures, scenery, end, computed_on, .. } = opened;
+        let terrain = scenery.shared_terrain();
+        let pictures = match pictures.map_or_else(|| open_pictures(&self.screen.gpu, &scenery), Ok) {
+            Ok(pictures) => pictures,
+            Err(error) => {
+                self.fault = Some(error.to_string());
+                return;
+            }
+        };
         let recorded = matches!(pending, Pending::Run(_));
         let source = match pending {
             Pending::Scene(source) => source,
@@ -241,9 +294,19 @@ impl Window {
         self.play(self.plays);
     }
 
+    /// Fits the panels to the width of the window.
+    fn fit(&mut self, ui: &Ui) {
+        let is_narrow = ui.max_rect().width() < NARROW;
+        if is_narrow && !self.is_narrow {
+            self.panels = Panels { scenes: false, parameters: false, plots: !self.is_embedded };
+        }
+        self.is_narrow = is_narrow;
+    }
+
     /// Shows the whole window.
     pub fn ui(&mut self, ui: &mut Ui) {
         self.take_dropped(ui.ctx());
+        self.fit(ui);
         self.listen();
         self.keys(ui);
         let pictures = self.clock.tick();
@@ -260,8 +323,10 @@ impl Window {
         let strip = Frame::new().inner_margin(Margin::symmetric(12, 6));
         let pressed =
             Panel::bottom("strip").frame(strip).exact_size(52.0).show(ui, |ui| self.strip(ui, pictures)).inner;
-        let bar = Frame::new().inner_margin(Margin::symmetric(10, 5));
-        Panel::top("bar").frame(bar).exact_size(44.0).show(ui, |ui| ui.horizontal_centered(|ui| self.toolbar(ui)));
+        if !self.is_embedded {
+            let bar = Frame::new().inner_margin(Margin::symmetric(10, 5));
+            Panel::top("bar").frame(bar).exact_size(44.0).show(ui, |ui| ui.horizontal_centered(|ui| self.toolbar(ui)));
+        }
         self.scenes(ui);
         self.parameters(ui);
         self.plots(ui);

@@ -2,6 +2,7 @@
 
 use super::Source;
 use crate::gas_controls::GasControls;
+use crate::icons::{self, Icon};
 use crate::overlay::Over;
 use crate::parameters::Parameters;
 use crate::pick::Picked;
@@ -68,7 +69,20 @@ impl Open {
         self.scene.gas().is_some_and(|gas| gas.dimensions() == 2)
     }
 
-    pub(super) fn quality(&mut self, ui: &mut Ui) {
+    /// Quality, view from above, and the whole scene, for the toolbar.
+    pub(super) fn toolbar_camera(&mut self, ui: &mut Ui) {
+        let is_flat = self.is_flat();
+        let offset = &mut self.picture.camera_offset;
+        if !is_flat && icons::toggle(ui, Icon::Plan, "From above", "T", offset.plan).clicked() {
+            offset.plan = !offset.plan;
+        }
+        if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
+            self.picture.reset();
+        }
+        self.quality(ui);
+    }
+
+    fn quality(&mut self, ui: &mut Ui) {
         let now =
             QUALITIES.iter().find(|(quality, ..)| *quality == self.picture.quality).map_or("", |(_, name, _)| *name);
         let combo = egui::ComboBox::from_id_salt("quality").selected_text(format!("Quality: {}", now.to_lowercase()));

@@ -1,17 +1,17 @@
 //! The panels: first page, toolbar, scenes, picture, and the strip below it.
 
 use super::open::Open;
-use super::{NOTICE, Window};
+use super::{NOTICE, SHEET, Window};
 use crate::icons::{self, Icon};
 use crate::physics::{Change, Command};
 use crate::spot::SpotAction;
 use crate::transport::{Pressed, Transport};
 use corpuscle::models;
-use egui::{Frame, Margin, Panel, RichText, ScrollArea, Ui, vec2};
+use egui::{Align, Frame, Layout, Margin, Panel, RichText, ScrollArea, Ui, vec2};
 
 impl Window {
     pub(super) fn first_page(&mut self, ui: &mut Ui) {
-        let ground = Frame::new().inner_margin(Margin::symmetric(48, 0));
+        let ground = Frame::new().inner_margin(Margin::symmetric(if self.is_narrow { 16 } else { 48 }, 0));
         let mut chosen = None;
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -39,7 +39,9 @@ impl Window {
         let Open { scene, end, recorded, playing, times, computed_on, .. } = open;
         let computed_on = computed_on.as_deref();
         let [recorded, playing] = [*recorded, *playing];
-        Transport { scene, end: *end, recorded, snapshot, playing, times: *times, pictures, computed_on }.ui(ui)
+        let is_narrow = self.is_narrow;
+        Transport { scene, end: *end, recorded, snapshot, playing, times: *times, pictures, computed_on, is_narrow }
+            .ui(ui)
     }
 
     pub(super) fn scenes(&mut self, ui: &mut Ui) {
@@ -47,12 +49,21 @@ impl Window {
             return;
         }
         let name = self.open.as_ref().map_or("", |open| &open.source.name).to_owned();
-        let frame = Frame::new().inner_margin(Margin::symmetric(8, 8));
-        let panel = Panel::left("scenes").frame(frame).default_size(232.0).size_range(180.0..=360.0);
+        let panel = match self.is_narrow {
+            true => Self::sheet(ui),
+            false => Panel::left("scenes").default_size(232.0).size_range(180.0..=360.0),
+        };
+        let panel = panel.frame(Frame::new().inner_margin(Margin::symmetric(8, 8)));
         let chosen = panel.show(ui, |ui| self.gallery.list(ui, &name)).inner;
         if let Some(scene) = chosen {
             self.open(scene.into());
+            self.panels.scenes &= !self.is_narrow;
         }
+    }
+
+    /// The panel below the picture of a narrow window.
+    pub(super) fn sheet(ui: &Ui) -> Panel {
+        Panel::bottom("sheet").exact_size((SHEET * ui.ctx().content_rect().height()).round())
     }
 
     pub(super) fn middle(&mut self, ui: &mut Ui) {
@@ -113,51 +124,60 @@ impl Window {
                 spot.gauged = true;
                 let at = spot.at_model();
                 let name = open.parameters.add_gauge(terrain.to_own(at));
-                let place: Change = Box::new(move |simulation| simulation.place_gauge(&name, at));
-                self.physics.send(Command::Change(place));
+                self.physics.send(Command::Change(Change::Gauge { name, at }));
             }
             None => {}
         }
     }
 
     pub(super) fn toolbar(&mut self, ui: &mut Ui) {
-        let panels = &mut self.panels;
-        if icons::toggle(ui, Icon::Gallery, "Scenes", "G", panels.scenes).clicked() {
-            panels.scenes = !panels.scenes;
+        let is_narrow = self.is_narrow;
+        if icons::toggle(ui, Icon::Gallery, "Scenes", "G", self.panels.scenes).clicked() {
+            self.panels.toggle(|panels| &mut panels.scenes, is_narrow);
         }
-        let (mut still, mut film, mut help) = (false, false, false);
-        if let Some(open) = &mut self.open {
-            ui.label(RichText::new(&open.scene.title).heading()).on_hover_text(open.scene.description.trim());
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                help = icons::button(ui, Icon::Help, "Help", "F1").clicked();
-                if !open.recorded && icons::toggle(ui, Icon::Sliders, "Parameters", "P", panels.parameters).clicked() {
-                    panels.parameters = !panels.parameters;
-                }
-                if icons::toggle(ui, Icon::Plot, "Plots", "L", panels.plots).clicked() {
-                    panels.plots = !panels.plots;
-                }
+        // From the right, so that the title has what is left.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            self.toolbar_panels(ui);
+            if !is_narrow {
                 ui.separator();
-                let name = if open.filming { "End the film" } else { "Record a film" };
-                film = icons::toggle(ui, Icon::Film, name, "V", open.filming).clicked();
-                still = icons::button(ui, Icon::Still, "Save a still", "S").clicked();
-                if !open.is_flat()
-                    && icons::toggle(ui, Icon::Plan, "From above", "T", open.picture.camera_offset.plan).clicked()
-                {
-                    open.picture.camera_offset.plan = !open.picture.camera_offset.plan;
-                }
-                if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
-                    open.picture.reset();
-                }
-                open.quality(ui);
+                self.toolbar_film(ui);
+            }
+            if self.open.is_some() && icons::button(ui, Icon::Still, "Save a still", "S").clicked() {
+                self.save_still();
+            }
+            let Some(open) = &mut self.open else { return };
+            if !is_narrow {
+                open.toolbar_camera(ui);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let title = egui::Label::new(RichText::new(&open.scene.title).heading()).truncate();
+                ui.add(title).on_hover_text(open.scene.description.trim());
             });
+        });
+    }
+
+    /// Help, parameters and plots.
+    fn toolbar_panels(&mut self, ui: &mut Ui) {
+        if !self.is_narrow {
+            self.help |= icons::button(ui, Icon::Help, "Help", "F1").clicked();
         }
-        if still {
-            self.save_still();
+        let has_parameters = self.open.as_ref().is_some_and(|open| !open.recorded);
+        if has_parameters && icons::toggle(ui, Icon::Sliders, "Parameters", "P", self.panels.parameters).clicked() {
+            self.panels.toggle(|panels| &mut panels.parameters, self.is_narrow);
         }
-        if film {
+        if icons::toggle(ui, Icon::Plot, "Plots", "L", self.panels.plots).clicked() {
+            self.panels.toggle(|panels| &mut panels.plots, self.is_narrow);
+        }
+    }
+
+    fn toolbar_film(&mut self, ui: &mut Ui) {
+        let Some(filming) = self.open.as_ref().map(|open| open.filming).filter(|_| cfg!(feature = "film")) else {
+            return;
+        };
+        let name = if filming { "End the film" } else { "Record a film" };
+        if icons::toggle(ui, Icon::Film, name, "V", filming).clicked() {
             self.film();
         }
-        self.help |= help;
     }
 
     /// Shows the last error until it is closed.

@@ -4,7 +4,7 @@ use super::{Source, Window};
 use crate::files;
 use crate::physics::Command;
 use std::path::PathBuf;
-use std::time::Instant;
+use web_time::Instant;
 
 impl Window {
     /// Shows where a file was written, or the error.

@@ -11,8 +11,11 @@ use egui::{Frame, Margin, Panel, ScrollArea, Ui};
 impl Window {
     pub(super) fn parameters(&mut self, ui: &mut Ui) {
         let Some(open) = self.open.as_mut().filter(|open| self.panels.parameters && !open.recorded) else { return };
-        let frame = Frame::new().inner_margin(Margin::symmetric(14, 8));
-        let panel = Panel::right("parameters").frame(frame).default_size(286.0).size_range(230.0..=420.0);
+        let panel = match self.is_narrow {
+            true => Self::sheet(ui),
+            false => Panel::right("parameters").default_size(286.0).size_range(230.0..=420.0),
+        };
+        let panel = panel.frame(Frame::new().inner_margin(Margin::symmetric(14, 8)));
         let (mut restart, mut save) = (false, false);
         panel.show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -32,7 +35,7 @@ impl Window {
                         None => {}
                     }
                 }
-                for changed in open.parameters.ui(ui) {
+                for changed in open.parameters.ui(ui, &open.scene) {
                     match changed {
                         Changed::Live(change) => self.physics.send(Command::Change(change)),
                         Changed::Restart => restart = true,
@@ -54,8 +57,11 @@ impl Window {
     pub(super) fn plots(&mut self, ui: &mut Ui) {
         let Some(open) = self.open.as_mut().filter(|_| self.panels.plots) else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
-        let frame = Frame::new().inner_margin(Margin::symmetric(12, 8));
-        let panel = Panel::bottom("plots").frame(frame).resizable(true).default_size(214.0).size_range(140.0..=480.0);
+        let panel = match self.is_narrow {
+            true => Self::sheet(ui),
+            false => Panel::bottom("plots").resizable(true).default_size(214.0).size_range(140.0..=480.0),
+        };
+        let panel = panel.frame(Frame::new().inner_margin(Margin::symmetric(12, 8)));
         let table = panel.show(ui, |ui| open.plots.ui(ui, &snapshot)).inner;
         if let Some((name, text)) = table {
             let name = format!("{}-{name}", open.source.name);

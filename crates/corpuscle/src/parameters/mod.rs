@@ -5,16 +5,41 @@ mod values;
 use crate::{Error, LiveChange, Simulation};
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Scene, Series};
+use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 use values::place_at;
 pub use values::{as_number, largest, multiplied, set, size, size_as_written, value_at};
 
 /// A change of a running scene.
-pub type Change = Box<dyn FnOnce(&mut Simulation) -> Result<(), Error> + Send>;
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Change {
+    /// Live changes of its model, one after another.
+    Model(Vec<LiveChange>),
+    /// A gauge is placed in a flood.
+    Gauge {
+        /// Its name.
+        name: String,
+        /// Position in model coordinates.
+        at: [f64; 2],
+    },
+}
+
+impl Change {
+    /// Makes the change.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::change_live`] and [`Simulation::place_gauge`].
+    pub fn make(self, simulation: &mut Simulation) -> Result<(), Error> {
+        match self {
+            Self::Model(changes) => changes.into_iter().try_for_each(|change| simulation.change_live(change)),
+            Self::Gauge { name, at } => simulation.place_gauge(&name, at),
+        }
+    }
+}
 
 /// A change of a model that runs.
-pub fn live(change: impl Into<LiveChange> + Send + 'static) -> Option<Change> {
-    Some(Box::new(move |simulation| simulation.change_live(change)))
+pub fn live(change: impl Into<LiveChange>) -> Option<Change> {
+    Some(Change::Model(vec![change.into()]))
 }
 
 /// The number in a key, as in `flood.inflow.0.discharge_m3_per_s`.
@@ -22,11 +47,16 @@ pub fn number_in(path: &str) -> Option<usize> {
     path.split('.').find_map(|word| word.parse().ok())
 }
 
-/// A function that returns the current number of another parameter by its key.
-pub type Numbers<'a> = &'a dyn Fn(&str) -> Option<f64>;
+/// Values of a scene that runs.
+pub struct Current<'a> {
+    /// The scene as it was opened.
+    pub scene: &'a Scene,
+    /// Gives the current number of a parameter by its key.
+    pub number: &'a dyn Fn(&str) -> Option<f64>,
+}
 
-/// A function that makes the live change of a value from its key, its text and the values of the others; none where these are unknown.
-pub type Live = fn(&str, &str, Numbers<'_>) -> Option<Change>;
+/// A function that makes the live change of a value from its key, its text and the current values; none where these are unknown.
+pub type Live = fn(&str, &str, &Current<'_>) -> Option<Change>;
 
 /// A value of the scene that can be changed.
 pub struct Parameter {

@@ -25,6 +25,11 @@ impl Scenery {
         self.terrain.as_deref()
     }
 
+    /// The terrain, if there is one, to be kept.
+    pub fn shared_terrain(&self) -> Option<Arc<Terrain>> {
+        self.terrain.clone()
+    }
+
     /// The surfaces of solids.
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces

@@ -59,11 +59,34 @@ impl Pictures {
     /// # Errors
     /// [`Error::Render`] where the device was lost.
     pub fn still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Image, Error> {
+        self.draw_still(moment, camera_offset)?;
+        self.read()
+    }
+
+    /// [`Pictures::still`] where one may not wait, as in a browser: it is drawn at once, and read back later.
+    ///
+    /// # Errors
+    /// As there; [`Error::Render`] from the future where the device was lost.
+    pub fn still_later(
+        &mut self,
+        moment: &Moment<'_>,
+        camera_offset: &CameraOffset,
+    ) -> Result<impl Future<Output = Result<Image, Error>> + use<>, Error> {
+        self.draw_still(moment, camera_offset)?;
+        Ok(self.read_later())
+    }
+
+    fn draw_still(&mut self, moment: &Moment<'_>, camera_offset: &CameraOffset) -> Result<Shown, Error> {
         let context = &mut self.context;
         (context.overlaid, context.quality, context.camera_offset, context.paper) =
             (true, Quality::Full, *camera_offset, [1.0; 3]);
-        self.subject.draw(context, &self.title, moment)?;
-        self.read()
+        self.subject.draw(context, &self.title, moment)
+    }
+
+    /// [`Pictures::read`] where one may not wait, as in a browser.
+    pub fn read_later(&self) -> impl Future<Output = Result<Image, Error>> + use<> {
+        let reading = self.context.renderer.read_later(&self.context.target);
+        async move { Ok(reading.await?) }
     }
 
     /// What was shown last, finished ([`Shown::finished`]), in main memory. Waits for the device.

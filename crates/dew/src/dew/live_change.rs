@@ -16,7 +16,7 @@ use std::any::Any;
 
 /// A change of dew that runs. Solids and fans are counted as in the scene, from 0; a face has an axis, 0 to 2, and an end, 0 at the
 /// smaller coordinate and 1 at the larger.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum LiveChange {
     /// A solid is brought to a temperature, °C; one that is held is held there from now on, another goes on from there.
     SolidTemperature {

@@ -6,9 +6,10 @@ use crate::humid_air::ZERO_CELSIUS;
 use crate::solids::sources::Surroundings;
 use corpuscle_model::ModelError;
 use corpuscle_scene::Table;
+use serde::{Deserialize, Serialize};
 
 /// A change of what heats or cools a solid, from now on. Solids are counted as in the scene, from 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum SourceChange {
     /// Power of a heater, W or W/m2 as in the scene.
     HeaterPower {

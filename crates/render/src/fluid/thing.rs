@@ -7,7 +7,8 @@ use crate::buffer::uniform;
 use crate::shared::{Direction, DropletInstance};
 use crate::{Drawable, RenderError, Stage, Through};
 use corpuscle_gpu::{Gpu, read_rgba8, wgpu};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Particles in one buffer at most: within the floor's 256 MiB.
 const MOST: usize = 4 << 20;

@@ -1,6 +1,6 @@
 //! GeoTIFF, read with the `geotiff-reader` library.
 
-use super::{MapBox, Raster, Survey, Window, check_not_empty, check_size, outside};
+use super::{MapBox, Raster, Survey, Window, check_not_empty, check_size, in_memory, memory, outside};
 use crate::system::{ReferenceSystem, height_unit};
 use crate::{Georeference, TerrainError};
 use geotiff_reader::transform::GeoTransform;
@@ -14,7 +14,7 @@ const LARGEST_COMPRESSION: u64 = 20_000;
 
 /// Reads the first band of a GeoTIFF, whose first bytes say whether it is big-endian: all of it, or the cells in `part`.
 pub(super) fn read(path: &Path, big_endian: bool, part: Option<&MapBox>) -> Result<Raster, TerrainError> {
-    let bytes = std::fs::metadata(path).map_err(|error| TerrainError::read(path, error))?.len();
+    let bytes = memory::length(path).map_err(|error| TerrainError::read(path, error))?;
     let file = open(path)?;
     let size = [file.width() as usize, file.height() as usize];
     if part.is_none() {
@@ -62,7 +62,11 @@ pub(super) fn survey(path: &Path) -> Result<Survey, TerrainError> {
 }
 
 fn open(path: &Path) -> Result<GeoTiffFile, TerrainError> {
-    let file = GeoTiffFile::open(path).map_err(|error| match error {
+    let file = match in_memory(path) {
+        Some(bytes) => GeoTiffFile::from_bytes(bytes.to_vec()),
+        None => GeoTiffFile::open(path),
+    };
+    let file = file.map_err(|error| match error {
         ReaderError::NotGeoTiff => nowhere(path),
         error => refused(path, &error),
     })?;

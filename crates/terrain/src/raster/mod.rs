@@ -3,11 +3,13 @@
 mod ascii;
 mod field;
 mod geotiff;
+mod memory;
 mod survey;
 mod window;
 mod write;
 
 pub use field::RasterField;
+pub use memory::{hold_in_memory, in_memory};
 pub use survey::{Survey, survey};
 pub use window::{MapBox, Window};
 pub use write::{write_geotiff, write_raster, write_raster_exactly};
@@ -15,7 +17,6 @@ pub use write::{write_geotiff, write_raster, write_raster_exactly};
 use crate::system::ReferenceSystem;
 use crate::{Georeference, TerrainError};
 use flate2::read::GzDecoder;
-use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
@@ -109,7 +110,7 @@ enum Content {
 
 /// What a file holds, by its first bytes.
 fn content(path: &Path) -> Result<Content, TerrainError> {
-    let mut file = File::open(path).map_err(|error| TerrainError::read(path, error))?;
+    let mut file = memory::open(path).map_err(|error| TerrainError::read(path, error))?;
     let mut start = Vec::new();
     (&mut file).take(64).read_to_end(&mut start).map_err(|error| TerrainError::read(path, error))?;
     file.rewind().map_err(|error| TerrainError::read(path, error))?;

@@ -1,6 +1,6 @@
 //! Parameters of dew.
 
-use crate::parameters::{Builder, Change, Control, Numbers, live, number_in, size, size_as_written};
+use crate::parameters::{Builder, Change, Control, Current, live, number_in, size, size_as_written};
 use corpuscle_dew::{LiveChange, SourceChange as Source};
 use corpuscle_scene::dew::{self, AirInflow};
 use corpuscle_scene::{Axis, Dew};
@@ -184,67 +184,60 @@ fn axis_in(path: &str) -> Option<usize> {
     path.rsplit('.').next()?.parse().ok()
 }
 
-fn warm(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn warm(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::SolidTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
-fn heat(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn heat(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(Source::HeaterPower { solid: number_in(path)?, power: value.parse().ok()? })
 }
 
-fn heat_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn heat_times(path: &str, value: &str, current: &Current<'_>) -> Option<Change> {
     let (solid, wanted) = (number_in(path)?, size_as_written(value)?);
-    Some(Box::new(move |simulation| {
-        let now = simulation.scene().dew().and_then(|dew| dew.solid.get(solid)?.heater.as_ref());
-        let power = now.and_then(|heater| heater.power_w.as_ref().or(heater.power_w_per_m2.as_ref()));
-        simulation.change_live(Source::HeaterTimes { solid, times: wanted / power.map_or(1.0, size) })
-    }))
+    let now = current.scene.dew().and_then(|dew| dew.solid.get(solid)?.heater.as_ref());
+    let power = now.and_then(|heater| heater.power_w.as_ref().or(heater.power_w_per_m2.as_ref()));
+    live(Source::HeaterTimes { solid, times: wanted / power.map_or(1.0, size) })
 }
 
-fn cool_outside(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn cool_outside(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(Source::OutsideTemperature { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
-fn change_transfer(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn change_transfer(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(Source::OutsideTransfer { solid: number_in(path)?, coefficient: value.parse().ok()? })
 }
 
-fn change_sky(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn change_sky(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(Source::OutsideSurroundings { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
-fn change_surroundings(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn change_surroundings(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(Source::Surroundings { solid: number_in(path)?, celsius: value.parse().ok()? })
 }
 
-fn warm_inlet(path: &str, value: &str, numbers: Numbers<'_>) -> Option<Change> {
+fn warm_inlet(path: &str, value: &str, current: &Current<'_>) -> Option<Change> {
     let (face, celsius) = (face_in(path)?, value.parse().ok()?);
-    let relative = numbers(&path.replace("temperature_c", "relative_humidity"));
-    Some(Box::new(move |simulation| {
-        simulation.change_live(LiveChange::InletTemperature { face, celsius })?;
-        match relative {
-            Some(relative) => simulation.change_live(LiveChange::InletHumidity { face, relative }),
-            None => Ok(()),
-        }
-    }))
+    let relative = (current.number)(&path.replace("temperature_c", "relative_humidity"));
+    let moisten = relative.map(|relative| LiveChange::InletHumidity { face, relative }.into());
+    Some(Change::Model([LiveChange::InletTemperature { face, celsius }.into()].into_iter().chain(moisten).collect()))
 }
 
-fn moisten_inlet(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn moisten_inlet(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::InletHumidity { face: face_in(path)?, relative: value.parse().ok()? })
 }
 
-fn blow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn blow(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Wind { face: face_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
 }
 
-fn drive(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn drive(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::FanVelocity { fan: number_in(path)?, axis: axis_in(path)?, velocity: value.parse().ok()? })
 }
 
-fn tilt(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn tilt(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Gravity { axis: axis_in(path)?, acceleration: value.parse().ok()? })
 }
 
-fn go_faster(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn go_faster(_: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::TimeFactor(value.parse().ok()?))
 }

@@ -1,6 +1,6 @@
 //! Parameters of a flood.
 
-use crate::parameters::{Builder, Change, Control, MOST_TIMES, Numbers, live, number_in, size, size_as_written};
+use crate::parameters::{Builder, Change, Control, Current, MOST_TIMES, live, number_in, size, size_as_written};
 use corpuscle_flood::LiveChange;
 use corpuscle_scene::{Edge, Flood, Rain, Scheme, Series};
 
@@ -112,45 +112,40 @@ fn rain(builder: &mut Builder, rain: Option<&Rain>) {
     }
 }
 
-fn flow(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn flow(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Discharge { inflow: number_in(path)?, discharge: value.parse().ok()? })
 }
 
-fn flow_times(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn flow_times(path: &str, value: &str, current: &Current<'_>) -> Option<Change> {
     let (inflow, wanted) = (number_in(path)?, size_as_written(value)?);
-    Some(Box::new(move |simulation| {
-        let now = simulation.scene().flood().and_then(|scene| scene.flood.inflow.get(inflow));
-        let times = wanted / now.map_or(1.0, |inflow| size(&inflow.discharge_m3_per_s));
-        simulation.change_live(LiveChange::DischargeTimes { inflow, times })
-    }))
+    let now = current.scene.flood().and_then(|scene| scene.flood.inflow.get(inflow));
+    let times = wanted / now.map_or(1.0, |inflow| size(&inflow.discharge_m3_per_s));
+    live(LiveChange::DischargeTimes { inflow, times })
 }
 
-fn rain_times(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
-    let wanted = size_as_written(value)?;
-    Some(Box::new(move |simulation| {
-        let now = simulation.scene().flood().and_then(|scene| scene.flood.rain.as_ref());
-        let times = wanted / now.map_or(1.0, |rain| size(&rain.intensity_mm_per_h));
-        simulation.change_live(LiveChange::RainTimes(times))
-    }))
+fn rain_times(_: &str, value: &str, current: &Current<'_>) -> Option<Change> {
+    let now = current.scene.flood().and_then(|scene| scene.flood.rain.as_ref());
+    let times = size_as_written(value)? / now.map_or(1.0, |rain| size(&rain.intensity_mm_per_h));
+    live(LiveChange::RainTimes(times))
 }
 
-fn let_rain(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn let_rain(_: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Rain(value.parse().ok()?))
 }
 
-fn hold_stage(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn hold_stage(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Level { stage: number_in(path)?, level: value.parse().ok()? })
 }
 
-fn hold_edge(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn hold_edge(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     let side = SIDES.iter().position(|side| path.split('.').any(|word| word == *side))?;
     live(LiveChange::EdgeLevel { side, level: value.parse().ok()? })
 }
 
-fn roughen(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn roughen(_: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::Manning(value.parse().ok()?))
 }
 
-fn control(_: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn control(_: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::ControlForce(value.parse().ok()?))
 }

@@ -1,6 +1,6 @@
 //! Parameters of a gas.
 
-use crate::parameters::{Builder, Change, Control, Numbers, live};
+use crate::parameters::{Builder, Change, Control, Current, live};
 use corpuscle_gas::LiveChange;
 use corpuscle_scene::{Axis, Gas, Species, Wall};
 use std::f64::consts::PI;
@@ -129,11 +129,11 @@ fn wall_of(path: &str) -> [usize; 2] {
     [axis, usize::from(side.ends_with("max"))]
 }
 
-fn warm_wall(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn warm_wall(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::WallTemperature { wall: wall_of(path), temperature: value.parse().ok()? })
 }
 
-fn press_piston(path: &str, value: &str, _: Numbers<'_>) -> Option<Change> {
+fn press_piston(path: &str, value: &str, _: &Current<'_>) -> Option<Change> {
     live(LiveChange::PistonPressure { wall: wall_of(path), pressure: value.parse().ok()? })
 }
 

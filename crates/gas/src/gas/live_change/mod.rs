@@ -14,7 +14,7 @@ use std::any::Any;
 use thermostat::Thermostat;
 
 /// A change of a gas that runs. Walls are named by their axis, 0 to 2, and end, 0 at the smaller coordinate and 1 at the larger.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum LiveChange {
     /// All velocities become so many times greater that the kinetic energy, and the temperature of a gas at rest, is this many times
     /// what it was; above 0.

@@ -1,5 +1,13 @@
-//! Files that the window writes, into the folder that the program was started in; none is ever overwritten.
+//! Files that the window writes: into the folder that the program was started in, where none is ever overwritten; in a browser as downloads.
 
+#[cfg(not(target_arch = "wasm32"))]
+#[path = "disk.rs"]
+mod store;
+#[cfg(target_arch = "wasm32")]
+#[path = "download.rs"]
+mod store;
+
+use corpuscle::output::OutputError;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -17,14 +25,16 @@ pub fn free(folder: &Path, name: &str, ending: &str) -> PathBuf {
 /// Writes a text; returns the path.
 pub fn text(folder: &Path, name: &str, ending: &str, text: &str) -> io::Result<PathBuf> {
     let path = free(folder, name, ending);
-    corpuscle_atomic_file::write_whole(&path, |file| io::Write::write_all(file, text.as_bytes()))?;
+    store::write(&path, text.as_bytes())?;
     Ok(path)
 }
 
 /// Writes a picture as a PNG file; returns the path.
 pub fn picture(folder: &Path, name: &str, image: &corpuscle::gpu::Image) -> Result<PathBuf, corpuscle::Error> {
     let path = free(folder, name, "png");
-    corpuscle::output::write_picture(&path, [image.width, image.height], &image.rgba)?;
+    let png = corpuscle_drawing::png::encode_rgba(image.width, image.height, &image.rgba);
+    let written = png.map_err(io::Error::other).and_then(|png| store::write(&path, &png));
+    written.map_err(|source| OutputError::Write { path: path.clone(), source })?;
     Ok(path)
 }
 

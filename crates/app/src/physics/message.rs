@@ -1,0 +1,163 @@
+//! Messages between the window and a worker that runs the physics: no memory is shared.
+
+use super::{Command, Event, Opened, scene_text};
+use crate::snapshot::Snapshot;
+use corpuscle::Simulation;
+use corpuscle::pictures::Scenery;
+use corpuscle::scene::Scene;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A message to the worker.
+#[derive(Serialize, Deserialize)]
+pub(super) enum ToWorker {
+    /// A command.
+    Command(Command),
+    /// A raster file to be held in memory under a path.
+    File(PathBuf, Vec<u8>),
+    /// The last snapshot was taken: another may be sent.
+    Taken,
+}
+
+/// A message from the worker.
+#[derive(Serialize, Deserialize)]
+pub(super) enum FromWorker {
+    Opened(OpenedMessage),
+    Refused(String),
+    NotChanged(String),
+    Ended,
+    Fault(String),
+    Snapshot(Arc<Snapshot>),
+}
+
+/// A scene that is open at its start, without what the window makes anew from it.
+#[derive(Serialize, Deserialize)]
+pub(super) struct OpenedMessage {
+    number: u64,
+    #[serde(with = "scene_text")]
+    scene: Box<Scene>,
+    gauges: Vec<String>,
+    warnings: Vec<String>,
+    computed_on: Option<String>,
+    end: f64,
+}
+
+impl OpenedMessage {
+    /// The scene as the window takes it: terrain and solids are opened again.
+    ///
+    /// # Errors
+    /// Why it cannot be opened, as text.
+    pub fn open(self) -> Result<Opened, String> {
+        let Self { number, scene, gauges, warnings, computed_on, end } = self;
+        let simulation =
+            Simulation::open_to_restore((*scene).clone(), Path::new("")).map_err(|error| error.to_string())?;
+        let scenery = Scenery::of(&simulation);
+        let scene = *scene;
+        Ok(Opened { number, scene, pictures: None, scenery, gauges, warnings, computed_on, history: None, end })
+    }
+}
+
+impl FromWorker {
+    /// The message of an event. A worker makes no films.
+    pub fn of(event: Event) -> Option<Self> {
+        Some(match event {
+            Event::Opened(opened) => {
+                let Opened { number, scene, gauges, warnings, computed_on, end, .. } = *opened;
+                Self::Opened(OpenedMessage { number, scene: Box::new(scene), gauges, warnings, computed_on, end })
+            }
+            Event::Refused(what) => Self::Refused(what),
+            Event::NotChanged(what) => Self::NotChanged(what),
+            Event::Filmed(_) => return None,
+            Event::Ended => Self::Ended,
+            Event::Fault(what) => Self::Fault(what),
+        })
+    }
+}
+
+/// The bytes of a message.
+///
+/// # Errors
+/// Where it has none, as of a scene that no file can hold.
+pub(super) fn bytes<T: Serialize>(message: &T) -> Result<Vec<u8>, String> {
+    postcard::to_stdvec(message).map_err(|error| format!("a message could not be written: {error}"))
+}
+
+/// A message from its bytes.
+///
+/// # Errors
+/// Where they are none.
+pub(super) fn message<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, String> {
+    postcard::from_bytes(bytes).map_err(|error| format!("a message could not be read: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Backend;
+    use crate::physics::runner::Runner;
+    use crate::physics::{Change, Shared};
+    use corpuscle::scene::builtin;
+    use std::sync::mpsc::channel;
+
+    /// Sends a message.
+    fn sent<T: Serialize + for<'de> Deserialize<'de>>(what: &T) -> T {
+        message(&bytes(what).unwrap()).unwrap()
+    }
+
+    /// A scene that a runner without a window runs, by commands that were sent; what it answers, sent.
+    fn run(name: &str, commands: Vec<Command>) -> (Vec<FromWorker>, Arc<Snapshot>) {
+        let (events, answers) = channel();
+        let shared = Arc::new(Shared::new(Arc::new(|| {})));
+        let mut runner = Runner::new(events, shared.clone(), Backend::Auto, None);
+        let scene = Scene::parse(builtin(name).unwrap().text, name, &[]).unwrap();
+        for command in [Command::Open(Box::new(scene), "".into())].into_iter().chain(commands) {
+            let ToWorker::Command(command) = sent(&ToWorker::Command(command)) else { panic!() };
+            runner.take(command);
+        }
+        let events = answers.try_iter().filter_map(FromWorker::of).map(|event| sent(&event)).collect();
+        (events, shared.newest().unwrap())
+    }
+
+    #[test]
+    fn a_scene_goes_to_a_worker_and_its_snapshots_come_back_to_the_bit() {
+        for name in ["gas/maxwell", "flood/dam-break", "dew/pane"] {
+            let (events, snapshot) = run(name, vec![Command::Step(0.01)]);
+            let [FromWorker::Opened(_)] = &events[..] else { panic!("{name}: {}", events.len()) };
+            let FromWorker::Snapshot(back) = sent(&FromWorker::Snapshot(snapshot.clone())) else { panic!() };
+            assert!(back.frame.time > 0.0 && back.frame == snapshot.frame, "{name}");
+            assert_eq!(back.measures.gauges.len(), snapshot.measures.gauges.len());
+            assert_eq!(
+                (&back.measures.names, &back.measures.ledger),
+                (&snapshot.measures.names, &snapshot.measures.ledger)
+            );
+            assert_eq!((&back.paths, back.container), (&snapshot.paths, snapshot.container));
+            let FromWorker::Opened(opened) = events.into_iter().next().unwrap() else { panic!() };
+            let opened = opened.open().unwrap();
+            assert!(opened.pictures.is_none() && opened.end > 0.0 && !opened.gauges.is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn changes_are_sent() {
+        let heat = Change::Model(vec![corpuscle::GasLiveChange::Heat(4.0).into()]);
+        let (_, before) = run("gas/maxwell", vec![Command::Step(0.0)]);
+        let (_, after) = run("gas/maxwell", vec![Command::Change(heat), Command::Step(0.0)]);
+        let temperature = |snapshot: &Snapshot| {
+            let at = snapshot.measures.names.iter().position(|name| name == "gas.temperature").unwrap();
+            snapshot.measures.gauges[at]
+        };
+        assert!((temperature(&after) / temperature(&before) - 4.0).abs() < 1e-9);
+        let gauge = Change::Gauge { name: "P9".into(), at: [1.0, 0.5] };
+        let (events, snapshot) = run("flood/dam-break", vec![Command::Change(gauge), Command::Step(0.0)]);
+        assert!(events.len() == 1 && snapshot.measures.names.iter().any(|name| name.starts_with("P9.")));
+    }
+
+    #[test]
+    fn what_is_refused_is_told() {
+        let heat = Change::Model(vec![corpuscle::GasLiveChange::Heat(4.0).into()]);
+        let (events, _) = run("flood/dam-break", vec![Command::Change(heat)]);
+        assert!(matches!(&events[1], FromWorker::NotChanged(why) if why.contains("no gas")));
+        assert!(message::<ToWorker>(&[9, 9, 9]).is_err());
+    }
+}

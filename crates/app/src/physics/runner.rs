@@ -1,0 +1,341 @@
+//! What runs a scene: takes commands, advances in slices of wall-clock time, and publishes snapshots.
+
+use super::filming::Filming;
+use super::gpu_advance::{self, Fault};
+use super::pace::Pace;
+use super::subject::Subject;
+use super::{Backend, Command, Devices, Event, Opened, Shared, default_pace};
+use crate::snapshot::{Measures, Snapshot};
+use corpuscle::gpu::Gpu;
+use corpuscle::model::Frame;
+use corpuscle::pictures::{PictureSettings, Pictures, Scenery};
+use corpuscle::{Error, Sample};
+use corpuscle_render::RenderError;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::Duration;
+use web_time::Instant;
+
+/// Pictures in a second at most.
+pub(super) const PICTURES: f64 = 60.0;
+/// Time between two measurements at least, and how many times longer than one takes.
+pub(super) const MEASURE: Duration = Duration::from_millis(120);
+const MEASURE_SHARE: u32 = 10;
+/// Initial size of pictures; the window resizes them.
+const SMALL: [u32; 2] = [16, 16];
+
+/// Runs one scene after another.
+pub(super) struct Runner {
+    events: Sender<Event>,
+    shared: Arc<Shared>,
+    backend: Backend,
+    /// The devices that draw and compute; none where it is drawn elsewhere.
+    devices: Option<Devices>,
+    /// Scenes opened so far.
+    number: u64,
+    running: Option<Running>,
+}
+
+/// The scene that is open.
+pub(super) struct Running {
+    pub subject: Subject,
+    playing: bool,
+    /// Time of the next pause, s.
+    pub until: f64,
+    pub pace: Pace,
+    /// When the last slice began.
+    began: Instant,
+    pub measured: Arc<Measures>,
+    /// When it may be measured again.
+    pub measure_at: Instant,
+    pub rate: Rate,
+    /// Position at which the water is sampled.
+    pub probe: Option<[f64; 2]>,
+    pub filming: Option<Filming>,
+    /// The water there, and all particles, as last read back.
+    pub probed: Option<Sample>,
+    pub known: Arc<Frame>,
+}
+
+/// Rate of work.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rate {
+    /// Work done at the last update, and when that was.
+    noted: (u64, Instant),
+    pub now: f64,
+}
+
+impl Rate {
+    /// Updates the rate with the work done so far.
+    pub fn note(&mut self, work: u64) {
+        let (before, when) = self.noted;
+        let since = when.elapsed().as_secs_f64();
+        // While particles come back from a GPU no work is done.
+        if since > 0.5 && work > before || since > 2.0 {
+            self.now = work.saturating_sub(before) as f64 / since;
+            self.noted = (work, Instant::now());
+        }
+    }
+}
+
+impl Runner {
+    /// Without a scene.
+    pub fn new(events: Sender<Event>, shared: Arc<Shared>, backend: Backend, devices: Option<Devices>) -> Self {
+        Self { events, shared, backend, devices, number: 0, running: None }
+    }
+
+    /// How long to wait for a command before the next slice; none while paused.
+    pub fn time_left(&self) -> Option<Duration> {
+        let running = self.running.as_ref().filter(|running| running.playing)?;
+        Some(Duration::from_secs_f64(1.0 / PICTURES).saturating_sub(running.began.elapsed()))
+    }
+
+    fn send(&self, event: Event) {
+        // The receiver is gone when the window closes.
+        let _ = self.events.send(event);
+        (self.shared.wake)();
+    }
+
+    /// The scene broke down by an internal error.
+    #[cfg_attr(target_arch = "wasm32", expect(dead_code, reason = "in a browser a panic ends the worker"))]
+    pub fn broken(&mut self) {
+        self.running = None;
+        self.send(Event::Fault("an internal error stopped the scene; open it again".into()));
+    }
+
+    /// Does what a command says.
+    pub fn take(&mut self, command: Command) {
+        let command = match command {
+            Command::Open(scene, folder) => {
+                let (backend, gpu) = (self.backend, self.gpu());
+                return self.open(|| Subject::live(*scene, &folder, backend, gpu.as_ref()));
+            }
+            Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
+            command => command,
+        };
+        let Some(running) = &mut self.running else { return };
+        match command {
+            Command::Open(..) | Command::OpenRun(..) => {}
+            Command::Seek(time) => {
+                if let Err(error) = running.subject.seek(time) {
+                    self.send(Event::Fault(error.to_string()));
+                }
+            }
+            Command::Play => {
+                running.until = running.subject.next_end();
+                (running.playing, running.began) = (true, Instant::now());
+            }
+            Command::Pause => running.wait(),
+            Command::Probe(place) => running.probe = place,
+            Command::Film(path) => self.film(&path),
+            Command::EndFilm => self.end_film(),
+            Command::Pace(pace) => running.pace.requested = pace,
+            Command::Step(by) => self.step(by),
+            Command::Change(change) => match running.subject.change(change) {
+                Ok(()) => running.measure_at = Instant::now(),
+                Err(error) => self.send(Event::NotChanged(error.to_string())),
+            },
+        }
+        self.publish();
+    }
+
+    fn open(&mut self, subject: impl FnOnce() -> Result<Subject, Error>) {
+        self.end_film();
+        self.running = None;
+        self.number += 1;
+        match subject().and_then(|subject| self.put(subject)) {
+            Ok(opened) => {
+                self.publish();
+                self.send(Event::Opened(Box::new(opened)));
+            }
+            Err(error) => self.send(Event::Refused(error.to_string())),
+        }
+    }
+
+    /// The device that draws.
+    fn gpu(&self) -> Option<Gpu> {
+        self.devices.as_ref().map(|devices| devices.gpu.clone())
+    }
+
+    /// Sets up the opened scene.
+    fn put(&mut self, subject: Subject) -> Result<Opened, Error> {
+        let simulation = subject.simulation();
+        let scenery = Scenery::of(simulation);
+        let pictures = self.devices.as_ref().map(|devices| open_pictures(&devices.gpu, &scenery)).transpose()?;
+        let scene = simulation.scene().clone();
+        let now = Instant::now();
+        let (gauges, warnings) = (subject.gauge_names(), simulation.warnings());
+        let (history, computed_on) = (subject.history(), subject.computed_on());
+        let end = subject.end();
+        self.running = Some(Running {
+            playing: false,
+            until: end,
+            pace: Pace::new(default_pace(end)),
+            began: now,
+            measured: Arc::default(),
+            measure_at: now,
+            rate: Rate { noted: (subject.work(), now), now: 0.0 },
+            probe: None,
+            filming: None,
+            probed: None,
+            known: Arc::new(Frame { time: 0.0, sets: Vec::new() }),
+            subject,
+        });
+        Ok(Opened { number: self.number, scene, pictures, scenery, gauges, warnings, computed_on, history, end })
+    }
+
+    fn film(&mut self, path: &Path) {
+        let Some(running) = &mut self.running else { return };
+        let Some(devices) = &self.devices else { return };
+        let gpu = devices.background.gpu().map_err(|error| Error::from(RenderError::from(error)));
+        match gpu.and_then(|gpu| Filming::begin(&gpu, &running.subject, path, running.pace.requested)) {
+            Ok(filming) => {
+                running.filming = Some(filming);
+                self.add_film_picture();
+            }
+            Err(error) => self.send(Event::Filmed(Err(error.to_string()))),
+        }
+    }
+
+    fn step(&mut self, by: f64) {
+        let Some(running) = &mut self.running else { return };
+        running.wait();
+        let to = running.subject.time() + by;
+        if let Err(error) = running.subject.advance_to(to, &self.shared.stop) {
+            self.send(Event::Fault(error.to_string()));
+        }
+        self.add_film_picture();
+    }
+
+    /// Advances for a slice of wall-clock time.
+    pub fn slice(&mut self) {
+        let gpu = self.gpu();
+        let Some(running) = &mut self.running else { return };
+        let begun = Instant::now();
+        if gpu.is_some_and(|gpu| running.subject.drawn_in_place(&gpu).is_some()) {
+            running.began = begun;
+            return self.advance_on_gpu();
+        }
+        let from = running.subject.time();
+        let to = (from + running.pace.next(running.began.elapsed())).min(running.until);
+        // The pictures of a film are due at fixed times.
+        let to = running.filming.as_ref().map_or(to, |filming| to.min(filming.next.max(from)));
+        let whole = running.began.elapsed();
+        running.began = begun;
+        let gone = running.subject.advance_to(to, &self.shared.stop);
+        let now = running.subject.time();
+        running.pace.went(now - from, begun.elapsed(), whole.max(begun.elapsed()));
+        self.add_film_picture();
+        self.went(gone);
+    }
+
+    /// Advances on the GPU that draws, until a command arrives or the particles are needed.
+    fn advance_on_gpu(&mut self) {
+        let (Some(running), Some(devices)) = (&mut self.running, &self.devices) else { return };
+        match gpu_advance::advance(running, &self.shared, &devices.gpu, self.number) {
+            Err(Fault::OfModel(error)) => self.went(Err(error)),
+            Err(Fault::OfFilm(error)) => {
+                running.filming = None;
+                self.send(Event::Filmed(Err(error.to_string())));
+                self.went(Ok(()));
+            }
+            Ok(recalled) => {
+                self.went(Ok(()));
+                if let (Some(recalled), Some(running)) = (recalled, &mut self.running) {
+                    running.measure_at = Instant::now() + MEASURE.max(recalled.elapsed() * MEASURE_SHARE);
+                }
+            }
+        }
+    }
+
+    /// Publishes the result of a slice, and pauses at the end or after an error.
+    fn went(&mut self, gone: Result<(), Error>) {
+        let Some(running) = &mut self.running else { return };
+        let event = match gone {
+            Err(error) => Some(Event::Fault(error.to_string())),
+            Ok(()) if running.subject.time() >= running.until => Some(Event::Ended),
+            Ok(()) => None,
+        };
+        if event.is_some() {
+            running.wait();
+        }
+        self.publish();
+        if let Some(event) = event {
+            self.send(event);
+        }
+    }
+
+    /// Adds a picture to the film, where one is recorded and a picture is due.
+    fn add_film_picture(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        let Some(filming) = &mut running.filming else { return };
+        let view_state = self.shared.view_state();
+        if let Err(error) = filming.add_if_due(&running.subject, &view_state) {
+            running.filming = None;
+            self.send(Event::Filmed(Err(error.to_string())));
+        }
+    }
+
+    /// Ends the film, if one is recorded.
+    pub fn end_film(&mut self) {
+        let filming = self.running.as_mut().and_then(|running| running.filming.take());
+        if let Some(filming) = filming {
+            self.send(Event::Filmed(filming.finish().map_err(|error| error.to_string())));
+        }
+    }
+
+    /// Publishes a snapshot.
+    fn publish(&mut self) {
+        let Some(running) = &mut self.running else { return };
+        match running.snapshot(self.number, self.devices.as_ref().map(|devices| &devices.gpu)) {
+            Ok(snapshot) => self.shared.publish(snapshot),
+            Err(error) => self.send(Event::Fault(error.to_string())),
+        }
+    }
+}
+
+/// The pictures of a scene, of a size that the window sets.
+///
+/// # Errors
+/// Those of [`Pictures::open_scenery`].
+pub(crate) fn open_pictures(gpu: &Gpu, scenery: &Scenery) -> Result<Pictures, Error> {
+    let settings = PictureSettings { size: SMALL, samples: 1, ..PictureSettings::default() };
+    Pictures::open_scenery(gpu, scenery, settings)
+}
+
+impl Running {
+    fn wait(&mut self) {
+        self.playing = false;
+        self.pace.rest();
+        // A paused scene shows its newest measurements.
+        self.measure_at = Instant::now();
+    }
+
+    fn snapshot(&mut self, number: u64, gpu: Option<&Gpu>) -> Result<Snapshot, Error> {
+        let now = Instant::now();
+        if now >= self.measure_at {
+            self.measured = Arc::new(self.subject.measures());
+            self.measure_at = now + MEASURE.max(now.elapsed() * MEASURE_SHARE);
+        }
+        self.rate.note(self.subject.work());
+        let (frame, paths, container) = self.subject.current();
+        self.known = Arc::new(frame);
+        self.probed = self.probe.and_then(|place| self.subject.water_at(place));
+        Ok(Snapshot {
+            number,
+            particles: self.subject.particles(),
+            frame: self.known.clone(),
+            on_device: gpu.map_or(Ok(None), |gpu| self.subject.on_device(gpu))?,
+            known: self.known.clone(),
+            paths,
+            container,
+            playing: self.playing,
+            pace: self.pace.real,
+            behind: self.playing && self.pace.is_behind(),
+            rate: if self.playing { self.rate.now } else { 0.0 },
+            probed: self.probed,
+            measures: self.measured.clone(),
+        })
+    }
+}

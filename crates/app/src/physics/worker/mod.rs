@@ -1,0 +1,7 @@
+//! The physics in a worker of the browser, so that the page never waits for it.
+
+mod handle;
+mod serve;
+
+pub use handle::Physics;
+pub use serve::serve;

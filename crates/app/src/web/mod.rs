@@ -1,0 +1,165 @@
+//! The window in a page of a browser.
+
+mod elements;
+mod loss;
+
+use crate::meter::Meter;
+use crate::physics::Backend;
+use crate::{Measurement, Meshes, Screen, Start, Window, link};
+use corpuscle::gpu::{Gpu, wgpu};
+use egui_wgpu::{WgpuSetup, WgpuSetupCreateNew};
+use elements::Elements;
+use serde_json::{Map, Value, json};
+use std::sync::{Arc, Mutex, PoisonError};
+use wasm_bindgen::prelude::*;
+use web_sys::HtmlCanvasElement;
+
+/// The window on a canvas of a page.
+pub struct Page(eframe::WebRunner);
+
+/// What the address of a page says beside the scene: words after `?`.
+struct Words {
+    /// `embed`: the picture and its controls alone.
+    is_embedded: bool,
+    /// `measure=SECONDS`: pictures are counted.
+    measure: Option<f64>,
+}
+
+impl Words {
+    fn of(search: &str) -> Self {
+        let words: Vec<_> = search.trim_start_matches('?').split('&').collect();
+        let measure = words.iter().find_map(|word| word.strip_prefix("measure=")?.parse().ok());
+        Self { is_embedded: words.contains(&"embed"), measure }
+    }
+}
+
+impl Page {
+    /// Opens the window on a canvas, with the scene that the page's address names.
+    ///
+    /// # Errors
+    /// A text that says why there is no window.
+    pub async fn open(canvas: HtmlCanvasElement) -> Result<Self, JsValue> {
+        console_error_panic_hook::set_once();
+        let location = web_sys::window().ok_or("there is no page")?.location();
+        let (hash, words) = (location.hash()?, Words::of(&location.search()?));
+        let elements = Elements::new()?;
+        let mut setup = WgpuSetupCreateNew::without_display_handle();
+        setup.instance_descriptor.backends = wgpu::Backends::BROWSER_WEBGPU;
+        setup.device_descriptor = Arc::new(Gpu::request);
+        let wgpu_options =
+            egui_wgpu::WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() };
+        let options = eframe::WebOptions { wgpu_options, dithering: false, ..Default::default() };
+        let create = move |context: &eframe::CreationContext<'_>| {
+            context.egui_ctx.add_plugin(elements);
+            Ok(Box::new(App::new(context, &hash, &words)?) as Box<dyn eframe::App>)
+        };
+        let runner = eframe::WebRunner::new();
+        runner.start(canvas, options, Box::new(create)).await?;
+        Ok(Self(runner))
+    }
+
+    /// What is shown, as JSON: the scene, its time, its particles, whether it plays, its gauges, the last error, and the pictures that were counted.
+    pub fn state(&self) -> String {
+        self.0.app_mut::<App>().map_or_else(|| "null".into(), |app| app.state().to_string())
+    }
+}
+
+struct App {
+    window: Window,
+    gpu: Gpu,
+    /// True once the device was found lost.
+    is_lost: bool,
+    /// The link to what is shown, as it stands in the page's address.
+    link: Option<String>,
+    meter: Option<Meter>,
+    measured: Arc<Mutex<Option<Measurement>>>,
+}
+
+impl App {
+    fn new(context: &eframe::CreationContext<'_>, hash: &str, words: &Words) -> Result<Self, String> {
+        let state = context.wgpu_render_state.as_ref().ok_or("the page has no GPU")?;
+        let gpu = Gpu::of(&state.adapter, state.device.clone(), state.queue.clone());
+        let screen = Screen::new(gpu.clone(), state.target_format);
+        if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
+            context.egui_ctx.add_plugin(meshes);
+        }
+        let (start, fault) = match link::read(hash) {
+            Ok(start) => (start, None),
+            Err(fault) => (Start::Welcome, Some(fault)),
+        };
+        let window = Window::new(&context.egui_ctx, screen, start, Backend::Auto);
+        let mut window = window.map_err(|error| error.to_string())?;
+        if let Some(fault) = fault {
+            window.show_error(fault);
+        }
+        if loss::take_note() {
+            window.notify("The graphics device was lost: the scene was opened again.".into());
+        }
+        if words.is_embedded {
+            window.embed();
+        }
+        let measured = Arc::<Mutex<Option<Measurement>>>::default();
+        let meter = words.measure.map(|seconds| Meter::new(seconds, measured.clone()));
+        Ok(Self { window, gpu, is_lost: false, link: None, meter, measured })
+    }
+
+    fn state(&self) -> Value {
+        let snapshot = self.window.snapshot();
+        let gauges = snapshot.iter().flat_map(|snapshot| {
+            let measures = &snapshot.measures;
+            measures.names.iter().cloned().zip(measures.gauges.iter().map(|value| Value::from(*value)))
+        });
+        let measured = *self.measured.lock().unwrap_or_else(PoisonError::into_inner);
+        json!({
+            "link": self.window.link(),
+            "time": snapshot.as_ref().map(|snapshot| snapshot.frame.time),
+            "particles": snapshot.as_ref().map(|snapshot| snapshot.particles),
+            "playing": snapshot.as_ref().is_some_and(|snapshot| snapshot.playing),
+            "measured_at": snapshot.as_ref().map(|snapshot| snapshot.measures.time),
+            "gauges": gauges.collect::<Map<_, _>>(),
+            "opening": self.window.is_waiting(),
+            "error": self.window.fault(),
+            "pictures_per_s": measured.map(|measured| measured.pictures_per_s),
+            "slowest_picture_s": measured.map(|measured| measured.slowest_s),
+        })
+    }
+}
+
+impl eframe::App for App {
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if let Err(error) = self.gpu.check()
+            && !self.is_lost
+        {
+            self.is_lost = true;
+            if !loss::open_again() {
+                self.window.show_error(error.to_string());
+            }
+        }
+        self.window.ui(ui);
+        if let Some(meter) = &mut self.meter
+            && meter.tick(&self.window)
+        {
+            self.meter = None;
+        }
+        let link = self.window.link();
+        if link.is_some() && link != self.link {
+            self.link = link;
+            // A page that may not change its address stays as it is.
+            let _ = self.link.as_deref().map_or(Ok(()), show_link);
+        }
+    }
+
+    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
+        Some(self)
+    }
+}
+
+/// Puts a link into the page's address.
+fn show_link(link: &str) -> Result<(), JsValue> {
+    let history = web_sys::window().ok_or("there is no page")?.history()?;
+    history.replace_state_with_url(&JsValue::NULL, "", Some(&format!("#{link}")))
+}
