@@ -149,7 +149,7 @@ mod tests {
     use std::path::PathBuf;
 
     fn source() -> PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/src")
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src")
     }
 
     /// All values of an attribute in a page.
@@ -170,7 +170,7 @@ mod tests {
             }
             let html = fs::read_to_string(out.join(&file)).unwrap();
             let local =
-                |link: &&&str| !link.contains("://") && !link.starts_with("../") && !link.starts_with("mailto:");
+                |link: &&&str| !link.contains("://") && !link.starts_with("../") && !link.starts_with("data:");
             for link in values(&html, "href").iter().chain(&values(&html, "src")).filter(local) {
                 let (page, place) = link.split_once('#').unwrap_or((link, ""));
                 let target = if page.is_empty() { file.clone() } else { page.into() };

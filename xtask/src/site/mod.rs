@@ -47,7 +47,7 @@ pub fn make(out: &Path) -> Result<()> {
 
 /// The folder of the project.
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 /// Writes a file, and the folders that it is in.
