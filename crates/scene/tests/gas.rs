@@ -186,6 +186,27 @@ fn walls_and_partition() {
 }
 
 #[test]
+fn square_wells() {
+    let text = "run.until_s = 1\n[gas]\nsize = [30, 30]\nwalls = { x_min = \"periodic\", x_max = \"periodic\" }\n\
+                well = { depth = 1.0, width = 1.5 }\nrestitution = 1.0\nmethod = \"list\"\n[[gas.species]]\nname = \"a\"\ncount = 9\n\
+                radius = 1\nmass = 1\ntemperature = 1";
+    assert_eq!(parse(text).gas().unwrap().well, Some(SquareWell { depth: 1.0, width: 1.5 }));
+    for (line, old, new, words) in [
+        (5, "depth = 1.0", "depth = 0", ["gas.well.depth = 0", "must not be 0"]),
+        (5, "width = 1.5", "width = 1", ["gas.well.width = 1", "larger than 1"]),
+        (5, "width = 1.5", "width = 5", ["gas.well.width = 5", "more than three wells apart"]),
+        (5, ", width = 1.5", "", ["gas.well", "width"]),
+        (6, "restitution = 1.0", "restitution = 0.9", ["gas.restitution = 0.9", "take [gas.well] out"]),
+        (7, "\"list\"", "{ fixed-step = { time_step_s = 0.1 } }", ["gas.method", "miss the rims"]),
+    ] {
+        let message = refuse(&text.replace(old, new));
+        for word in words.into_iter().chain([format!("test.toml:{line}:").as_str()]) {
+            assert!(message.contains(word), "{new}: {word:?} is not in:\n{message}");
+        }
+    }
+}
+
+#[test]
 fn balls() {
     let second = "position = [14.0, 10.0]";
     assert_refused(second, "position = [13.9, 10.0]", &["gas.ball.1.position", "overlaps gas.ball.0", "sum to 4"]);

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::method::Pause;
-use crate::world::{Falling, Growing, Mode, NONE, Straight};
+use crate::world::{Mode, NONE, in_mode};
 use multiversion::multiversion;
 
 /// Events handled for each ball before a new window begins.
@@ -11,13 +11,7 @@ const EVENTS_PER_WINDOW: u64 = 60;
 impl<const D: usize> Engine<D> {
     /// Handles events up to `until` (in the window), `most` at most.
     pub fn run(&mut self, until: f64, most: u64) -> Pause {
-        if self.world.field.growth != 0.0 {
-            handle::<D, Growing>(self, until, most)
-        } else if self.world.falls() {
-            handle::<D, Falling>(self, until, most)
-        } else {
-            handle::<D, Straight>(self, until, most)
-        }
+        in_mode!(self.world.motion(), M => handle::<D, M>(self, until, most))
     }
 
     /// True where a new window is due.
@@ -65,7 +59,11 @@ impl<const D: usize> Engine<D> {
         let event = self.events[ball];
         if let Some(partner) = event.what.ball() {
             if self.events[partner].bends == event.partner_bends {
-                self.world.collide::<M>(ball, partner);
+                if M::WELLS && event.what.is_rim() {
+                    self.world.cross_rim::<M>(ball, partner);
+                } else {
+                    self.world.collide::<M>(ball, partner);
+                }
                 for ball in [ball, partner] {
                     self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
                 }
@@ -116,11 +114,7 @@ impl<const D: usize> Engine<D> {
 
     /// Updates the events of balls after a wall's motion changed now by its schedule: those that it will hit before their next event.
     pub fn wall_changed(&mut self, wall: usize) {
-        if self.world.falls() {
-            self.wall_changed_as::<Falling>(wall);
-        } else {
-            self.wall_changed_as::<Straight>(wall);
-        }
+        in_mode!(self.world.motion(), M => self.wall_changed_as::<M>(wall));
     }
 
     fn wall_changed_as<M: Mode>(&mut self, wall: usize) {

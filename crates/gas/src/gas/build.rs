@@ -32,6 +32,9 @@ impl<const D: usize> Gas<D> {
         }
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         world.followed = setup.followed(&starts);
+        if let Some(well) = setup.well {
+            world.dig_wells(well.depth, well.width);
+        }
         world.moments = setup.keeps_momentum_and_energy().then(Default::default);
         let region = |region: &Region<D>| CountedRegion { from: region.from, to: region.to, virial: 0.0 };
         world.regions = setup.regions.iter().map(region).collect();

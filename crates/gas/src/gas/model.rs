@@ -48,6 +48,16 @@ impl<const D: usize> Gas<D> {
         if self.sets.len() > 1 {
             rows.push(("mixing_entropy", "", self.mixing_entropy()));
         }
+        if world.well.is_some() {
+            let [captures, escapes, returns] = self.rim_events().map(|count| count as f64);
+            rows.extend([
+                ("potential_energy", "J", self.potential_energy()),
+                ("pairs_in_wells", "", self.pairs_in_wells() as f64),
+                ("captures", "", captures),
+                ("escapes", "", escapes),
+                ("returns_at_rims", "", returns),
+            ]);
+        }
         if world.walls.iter().any(|wall| wall.moves || wall.temperature.is_some()) {
             rows.push(("work", "J", self.work()));
         }
@@ -93,7 +103,7 @@ impl<const D: usize> Gas<D> {
             gauges.push(("gas".into(), "viscosity", unit, viscosity.mean));
             gauges.push(("gas".into(), "viscosity_standard_error", unit, viscosity.error));
         }
-        if self.measures_transport() && self.has_one_mass() {
+        if self.measures_conductivity() {
             let (conductivity, unit) = (self.conductivity(), if D == 2 { "W_per_K" } else { "W_per_m_K" });
             gauges.push(("gas".into(), "conductivity", unit, conductivity.mean));
             gauges.push(("gas".into(), "conductivity_standard_error", unit, conductivity.error));

@@ -6,7 +6,7 @@ use crate::measure::estimate::{average, change, duration};
 use crate::measure::transport::growth;
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
 use crate::method::{Mover, Nearest};
-use crate::world::{Moments, speed};
+use crate::world::{Moments, Well, speed};
 use corpuscle_model::ExactSum;
 
 /// Samples over which current values such as the pressure are averaged.
@@ -65,16 +65,32 @@ impl<const D: usize> Gas<D> {
         (0..world.balls.len()).map(one).collect::<ExactSum>().value()
     }
 
-    /// Kinetic energy and energy in gravity, at the time shown.
+    /// Kinetic and potential energy at the time shown.
     pub fn energy(&self) -> f64 {
+        self.kinetic_energy() + self.potential_energy()
+    }
+
+    /// Energy in gravity and in square wells at the time shown.
+    pub fn potential_energy(&self) -> f64 {
         let world = self.mover.world();
         let heights = |ball: usize| -> f64 {
             let place = world.unwrapped(ball, self.now());
             world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * place[axis]).sum::<f64>()
         };
-        let potential =
+        let raised =
             if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
-        self.kinetic_energy() + potential
+        raised + world.well.as_ref().map_or(0.0, Well::energy)
+    }
+
+    /// Number of pairs that are in their square wells; 0 without wells.
+    pub fn pairs_in_wells(&self) -> u64 {
+        self.mover.world().well.as_ref().map_or(0, Well::pairs)
+    }
+
+    /// Pairs that went into their square wells, out of them, and turned back at the rim, so far.
+    pub fn rim_events(&self) -> [u64; 3] {
+        let tally = self.mover.world().well.as_ref().map(|well| well.tally).unwrap_or_default();
+        [tally.captures, tally.escapes, tally.returns]
     }
 
     /// Momentum at the time shown.
@@ -346,9 +362,9 @@ impl<const D: usize> Gas<D> {
     }
 
     /// Thermal conductivity since averages began, as [`Gas::viscosity`]; not a number for balls of several masses, whose flow of heat depends
-    /// on how it is told from their diffusion.
+    /// on how it is told from their diffusion, and for balls with wells, whose potential energy is not counted in what they move.
     pub fn conductivity(&self) -> Estimate {
-        if !self.has_one_mass() {
+        if !self.measures_conductivity() {
             return Estimate { mean: f64::NAN, error: f64::NAN };
         }
         let growth = self.growth(|sample| sample.moments.energy);
@@ -360,9 +376,10 @@ impl<const D: usize> Gas<D> {
         self.mover.world().moments.is_some()
     }
 
-    pub(super) fn has_one_mass(&self) -> bool {
-        let kinds = &self.mover.world().kinds;
-        kinds.windows(2).all(|pair| pair[0].mass == pair[1].mass)
+    pub(super) fn measures_conductivity(&self) -> bool {
+        let world = self.mover.world();
+        let one_mass = world.kinds.windows(2).all(|pair| pair[0].mass == pair[1].mass);
+        self.measures_transport() && one_mass && world.well.is_none()
     }
 
     fn growth(&self, moments: impl Fn(&Sample) -> [f64; 3]) -> Estimate {

@@ -192,7 +192,8 @@ impl Measures {
         let axis = setup.measure.profile_axis.min(D - 1);
         let (height, gravity) = (high - low, -setup.gravity[axis]);
         let volume: f64 = self.samples.last().map_or(f64::NAN, |sample| sample.volume);
-        let Some(mean) = context.packing(volume).filter(|_| gravity > 0.0 && context.sets.len() == 1) else {
+        let told = gravity > 0.0 && context.sets.len() == 1 && setup.well.is_none();
+        let Some(mean) = context.packing(volume).filter(|_| told) else {
             return Vec::new();
         };
         let weight = context.sets[0].mass * gravity * height / (setup.boltzmann * self.temperature());

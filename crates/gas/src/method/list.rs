@@ -6,7 +6,7 @@
 //! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
+use crate::world::{Mode, Path, Quadratic, World, first_contact, in_mode};
 
 /// Events between windows.
 const EVENTS_PER_WINDOW: u64 = 1_000_000;
@@ -18,6 +18,8 @@ pub enum With {
     Nothing,
     /// Another ball, by its number.
     Ball(usize),
+    /// Another ball, by its number, at the rim of their well.
+    Rim(usize),
     /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
@@ -53,11 +55,7 @@ impl<const D: usize> List<D> {
 
     /// Begins a new window now.
     pub fn begin_window(&mut self) {
-        if self.world.falls() {
-            self.world.begin_window::<Falling>();
-        } else {
-            self.world.begin_window::<Straight>();
-        }
+        in_mode!(self.world.motion(), M => self.world.begin_window::<M>());
         self.handled = 0;
         self.find_all_events();
     }
@@ -103,20 +101,16 @@ impl<const D: usize> List<D> {
         match with {
             With::Nothing => {}
             With::Ball(other) => {
-                if self.world.falls() {
-                    self.world.collide::<Falling>(ball, other);
-                } else {
-                    self.world.collide::<Straight>(ball, other);
-                }
+                in_mode!(self.world.motion(), M => self.world.collide::<M>(ball, other));
+                touched.push(other);
+            }
+            With::Rim(other) => {
+                in_mode!(self.world.motion(), M => self.world.cross_rim::<M>(ball, other));
                 touched.push(other);
             }
             With::Wall(wall) => {
                 let bends = self.world.walls[wall].bends;
-                if self.world.falls() {
-                    self.world.hit::<Falling>(ball, wall);
-                } else {
-                    self.world.hit::<Straight>(ball, wall);
-                }
+                in_mode!(self.world.motion(), M => self.world.hit::<M>(ball, wall));
                 if self.world.walls[wall].bends != bends {
                     self.find_all_events();
                     return;
@@ -129,7 +123,7 @@ impl<const D: usize> List<D> {
                 return;
             }
         }
-        let lost = |event: &Nearest| matches!(event.with, With::Ball(partner) if touched.contains(&partner));
+        let lost = |event: &Nearest| matches!(event.with, With::Ball(partner) | With::Rim(partner) if touched.contains(&partner));
         let disturbed: Vec<usize> =
             (0..self.nearest.len()).filter(|&other| !touched.contains(&other) && lost(&self.nearest[other])).collect();
         touched.extend(disturbed);
@@ -143,12 +137,15 @@ impl<const D: usize> List<D> {
 
     /// Finds the nearest event of a ball; where its partner had no earlier one, it is the partner's too.
     fn find_event(&mut self, ball: usize) {
-        let found = if self.world.falls() { self.find::<Falling>(ball) } else { self.find::<Straight>(ball) };
+        let found = in_mode!(self.world.motion(), M => self.find::<M>(ball));
         self.nearest[ball] = found;
-        if let With::Ball(other) = found.with
-            && found.time < self.nearest[other].time
-        {
-            self.nearest[other] = Nearest { time: found.time, with: With::Ball(ball) };
+        let (other, with) = match found.with {
+            With::Ball(other) => (other, With::Ball(ball)),
+            With::Rim(other) => (other, With::Rim(ball)),
+            _ => return,
+        };
+        if found.time < self.nearest[other].time {
+            self.nearest[other] = Nearest { time: found.time, with };
         }
     }
 
@@ -161,7 +158,8 @@ impl<const D: usize> List<D> {
             }
         };
         for other in (0..world.balls.len()).filter(|&other| other != ball) {
-            offer(self.meeting::<M>(ball, other), With::Ball(other));
+            let (time, with) = self.pair::<M>(ball, other);
+            offer(time, with);
         }
         for (number, wall) in world.walls.iter().enumerate() {
             offer(wall.meeting::<D, M>(&world.balls[ball], world.radius(ball), &world.field), With::Wall(number));
@@ -174,10 +172,22 @@ impl<const D: usize> List<D> {
         nearest
     }
 
-    /// When two balls meet, in any image of the box next to their own.
-    fn meeting<M: Mode>(&self, a: usize, b: usize) -> f64 {
+    /// What happens next between two balls, and when.
+    fn pair<M: Mode>(&self, a: usize, b: usize) -> (f64, With) {
+        let contact = self.world.contact(a, b);
+        match &self.world.well {
+            None => (self.meeting::<M>(a, b, contact), With::Ball(b)),
+            Some(well) if !well.are_bound(a, b) => (self.meeting::<M>(a, b, contact * well.width), With::Rim(b)),
+            Some(well) => match self.world.next_in_well::<M>(well, a, b) {
+                (time, false) => (time, With::Ball(b)),
+                (time, true) => (time, With::Rim(b)),
+            },
+        }
+    }
+
+    /// When two balls come as near as `reach`, in any image of the box next to their own.
+    fn meeting<M: Mode>(&self, a: usize, b: usize, reach: f64) -> f64 {
         let world = &self.world;
-        let reach = world.radius(a) + world.radius(b);
         let path = |ball: usize| {
             let ball = &world.balls[ball];
             Path { position: ball.position, velocity: ball.velocity, time: ball.time }

@@ -31,6 +31,8 @@ pub struct Setup<const D: usize> {
     pub restitution: f64,
     /// Collisions within this time after another are without loss; for `None` see [`Setup::contact_time`].
     pub contact_time: Option<f64>,
+    /// Square wells round all balls.
+    pub well: Option<SquareWell>,
     /// Boltzmann's constant in the units used.
     pub boltzmann: f64,
     /// How the gas is moved on.
@@ -60,6 +62,16 @@ pub struct Region<const D: usize> {
     pub from: [f64; D],
     /// Corner at the largest coordinates.
     pub to: [f64; D],
+}
+
+/// Square wells: the potential energy of two balls is lower by `depth` where their centres are nearer than `width` times the distance at
+/// contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SquareWell {
+    /// Depth, as an energy; negative for a step up.
+    pub depth: f64,
+    /// Distance of centres at the rim, over that at contact.
+    pub width: f64,
 }
 
 /// What one side of the box is.
@@ -258,6 +270,7 @@ impl<const D: usize> Setup<D> {
             gravity: [0.0; D],
             restitution: 1.0,
             contact_time: None,
+            well: None,
             boltzmann: 1.0,
             method: Method::EventDriven,
             seed: 0,
@@ -332,6 +345,12 @@ impl<const D: usize> Setup<D> {
     /// Collisions with loss.
     pub fn restitution(mut self, restitution: f64) -> Self {
         self.restitution = restitution;
+        self
+    }
+
+    /// Square wells round all balls.
+    pub fn well(mut self, depth: f64, width: f64) -> Self {
+        self.well = Some(SquareWell { depth, width });
         self
     }
 

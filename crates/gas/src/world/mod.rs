@@ -7,14 +7,16 @@ mod hit;
 mod moments;
 mod region;
 mod wall;
+mod well;
 
 pub(crate) use ball::{Ball, Kind, NONE, Record};
 pub(crate) use collide::{Rebound, speed};
-pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straight};
+pub(crate) use contact::{Falling, Field, Growing, Mode, Motion, Path, Quadratic, Straight, Welled, in_mode};
 pub(crate) use hit::WallTally;
 pub(crate) use moments::Moments;
 pub(crate) use region::{CountedRegion, RegionSample};
 pub(crate) use wall::{Facing, Wall, first_contact};
+pub(crate) use well::Well;
 
 use corpuscle_model::ExactSum;
 use rand_chacha::ChaCha8Rng;
@@ -41,6 +43,8 @@ pub(crate) struct World<const D: usize> {
     pub field: Field<D>,
     pub walls: Vec<Wall>,
     pub rebound: Rebound,
+    /// Square wells round the balls, where there are some.
+    pub well: Option<Well>,
     /// The box at the beginning of the window.
     pub low: [f64; D],
     pub length: [f64; D],
@@ -104,6 +108,7 @@ impl<const D: usize> World<D> {
             field,
             walls: Vec::new(),
             rebound: Rebound { restitution: 1.0, contact_time: 0.0 },
+            well: None,
             low,
             length,
             now: 0.0,
@@ -131,6 +136,17 @@ impl<const D: usize> World<D> {
     /// True where paths are bent by gravity.
     pub fn falls(&self) -> bool {
         self.field.gravity != [0.0; D]
+    }
+
+    /// What bends paths, whether balls grow, and how they act on each other.
+    pub fn motion(&self) -> Motion {
+        match (self.falls(), self.well.is_some()) {
+            _ if self.field.growth != 0.0 => Motion::Growing,
+            (false, false) => Motion::Straight,
+            (true, false) => Motion::Falling,
+            (false, true) => Motion::Welled,
+            (true, true) => Motion::WelledFalling,
+        }
     }
 
     /// Place and velocity of a ball at a time of the window, in the image of the box where it is.
@@ -252,6 +268,9 @@ impl<const D: usize> World<D> {
         let mut records = crate::memory::reserved(order.len());
         records.extend(order.iter().map(|&from| self.records[from as usize]));
         (self.balls, self.records) = (balls, records);
+        if let Some(well) = &mut self.well {
+            well.reorder(order);
+        }
     }
 
     /// Notes where the followed ball's path was bent, if it is this one.

@@ -12,3 +12,4 @@ mod refused;
 mod regions;
 mod sides;
 mod start;
+mod wells;

@@ -36,6 +36,9 @@ pub struct Gas {
     /// at the mean thermal speed flies its own radius, the shortest of all species; 0 without loss.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_time_s: Option<f64>,
+    /// Square wells round all balls.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub well: Option<SquareWell>,
     /// All velocities are turned round at this time, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversed_at_s: Option<f64>,
@@ -120,6 +123,16 @@ pub enum Method {
         /// The step.
         time_step_s: f64,
     },
+}
+
+/// Square wells round all balls: the potential energy of two is lower by a depth where they are near each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SquareWell {
+    /// Depth, as an energy; negative for a step up (a square shoulder).
+    pub depth: f64,
+    /// Distance of centres at the rim of the well, over that at contact; above 1.
+    pub width: f64,
 }
 
 /// Balls given as a species. Give exactly one of `count` and `packing`.

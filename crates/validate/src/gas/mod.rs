@@ -12,6 +12,7 @@ mod frames;
 mod granular;
 mod maxwell;
 mod mixing;
+mod square_well;
 mod theory;
 mod transport;
 mod wall_pressure;
@@ -35,6 +36,7 @@ pub(crate) const CASES: &[Case] = &[
     effusion::EFFUSION,
     wall_pressure::WALL_PRESSURE,
     transport::TRANSPORT,
+    square_well::SQUARE_WELL,
 ];
 
 /// Seed of everything random.

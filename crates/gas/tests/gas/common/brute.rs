@@ -2,6 +2,7 @@
 //! searched for the next. Nothing of the crate is used.
 
 use corpuscle_gas::{Setup, Side};
+use std::collections::HashSet;
 
 /// Balls at one time.
 pub struct Brute<const D: usize> {
@@ -15,18 +16,24 @@ pub struct Brute<const D: usize> {
     pub walls: [[[f64; 2]; 2]; D],
     pub time: f64,
     pub collisions: u64,
+    /// Depth of wells and where their rims are, over the distance at contact; a depth of 0 for none.
+    pub depth: f64,
+    pub width: f64,
+    /// Pairs that are in their wells, the larger number first.
+    pub bound: HashSet<(usize, usize)>,
 }
 
 enum Next {
     Nothing,
-    Pair(usize, usize, Vec<f64>),
+    Pair(usize, usize),
+    Rim(usize, usize),
     Wall(usize, usize, usize),
 }
 
 impl<const D: usize> Brute<D> {
     pub fn new(setup: &Setup<D>) -> Self {
         let speed = |side: &Side| if let Side::Moving { velocity, .. } = side { *velocity } else { 0.0 };
-        Brute {
+        let mut brute = Brute {
             position: setup.balls.iter().map(|ball| ball.position).collect(),
             velocity: setup.balls.iter().map(|ball| ball.velocity).collect(),
             radius: setup.balls.iter().map(|ball| ball.radius).collect(),
@@ -38,7 +45,20 @@ impl<const D: usize> Brute<D> {
             }),
             time: 0.0,
             collisions: 0,
+            depth: setup.well.map_or(0.0, |well| well.depth),
+            width: setup.well.map_or(1.0, |well| well.width),
+            bound: HashSet::new(),
+        };
+        for a in 0..brute.position.len() {
+            for b in 0..a {
+                let line = brute.line(a, b);
+                let distance = line.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if brute.depth != 0.0 && distance < brute.width * (brute.radius[a] + brute.radius[b]) {
+                    brute.bound.insert((a, b));
+                }
+            }
         }
+        brute
     }
 
     /// Moves on to the next event, or, if there is none before, to `until` or a little way; true where `until` is reached.
@@ -56,9 +76,9 @@ impl<const D: usize> Brute<D> {
                     if (0..D).any(|axis| shift[axis] != 0.0 && !self.periodic[axis]) {
                         continue;
                     }
-                    let (time, apart) = self.meeting(a, b, shift);
+                    let (time, pair) = self.next_of_pair(a, b, shift);
                     if time < first {
-                        (first, next) = (time, Next::Pair(a, b, apart));
+                        (first, next) = (time, pair);
                     }
                 }
             }
@@ -77,7 +97,8 @@ impl<const D: usize> Brute<D> {
         self.fly(first);
         match next {
             Next::Nothing => return ends,
-            Next::Pair(a, b, _) => self.rebound(a, b),
+            Next::Pair(a, b) => self.rebound(a, b),
+            Next::Rim(a, b) => self.cross_rim(a, b),
             Next::Wall(a, axis, end) => {
                 self.velocity[a][axis] = 2.0 * self.walls[axis][end][1] - self.velocity[a][axis]
             }
@@ -85,17 +106,74 @@ impl<const D: usize> Brute<D> {
         false
     }
 
-    fn meeting(&self, a: usize, b: usize, shift: [f64; D]) -> (f64, Vec<f64>) {
+    /// What happens next between a ball and an image of another. A pair in its well is the one in its nearest images.
+    fn next_of_pair(&self, a: usize, b: usize, shift: [f64; D]) -> (f64, Next) {
+        let contact = self.radius[a] + self.radius[b];
+        if self.depth == 0.0 {
+            return (self.crossing(a, b, shift, contact, false), Next::Pair(a, b));
+        }
+        let rim = contact * self.width;
+        if !self.bound.contains(&(a, b)) {
+            return (self.crossing(a, b, shift, rim, false), Next::Rim(a, b));
+        }
+        let line = self.line(a, b);
+        let nearest = (0..D).all(|axis| {
+            let here = self.position[b][axis] + shift[axis] * self.size[axis] - self.position[a][axis];
+            (here - line[axis]).abs() < 1e-9 * self.size[axis]
+        });
+        if !nearest {
+            return (f64::INFINITY, Next::Nothing);
+        }
+        let (core, out) = (self.crossing(a, b, shift, contact, false), self.crossing(a, b, shift, rim, true));
+        if core < out { (core, Next::Pair(a, b)) } else { (out, Next::Rim(a, b)) }
+    }
+
+    /// When the distance of two balls is `reach`: on the way in, or on the way out.
+    fn crossing(&self, a: usize, b: usize, shift: [f64; D], reach: f64, out: bool) -> f64 {
         let apart: Vec<f64> = (0..D)
             .map(|axis| self.position[b][axis] + shift[axis] * self.size[axis] - self.position[a][axis])
             .collect();
         let relative: Vec<f64> = (0..D).map(|axis| self.velocity[b][axis] - self.velocity[a][axis]).collect();
         let dot = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
         let (vv, rv) = (dot(&relative, &relative), dot(&apart, &relative));
-        let gap2 = dot(&apart, &apart) - (self.radius[a] + self.radius[b]).powi(2);
+        let gap2 = dot(&apart, &apart) - reach.powi(2);
         let inside = rv * rv - vv * gap2;
-        let time = if rv >= 0.0 || inside < 0.0 { f64::INFINITY } else { (-rv - inside.sqrt()) / vv };
-        (time.max(0.0), apart)
+        if inside < 0.0 || vv == 0.0 || (!out && rv >= 0.0) {
+            // A pair at its rim by rounding, on its way out.
+            return if out && rv > 0.0 { 0.0 } else { f64::INFINITY };
+        }
+        let root = if out { inside.sqrt() } else { -inside.sqrt() };
+        ((-rv + root) / vv).max(0.0)
+    }
+
+    /// The line from one ball to the nearest image of another.
+    fn line(&self, a: usize, b: usize) -> Vec<f64> {
+        let mut line: Vec<f64> = (0..D).map(|axis| self.position[b][axis] - self.position[a][axis]).collect();
+        for axis in (0..D).filter(|&axis| self.periodic[axis]) {
+            line[axis] -= self.size[axis] * (line[axis] / self.size[axis]).round();
+        }
+        line
+    }
+
+    /// By energy along the line of centres, and momentum.
+    fn cross_rim(&mut self, a: usize, b: usize) {
+        let mut line = self.line(a, b);
+        let length = line.iter().map(|x| x * x).sum::<f64>().sqrt();
+        line.iter_mut().for_each(|x| *x /= length);
+        let reduced = self.mass[a] * self.mass[b] / (self.mass[a] + self.mass[b]);
+        let speed: f64 = (0..D).map(|axis| line[axis] * (self.velocity[b][axis] - self.velocity[a][axis])).sum();
+        let inside = self.bound.contains(&(a, b));
+        let energy = 0.5 * reduced * speed * speed + if inside { -self.depth } else { self.depth };
+        let after = if energy > 0.0 { (2.0 * energy / reduced).sqrt().copysign(speed) } else { -speed };
+        if energy > 0.0 && inside {
+            self.bound.remove(&(a, b));
+        } else if energy > 0.0 {
+            self.bound.insert((a, b));
+        }
+        for axis in 0..D {
+            self.velocity[a][axis] -= reduced / self.mass[a] * (after - speed) * line[axis];
+            self.velocity[b][axis] += reduced / self.mass[b] * (after - speed) * line[axis];
+        }
     }
 
     fn fly(&mut self, time: f64) {
@@ -116,10 +194,7 @@ impl<const D: usize> Brute<D> {
     /// On the line of centres as the paper has it.
     fn rebound(&mut self, a: usize, b: usize) {
         self.collisions += 1;
-        let mut line: Vec<f64> = (0..D).map(|axis| self.position[b][axis] - self.position[a][axis]).collect();
-        for axis in (0..D).filter(|&axis| self.periodic[axis]) {
-            line[axis] -= self.size[axis] * (line[axis] / self.size[axis]).round();
-        }
+        let mut line = self.line(a, b);
         let length = line.iter().map(|x| x * x).sum::<f64>().sqrt();
         line.iter_mut().for_each(|x| *x /= length);
         let (ma, mb) = (self.mass[a], self.mass[b]);
