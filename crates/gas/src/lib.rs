@@ -26,5 +26,6 @@ pub use measure::Estimate;
 pub use method::{Nearest, With};
 pub use scene::open;
 pub use setup::{
-    Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, SquareWell, Start, ball_volume,
+    Amount, Ball, Measure, Method, Partition, Region, Setup, Shear, Side, Species, Speeds, SquareWell, Start,
+    ball_volume,
 };

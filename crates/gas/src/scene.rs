@@ -1,7 +1,7 @@
 //! The gas of a scene.
 
 use crate::setup::{
-    Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, SquareWell, Start, file,
+    Amount, Ball, Measure, Method, Partition, Region, Setup, Shear, Side, Species, Speeds, SquareWell, Start, file,
 };
 use crate::{Gas, SetupError};
 use corpuscle_model::{Model, ModelError};
@@ -35,6 +35,7 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
     setup.restitution = written.restitution;
     setup.contact_time = written.contact_time_s;
     setup.well = written.well.map(|well| SquareWell { depth: well.depth, width: well.width });
+    setup.shear = written.shear.map(|shear| Shear { rate: shear.rate_per_s, temperature: shear.temperature });
     setup.reversed_at = written.reversed_at_s;
     setup.follow = written.follow.map(|ball| ball as usize);
     setup.method = match written.method {

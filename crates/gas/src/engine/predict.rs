@@ -7,7 +7,7 @@ use crate::world::{Ball, Field, Mode, NONE, Well, first_contact};
 
 /// The earliest thing found so far.
 #[derive(Debug, Clone, Copy)]
-struct Next {
+pub(super) struct Next {
     time: f64,
     what: What,
     partner_bends: u32,
@@ -40,7 +40,9 @@ impl<const D: usize> Engine<D> {
         self.cell_edges::<M>(ball, &event, &mut next);
         let level = &self.grid.levels[event.level as usize];
         let seam = level.at_seam(&self.grid.periodic, &event.cell) || self.grid.levels.len() > 1;
-        if seam {
+        if M::SHEARS && seam {
+            self.neighbours_in_shear::<M>(ball, &mut next);
+        } else if seam {
             self.neighbours::<M, true>(ball, &event, &mut next);
         } else {
             self.neighbours::<M, false>(ball, &event, &mut next);
@@ -134,7 +136,7 @@ impl<const D: usize> Engine<D> {
 
     /// Compares the ball with those at the heads of cells and all that follow them.
     #[inline(always)]
-    fn chains<M: Mode, const WRAP: bool>(
+    pub(super) fn chains<M: Mode, const WRAP: bool>(
         &mut self,
         ball: usize,
         found: &mut [u32; ROOM],
@@ -157,7 +159,11 @@ impl<const D: usize> Engine<D> {
                 reach *= well.width;
             }
             let offset = offsets[done & (ROOM - 1)];
-            near.set::<WRAP>(done, other, &offset, reach);
+            if M::SHEARS && offset[1] != 0.0 {
+                near.set::<WRAP>(done, &field.image_above(other, offset[1].signum()), &offset, reach);
+            } else {
+                near.set::<WRAP>(done, other, &offset, reach);
+            }
             done += 1;
             found[count & (ROOM - 1)] = other.next;
             if WRAP {

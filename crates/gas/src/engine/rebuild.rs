@@ -30,6 +30,9 @@ impl<const D: usize> Engine<D> {
         self.fill_cells();
         self.handled = 0;
         self.watch_none();
+        if M::SHEARS {
+            self.begin_slide();
+        }
         foresee_all::<D, M>(self);
         self.fill_queue();
     }
@@ -54,7 +57,9 @@ impl<const D: usize> Engine<D> {
         let largest = diameters.iter().copied().fold(0.0, f64::max);
         let nth = (diameters.len() * 9 / 10).min(diameters.len().saturating_sub(1));
         let usual = if diameters.is_empty() { 1.0 } else { *diameters.select_nth_unstable_by(nth, f64::total_cmp).1 };
-        let finest = if largest < 2.0 * usual { largest } else { usual };
+        // Rows at the faces of a sheared box have one size of cells.
+        let one_level = largest < 2.0 * usual || world.field.is_sheared();
+        let finest = if one_level { largest } else { usual };
         Grid::new(world.low, world.length, periodic, finest.max(thin) * SLACK, largest * SLACK, 8 * count + 64)
             .expect("checked before: the box is at least three of the largest balls wide across periodic sides")
     }

@@ -29,7 +29,11 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
             return Pause::Reached;
         }
         if engine.next_watch <= time {
-            engine.watch::<M>();
+            if M::SHEARS {
+                engine.slide_on::<M>();
+            } else {
+                engine.watch::<M>();
+            }
             continue;
         }
         if engine.window_is_full() {
@@ -71,7 +75,7 @@ impl<const D: usize> Engine<D> {
             }
             self.disturbed += 1;
         } else if let Some((axis, up)) = event.what.as_edge() {
-            self.cross(ball, axis, up);
+            self.cross::<M>(ball, axis, up);
         } else if let Some(wall) = event.what.as_wall() {
             if self.world.walls[wall].bends == event.partner_bends {
                 self.hit::<M>(ball, wall);
@@ -84,7 +88,7 @@ impl<const D: usize> Engine<D> {
 
     /// Moves a ball into the next cell.
     #[inline(always)]
-    fn cross(&mut self, ball: usize, axis: usize, up: bool) {
+    fn cross<M: Mode>(&mut self, ball: usize, axis: usize, up: bool) {
         self.crossings += 1;
         self.leave_cell(ball);
         let event = &mut self.events[ball];
@@ -93,12 +97,24 @@ impl<const D: usize> Engine<D> {
         event.cell[axis] = if up { cell + 1 } else { cell - 1 };
         if event.cell[axis] > count {
             event.cell[axis] = 1;
-            self.world.wrap(ball, axis, 1);
+            self.wrap::<M>(ball, axis, 1);
         } else if event.cell[axis] == 0 {
             event.cell[axis] = count;
-            self.world.wrap(ball, axis, -1);
+            self.wrap::<M>(ball, axis, -1);
         }
         self.enter_cell(ball);
+    }
+
+    /// Puts a ball into the next image of the box.
+    #[inline(always)]
+    fn wrap<M: Mode>(&mut self, ball: usize, axis: usize, direction: i32) {
+        if !(M::SHEARS && axis == 1) {
+            self.world.wrap(ball, axis, direction);
+            return;
+        }
+        self.world.wrap_in_shear(ball, direction);
+        let event = &mut self.events[ball];
+        event.cell[0] = self.grid.cell_of(event.level, &self.world.balls[ball].position)[0];
     }
 
     /// A ball rebounds from a wall.

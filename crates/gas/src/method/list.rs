@@ -6,7 +6,7 @@
 //! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::world::{Mode, Path, Quadratic, World, first_contact, in_mode};
+use crate::world::{Ball, Mode, Path, Quadratic, World, first_contact, in_mode};
 
 /// Events between windows.
 const EVENTS_PER_WINDOW: u64 = 1_000_000;
@@ -24,6 +24,8 @@ pub enum With {
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
     Side(usize, i32),
+    /// The image of a sheared box above it, which has slid by half the box: pairs are searched again.
+    Slide,
 }
 
 /// The nearest event of a ball.
@@ -116,8 +118,17 @@ impl<const D: usize> List<D> {
                     return;
                 }
             }
+            With::Slide => {
+                self.nearest[ball] = NOTHING;
+                self.find_event(ball);
+                return;
+            }
             With::Side(axis, direction) => {
-                self.world.wrap(ball, axis, direction);
+                if axis == 1 && self.world.field.is_sheared() {
+                    self.world.wrap_in_shear(ball, direction);
+                } else {
+                    self.world.wrap(ball, axis, direction);
+                }
                 self.nearest[ball] = NOTHING;
                 self.find_event(ball);
                 return;
@@ -168,6 +179,9 @@ impl<const D: usize> List<D> {
             let (time, direction) = self.side::<M>(ball, axis);
             offer(time, With::Side(axis, direction));
         }
+        if M::SHEARS {
+            offer(self.next_slide(), With::Slide);
+        }
         nearest.time = nearest.time.max(world.now);
         nearest
     }
@@ -192,6 +206,9 @@ impl<const D: usize> List<D> {
             let ball = &world.balls[ball];
             Path { position: ball.position, velocity: ball.velocity, time: ball.time }
         };
+        if M::SHEARS {
+            return self.meeting_in_shear::<M>(a, b, reach);
+        }
         let mut first = f64::INFINITY;
         for image in 0..3_usize.pow(D as u32) {
             let shift: [i32; D] = std::array::from_fn(|axis| (image / 3_usize.pow(axis as u32) % 3) as i32 - 1);
@@ -205,6 +222,49 @@ impl<const D: usize> List<D> {
             }
         }
         first
+    }
+
+    /// As [`List::meeting`], in images that slide.
+    fn meeting_in_shear<M: Mode>(&self, a: usize, b: usize, reach: f64) -> f64 {
+        let (field, balls) = (&self.world.field, &self.world.balls);
+        let path = |ball: &Ball<D>| Path { position: ball.position, velocity: ball.velocity, time: ball.time };
+        let mut first = f64::INFINITY;
+        for above in -1..=1 {
+            let images = f64::from(above);
+            let image = path(&field.image_above(&balls[b], images));
+            // Images are counted from the one that is least displaced now.
+            let slid = (images * field.slid_at(self.world.now) / field.period[0]).round();
+            for along in -2..=2 {
+                for beside in if D == 3 { -1..=1 } else { 0..=0 } {
+                    let mut offset = [0.0; D];
+                    offset[0] = (f64::from(along) - slid) * field.period[0];
+                    offset[1] = images * field.period[1];
+                    if D == 3 {
+                        offset[D - 1] = f64::from(beside) * field.period[D - 1];
+                    }
+                    let quadratic = Quadratic::new::<D, M>(&path(&balls[a]), &image, &offset, reach, field);
+                    if quadratic.maybe_before::<M>(f64::INFINITY) {
+                        first = first.min(quadratic.root::<M>());
+                    }
+                }
+            }
+        }
+        first
+    }
+
+    /// When the image above will have slid by another half of the box.
+    fn next_slide(&self) -> f64 {
+        let (field, now) = (&self.world.field, self.world.now);
+        let half = 0.5 * field.period[0];
+        let mut halves = (field.slid_at(now) / half).floor();
+        loop {
+            halves += 1.0;
+            let time = (halves * half - field.slide.displacement) / field.slide.speed;
+            // By rounding it may be now, again.
+            if time > now {
+                return time;
+            }
+        }
     }
 
     /// When and which way a ball leaves through a periodic side.

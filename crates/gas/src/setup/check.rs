@@ -43,6 +43,7 @@ impl<const D: usize> Setup<D> {
         number("the restitution", e, e > 0.0 && e <= 1.0, "larger than 0 and at most 1")?;
         positive("Boltzmann's constant", self.boltzmann)?;
         self.check_well()?;
+        self.check_shear()?;
         if let Method::FixedStep(step) = self.method {
             positive("the time step", step)?;
         }
@@ -111,6 +112,29 @@ impl<const D: usize> Setup<D> {
                 refused("have no restitution below 1: pairs would lose energy in their wells without end")
             }
             _ => Ok(()),
+        }
+    }
+
+    fn check_shear(&self) -> Result<(), SetupError> {
+        let Some(shear) = self.shear else { return Ok(()) };
+        positive("the rate of shear", shear.rate)?;
+        if let Some(temperature) = shear.temperature {
+            positive("the temperature of the sheared gas", temperature)?;
+        }
+        let contradictions = [
+            ((0..D).any(|axis| !self.repeats_along(axis)), "must be periodic along all axes"),
+            (self.gravity != [0.0; D], "has no gravity"),
+            (self.well.is_some(), "has no square wells"),
+            (
+                self.reversed_at.is_some(),
+                "has no time at which velocities are reversed: the shear would have to be reversed too",
+            ),
+            (matches!(self.method, Method::FixedStep(_)), "is not moved on by fixed time steps"),
+            (!self.regions.is_empty(), "has no regions of measurement, through which its images slide"),
+        ];
+        match contradictions.iter().find(|(wrong, _)| *wrong) {
+            Some((_, what)) => Err(SetupError::Contradiction(format!("a sheared box {what}"))),
+            None => Ok(()),
         }
     }
 

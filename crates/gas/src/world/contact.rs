@@ -5,6 +5,7 @@
 //! errors: a path is measured from the image of the box where the ball is.)
 
 use super::ball::Ball;
+use super::shear::Slide;
 
 /// What bends paths between collisions, whether balls grow, and whether they have wells. Known when the program is compiled, so that what is absent costs nothing.
 pub(crate) trait Mode: Copy {
@@ -14,6 +15,8 @@ pub(crate) trait Mode: Copy {
     const GROWS: bool;
     /// Balls have square wells.
     const WELLS: bool = false;
+    /// The box is sheared.
+    const SHEARS: bool = false;
 }
 
 /// Straight paths.
@@ -49,6 +52,15 @@ impl<M: Mode> Mode for Welled<M> {
     const WELLS: bool = true;
 }
 
+/// Straight paths in a sheared box.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sheared;
+impl Mode for Sheared {
+    const FALLS: bool = false;
+    const GROWS: bool = false;
+    const SHEARS: bool = true;
+}
+
 /// The modes, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motion {
@@ -57,12 +69,13 @@ pub(crate) enum Motion {
     Growing,
     Welled,
     WelledFalling,
+    Sheared,
 }
 
 /// Does something with the [`Mode`] of a [`Motion`].
 macro_rules! in_mode {
     ($motion:expr, $mode:ident => $something:expr) => {{
-        use crate::world::{Falling, Growing, Motion, Straight, Welled};
+        use crate::world::{Falling, Growing, Motion, Sheared, Straight, Welled};
         macro_rules! of {
             ($own:ty) => {{
                 type $mode = $own;
@@ -75,6 +88,7 @@ macro_rules! in_mode {
             Motion::Growing => of!(Growing),
             Motion::Welled => of!(Welled<Straight>),
             Motion::WelledFalling => of!(Welled<Falling>),
+            Motion::Sheared => of!(Sheared),
         }
     }};
 }
@@ -89,6 +103,8 @@ pub(crate) struct Field<const D: usize> {
     pub growth: f64,
     /// The box's length along each axis, for the nearest image across periodic sides; 0 where the box does not repeat.
     pub period: [f64; D],
+    /// How the image above slides, in a sheared box.
+    pub slide: Slide,
 }
 
 impl<const D: usize> Field<D> {

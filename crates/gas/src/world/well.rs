@@ -196,7 +196,7 @@ impl<const D: usize> World<D> {
         let (inside, depth) = (well.are_bound(a, b), well.depth);
         let flown = self.now - self.balls[a].time.max(self.balls[b].time);
         for ball in [a, b] {
-            self.book_flight(ball);
+            self.book_flight::<M>(ball);
             self.bring::<M>(ball);
         }
         let (apart, approach) = self.line_of_centres(a, b);

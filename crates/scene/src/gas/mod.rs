@@ -39,6 +39,9 @@ pub struct Gas {
     /// Square wells round all balls.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub well: Option<SquareWell>,
+    /// Steady shear flow in a periodic box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear: Option<Shear>,
     /// All velocities are turned round at this time, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversed_at_s: Option<f64>,
@@ -133,6 +136,18 @@ pub struct SquareWell {
     pub depth: f64,
     /// Distance of centres at the rim of the well, over that at contact; above 1.
     pub width: f64,
+}
+
+/// Steady shear flow along x whose velocity grows along y, in a box that is periodic along all axes (Lees & Edwards, J. Phys. C 5, 1972,
+/// 1921).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shear {
+    /// Rate of shear, 1/s.
+    pub rate_per_s: f64,
+    /// Temperature at which the gas is held. Left out: shear heats it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<f64>,
 }
 
 /// Balls given as a species. Give exactly one of `count` and `packing`.

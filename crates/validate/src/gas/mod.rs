@@ -12,6 +12,7 @@ mod frames;
 mod granular;
 mod maxwell;
 mod mixing;
+mod shear;
 mod square_well;
 mod theory;
 mod transport;
@@ -37,6 +38,7 @@ pub(crate) const CASES: &[Case] = &[
     wall_pressure::WALL_PRESSURE,
     transport::TRANSPORT,
     square_well::SQUARE_WELL,
+    shear::SHEAR,
 ];
 
 /// Seed of everything random.

@@ -30,8 +30,11 @@ impl<const D: usize> Gas<D> {
         self.mover.begin_window();
         let thermal = (self.setup.boltzmann * temperature / self.mover.world().mass(like)).sqrt();
         for position in places {
-            let velocity = std::array::from_fn(|_| thermal * normal(&mut random));
+            let mut velocity: [f64; D] = std::array::from_fn(|_| thermal * normal(&mut random));
             let world = self.mover.world_mut();
+            if world.field.is_sheared() {
+                velocity[0] += world.field.flow_at(world.low[1], position[1]);
+            }
             let record = Record {
                 id: world.balls.len() as u32,
                 species: set as u32,
@@ -129,7 +132,8 @@ impl<const D: usize> Gas<D> {
         let balls = world.balls.len() + count;
         let extent: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, self.now()));
         let (low, length) = (extent.map(|[low, _]| low), extent.map(|[low, high]| high - low));
-        let mut hash = Hash::new(low, length, world.field.period, 2.0 * RADIUS_MARGIN * largest, balls);
+        let mut hash = Hash::new(low, length, world.field.period, 2.0 * RADIUS_MARGIN * largest, balls)
+            .slid(world.field.slid_at(self.now()));
         for number in 0..world.balls.len() {
             hash.add(world.state(number, self.now()).0, world.radius(number));
         }

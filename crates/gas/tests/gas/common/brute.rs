@@ -16,6 +16,8 @@ pub struct Brute<const D: usize> {
     pub walls: [[[f64; 2]; 2]; D],
     pub time: f64,
     pub collisions: u64,
+    /// Speed and displacement of the image above, in a sheared box.
+    pub slide: [f64; 2],
     /// Depth of wells and where their rims are, over the distance at contact; a depth of 0 for none.
     pub depth: f64,
     pub width: f64,
@@ -45,10 +47,14 @@ impl<const D: usize> Brute<D> {
             }),
             time: 0.0,
             collisions: 0,
+            slide: [setup.shear.map_or(0.0, |shear| shear.rate * setup.size[1]), 0.0],
             depth: setup.well.map_or(0.0, |well| well.depth),
             width: setup.well.map_or(1.0, |well| well.width),
             bound: HashSet::new(),
         };
+        for (position, velocity) in brute.position.iter().zip(&mut brute.velocity) {
+            velocity[0] += brute.slide[0] * (position[1] / brute.size[1] - 0.5);
+        }
         for a in 0..brute.position.len() {
             for b in 0..a {
                 let line = brute.line(a, b);
@@ -66,6 +72,7 @@ impl<const D: usize> Brute<D> {
         // A quarter of the box at most, so that the next images are all that there are.
         let fastest = self.velocity.iter().flatten().fold(1e-9_f64, |fastest, v| fastest.max(v.abs()));
         let shortest = self.size.iter().copied().fold(f64::INFINITY, f64::min);
+        let fastest = fastest + self.slide[0].abs();
         let mut first = (until - self.time).min(0.1 * shortest / fastest);
         let ends = first == until - self.time;
         let mut next = Next::Nothing;
@@ -133,7 +140,10 @@ impl<const D: usize> Brute<D> {
         let apart: Vec<f64> = (0..D)
             .map(|axis| self.position[b][axis] + shift[axis] * self.size[axis] - self.position[a][axis])
             .collect();
-        let relative: Vec<f64> = (0..D).map(|axis| self.velocity[b][axis] - self.velocity[a][axis]).collect();
+        let mut relative: Vec<f64> = (0..D).map(|axis| self.velocity[b][axis] - self.velocity[a][axis]).collect();
+        let mut apart = apart;
+        apart[0] += shift[1] * self.slide[1];
+        relative[0] += shift[1] * self.slide[0];
         let dot = |u: &[f64], v: &[f64]| u.iter().zip(v).map(|(u, v)| u * v).sum::<f64>();
         let (vv, rv) = (dot(&relative, &relative), dot(&apart, &relative));
         let gap2 = dot(&apart, &apart) - reach.powi(2);
@@ -146,9 +156,15 @@ impl<const D: usize> Brute<D> {
         ((-rv + root) / vv).max(0.0)
     }
 
+    /// In which image above the image of `b` nearest to `a` is.
+    fn above(&self, a: usize, b: usize) -> f64 {
+        if self.slide[0] == 0.0 { 0.0 } else { ((self.position[a][1] - self.position[b][1]) / self.size[1]).round() }
+    }
+
     /// The line from one ball to the nearest image of another.
     fn line(&self, a: usize, b: usize) -> Vec<f64> {
         let mut line: Vec<f64> = (0..D).map(|axis| self.position[b][axis] - self.position[a][axis]).collect();
+        line[0] += self.above(a, b) * self.slide[1];
         for axis in (0..D).filter(|&axis| self.periodic[axis]) {
             line[axis] -= self.size[axis] * (line[axis] / self.size[axis]).round();
         }
@@ -177,9 +193,20 @@ impl<const D: usize> Brute<D> {
     }
 
     fn fly(&mut self, time: f64) {
-        for (position, velocity) in self.position.iter_mut().zip(&self.velocity) {
+        let [speed, slid] = &mut self.slide;
+        *slid += *speed * time;
+        *slid -= self.size[0] * (*slid / self.size[0]).round();
+        let (speed, slid) = (*speed, *slid);
+        for (position, velocity) in self.position.iter_mut().zip(&mut self.velocity) {
             for axis in 0..D {
                 position[axis] += velocity[axis] * time;
+            }
+            if speed != 0.0 {
+                let over = (position[1] / self.size[1]).floor();
+                position[0] -= over * slid;
+                velocity[0] -= over * speed;
+            }
+            for axis in 0..D {
                 if self.periodic[axis] {
                     position[axis] = position[axis].rem_euclid(self.size[axis]);
                 }
@@ -199,7 +226,8 @@ impl<const D: usize> Brute<D> {
         line.iter_mut().for_each(|x| *x /= length);
         let (ma, mb) = (self.mass[a], self.mass[b]);
         let along = |v: &[f64; D]| v.iter().zip(&line).map(|(v, n)| v * n).sum::<f64>();
-        let (va, vb) = (along(&self.velocity[a]), along(&self.velocity[b]));
+        let above = self.above(a, b) * self.slide[0];
+        let (va, vb) = (along(&self.velocity[a]), along(&self.velocity[b]) + above * line[0]);
         let (after_a, after_b) =
             (((ma - mb) * va + 2.0 * mb * vb) / (ma + mb), ((mb - ma) * vb + 2.0 * ma * va) / (ma + mb));
         for axis in 0..D {

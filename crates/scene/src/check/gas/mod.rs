@@ -3,8 +3,8 @@
 mod balls;
 mod walls;
 
-use super::{Check, Checked};
-use crate::{Axis, Gas, Measure, Method, Partition, Region, SquareWell};
+use super::{Check, Checked, SIDES};
+use crate::{Axis, Gas, Measure, Method, Partition, Region, Shear, SquareWell};
 
 /// Close packing: the densest that there is, pi / sqrt(12) of a plane (Thue 1910) and pi / sqrt(18) of space (Hales 2005).
 pub(super) const CLOSE_PACKING: [f64; 2] = [0.906_899_682_117_089_3, 0.740_480_489_693_061_1];
@@ -30,6 +30,9 @@ impl Check {
         self.at_least("gas.contact_time_s", gas.contact_time_s.unwrap_or(0.0), 0.0)?;
         if let Some(well) = &gas.well {
             self.square_well(gas, well)?;
+        }
+        if let Some(shear) = &gas.shear {
+            self.shear(gas, shear)?;
         }
         if let Some(time) = gas.reversed_at_s {
             self.above("gas.reversed_at_s", time, 0.0)?;
@@ -67,6 +70,35 @@ impl Check {
             self.require("gas.well.width", !periodic || length > 3.0 * reach, || {
                 format!("periodic sides {length} apart must be more than three wells apart, and the widest well reaches {reach}")
             })?;
+        }
+        Ok(())
+    }
+
+    /// Steady shear, and what does not go with it.
+    fn shear(&self, gas: &Gas, shear: &Shear) -> Checked {
+        self.above("gas.shear.rate_per_s", shear.rate_per_s, 0.0)?;
+        if let Some(temperature) = shear.temperature {
+            self.above("gas.shear.temperature", temperature, 0.0)?;
+        }
+        for axis in Axis::ALL.into_iter().take(gas.dimensions()) {
+            let key = format!("gas.walls.{}", SIDES[axis.index()][0]);
+            self.require(&key, *gas.walls.along(axis)[0] == crate::Wall::Periodic, || {
+                "a sheared box must be periodic along all axes; make it \"periodic\", with the opposite side, or take [gas.shear] out".into()
+            })?;
+        }
+        let still = gas.gravity() == [0.0; 3];
+        for (key, goes, why) in [
+            ("gas.gravity", still, "would make the gas fall for ever"),
+            ("gas.well", gas.well.is_none(), "does not go with it yet"),
+            ("gas.reversed_at_s", gas.reversed_at_s.is_none(), "would have to reverse the shear too"),
+            (
+                "gas.method",
+                !matches!(gas.method, Method::FixedStep { .. }),
+                "has no images that slide with fixed time steps",
+            ),
+            ("gas.measure.region", gas.measure.region.is_empty(), "would have images sliding through it"),
+        ] {
+            self.require(key, goes, || format!("{why} in a sheared box; take it out, or [gas.shear]"))?;
         }
         Ok(())
     }
