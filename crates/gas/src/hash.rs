@@ -31,6 +31,13 @@ impl<const D: usize> Hash<D> {
     /// For a sheared box whose image above has slid so far along x.
     pub fn slid(mut self, slid: f64) -> Self {
         self.slid = slid;
+        // Of few rows each is on both sides of another: then all balls of the box are near.
+        if slid != 0.0 && self.count[1] < 3 {
+            for axis in 0..2 {
+                self.size[axis] *= self.count[axis] as f64;
+                self.count[axis] = 1;
+            }
+        }
         self
     }
 

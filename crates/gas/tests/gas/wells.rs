@@ -67,7 +67,7 @@ fn scene<const D: usize>(seed: u64, count: usize, ratio: f64, periodic: [bool; D
     for axis in (0..D).filter(|&axis| periodic[axis]) {
         setup = setup.side(axis, 0, Side::Periodic).side(axis, 1, Side::Periodic);
     }
-    if seed % 5 == 0 && !periodic[0] {
+    if seed.is_multiple_of(5) && !periodic[0] {
         setup = setup.side(0, 1, Side::Moving { velocity: -0.2, until: None });
     }
     scatter(&mut setup, count, 0.5 / ratio, ratio, seed);
