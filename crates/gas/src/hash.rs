@@ -8,6 +8,8 @@ pub(crate) struct Hash<const D: usize> {
     count: [usize; D],
     /// Length after which the box repeats; 0 for never.
     period: [f64; D],
+    /// How far the image above has slid along x, in a sheared box.
+    slid: f64,
     heads: Vec<u32>,
     next: Vec<u32>,
     balls: Vec<([f64; D], f64)>,
@@ -23,7 +25,20 @@ impl<const D: usize> Hash<D> {
         let count = length.map(|length| ((length / side) as usize).clamp(1, 1 << 20));
         let size = std::array::from_fn(|axis| length[axis] / count[axis] as f64);
         let heads = vec![NONE; count.iter().product()];
-        Hash { low, size, count, period, heads, next: Vec::new(), balls: Vec::new() }
+        Hash { low, size, count, period, slid: 0.0, heads, next: Vec::new(), balls: Vec::new() }
+    }
+
+    /// For a sheared box whose image above has slid so far along x.
+    pub fn slid(mut self, slid: f64) -> Self {
+        self.slid = slid;
+        // Of few rows each is on both sides of another: then all balls of the box are near.
+        if slid != 0.0 && self.count[1] < 3 {
+            for axis in 0..2 {
+                self.size[axis] *= self.count[axis] as f64;
+                self.count[axis] = 1;
+            }
+        }
+        self
     }
 
     fn cell(&self, position: &[f64; D]) -> [usize; D] {
@@ -87,10 +102,38 @@ impl<const D: usize> Hash<D> {
     /// Numbers of the cells around a place, its own among them.
     fn cells_around(&self, position: &[f64; D]) -> impl Iterator<Item = usize> {
         let centre = self.cell(position);
-        (0..3_usize.pow(D as u32)).filter_map(move |around| {
+        let around = (0..3_usize.pow(D as u32)).filter_map(move |around| {
             let step: [usize; D] = std::array::from_fn(|axis| around / 3_usize.pow(axis as u32) % 3);
+            if self.slid != 0.0 && self.is_across(&centre, step[1]) {
+                return None;
+            }
             self.neighbour(&centre, &step).map(|cell| self.number(cell))
-        })
+        });
+        around.chain(self.rows_across(centre))
+    }
+
+    /// True where a step along y leaves the box.
+    fn is_across(&self, centre: &[usize; D], step: usize) -> bool {
+        let row = centre[1] + step;
+        row == 0 || row > self.count[1]
+    }
+
+    /// Numbers of all cells of the rows across the faces of a sheared box, for a place in a cell there.
+    fn rows_across(&self, centre: [usize; D]) -> Vec<usize> {
+        let mut cells = Vec::new();
+        for step in [0, 2].into_iter().filter(|&step| self.slid != 0.0 && self.is_across(&centre, step)) {
+            for around in 0..3_usize.pow(D as u32 - 2) {
+                // Along x from the place itself; along z as in a box at rest.
+                let mut steps = [1; D];
+                (steps[1], steps[D - 1]) = (step, if D == 3 { around } else { step });
+                let Some(mut cell) = self.neighbour(&centre, &steps) else { continue };
+                for x in 0..self.count[0] {
+                    cell[0] = x;
+                    cells.push(self.number(cell));
+                }
+            }
+        }
+        cells
     }
 
     /// The balls in a cell.
@@ -118,9 +161,16 @@ impl<const D: usize> Hash<D> {
     }
 
     fn distance2(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
+        let mut above = 0.0;
+        if self.slid != 0.0 {
+            above = ((a[1] - b[1]) / self.period[1]).round();
+        }
         let square = |axis: usize| {
             let mut apart = a[axis] - b[axis];
-            if self.period[axis] > 0.0 {
+            if self.slid != 0.0 && axis == 0 {
+                apart -= above * self.slid;
+                apart -= self.period[0] * (apart / self.period[0]).round();
+            } else if self.period[axis] > 0.0 {
                 // Places lie in the box: no more than one period is too much.
                 if apart > 0.5 * self.period[axis] {
                     apart -= self.period[axis];

@@ -25,4 +25,7 @@ pub use gas::{Gas, LiveChange};
 pub use measure::Estimate;
 pub use method::{Nearest, With};
 pub use scene::open;
-pub use setup::{Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, Start, ball_volume};
+pub use setup::{
+    Amount, Ball, Measure, Method, Partition, Region, Setup, Shear, Side, Species, Speeds, SquareWell, Start,
+    ball_volume,
+};

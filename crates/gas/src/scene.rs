@@ -1,6 +1,8 @@
 //! The gas of a scene.
 
-use crate::setup::{Amount, Ball, Measure, Method, Partition, Region, Setup, Side, Species, Speeds, Start, file};
+use crate::setup::{
+    Amount, Ball, Measure, Method, Partition, Region, Setup, Shear, Side, Species, Speeds, SquareWell, Start, file,
+};
 use crate::{Gas, SetupError};
 use corpuscle_model::{Model, ModelError};
 use corpuscle_scene as scene;
@@ -32,6 +34,8 @@ fn make<const D: usize>(written: &scene::Gas, seed: u64, until: f64, folder: &Pa
     setup.gravity = written.gravity.as_deref().map_or([0.0; D], vector);
     setup.restitution = written.restitution;
     setup.contact_time = written.contact_time_s;
+    setup.well = written.well.map(|well| SquareWell { depth: well.depth, width: well.width });
+    setup.shear = written.shear.map(|shear| Shear { rate: shear.rate_per_s, temperature: shear.temperature });
     setup.reversed_at = written.reversed_at_s;
     setup.follow = written.follow.map(|ball| ball as usize);
     setup.method = match written.method {

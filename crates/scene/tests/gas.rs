@@ -186,6 +186,53 @@ fn walls_and_partition() {
 }
 
 #[test]
+fn square_wells() {
+    let text = "run.until_s = 1\n[gas]\nsize = [30, 30]\nwalls = { x_min = \"periodic\", x_max = \"periodic\" }\n\
+                well = { depth = 1.0, width = 1.5 }\nrestitution = 1.0\nmethod = \"list\"\n[[gas.species]]\nname = \"a\"\ncount = 9\n\
+                radius = 1\nmass = 1\ntemperature = 1";
+    assert_eq!(parse(text).gas().unwrap().well, Some(SquareWell { depth: 1.0, width: 1.5 }));
+    for (line, old, new, words) in [
+        (5, "depth = 1.0", "depth = 0", ["gas.well.depth = 0", "must not be 0"]),
+        (5, "width = 1.5", "width = 1", ["gas.well.width = 1", "larger than 1"]),
+        (5, "width = 1.5", "width = 5", ["gas.well.width = 5", "more than three wells apart"]),
+        (5, ", width = 1.5", "", ["gas.well", "width"]),
+        (6, "restitution = 1.0", "restitution = 0.9", ["gas.restitution = 0.9", "take [gas.well] out"]),
+        (7, "\"list\"", "{ fixed-step = { time_step_s = 0.1 } }", ["gas.method", "miss the rims"]),
+    ] {
+        let message = refuse(&text.replace(old, new));
+        for word in words.into_iter().chain([format!("test.toml:{line}:").as_str()]) {
+            assert!(message.contains(word), "{new}: {word:?} is not in:\n{message}");
+        }
+    }
+}
+
+#[test]
+fn shear() {
+    let text = "run.until_s = 1\n[gas]\nsize = [30, 30]\nshear = { rate_per_s = 0.1, temperature = 1.0 }\nmethod = \"list\"\n\
+                gravity = [0.0, 0.0]\nreversed_at_s = 9\n[gas.walls]\nx_min = \"periodic\"\nx_max = \"periodic\"\ny_min = \"periodic\"\n\
+                y_max = \"periodic\"\n[[gas.species]]\nname = \"a\"\ncount = 9\nradius = 1\nmass = 1\ntemperature = 1";
+    let message = refuse(text);
+    assert!(message.contains("gas.reversed_at_s") && message.contains("test.toml:7:"), "{message}");
+    let text = text.replace("reversed_at_s = 9", "");
+    assert_eq!(parse(&text).gas().unwrap().shear, Some(Shear { rate_per_s: 0.1, temperature: Some(1.0) }));
+    for (line, old, new, words) in [
+        (4, "rate_per_s = 0.1", "rate_per_s = 0", ["gas.shear.rate_per_s = 0", "larger than 0"]),
+        (4, "temperature = 1.0", "temperature = 0", ["gas.shear.temperature = 0", "larger than 0"]),
+        (6, "[0.0, 0.0]", "[0.0, -1.0]", ["gas.gravity", "fall"]),
+        (5, "\"list\"", "{ fixed-step = { time_step_s = 0.1 } }", ["gas.method", "take it out, or [gas.shear]"]),
+        (4, "temperature = 1.0 }", "temperature = 1.0 }, well = { depth = 1, width = 2 }", ["gas", "gas"]),
+    ] {
+        let message = refuse(&text.replace(old, new));
+        for word in words {
+            assert!(message.contains(word), "{new}: {word:?} is not in:\n{message}");
+        }
+        assert!(line == 4 || line == 6 || message.contains(&format!("test.toml:{line}:")), "{message}");
+    }
+    let walled = refuse(&text.replace("y_min = \"periodic\"\ny_max = \"periodic\"", "y_min = \"fixed\""));
+    assert!(walled.contains("gas.walls.y_min") && walled.contains("periodic along all axes"), "{walled}");
+}
+
+#[test]
 fn balls() {
     let second = "position = [14.0, 10.0]";
     assert_refused(second, "position = [13.9, 10.0]", &["gas.ball.1.position", "overlaps gas.ball.0", "sum to 4"]);

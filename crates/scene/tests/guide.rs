@@ -226,6 +226,8 @@ fn full_gas(method: Method) -> Scene {
         gravity: both.clone(),
         restitution: 1.0,
         contact_time_s: Some(1.0),
+        shear: Some(Shear { rate_per_s: 1.0, temperature: Some(1.0) }),
+        well: Some(SquareWell { depth: 1.0, width: 2.0 }),
         reversed_at_s: Some(1.0),
         follow: Some(0),
         walls,

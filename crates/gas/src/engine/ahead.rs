@@ -167,7 +167,8 @@ mod tests {
             species: 0,
         };
         let starts: Vec<Start<D>> = (0..along.pow(D as u32)).map(start).collect();
-        let mut field = Field { gravity: [0.0; D], scale: 1.0, growth: 0.0, period: [0.0; D] };
+        let mut field =
+            Field { gravity: [0.0; D], scale: 1.0, growth: 0.0, period: [0.0; D], slide: Default::default() };
         (field.gravity[0], field.period[D - 1]) = (gravity, length);
         let kinds = vec![Kind { radius: 0.5, mass: 1.0 }, Kind { radius: 0.2, mass: 0.5 }];
         let mut world = World::new([0.0; D], [length; D], kinds, &starts, field);

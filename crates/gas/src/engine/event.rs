@@ -28,6 +28,8 @@ impl What {
     pub const NOTHING: What = What(u32::MAX);
     const EDGE: u32 = 1 << 31;
     const WALL: u32 = 3 << 30;
+    /// Of a ball: the pair comes to the rim of its well, not to contact.
+    const RIM: u32 = 1 << 30;
 
     #[inline(always)]
     pub fn edge(axis: usize, up: bool) -> What {
@@ -39,10 +41,21 @@ impl What {
         What(Self::WALL | wall as u32)
     }
 
+    #[inline(always)]
+    pub fn pair(ball: u32, rim: bool) -> What {
+        What(if rim { Self::RIM | ball } else { ball })
+    }
+
     /// The ball, if it is one.
     #[inline(always)]
     pub fn ball(self) -> Option<usize> {
-        (self.0 & Self::EDGE == 0).then_some(self.0 as usize)
+        (self.0 & Self::EDGE == 0).then_some((self.0 & !Self::RIM) as usize)
+    }
+
+    /// True where it is a ball at the rim of a well.
+    #[inline(always)]
+    pub fn is_rim(self) -> bool {
+        self.0 & Self::WALL == Self::RIM
     }
 
     /// The wall, if it is one.

@@ -13,6 +13,7 @@ mod queue;
 mod rebuild;
 mod run;
 mod saved;
+mod slide;
 mod watch;
 
 pub(crate) use saved::Saved;
@@ -42,6 +43,8 @@ pub(crate) struct Engine<const D: usize> {
     /// Times at which the balls near each wall are updated again, and the first of these times.
     watches: Vec<f64>,
     next_watch: f64,
+    /// Whole cells by which the image above has slid, in a sheared box.
+    slid_cells: i64,
     /// Working memory: balls beside a wall.
     beside_wall: Vec<u32>,
     /// Events handled since the window was moved on.
@@ -67,6 +70,7 @@ impl<const D: usize> Engine<D> {
             ahead: Ahead::new(),
             watches: Vec::new(),
             next_watch: f64::INFINITY,
+            slid_cells: 0,
             beside_wall: Vec::new(),
             handled: 0,
             crossings: 0,

@@ -3,11 +3,11 @@
 use super::Engine;
 use super::event::{Event, What};
 use super::near::{Near, ROOM};
-use crate::world::{Ball, Field, Mode, NONE, first_contact};
+use crate::world::{Ball, Field, Mode, NONE, Well, first_contact};
 
 /// The earliest thing found so far.
 #[derive(Debug, Clone, Copy)]
-struct Next {
+pub(super) struct Next {
     time: f64,
     what: What,
     partner_bends: u32,
@@ -40,10 +40,15 @@ impl<const D: usize> Engine<D> {
         self.cell_edges::<M>(ball, &event, &mut next);
         let level = &self.grid.levels[event.level as usize];
         let seam = level.at_seam(&self.grid.periodic, &event.cell) || self.grid.levels.len() > 1;
-        if seam {
+        if M::SHEARS && seam {
+            self.neighbours_in_shear::<M>(ball, &mut next);
+        } else if seam {
             self.neighbours::<M, true>(ball, &event, &mut next);
         } else {
             self.neighbours::<M, false>(ball, &event, &mut next);
+        }
+        if M::WELLS {
+            self.bound_partners::<M>(ball, &mut next);
         }
         if !self.world.walls.is_empty() {
             self.walls::<M>(ball, &event, &mut next);
@@ -131,7 +136,7 @@ impl<const D: usize> Engine<D> {
 
     /// Compares the ball with those at the heads of cells and all that follow them.
     #[inline(always)]
-    fn chains<M: Mode, const WRAP: bool>(
+    pub(super) fn chains<M: Mode, const WRAP: bool>(
         &mut self,
         ball: usize,
         found: &mut [u32; ROOM],
@@ -144,13 +149,21 @@ impl<const D: usize> Engine<D> {
         let (events, near) = (&events[..], &mut **near);
         let me = &balls[ball];
         let radius = kinds[me.kind as usize].radius;
+        let well = if M::WELLS { world.well.as_ref() } else { None };
         let mut count = count;
         let mut done = 0;
         while done < count {
             let other = &balls[found[done & (ROOM - 1)] as usize];
-            let reach = radius + if *alike { radius } else { kinds[other.kind as usize].radius };
+            let mut reach = radius + if *alike { radius } else { kinds[other.kind as usize].radius };
+            if let Some(well) = well {
+                reach *= well.width;
+            }
             let offset = offsets[done & (ROOM - 1)];
-            near.set::<WRAP>(done, other, &offset, reach);
+            if M::SHEARS && offset[1] != 0.0 {
+                near.set::<WRAP>(done, &field.image_above(other, offset[1].signum()), &offset, reach);
+            } else {
+                near.set::<WRAP>(done, other, &offset, reach);
+            }
             done += 1;
             found[count & (ROOM - 1)] = other.next;
             if WRAP {
@@ -158,7 +171,7 @@ impl<const D: usize> Engine<D> {
             }
             count += usize::from(other.next != NONE);
             if count == ROOM && done < count {
-                nearest::<D, M, WRAP>(near, events, (ball, me), field, &found[..done], next);
+                nearest::<D, M, WRAP>(near, events, (ball, me), (field, well), &found[..done], next);
                 found.copy_within(done..count, 0);
                 if WRAP {
                     offsets.copy_within(done..count, 0);
@@ -166,7 +179,17 @@ impl<const D: usize> Engine<D> {
                 (count, done) = (count - done, 0);
             }
         }
-        nearest::<D, M, WRAP>(near, events, (ball, me), field, &found[..done], next);
+        nearest::<D, M, WRAP>(near, events, (ball, me), (field, well), &found[..done], next);
+    }
+
+    /// What happens first between the ball and those that are in a well with it.
+    #[inline(always)]
+    fn bound_partners<M: Mode>(&self, ball: usize, next: &mut Next) {
+        let Some(well) = &self.world.well else { return };
+        for &other in well.bound_to(ball) {
+            let (time, rim) = self.world.next_in_well::<M>(well, ball, other as usize);
+            offer(next, &self.events, other, time, rim);
+        }
     }
 
     /// As [`Engine::neighbours`], among the balls of other sizes.
@@ -271,7 +294,7 @@ fn nearest<const D: usize, M: Mode, const WRAP: bool>(
     near: &mut Near<D>,
     events: &[Event<D>],
     (ball, me): (usize, &Ball<D>),
-    field: &Field<D>,
+    (field, well): (&Field<D>, Option<&Well>),
     found: &[u32],
     next: &mut Next,
 ) {
@@ -283,11 +306,21 @@ fn nearest<const D: usize, M: Mode, const WRAP: bool>(
         if M::GROWS && other as usize == ball {
             continue;
         }
-        if meets < next.time || (meets == next.time && next.what.ball().is_some_and(|rival| other < rival as u32)) {
-            let theirs = &events[other as usize];
-            if meets < theirs.time {
-                *next = Next { time: meets, what: What(other), partner_bends: theirs.bends };
-            }
+        // Pairs in their wells are searched by themselves.
+        if M::WELLS && well.is_some_and(|well| well.are_bound(ball, other as usize)) {
+            continue;
+        }
+        offer(next, events, other, meets, M::WELLS);
+    }
+}
+
+/// Takes the event of a pair where it comes before what was found so far and before what its partner does next.
+#[inline(always)]
+fn offer<const D: usize>(next: &mut Next, events: &[Event<D>], other: u32, meets: f64, rim: bool) {
+    if meets < next.time || (meets == next.time && next.what.ball().is_some_and(|rival| other < rival as u32)) {
+        let theirs = &events[other as usize];
+        if meets < theirs.time {
+            *next = Next { time: meets, what: What::pair(other, rim), partner_bends: theirs.bends };
         }
     }
 }

@@ -5,7 +5,7 @@ use super::ahead::Ahead;
 use super::event::{Event, What};
 use super::grid::Grid;
 use super::queue::Queue;
-use crate::world::{Ball, Falling, Growing, Mode, NONE, Straight};
+use crate::world::{Ball, Mode, NONE, in_mode};
 use multiversion::multiversion;
 
 /// Balls in a cell that make the least work, in two and three dimensions.
@@ -20,13 +20,7 @@ impl<const D: usize> Engine<D> {
     /// Begins a new window now: all balls at the same time, in space-filling order, in new cells, with everything predicted
     /// afresh.
     pub fn rebuild(&mut self) {
-        if self.world.field.growth != 0.0 {
-            self.rebuild_as::<Growing>();
-        } else if self.world.falls() {
-            self.rebuild_as::<Falling>();
-        } else {
-            self.rebuild_as::<Straight>();
-        }
+        in_mode!(self.world.motion(), M => self.rebuild_as::<M>());
     }
 
     fn rebuild_as<M: Mode>(&mut self) {
@@ -36,6 +30,9 @@ impl<const D: usize> Engine<D> {
         self.fill_cells();
         self.handled = 0;
         self.watch_none();
+        if M::SHEARS {
+            self.begin_slide();
+        }
         foresee_all::<D, M>(self);
         self.fill_queue();
     }
@@ -52,7 +49,7 @@ impl<const D: usize> Engine<D> {
     /// A grid for the box as it was at the beginning of the window.
     pub(super) fn fitting_grid(&self) -> Grid<D> {
         let world = &self.world;
-        let mut diameters: Vec<f64> = (0..world.balls.len()).map(|ball| 2.0 * world.radius(ball)).collect();
+        let mut diameters: Vec<f64> = (0..world.balls.len()).map(|ball| world.reach(ball)).collect();
         let periodic = world.field.period.map(|period| period > 0.0);
         let count = diameters.len().max(1);
         let volume: f64 = world.length.iter().product();
@@ -60,7 +57,9 @@ impl<const D: usize> Engine<D> {
         let largest = diameters.iter().copied().fold(0.0, f64::max);
         let nth = (diameters.len() * 9 / 10).min(diameters.len().saturating_sub(1));
         let usual = if diameters.is_empty() { 1.0 } else { *diameters.select_nth_unstable_by(nth, f64::total_cmp).1 };
-        let finest = if largest < 2.0 * usual { largest } else { usual };
+        // Rows at the faces of a sheared box have one size of cells.
+        let one_level = largest < 2.0 * usual || world.field.is_sheared();
+        let finest = if one_level { largest } else { usual };
         Grid::new(world.low, world.length, periodic, finest.max(thin) * SLACK, largest * SLACK, 8 * count + 64)
             .expect("checked before: the box is at least three of the largest balls wide across periodic sides")
     }
@@ -83,7 +82,7 @@ impl<const D: usize> Engine<D> {
     fn fill_cells(&mut self) {
         self.events.clear();
         for ball in 0..self.world.balls.len() {
-            let level = self.grid.level_of(2.0 * self.world.radius(ball));
+            let level = self.grid.level_of(self.world.reach(ball));
             let cell = self.grid.cell_of(level, &self.world.balls[ball].position);
             let (time, what) = (f64::INFINITY, What::NOTHING);
             self.events.push(Event { time, what, partner_bends: 0, bends: 0, stamp: 0, cell, level });

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::method::Pause;
-use crate::world::{Falling, Growing, Mode, NONE, Straight};
+use crate::world::{Mode, NONE, in_mode};
 use multiversion::multiversion;
 
 /// Events handled for each ball before a new window begins.
@@ -11,13 +11,7 @@ const EVENTS_PER_WINDOW: u64 = 60;
 impl<const D: usize> Engine<D> {
     /// Handles events up to `until` (in the window), `most` at most.
     pub fn run(&mut self, until: f64, most: u64) -> Pause {
-        if self.world.field.growth != 0.0 {
-            handle::<D, Growing>(self, until, most)
-        } else if self.world.falls() {
-            handle::<D, Falling>(self, until, most)
-        } else {
-            handle::<D, Straight>(self, until, most)
-        }
+        in_mode!(self.world.motion(), M => handle::<D, M>(self, until, most))
     }
 
     /// True where a new window is due.
@@ -35,7 +29,11 @@ fn handle<const D: usize, M: Mode>(engine: &mut Engine<D>, until: f64, most: u64
             return Pause::Reached;
         }
         if engine.next_watch <= time {
-            engine.watch::<M>();
+            if M::SHEARS {
+                engine.slide_on::<M>();
+            } else {
+                engine.watch::<M>();
+            }
             continue;
         }
         if engine.window_is_full() {
@@ -65,7 +63,11 @@ impl<const D: usize> Engine<D> {
         let event = self.events[ball];
         if let Some(partner) = event.what.ball() {
             if self.events[partner].bends == event.partner_bends {
-                self.world.collide::<M>(ball, partner);
+                if M::WELLS && event.what.is_rim() {
+                    self.world.cross_rim::<M>(ball, partner);
+                } else {
+                    self.world.collide::<M>(ball, partner);
+                }
                 for ball in [ball, partner] {
                     self.events[ball].bends = self.events[ball].bends.wrapping_add(1);
                 }
@@ -73,7 +75,7 @@ impl<const D: usize> Engine<D> {
             }
             self.disturbed += 1;
         } else if let Some((axis, up)) = event.what.as_edge() {
-            self.cross(ball, axis, up);
+            self.cross::<M>(ball, axis, up);
         } else if let Some(wall) = event.what.as_wall() {
             if self.world.walls[wall].bends == event.partner_bends {
                 self.hit::<M>(ball, wall);
@@ -86,7 +88,7 @@ impl<const D: usize> Engine<D> {
 
     /// Moves a ball into the next cell.
     #[inline(always)]
-    fn cross(&mut self, ball: usize, axis: usize, up: bool) {
+    fn cross<M: Mode>(&mut self, ball: usize, axis: usize, up: bool) {
         self.crossings += 1;
         self.leave_cell(ball);
         let event = &mut self.events[ball];
@@ -95,12 +97,24 @@ impl<const D: usize> Engine<D> {
         event.cell[axis] = if up { cell + 1 } else { cell - 1 };
         if event.cell[axis] > count {
             event.cell[axis] = 1;
-            self.world.wrap(ball, axis, 1);
+            self.wrap::<M>(ball, axis, 1);
         } else if event.cell[axis] == 0 {
             event.cell[axis] = count;
-            self.world.wrap(ball, axis, -1);
+            self.wrap::<M>(ball, axis, -1);
         }
         self.enter_cell(ball);
+    }
+
+    /// Puts a ball into the next image of the box.
+    #[inline(always)]
+    fn wrap<M: Mode>(&mut self, ball: usize, axis: usize, direction: i32) {
+        if !(M::SHEARS && axis == 1) {
+            self.world.wrap(ball, axis, direction);
+            return;
+        }
+        self.world.wrap_in_shear(ball, direction);
+        let event = &mut self.events[ball];
+        event.cell[0] = self.grid.cell_of(event.level, &self.world.balls[ball].position)[0];
     }
 
     /// A ball rebounds from a wall.
@@ -116,11 +130,7 @@ impl<const D: usize> Engine<D> {
 
     /// Updates the events of balls after a wall's motion changed now by its schedule: those that it will hit before their next event.
     pub fn wall_changed(&mut self, wall: usize) {
-        if self.world.falls() {
-            self.wall_changed_as::<Falling>(wall);
-        } else {
-            self.wall_changed_as::<Straight>(wall);
-        }
+        in_mode!(self.world.motion(), M => self.wall_changed_as::<M>(wall));
     }
 
     fn wall_changed_as<M: Mode>(&mut self, wall: usize) {

@@ -14,6 +14,7 @@ pub(crate) struct Saved {
     cell: Vec<u16>,
     level: Vec<u8>,
     watches: Vec<f64>,
+    slid_cells: i64,
     handled: u64,
     crossings: u64,
     disturbed: u64,
@@ -31,6 +32,7 @@ impl<const D: usize> Engine<D> {
             cell: events.iter().flat_map(|event| event.cell).collect(),
             level: events.iter().map(|event| event.level).collect(),
             watches: self.watches.clone(),
+            slid_cells: self.slid_cells,
             handled: self.handled,
             crossings: self.crossings,
             disturbed: self.disturbed,
@@ -67,6 +69,10 @@ impl<const D: usize> Engine<D> {
         }
         self.watches.clone_from(&saved.watches);
         self.next_watch = saved.watches.iter().copied().fold(f64::INFINITY, f64::min);
+        if self.world.field.is_sheared() {
+            self.slid_cells = saved.slid_cells;
+            self.next_watch = self.next_slide();
+        }
         (self.handled, self.crossings, self.disturbed) = (saved.handled, saved.crossings, saved.disturbed);
         self.fill_queue();
         Some(())

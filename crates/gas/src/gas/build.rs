@@ -6,7 +6,7 @@ use crate::engine::Engine;
 use crate::measure::Measures;
 use crate::method::{FixedStep, List, Mover};
 use crate::setup::{Method, Placed, Region, Setup};
-use crate::world::{CountedRegion, Field, Followed, Kind, Rebound, Start, World};
+use crate::world::{CountedRegion, Field, Followed, Kind, Rebound, Slide, Start, World};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -32,7 +32,11 @@ impl<const D: usize> Gas<D> {
         }
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         world.followed = setup.followed(&starts);
-        world.moments = setup.keeps_momentum_and_energy().then(Default::default);
+        if let Some(well) = setup.well {
+            world.dig_wells(well.depth, well.width);
+        }
+        let moves_momentum = setup.keeps_momentum_and_energy() || setup.shear.is_some();
+        world.moments = moves_momentum.then(Default::default);
         let region = |region: &Region<D>| CountedRegion { from: region.from, to: region.to, virial: 0.0 };
         world.regions = setup.regions.iter().map(region).collect();
         let partition = setup.partition.is_some().then(|| world.walls.len() - 1);
@@ -60,6 +64,9 @@ impl<const D: usize> Gas<D> {
             live: Default::default(),
         };
         gas.initial = [gas.energy(), gas.momentum().iter().sum()];
+        if let Some(temperature) = gas.setup.shear.and_then(|shear| shear.temperature) {
+            gas.hold_temperature(Some(temperature)).map_err(|error| SetupError::Contradiction(error.to_string()))?;
+        }
         Ok(gas)
     }
 }
@@ -106,12 +113,18 @@ impl<const D: usize> Setup<D> {
         if starts.is_empty() {
             return Err(SetupError::Contradiction("there are no balls".into()));
         }
+        let field = self.field();
+        for start in starts.iter_mut().filter(|_| field.is_sheared()) {
+            start.velocity[0] += field.flow_at(0.0, start.position[1]);
+        }
         Ok((starts, table.kinds, table.sets))
     }
 
     fn field(&self) -> Field<D> {
         let period = std::array::from_fn(|axis| if self.repeats_along(axis) { self.size[axis] } else { 0.0 });
-        Field { gravity: self.gravity, scale: 1.0, growth: 0.0, period }
+        let speed = self.shear.map_or(0.0, |shear| shear.rate * self.size[1]);
+        let slide = Slide { speed, displacement: 0.0 };
+        Field { gravity: self.gravity, scale: 1.0, growth: 0.0, period, slide }
     }
 
     fn followed(&self, starts: &[Start<D>]) -> Option<Followed<D>> {
@@ -122,7 +135,8 @@ impl<const D: usize> Setup<D> {
     /// Speeds up to which histograms go, for each set: some thermal speeds at the temperature of the whole.
     pub(super) fn largest_speeds(&self, sets: &[Set], world: &World<D>) -> Vec<f64> {
         let energy: f64 = (0..world.balls.len())
-            .map(|ball| 0.5 * world.mass(ball) * world.balls[ball].velocity.iter().map(|v| v * v).sum::<f64>())
+            .map(|ball| (world.mass(ball), world.thermal_velocity(ball, world.balls[ball].time)))
+            .map(|(mass, velocity)| 0.5 * mass * velocity.iter().map(|v| v * v).sum::<f64>())
             .sum();
         let per_direction = 2.0 * energy / (D * world.balls.len()) as f64;
         sets.iter().map(|set| FASTEST * (per_direction / set.mass).sqrt().max(f64::MIN_POSITIVE)).collect()

@@ -41,14 +41,26 @@ impl<const D: usize> Gas<D> {
             ["centre_x", "centre_y", "centre_z"]
                 .into_iter()
                 .zip(self.centre_of_mass())
-                .map(|(name, place)| (name, "m", place)),
+                .map(|(name, place)| (name, "m", place))
+                // A sheared gas has no centre along the flow.
+                .skip(usize::from(self.setup.shear.is_some())),
         );
         rows.push(("packing", "", self.packing()));
         rows.push(("maxwell_p_value", "", self.maxwell_p_value()));
         if self.sets.len() > 1 {
             rows.push(("mixing_entropy", "", self.mixing_entropy()));
         }
-        if world.walls.iter().any(|wall| wall.moves || wall.temperature.is_some()) {
+        if world.well.is_some() {
+            let [captures, escapes, returns] = self.rim_events().map(|count| count as f64);
+            rows.extend([
+                ("potential_energy", "J", self.potential_energy()),
+                ("pairs_in_wells", "", self.pairs_in_wells() as f64),
+                ("captures", "", captures),
+                ("escapes", "", escapes),
+                ("returns_at_rims", "", returns),
+            ]);
+        }
+        if world.walls.iter().any(|wall| wall.moves || wall.temperature.is_some()) || self.setup.shear.is_some() {
             rows.push(("work", "J", self.work()));
         }
         if self.len() <= OVERLAP_CHECK_MAX_BALLS {
@@ -88,12 +100,17 @@ impl<const D: usize> Gas<D> {
     /// Viscosity and thermal conductivity with their standard errors, where they are measured.
     fn transport_gauges(&self) -> Vec<(String, &'static str, &'static str, f64)> {
         let mut gauges = Vec::new();
+        if self.setup.shear.is_some() {
+            let (stress, unit) = (self.shear_stress(), if D == 2 { "N_per_m" } else { "Pa" });
+            gauges.push(("gas".into(), "shear_stress", unit, stress.mean));
+            gauges.push(("gas".into(), "shear_stress_standard_error", unit, stress.error));
+        }
         if self.measures_transport() {
             let (viscosity, unit) = (self.viscosity(), if D == 2 { "N_s_per_m" } else { "Pa_s" });
             gauges.push(("gas".into(), "viscosity", unit, viscosity.mean));
             gauges.push(("gas".into(), "viscosity_standard_error", unit, viscosity.error));
         }
-        if self.measures_transport() && self.has_one_mass() {
+        if self.measures_conductivity() {
             let (conductivity, unit) = (self.conductivity(), if D == 2 { "W_per_K" } else { "W_per_m_K" });
             gauges.push(("gas".into(), "conductivity", unit, conductivity.mean));
             gauges.push(("gas".into(), "conductivity_standard_error", unit, conductivity.error));
@@ -132,7 +149,8 @@ impl<const D: usize> Gas<D> {
         let mut gauges = Vec::new();
         for (number, set) in self.sets.iter().enumerate() {
             let (mut squares, mut count) = (0.0, 0.0);
-            for (velocity, &own) in snapshot.velocity.iter().zip(&snapshot.set) {
+            for (ball, &own) in snapshot.set.iter().enumerate() {
+                let velocity = snapshot.thermal_velocity(ball);
                 if own as usize == number {
                     squares += velocity.iter().map(|v| v * v).sum::<f64>();
                     count += 1.0;
@@ -160,7 +178,8 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let gained: f64 = world.wall_tallies.iter().map(|tally| tally.gained.value()).sum();
         let lost: f64 = world.wall_tallies.iter().map(|tally| tally.lost.value()).sum();
-        let gained = gained + self.live.gained.value();
+        let gained = gained + world.tally.shear.gained.value() + self.live.gained.value();
+        let lost = lost + world.tally.shear.lost.value();
         let outflow = lost + world.tally.dissipated.value() + self.live.lost.value();
         let quantity = if self.si { "energy_J" } else { "energy" };
         Balance { quantity, initial: self.initial[0], inflow: gained, outflow, now: self.energy(), least: 0.0 }
@@ -174,6 +193,7 @@ impl<const D: usize> Gas<D> {
             book(-tally.momentum.value() + tally.dragged.value());
         }
         book(self.live.momentum.value());
+        book(world.tally.shear.momentum.value());
         let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
         world.field.gravity.iter().for_each(|gravity| book(mass * gravity * self.shown));
         let now: f64 = self.momentum().iter().sum();

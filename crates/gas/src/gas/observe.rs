@@ -6,7 +6,7 @@ use crate::measure::estimate::{average, change, duration};
 use crate::measure::transport::growth;
 use crate::measure::{Estimate, Maxwell, Sample, Snapshot, mixing_entropy, p_value};
 use crate::method::{Mover, Nearest};
-use crate::world::{Moments, speed};
+use crate::world::{Moments, Well, speed};
 use corpuscle_model::ExactSum;
 
 /// Samples over which current values such as the pressure are averaged.
@@ -65,16 +65,48 @@ impl<const D: usize> Gas<D> {
         (0..world.balls.len()).map(one).collect::<ExactSum>().value()
     }
 
-    /// Kinetic energy and energy in gravity, at the time shown.
+    /// Kinetic energy of the motion relative to the flow of a sheared box, at the time shown; else that of all motion.
+    pub fn thermal_energy(&self) -> f64 {
+        let world = self.mover.world();
+        let one = |ball| 0.5 * world.mass(ball) * speed(&world.thermal_velocity(ball, self.now())).powi(2);
+        (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+    }
+
+    /// Momentum of the motion relative to the flow, at the time shown.
+    fn thermal_momentum(&self) -> [f64; D] {
+        let world = self.mover.world();
+        std::array::from_fn(|axis| {
+            let one = |ball| world.mass(ball) * world.thermal_velocity(ball, self.now())[axis];
+            (0..world.balls.len()).map(one).collect::<ExactSum>().value()
+        })
+    }
+
+    /// Kinetic and potential energy at the time shown.
     pub fn energy(&self) -> f64 {
+        self.kinetic_energy() + self.potential_energy()
+    }
+
+    /// Energy in gravity and in square wells at the time shown.
+    pub fn potential_energy(&self) -> f64 {
         let world = self.mover.world();
         let heights = |ball: usize| -> f64 {
             let place = world.unwrapped(ball, self.now());
             world.mass(ball) * (0..D).map(|axis| -world.field.gravity[axis] * place[axis]).sum::<f64>()
         };
-        let potential =
+        let raised =
             if world.falls() { (0..world.balls.len()).map(heights).collect::<ExactSum>().value() } else { 0.0 };
-        self.kinetic_energy() + potential
+        raised + world.well.as_ref().map_or(0.0, Well::energy)
+    }
+
+    /// Number of pairs that are in their square wells; 0 without wells.
+    pub fn pairs_in_wells(&self) -> u64 {
+        self.mover.world().well.as_ref().map_or(0, Well::pairs)
+    }
+
+    /// Pairs that went into their square wells, out of them, and turned back at the rim, so far.
+    pub fn rim_events(&self) -> [u64; 3] {
+        let tally = self.mover.world().well.as_ref().map(|well| well.tally).unwrap_or_default();
+        [tally.captures, tally.escapes, tally.returns]
     }
 
     /// Momentum at the time shown.
@@ -92,10 +124,10 @@ impl<const D: usize> Gas<D> {
     pub fn temperature(&self) -> f64 {
         let world = self.mover.world();
         let mass: f64 = (0..world.balls.len()).map(|ball| world.mass(ball)).sum();
-        let drift: f64 = self.momentum().iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
+        let drift: f64 = self.thermal_momentum().iter().map(|p| p * p).sum::<f64>() / (2.0 * mass);
         let freedom = self.setup.degrees_of_freedom(world.balls.len());
         let bound = if freedom < (D * world.balls.len()) as f64 { drift } else { 0.0 };
-        2.0 * (self.kinetic_energy() - bound) / (freedom * self.setup.boltzmann)
+        2.0 * (self.thermal_energy() - bound) / (freedom * self.setup.boltzmann)
     }
 
     /// Centre of mass at the time shown, as if the box did not repeat.
@@ -124,9 +156,26 @@ impl<const D: usize> Gas<D> {
         self.mover.world().tally.collisions
     }
 
-    /// Work done on and heat given to the gas by walls so far.
+    /// Work done on and heat given to the gas by walls and shear so far.
     pub fn work(&self) -> f64 {
-        self.mover.world().wall_tallies.iter().map(|tally| tally.energy()).sum()
+        let world = self.mover.world();
+        world.wall_tallies.iter().map(|tally| tally.energy()).sum::<f64>() + world.tally.shear.work()
+    }
+
+    /// Shear stress along x on planes across y, since averages began: what balls carry, relative to the flow, and exchange in collisions
+    /// (Irving & Kirkwood, J. Chem. Phys. 18, 1950, 817), above 0 where it resists the shear. Not a number without shear.
+    pub fn shear_stress(&self) -> Estimate {
+        if self.setup.shear.is_none() {
+            return Estimate { mean: f64::NAN, error: f64::NAN };
+        }
+        let volume = self.volume();
+        let moved = |samples: &[Sample]| change(samples, |sample| sample.moments.momentum[0]) / duration(samples);
+        self.measures.estimate(self.setup.measure.from, |samples| -moved(samples) / volume)
+    }
+
+    /// Height and mean velocity along x of layers of a sheared box, since averages began.
+    pub fn flow_profile(&self) -> Vec<[f64; 2]> {
+        self.measures.flow.as_ref().map_or_else(Vec::new, |flow| flow.profile([0.0, self.setup.size[1]]))
     }
 
     /// Place and velocity, at the time shown, of the lower (0) or upper (1) wall along an axis; none where the box repeats.
@@ -147,7 +196,8 @@ impl<const D: usize> Gas<D> {
         let largest = (0..world.balls.len()).map(|ball| world.radius(ball)).fold(0.0, f64::max);
         let length = extents.map(|[low, high]| high - low);
         let mut hash =
-            Hash::new(extents.map(|[low, _]| low), length, world.field.period, 2.0 * largest, world.balls.len());
+            Hash::new(extents.map(|[low, _]| low), length, world.field.period, 2.0 * largest, world.balls.len())
+                .slid(world.field.slid_at(now));
         let smallest = world.kinds.iter().map(|kind| kind.radius).fold(f64::INFINITY, f64::min);
         for ball in 0..world.balls.len() {
             let (position, radius) = (world.state(ball, now).0, world.radius(ball));
@@ -199,14 +249,14 @@ impl<const D: usize> Gas<D> {
         let total: f64 = (0..count).map(|ball| world.mass(ball)).sum();
         let freedom = self.setup.degrees_of_freedom(count);
         let bound = freedom < (D * count) as f64;
-        let momentum = self.momentum();
+        let momentum = self.thermal_momentum();
         let drift: [f64; D] = if bound { momentum.map(|p| p / total) } else { [0.0; D] };
-        let energy = self.kinetic_energy() - 0.5 * total * drift.iter().map(|v| v * v).sum::<f64>();
+        let energy = self.thermal_energy() - 0.5 * total * drift.iter().map(|v| v * v).sum::<f64>();
         let Some(first) = Maxwell::new(D, freedom, energy, world.mass(0), total, bound) else { return f64::NAN };
         p_value((0..count).map(|ball| {
             let mass = world.mass(ball);
             let own = Maxwell::new(D, freedom, energy, mass, total, bound).unwrap_or(first);
-            let velocity = world.state(ball, self.now()).1;
+            let velocity = world.thermal_velocity(ball, self.now());
             let speed2 = (0..D).map(|axis| (velocity[axis] - drift[axis]).powi(2)).sum::<f64>();
             (speed2, own)
         }))
@@ -314,6 +364,11 @@ impl<const D: usize> Gas<D> {
         moving.map(|sample| [sample.time - self.measures.started, sample.displacement[set]]).collect()
     }
 
+    /// Axes along which displacement is counted: not that along which a shear flow carries balls away.
+    fn counted_axes(&self) -> usize {
+        D - usize::from(self.setup.shear.is_some())
+    }
+
     /// Diffusion coefficient of a set: slope of the second half of its mean-square displacement over 2 x dimensions (Einstein 1905). Its
     /// error is from slopes of parts of that half.
     pub fn diffusion(&self, set: usize) -> Estimate {
@@ -330,13 +385,17 @@ impl<const D: usize> Gas<D> {
             .map(|part| (edge(part), edge(part + 1)))
             .map(|(start, end)| (end[1] - start[1]) / (end[0] - start[0]))
             .collect();
-        Estimate { mean: above / below, error: Estimate::of(&slopes).error }.times(1.0 / (2 * D) as f64)
+        Estimate { mean: above / below, error: Estimate::of(&slopes).error }
+            .times(1.0 / (2 * self.counted_axes()) as f64)
     }
 
-    /// Shear viscosity since averages began, from the growth of Helfand's moments; not a number where walls, gravity or loss change momentum
+    /// Shear viscosity since averages began: in a sheared box stress over rate; else from the growth of Helfand's moments; not a number where walls, gravity or loss change momentum
     /// or energy, where the gas moves as a whole or its temperature is held, and before there are enough samples. In two dimensions it has
     /// no limit at late times.
     pub fn viscosity(&self) -> Estimate {
+        if let Some(shear) = self.setup.shear {
+            return self.shear_stress().times(1.0 / shear.rate);
+        }
         let shears = Moments::shears(D);
         let growth = self.growth(|sample| {
             std::array::from_fn::<_, 3, _>(|k| if k < shears { sample.moments.momentum[k] } else { 0.0 })
@@ -346,9 +405,9 @@ impl<const D: usize> Gas<D> {
     }
 
     /// Thermal conductivity since averages began, as [`Gas::viscosity`]; not a number for balls of several masses, whose flow of heat depends
-    /// on how it is told from their diffusion.
+    /// on how it is told from their diffusion, and for balls with wells, whose potential energy is not counted in what they move.
     pub fn conductivity(&self) -> Estimate {
-        if !self.has_one_mass() {
+        if !self.measures_conductivity() {
             return Estimate { mean: f64::NAN, error: f64::NAN };
         }
         let growth = self.growth(|sample| sample.moments.energy);
@@ -360,9 +419,10 @@ impl<const D: usize> Gas<D> {
         self.mover.world().moments.is_some()
     }
 
-    pub(super) fn has_one_mass(&self) -> bool {
-        let kinds = &self.mover.world().kinds;
-        kinds.windows(2).all(|pair| pair[0].mass == pair[1].mass)
+    pub(super) fn measures_conductivity(&self) -> bool {
+        let world = self.mover.world();
+        let one_mass = world.kinds.windows(2).all(|pair| pair[0].mass == pair[1].mass);
+        self.measures_transport() && one_mass && world.well.is_none() && !world.field.is_sheared()
     }
 
     fn growth(&self, moments: impl Fn(&Sample) -> [f64; 3]) -> Estimate {
@@ -446,7 +506,7 @@ impl<const D: usize> Gas<D> {
         let mut kinetic = ExactSum::default();
         let (mut mass, mut momentum, mut under_way) = (0.0, [0.0; D], 0.0);
         for ball in 0..world.balls.len() {
-            let (own, velocity) = (world.mass(ball), world.state(ball, now).1);
+            let (own, velocity) = (world.mass(ball), world.thermal_velocity(ball, now));
             kinetic.add(0.5 * own * velocity.iter().map(|v| v * v).sum::<f64>());
             mass += own;
             under_way += speed(&velocity) * (now - world.balls[ball].time);
@@ -497,6 +557,8 @@ impl<const D: usize> Gas<D> {
             position: vec![[0.0; D]; count],
             unwrapped: vec![[0.0; D]; count],
             velocity: vec![[0.0; D]; count],
+            thermal: Vec::new(),
+            slid: world.field.slid_at(now),
             set: vec![0; count],
             extent: std::array::from_fn(|axis| world.extent(axis, now)),
             period: world.field.period,
@@ -507,6 +569,12 @@ impl<const D: usize> Gas<D> {
             snapshot.unwrapped[number] = world.unwrapped(ball, now);
             (snapshot.position[number], snapshot.velocity[number]) = (position, velocity);
             snapshot.set[number] = record.species;
+        }
+        if world.field.is_sheared() {
+            snapshot.thermal = vec![[0.0; D]; count];
+            for (ball, record) in world.records.iter().enumerate() {
+                snapshot.thermal[record.id as usize] = world.thermal_velocity(ball, now);
+            }
         }
         snapshot
     }

@@ -5,7 +5,7 @@ use super::live_change::LiveTally;
 use crate::engine;
 use crate::measure::Measures;
 use crate::method::{Faults, Mover};
-use crate::world::{Ball, Moments, NONE, Record, Tally, Wall, WallTally, World};
+use crate::world::{Ball, Moments, NONE, Record, Slide, Tally, Wall, WallTally, Well, World};
 use corpuscle_model::ExactSum;
 use corpuscle_model::ModelError;
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,8 @@ struct SavedWorld {
     tally: Tally,
     wall_tallies: Vec<WallTally>,
     standstill: u32,
+    well: Option<Well>,
+    slide: Slide,
     moments: Option<Moments>,
     random: u128,
     bends: Vec<(f64, Vec<f64>)>,
@@ -141,6 +143,8 @@ impl SavedWorld {
             tally: world.tally.clone(),
             wall_tallies: world.wall_tallies.clone(),
             standstill: world.standstill,
+            well: world.well.clone(),
+            slide: world.field.slide,
             moments: world.moments,
             random: world.random.get_word_pos(),
             bends: bends.map(|(time, place)| (*time, place.to_vec())).collect(),
@@ -159,6 +163,9 @@ impl SavedWorld {
             && self.walls.len() == world.walls.len()
             && self.wall_tallies.len() == world.walls.len()
             && self.regions.len() == world.regions.len()
+            && self.slide.speed == world.field.slide.speed
+            && self.well.is_some() == world.well.is_some()
+            && self.well.as_ref().is_none_or(|well| well.fits(count))
             && self.walls.iter().zip(&world.walls).all(|(a, b)| a.axis == b.axis)
             && self.kind.iter().all(|&kind| (kind as usize) < world.kinds.len())
             && self.id.iter().all(|&id| (id as usize) < count);
@@ -191,6 +198,8 @@ impl SavedWorld {
         world.length = vector(&self.length, 0)?;
         (world.now, world.origin, world.standstill) = (self.now, self.origin, self.standstill);
         world.moments = self.moments;
+        world.well.clone_from(&self.well);
+        world.field.slide = self.slide;
         world.tally = self.tally.clone();
         world.wall_tallies.clone_from(&self.wall_tallies);
         world.random.set_word_pos(self.random);

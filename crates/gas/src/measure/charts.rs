@@ -91,6 +91,7 @@ impl Measures {
                 charts.push(self.pair_chart(context));
             }
             charts.push(self.displacement_chart(context));
+            charts.extend(self.flow_chart(context));
         }
         if context.sets.len() > 1 {
             charts.push(energies(context));
@@ -192,7 +193,8 @@ impl Measures {
         let axis = setup.measure.profile_axis.min(D - 1);
         let (height, gravity) = (high - low, -setup.gravity[axis]);
         let volume: f64 = self.samples.last().map_or(f64::NAN, |sample| sample.volume);
-        let Some(mean) = context.packing(volume).filter(|_| gravity > 0.0 && context.sets.len() == 1) else {
+        let told = gravity > 0.0 && context.sets.len() == 1 && setup.well.is_none();
+        let Some(mean) = context.packing(volume).filter(|_| told) else {
             return Vec::new();
         };
         let weight = context.sets[0].mass * gravity * height / (setup.boltzmann * self.temperature());
@@ -220,6 +222,22 @@ impl Measures {
         }
     }
 
+    /// Velocity over height in a sheared box, beside that of a Newtonian fluid.
+    fn flow_chart<const D: usize>(&self, context: &Context<D>) -> Option<Chart> {
+        let (flow, rate, height) = (self.flow.as_ref()?, context.setup.shear?.rate, context.setup.size[1]);
+        let measured =
+            ChartSeries { name: "measured".into(), points: flow.profile([0.0, height]), ..ChartSeries::default() };
+        let law = vec![[0.0, -0.5 * rate * height], [height, 0.5 * rate * height]];
+        Some(Chart {
+            name: "flow_profile".into(),
+            title: "Flow along x".into(),
+            x: axis("y", context.unit("m")),
+            y: axis("Mean velocity along x", context.unit("m/s")),
+            series: vec![measured, theory_series("Newtonian fluid", law)],
+            note: String::new(),
+        })
+    }
+
     fn displacement_chart<const D: usize>(&self, context: &Context<D>) -> Chart {
         let points = |set: usize| {
             let moving = self.samples.iter().filter(|sample| !sample.displacement.is_empty());
@@ -233,7 +251,13 @@ impl Measures {
             x: scaled(axis("Time", context.unit("s"))),
             y: scaled(axis("Mean-square displacement", context.unit("m²"))),
             series: (0..context.sets.len()).map(|set| context.series(set, ChartStyle::Line, points(set))).collect(),
-            note: if D == 2 { "In two dimensions the slope has no limit at late times.".into() } else { String::new() },
+            note: if self.flow.is_some() {
+                "Displacement along x is not counted: the flow carries balls along.".into()
+            } else if D == 2 {
+                "In two dimensions the slope has no limit at late times.".into()
+            } else {
+                String::new()
+            },
         }
     }
 }

@@ -55,6 +55,7 @@ impl Measures {
     fn adiabat_chart<const D: usize>(&self, context: &Context<D>) -> Option<Chart> {
         let (setup, start) = (context.setup, &self.samples[0]);
         let apart = setup.partition.is_none() && setup.restitution == 1.0 && setup.gravity == [0.0; D];
+        let apart = apart && setup.well.is_none();
         let radius = context.radius.filter(|_| apart && context.sets.len() == 1 && is_pressed(setup))?;
         let mut points: Vec<[f64; 2]> = self.samples.iter().map(|sample| [sample.open, sample.temperature]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));

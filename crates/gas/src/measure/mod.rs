@@ -2,6 +2,7 @@
 
 pub(crate) mod charts;
 pub(crate) mod estimate;
+mod flow;
 mod laws;
 mod maxwell;
 mod mixing;
@@ -16,6 +17,7 @@ pub(crate) use mixing::mixing_entropy;
 pub(crate) use sample::{Sample, Snapshot};
 
 use crate::setup::{Measure, Setup};
+use flow::Flow;
 use pairs::Pairs;
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +43,8 @@ pub(crate) struct Measures {
     /// Counts along the profile's axis for each set.
     pub profile: Vec<Vec<u64>>,
     pub pairs: Pairs,
+    /// Velocity along x over y, in a sheared box.
+    pub flow: Option<Flow>,
     /// Places of all balls, by number, when averages began.
     pub starts: Vec<f64>,
     /// When that was.
@@ -60,6 +64,7 @@ impl Measures {
             temperatures: 0.0,
             profile: vec![vec![0; measure.profile_bins]; sets],
             pairs: Pairs::new(setup.pair_distance(), measure.pair_bins),
+            flow: setup.shear.map(|_| Flow::new(measure.profile_bins)),
             starts: Vec::new(),
             started: f64::NAN,
         }
@@ -89,10 +94,12 @@ impl Measures {
     pub fn displacements<const D: usize>(&self, snapshot: &Snapshot<D>) -> Vec<f64> {
         let sets = self.speeds.len();
         let (mut sums, mut counts) = (vec![0.0; sets], vec![0.0; sets]);
+        // Along x a shear flow carries balls away.
+        let first = usize::from(self.flow.is_some());
         for (number, start) in self.starts.chunks_exact(D).enumerate() {
             let place = &snapshot.unwrapped[number];
             let set = snapshot.set[number] as usize;
-            sums[set] += (0..D).map(|axis| (place[axis] - start[axis]).powi(2)).sum::<f64>();
+            sums[set] += (first..D).map(|axis| (place[axis] - start[axis]).powi(2)).sum::<f64>();
             counts[set] += 1.0;
         }
         sums.iter().zip(counts).map(|(sum, count)| sum / count).collect()
@@ -104,13 +111,17 @@ impl Measures {
         let now = snapshot.sample.temperature;
         let first = self.samples.first().map_or(now, |sample| sample.temperature);
         let (temperature, factor) = if self.cools { (first, (first / now).sqrt()) } else { (now, 1.0) };
-        for (number, velocity) in snapshot.velocity.iter().enumerate() {
+        for number in 0..snapshot.velocity.len() {
+            let velocity = snapshot.thermal_velocity(number);
             let set = snapshot.set[number] as usize;
             let speed = factor * velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
             let largest = self.largest[set];
             tally(&mut self.speeds[set], speed / largest);
             tally(&mut self.velocities[set], 0.5 + 0.5 * factor * velocity[0] / largest);
             tally(&mut self.profile[set], (snapshot.position[number][axis] - low) / (high - low));
+        }
+        if let Some(flow) = &mut self.flow {
+            flow.count(snapshot);
         }
         self.temperatures += temperature;
         if self.averaged.is_multiple_of(SAMPLES_PER_PAIR_COUNT) {

@@ -31,7 +31,7 @@ impl Pairs {
         let low = snapshot.extent.map(|[low, _]| low);
         let length: [f64; D] = snapshot.extent.map(|[low, high]| high - low);
         let balls = snapshot.position.len();
-        let mut hash = Hash::new(low, length, snapshot.period, self.reach, balls);
+        let mut hash = Hash::new(low, length, snapshot.period, self.reach, balls).slid(snapshot.slid);
         for position in &snapshot.position {
             hash.add(*position, 0.0);
         }

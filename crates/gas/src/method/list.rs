@@ -6,7 +6,7 @@
 //! are those of the fast engine, without periodic sides to the bit.
 
 use super::Pause;
-use crate::world::{Falling, Mode, Path, Quadratic, Straight, World, first_contact};
+use crate::world::{Ball, Mode, Path, Quadratic, World, first_contact, in_mode};
 
 /// Events between windows.
 const EVENTS_PER_WINDOW: u64 = 1_000_000;
@@ -18,10 +18,14 @@ pub enum With {
     Nothing,
     /// Another ball, by its number.
     Ball(usize),
+    /// Another ball, by its number, at the rim of their well.
+    Rim(usize),
     /// A wall: those of the box by axis, the lower before the upper, periodic sides left out; then the partition.
     Wall(usize),
     /// A periodic side, upwards or downwards along an axis.
     Side(usize, i32),
+    /// The image of a sheared box above it, which has slid by half the box: pairs are searched again.
+    Slide,
 }
 
 /// The nearest event of a ball.
@@ -53,11 +57,7 @@ impl<const D: usize> List<D> {
 
     /// Begins a new window now.
     pub fn begin_window(&mut self) {
-        if self.world.falls() {
-            self.world.begin_window::<Falling>();
-        } else {
-            self.world.begin_window::<Straight>();
-        }
+        in_mode!(self.world.motion(), M => self.world.begin_window::<M>());
         self.handled = 0;
         self.find_all_events();
     }
@@ -103,33 +103,38 @@ impl<const D: usize> List<D> {
         match with {
             With::Nothing => {}
             With::Ball(other) => {
-                if self.world.falls() {
-                    self.world.collide::<Falling>(ball, other);
-                } else {
-                    self.world.collide::<Straight>(ball, other);
-                }
+                in_mode!(self.world.motion(), M => self.world.collide::<M>(ball, other));
+                touched.push(other);
+            }
+            With::Rim(other) => {
+                in_mode!(self.world.motion(), M => self.world.cross_rim::<M>(ball, other));
                 touched.push(other);
             }
             With::Wall(wall) => {
                 let bends = self.world.walls[wall].bends;
-                if self.world.falls() {
-                    self.world.hit::<Falling>(ball, wall);
-                } else {
-                    self.world.hit::<Straight>(ball, wall);
-                }
+                in_mode!(self.world.motion(), M => self.world.hit::<M>(ball, wall));
                 if self.world.walls[wall].bends != bends {
                     self.find_all_events();
                     return;
                 }
             }
+            With::Slide => {
+                self.nearest[ball] = NOTHING;
+                self.find_event(ball);
+                return;
+            }
             With::Side(axis, direction) => {
-                self.world.wrap(ball, axis, direction);
+                if axis == 1 && self.world.field.is_sheared() {
+                    self.world.wrap_in_shear(ball, direction);
+                } else {
+                    self.world.wrap(ball, axis, direction);
+                }
                 self.nearest[ball] = NOTHING;
                 self.find_event(ball);
                 return;
             }
         }
-        let lost = |event: &Nearest| matches!(event.with, With::Ball(partner) if touched.contains(&partner));
+        let lost = |event: &Nearest| matches!(event.with, With::Ball(partner) | With::Rim(partner) if touched.contains(&partner));
         let disturbed: Vec<usize> =
             (0..self.nearest.len()).filter(|&other| !touched.contains(&other) && lost(&self.nearest[other])).collect();
         touched.extend(disturbed);
@@ -143,12 +148,15 @@ impl<const D: usize> List<D> {
 
     /// Finds the nearest event of a ball; where its partner had no earlier one, it is the partner's too.
     fn find_event(&mut self, ball: usize) {
-        let found = if self.world.falls() { self.find::<Falling>(ball) } else { self.find::<Straight>(ball) };
+        let found = in_mode!(self.world.motion(), M => self.find::<M>(ball));
         self.nearest[ball] = found;
-        if let With::Ball(other) = found.with
-            && found.time < self.nearest[other].time
-        {
-            self.nearest[other] = Nearest { time: found.time, with: With::Ball(ball) };
+        let (other, with) = match found.with {
+            With::Ball(other) => (other, With::Ball(ball)),
+            With::Rim(other) => (other, With::Rim(ball)),
+            _ => return,
+        };
+        if found.time < self.nearest[other].time {
+            self.nearest[other] = Nearest { time: found.time, with };
         }
     }
 
@@ -161,7 +169,8 @@ impl<const D: usize> List<D> {
             }
         };
         for other in (0..world.balls.len()).filter(|&other| other != ball) {
-            offer(self.meeting::<M>(ball, other), With::Ball(other));
+            let (time, with) = self.pair::<M>(ball, other);
+            offer(time, with);
         }
         for (number, wall) in world.walls.iter().enumerate() {
             offer(wall.meeting::<D, M>(&world.balls[ball], world.radius(ball), &world.field), With::Wall(number));
@@ -170,18 +179,36 @@ impl<const D: usize> List<D> {
             let (time, direction) = self.side::<M>(ball, axis);
             offer(time, With::Side(axis, direction));
         }
+        if M::SHEARS {
+            offer(self.next_slide(), With::Slide);
+        }
         nearest.time = nearest.time.max(world.now);
         nearest
     }
 
-    /// When two balls meet, in any image of the box next to their own.
-    fn meeting<M: Mode>(&self, a: usize, b: usize) -> f64 {
+    /// What happens next between two balls, and when.
+    fn pair<M: Mode>(&self, a: usize, b: usize) -> (f64, With) {
+        let contact = self.world.contact(a, b);
+        match &self.world.well {
+            None => (self.meeting::<M>(a, b, contact), With::Ball(b)),
+            Some(well) if !well.are_bound(a, b) => (self.meeting::<M>(a, b, contact * well.width), With::Rim(b)),
+            Some(well) => match self.world.next_in_well::<M>(well, a, b) {
+                (time, false) => (time, With::Ball(b)),
+                (time, true) => (time, With::Rim(b)),
+            },
+        }
+    }
+
+    /// When two balls come as near as `reach`, in any image of the box next to their own.
+    fn meeting<M: Mode>(&self, a: usize, b: usize, reach: f64) -> f64 {
         let world = &self.world;
-        let reach = world.radius(a) + world.radius(b);
         let path = |ball: usize| {
             let ball = &world.balls[ball];
             Path { position: ball.position, velocity: ball.velocity, time: ball.time }
         };
+        if M::SHEARS {
+            return self.meeting_in_shear::<M>(a, b, reach);
+        }
         let mut first = f64::INFINITY;
         for image in 0..3_usize.pow(D as u32) {
             let shift: [i32; D] = std::array::from_fn(|axis| (image / 3_usize.pow(axis as u32) % 3) as i32 - 1);
@@ -195,6 +222,49 @@ impl<const D: usize> List<D> {
             }
         }
         first
+    }
+
+    /// As [`List::meeting`], in images that slide.
+    fn meeting_in_shear<M: Mode>(&self, a: usize, b: usize, reach: f64) -> f64 {
+        let (field, balls) = (&self.world.field, &self.world.balls);
+        let path = |ball: &Ball<D>| Path { position: ball.position, velocity: ball.velocity, time: ball.time };
+        let mut first = f64::INFINITY;
+        for above in -1..=1 {
+            let images = f64::from(above);
+            let image = path(&field.image_above(&balls[b], images));
+            // Images are counted from the one that is least displaced now.
+            let slid = (images * field.slid_at(self.world.now) / field.period[0]).round();
+            for along in -2..=2 {
+                for beside in if D == 3 { -1..=1 } else { 0..=0 } {
+                    let mut offset = [0.0; D];
+                    offset[0] = (f64::from(along) - slid) * field.period[0];
+                    offset[1] = images * field.period[1];
+                    if D == 3 {
+                        offset[D - 1] = f64::from(beside) * field.period[D - 1];
+                    }
+                    let quadratic = Quadratic::new::<D, M>(&path(&balls[a]), &image, &offset, reach, field);
+                    if quadratic.maybe_before::<M>(f64::INFINITY) {
+                        first = first.min(quadratic.root::<M>());
+                    }
+                }
+            }
+        }
+        first
+    }
+
+    /// When the image above will have slid by another half of the box.
+    fn next_slide(&self) -> f64 {
+        let (field, now) = (&self.world.field, self.world.now);
+        let half = 0.5 * field.period[0];
+        let mut halves = (field.slid_at(now) / half).floor();
+        loop {
+            halves += 1.0;
+            let time = (halves * half - field.slide.displacement) / field.slide.speed;
+            // By rounding it may be now, again.
+            if time > now {
+                return time;
+            }
+        }
     }
 
     /// When and which way a ball leaves through a periodic side.

@@ -42,6 +42,8 @@ impl<const D: usize> Setup<D> {
         let e = self.restitution;
         number("the restitution", e, e > 0.0 && e <= 1.0, "larger than 0 and at most 1")?;
         positive("Boltzmann's constant", self.boltzmann)?;
+        self.check_well()?;
+        self.check_shear()?;
         if let Method::FixedStep(step) = self.method {
             positive("the time step", step)?;
         }
@@ -95,6 +97,45 @@ impl<const D: usize> Setup<D> {
         self.check_times()?;
         self.check_count()?;
         self.check_widths()
+    }
+
+    fn check_well(&self) -> Result<(), SetupError> {
+        let Some(well) = self.well else { return Ok(()) };
+        number("the depth of the square well", well.depth, well.depth != 0.0, "a number other than 0")?;
+        number("the width of the square well", well.width, well.width > 1.0, "larger than 1")?;
+        let refused = |what: &str| Err(SetupError::Contradiction(format!("balls with square wells {what}")));
+        match self.method {
+            Method::FixedStep(_) => {
+                refused("are not moved on by fixed time steps: these miss rims of wells, and energy with them")
+            }
+            _ if self.restitution != 1.0 => {
+                refused("have no restitution below 1: pairs would lose energy in their wells without end")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_shear(&self) -> Result<(), SetupError> {
+        let Some(shear) = self.shear else { return Ok(()) };
+        positive("the rate of shear", shear.rate)?;
+        if let Some(temperature) = shear.temperature {
+            positive("the temperature of the sheared gas", temperature)?;
+        }
+        let contradictions = [
+            ((0..D).any(|axis| !self.repeats_along(axis)), "must be periodic along all axes"),
+            (self.gravity != [0.0; D], "has no gravity"),
+            (self.well.is_some(), "has no square wells"),
+            (
+                self.reversed_at.is_some(),
+                "has no time at which velocities are reversed: the shear would have to be reversed too",
+            ),
+            (matches!(self.method, Method::FixedStep(_)), "is not moved on by fixed time steps"),
+            (!self.regions.is_empty(), "has no regions of measurement, through which its images slide"),
+        ];
+        match contradictions.iter().find(|(wrong, _)| *wrong) {
+            Some((_, what)) => Err(SetupError::Contradiction(format!("a sheared box {what}"))),
+            None => Ok(()),
+        }
     }
 
     fn check_partition(&self) -> Result<(), SetupError> {
@@ -182,14 +223,18 @@ impl<const D: usize> Setup<D> {
         Ok(())
     }
 
-    /// Every ball fits between walls, and three times across periodic sides, so that no two balls meet twice.
+    /// Every ball fits between walls, and three times, with its well, across periodic sides, so that no two balls meet twice.
     fn check_widths(&self) -> Result<(), SetupError> {
         let radii = self.balls.iter().map(|ball| ball.radius).chain(self.species.iter().map(|species| species.radius));
         let radius = radii.fold(0.0, f64::max);
         for axis in 0..D {
             let length = self.size[axis];
+            let width = self.well.map_or(1.0, |well| well.width);
             let (least, must) = if self.sides[axis][0] == Side::Periodic {
-                (6.0 * radius * (1.0 + 1e-8), "across periodic sides a box must be wider than three balls")
+                (
+                    6.0 * width * radius * (1.0 + 1e-8),
+                    "across periodic sides a box must be wider than three balls, with their wells",
+                )
             } else {
                 (2.0 * radius, "a box must be at least as wide as a ball")
             };

@@ -31,6 +31,10 @@ pub struct Setup<const D: usize> {
     pub restitution: f64,
     /// Collisions within this time after another are without loss; for `None` see [`Setup::contact_time`].
     pub contact_time: Option<f64>,
+    /// Square wells round all balls.
+    pub well: Option<SquareWell>,
+    /// Steady shear of a periodic box.
+    pub shear: Option<Shear>,
     /// Boltzmann's constant in the units used.
     pub boltzmann: f64,
     /// How the gas is moved on.
@@ -60,6 +64,26 @@ pub struct Region<const D: usize> {
     pub from: [f64; D],
     /// Corner at the largest coordinates.
     pub to: [f64; D],
+}
+
+/// Square wells: the potential energy of two balls is lower by `depth` where their centres are nearer than `width` times the distance at
+/// contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SquareWell {
+    /// Depth, as an energy; negative for a step up.
+    pub depth: f64,
+    /// Distance of centres at the rim, over that at contact.
+    pub width: f64,
+}
+
+/// Steady shear flow along x whose velocity grows along y, in a box that is periodic along all axes (Lees & Edwards, J. Phys. C 5, 1972,
+/// 1921). Initial velocities are relative to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shear {
+    /// Rate of shear: velocity over height.
+    pub rate: f64,
+    /// Temperature at which the gas is held by scaling velocities relative to the flow; for `None` the work of shear heats it.
+    pub temperature: Option<f64>,
 }
 
 /// What one side of the box is.
@@ -258,6 +282,8 @@ impl<const D: usize> Setup<D> {
             gravity: [0.0; D],
             restitution: 1.0,
             contact_time: None,
+            well: None,
+            shear: None,
             boltzmann: 1.0,
             method: Method::EventDriven,
             seed: 0,
@@ -284,7 +310,7 @@ impl<const D: usize> Setup<D> {
     /// True where nothing but the balls themselves changes their momentum and energy.
     pub(crate) fn keeps_momentum_and_energy(&self) -> bool {
         let repeats = (0..D).all(|axis| self.repeats_along(axis)) && self.partition.is_none();
-        repeats && self.restitution == 1.0 && self.gravity == [0.0; D]
+        repeats && self.shear.is_none() && self.restitution == 1.0 && self.gravity == [0.0; D]
     }
 
     /// All sides periodic.
@@ -332,6 +358,18 @@ impl<const D: usize> Setup<D> {
     /// Collisions with loss.
     pub fn restitution(mut self, restitution: f64) -> Self {
         self.restitution = restitution;
+        self
+    }
+
+    /// Square wells round all balls.
+    pub fn well(mut self, depth: f64, width: f64) -> Self {
+        self.well = Some(SquareWell { depth, width });
+        self
+    }
+
+    /// Steady shear, at a temperature that is held or not.
+    pub fn shear(mut self, rate: f64, temperature: Option<f64>) -> Self {
+        self.shear = Some(Shear { rate, temperature });
         self
     }
 

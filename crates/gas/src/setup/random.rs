@@ -210,6 +210,7 @@ impl<const D: usize> Site<'_, D> {
             scale,
             growth: GROWTH_SPEED[0] / mean,
             period: std::array::from_fn(|axis| if self.repeats[axis] { self.length()[axis] } else { 0.0 }),
+            slide: Default::default(),
         };
         let mut world = self.dilute(radii, positions, field, random);
         world.walls = self.walls();

@@ -23,17 +23,25 @@ impl<const D: usize> World<D> {
     pub fn collide<M: Mode>(&mut self, a: usize, b: usize) {
         let flown = self.now - self.balls[a].time.max(self.balls[b].time);
         for ball in [a, b] {
-            self.book_flight(ball);
+            self.book_flight::<M>(ball);
             self.bring::<M>(ball);
         }
         let (me, other) = (&self.balls[a], &self.balls[b]);
         let (kind_a, kind_b) = (self.kinds[me.kind as usize], self.kinds[other.kind as usize]);
         let mut apart: [f64; D] = std::array::from_fn(|axis| other.position[axis] - me.position[axis]);
-        self.field.nearest(&mut apart);
+        let mut images = 0.0;
+        if M::SHEARS {
+            images = self.field.nearest_in_shear(&mut apart, self.now);
+        } else {
+            self.field.nearest(&mut apart);
+        }
         let (mut approach, mut apart2) = (0.0, 0.0);
         for axis in 0..D {
             approach += apart[axis] * (other.velocity[axis] - me.velocity[axis]);
             apart2 += apart[axis] * apart[axis];
+        }
+        if M::SHEARS {
+            approach += apart[0] * images * self.field.slide.speed;
         }
         let reduced = kind_a.mass * kind_b.mass / (kind_a.mass + kind_b.mass);
         let mut elasticity = 2.0;
@@ -56,6 +64,10 @@ impl<const D: usize> World<D> {
         for axis in 0..D {
             self.balls[a].velocity[axis] += impulse / kind_a.mass * apart[axis];
             self.balls[b].velocity[axis] -= impulse / kind_b.mass * apart[axis];
+        }
+        if M::SHEARS {
+            // What the image gains beside the ball itself, which is slower by the image's speed.
+            self.tally.shear.book(images * self.field.slide.speed * impulse * apart[0]);
         }
         self.tally.collisions += 1;
         self.tally.virial -= elasticity * reduced * approach;

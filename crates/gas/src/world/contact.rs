@@ -5,13 +5,18 @@
 //! errors: a path is measured from the image of the box where the ball is.)
 
 use super::ball::Ball;
+use super::shear::Slide;
 
-/// What bends paths between collisions, and whether balls grow. Known when the program is compiled, so that what is absent costs nothing.
+/// What bends paths between collisions, whether balls grow, and whether they have wells. Known when the program is compiled, so that what is absent costs nothing.
 pub(crate) trait Mode: Copy {
     /// Balls fall.
     const FALLS: bool;
     /// Balls grow (only while a start state is made).
     const GROWS: bool;
+    /// Balls have square wells.
+    const WELLS: bool = false;
+    /// The box is sheared.
+    const SHEARS: bool = false;
 }
 
 /// Straight paths.
@@ -38,6 +43,57 @@ impl Mode for Growing {
     const GROWS: bool = true;
 }
 
+/// As another mode, of balls with square wells.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Welled<M>(std::marker::PhantomData<M>);
+impl<M: Mode> Mode for Welled<M> {
+    const FALLS: bool = M::FALLS;
+    const GROWS: bool = M::GROWS;
+    const WELLS: bool = true;
+}
+
+/// Straight paths in a sheared box.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sheared;
+impl Mode for Sheared {
+    const FALLS: bool = false;
+    const GROWS: bool = false;
+    const SHEARS: bool = true;
+}
+
+/// The modes, by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Straight,
+    Falling,
+    Growing,
+    Welled,
+    WelledFalling,
+    Sheared,
+}
+
+/// Does something with the [`Mode`] of a [`Motion`].
+macro_rules! in_mode {
+    ($motion:expr, $mode:ident => $something:expr) => {{
+        use crate::world::{Falling, Growing, Motion, Sheared, Straight, Welled};
+        macro_rules! of {
+            ($own:ty) => {{
+                type $mode = $own;
+                $something
+            }};
+        }
+        match $motion {
+            Motion::Straight => of!(Straight),
+            Motion::Falling => of!(Falling),
+            Motion::Growing => of!(Growing),
+            Motion::Welled => of!(Welled<Straight>),
+            Motion::WelledFalling => of!(Welled<Falling>),
+            Motion::Sheared => of!(Sheared),
+        }
+    }};
+}
+pub(crate) use in_mode;
+
 /// Fields that act on all balls equally.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Field<const D: usize> {
@@ -47,6 +103,8 @@ pub(crate) struct Field<const D: usize> {
     pub growth: f64,
     /// The box's length along each axis, for the nearest image across periodic sides; 0 where the box does not repeat.
     pub period: [f64; D],
+    /// How the image above slides, in a sheared box.
+    pub slide: Slide,
 }
 
 impl<const D: usize> Field<D> {
@@ -97,6 +155,33 @@ pub(crate) struct Quadratic {
     pub c: f64,
 }
 
+/// The later of two balls' times, and then the line from one to an image of the other, and its rate of change.
+#[inline(always)]
+fn relative<const D: usize, M: Mode>(
+    a: &Path<D>,
+    b: &Path<D>,
+    offset: &[f64; D],
+    field: &Field<D>,
+) -> (f64, [f64; D], [f64; D]) {
+    let start = if a.time > b.time { a.time } else { b.time };
+    let (since_a, since_b) = (start - a.time, start - b.time);
+    let mut apart = [0.0; D];
+    let mut approach = [0.0; D];
+    for axis in 0..D {
+        let mut place_a = a.position[axis] + a.velocity[axis] * since_a;
+        let mut place_b = b.position[axis] + b.velocity[axis] * since_b;
+        approach[axis] = b.velocity[axis] - a.velocity[axis];
+        if M::FALLS {
+            let gravity = field.gravity[axis];
+            place_a += 0.5 * gravity * since_a * since_a;
+            place_b += 0.5 * gravity * since_b * since_b;
+            approach[axis] = (b.velocity[axis] + gravity * since_b) - (a.velocity[axis] + gravity * since_a);
+        }
+        apart[axis] = (place_b - place_a) + offset[axis];
+    }
+    (start, apart, approach)
+}
+
 impl Quadratic {
     /// Of the image of `b` that is `offset` from where `b` is. It must be given: when the counting starts, balls that meet after
     /// long ways across a periodic box may be nearest in other images.
@@ -108,22 +193,7 @@ impl Quadratic {
         reach: f64,
         field: &Field<D>,
     ) -> Self {
-        let start = if a.time > b.time { a.time } else { b.time };
-        let (since_a, since_b) = (start - a.time, start - b.time);
-        let mut apart = [0.0; D];
-        let mut approach = [0.0; D];
-        for axis in 0..D {
-            let mut place_a = a.position[axis] + a.velocity[axis] * since_a;
-            let mut place_b = b.position[axis] + b.velocity[axis] * since_b;
-            approach[axis] = b.velocity[axis] - a.velocity[axis];
-            if M::FALLS {
-                let gravity = field.gravity[axis];
-                place_a += 0.5 * gravity * since_a * since_a;
-                place_b += 0.5 * gravity * since_b * since_b;
-                approach[axis] = (b.velocity[axis] + gravity * since_b) - (a.velocity[axis] + gravity * since_a);
-            }
-            apart[axis] = (place_b - place_a) + offset[axis];
-        }
+        let (start, apart, approach) = relative::<D, M>(a, b, offset, field);
         let (mut a, mut b, mut apart2) = (0.0, 0.0, 0.0);
         for axis in 0..D {
             a += approach[axis] * approach[axis];
@@ -140,6 +210,32 @@ impl Quadratic {
         let c = apart2 - reach * reach;
         // Balls that overlap by a rounding error touch.
         Quadratic { start, a, b, c: if c > 0.0 { c } else { 0.0 } }
+    }
+
+    /// When two balls that are nearer than `reach` are as far apart; infinite for never.
+    #[inline(always)]
+    pub fn leaving<const D: usize, M: Mode>(
+        a: &Path<D>,
+        b: &Path<D>,
+        offset: &[f64; D],
+        reach: f64,
+        field: &Field<D>,
+    ) -> f64 {
+        let (start, apart, approach) = relative::<D, M>(a, b, offset, field);
+        let (mut a, mut b, mut apart2) = (0.0, 0.0, 0.0);
+        for axis in 0..D {
+            a += approach[axis] * approach[axis];
+            b += apart[axis] * approach[axis];
+            apart2 += apart[axis] * apart[axis];
+        }
+        if a == 0.0 {
+            return f64::INFINITY;
+        }
+        // Balls that are beyond by a rounding error are at the distance.
+        let c = (apart2 - reach * reach).min(0.0);
+        let root = (b * b - a * c).sqrt();
+        // The second root, in the form that loses no digits.
+        start + if b > 0.0 { -c / (b + root) } else { (root - b) / a }
     }
 
     /// False where the balls do not meet, or not before `limit`: where a is not negative the meeting is later than c / (-2 b).

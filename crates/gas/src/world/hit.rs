@@ -31,7 +31,7 @@ impl<const D: usize> World<D> {
     /// A ball that touches a wall now rebounds.
     pub fn hit<M: Mode>(&mut self, ball: usize, wall: usize) {
         let flown = self.now - self.balls[ball].time.max(self.walls[wall].since);
-        self.book_flight(ball);
+        self.book_flight::<M>(ball);
         self.bring::<M>(ball);
         let axis = self.walls[wall].axis;
         let (mass, radius) = (self.mass(ball), self.radius(ball));

@@ -6,15 +6,19 @@ mod contact;
 mod hit;
 mod moments;
 mod region;
+mod shear;
 mod wall;
+mod well;
 
 pub(crate) use ball::{Ball, Kind, NONE, Record};
 pub(crate) use collide::{Rebound, speed};
-pub(crate) use contact::{Falling, Field, Growing, Mode, Path, Quadratic, Straight};
+pub(crate) use contact::{Falling, Field, Growing, Mode, Motion, Path, Quadratic, Sheared, Straight, Welled, in_mode};
 pub(crate) use hit::WallTally;
 pub(crate) use moments::Moments;
 pub(crate) use region::{CountedRegion, RegionSample};
+pub(crate) use shear::{ShearTally, Slide};
 pub(crate) use wall::{Facing, Wall, first_contact};
+pub(crate) use well::Well;
 
 use corpuscle_model::ExactSum;
 use rand_chacha::ChaCha8Rng;
@@ -41,6 +45,8 @@ pub(crate) struct World<const D: usize> {
     pub field: Field<D>,
     pub walls: Vec<Wall>,
     pub rebound: Rebound,
+    /// Square wells round the balls, where there are some.
+    pub well: Option<Well>,
     /// The box at the beginning of the window.
     pub low: [f64; D],
     pub length: [f64; D],
@@ -75,6 +81,8 @@ pub(crate) struct Tally {
     pub path: f64,
     /// Energy lost in collisions.
     pub dissipated: ExactSum,
+    /// What shear did.
+    pub shear: ShearTally,
 }
 
 /// A ball whose path is kept.
@@ -104,6 +112,7 @@ impl<const D: usize> World<D> {
             field,
             walls: Vec::new(),
             rebound: Rebound { restitution: 1.0, contact_time: 0.0 },
+            well: None,
             low,
             length,
             now: 0.0,
@@ -133,6 +142,18 @@ impl<const D: usize> World<D> {
         self.field.gravity != [0.0; D]
     }
 
+    /// What bends paths, whether balls grow, and how they act on each other.
+    pub fn motion(&self) -> Motion {
+        match (self.falls(), self.well.is_some()) {
+            _ if self.field.growth != 0.0 => Motion::Growing,
+            _ if self.field.is_sheared() => Motion::Sheared,
+            (false, false) => Motion::Straight,
+            (true, false) => Motion::Falling,
+            (false, true) => Motion::Welled,
+            (true, true) => Motion::WelledFalling,
+        }
+    }
+
     /// Place and velocity of a ball at a time of the window, in the image of the box where it is.
     pub fn state(&self, ball: usize, time: f64) -> ([f64; D], [f64; D]) {
         if self.falls() {
@@ -159,9 +180,12 @@ impl<const D: usize> World<D> {
 
     /// Counts a ball's flight up to now in the sums over paths.
     #[inline(always)]
-    pub fn book_flight(&mut self, ball: usize) {
-        let Ball { velocity, time, kind, .. } = self.balls[ball];
+    pub fn book_flight<M: Mode>(&mut self, ball: usize) {
+        let Ball { mut velocity, time, kind, .. } = self.balls[ball];
         let flown = self.now - time;
+        if M::SHEARS {
+            velocity = self.velocity_in_flight(&self.balls[ball], flown);
+        }
         self.tally.path += speed(&velocity) * flown;
         if let Some(moments) = &mut self.moments {
             moments.fly(self.kinds[kind as usize].mass, &velocity, flown);
@@ -173,7 +197,10 @@ impl<const D: usize> World<D> {
         let mut moments = self.moments.unwrap_or_default();
         if self.moments.is_some() {
             for ball in &self.balls {
-                moments.fly(self.kinds[ball.kind as usize].mass, &ball.velocity, time - ball.time);
+                let flown = time - ball.time;
+                let sheared = self.field.is_sheared();
+                let velocity = if sheared { self.velocity_in_flight(ball, flown) } else { ball.velocity };
+                moments.fly(self.kinds[ball.kind as usize].mass, &velocity, flown);
             }
         }
         moments
@@ -182,7 +209,7 @@ impl<const D: usize> World<D> {
     /// Moves all balls along their paths to now, and makes now the beginning of the window.
     pub fn begin_window<M: Mode>(&mut self) {
         for ball in 0..self.balls.len() {
-            self.book_flight(ball);
+            self.book_flight::<M>(ball);
             self.bring::<M>(ball);
             self.balls[ball].time = 0.0;
             self.records[ball].collided -= self.now;
@@ -191,6 +218,9 @@ impl<const D: usize> World<D> {
             wall.since -= self.now;
         }
         self.field.scale = self.field.scale_at::<M>(self.now);
+        if M::SHEARS {
+            self.field.slide.displacement = self.field.slid_at(self.now).rem_euclid(self.field.period[0]);
+        }
         self.origin.add(self.now);
         self.now = 0.0;
         for axis in 0..D {
@@ -245,6 +275,14 @@ impl<const D: usize> World<D> {
         followed.bends.extend([(time, position), (time, [f64::NAN; D]), (time, after)]);
     }
 
+    /// A followed path ends where the ball left a sheared box, and goes on where it came in.
+    fn note_jump(&mut self, ball: usize, before: [f64; D]) {
+        let (id, time, after) = (self.records[ball].id, self.time(), self.balls[ball].position);
+        if let Some(followed) = self.followed.as_mut().filter(|followed| followed.id == id) {
+            followed.bends.extend([(time, before), (time, [f64::NAN; D]), (time, after)]);
+        }
+    }
+
     /// Puts the balls in another order.
     pub fn reorder(&mut self, order: &[u32]) {
         let mut balls = crate::memory::reserved(order.len());
@@ -252,6 +290,9 @@ impl<const D: usize> World<D> {
         let mut records = crate::memory::reserved(order.len());
         records.extend(order.iter().map(|&from| self.records[from as usize]));
         (self.balls, self.records) = (balls, records);
+        if let Some(well) = &mut self.well {
+            well.reorder(order);
+        }
     }
 
     /// Notes where the followed ball's path was bent, if it is this one.

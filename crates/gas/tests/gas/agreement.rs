@@ -44,7 +44,7 @@ fn apart<const D: usize>(setup: &Setup<D>, periodic: [bool; D], a: &[[f64; D]], 
 /// The engine's state, where the plain search has had about one collision for every two balls, is the plain one's: as nearly
 /// as rounding errors allow, which grow with every collision as a start moved a little does. Each coordinate of each ball is moved by
 /// itself: errors in any direction are sums of these, and their largest growth is what counts.
-fn agrees<const D: usize>(setup: Setup<D>) -> Result<(), TestCaseError> {
+pub fn agrees<const D: usize>(setup: Setup<D>) -> Result<(), TestCaseError> {
     let mut brute = Brute::new(&setup);
     let collisions = setup.balls.len().div_ceil(2) as u64;
     for _ in 0..20 + 2 * setup.balls.len() {
@@ -65,6 +65,7 @@ fn agrees<const D: usize>(setup: Setup<D>) -> Result<(), TestCaseError> {
         let mut gas = setup.clone().method(method).build().unwrap();
         advance(&mut gas, time);
         prop_assert_eq!(gas.collisions(), brute.collisions, "{:?}", method);
+        prop_assert_eq!(gas.pairs_in_wells(), brute.bound.len() as u64, "{:?}", method);
         let places: Vec<[f64; D]> = gas.states().into_iter().map(|(position, _)| position).collect();
         let error = apart(&setup, periodic, &places, &brute.position);
         prop_assert!(error < bound, "{:?}: {} off, not {}", method, error, bound);
@@ -91,7 +92,7 @@ proptest! {
 }
 
 /// Engine and list have the same bits after many collisions, within their first windows.
-fn same_bits<const D: usize>(setup: Setup<D>, time: f64) {
+pub fn same_bits<const D: usize>(setup: Setup<D>, time: f64) {
     let (engine, list) = both(setup, time);
     assert!(engine.collisions() > engine.len() as u64, "only {} collisions", engine.collisions());
     assert_eq!(engine.collisions(), list.collisions());
@@ -117,7 +118,7 @@ fn engine_and_list_have_the_same_bits_between_walls() {
 }
 
 /// Across periodic sides they agree to rounding errors.
-fn same_places<const D: usize>(setup: Setup<D>, time: f64) {
+pub fn same_places<const D: usize>(setup: Setup<D>, time: f64) {
     let (engine, list) = both(setup.clone(), time);
     assert!(2 * engine.collisions() > engine.len() as u64, "only {} collisions", engine.collisions());
     assert_eq!(engine.collisions(), list.collisions());

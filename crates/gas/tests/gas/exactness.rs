@@ -65,7 +65,7 @@ fn the_momentum_ledger_is_what_the_balls_have() {
 }
 
 /// The same final bits for frames far apart, close together, and none.
-fn independent_of_frames<const D: usize>(setup: Setup<D>, end: f64) {
+pub fn independent_of_frames<const D: usize>(setup: Setup<D>, end: f64) {
     let mut none = setup.clone().build().unwrap();
     advance(&mut none, end);
     for period in [0.1, 0.001] {
@@ -107,7 +107,7 @@ fn the_state_does_not_depend_on_frames() {
     independent_of_frames(everything().method(Method::FixedStep(0.004)), 6.0);
 }
 
-fn saved_and_taken_back<const D: usize>(setup: Setup<D>, half: f64) {
+pub fn saved_and_taken_back<const D: usize>(setup: Setup<D>, half: f64) {
     let mut through: Gas<D> = setup.clone().build().unwrap();
     advance(&mut through, half);
     let saved = through.save();

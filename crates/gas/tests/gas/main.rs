@@ -10,5 +10,7 @@ mod live_change;
 mod measured;
 mod refused;
 mod regions;
+mod shear;
 mod sides;
 mod start;
+mod wells;

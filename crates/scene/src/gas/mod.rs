@@ -36,6 +36,12 @@ pub struct Gas {
     /// at the mean thermal speed flies its own radius, the shortest of all species; 0 without loss.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact_time_s: Option<f64>,
+    /// Square wells round all balls.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub well: Option<SquareWell>,
+    /// Steady shear flow in a periodic box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear: Option<Shear>,
     /// All velocities are turned round at this time, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reversed_at_s: Option<f64>,
@@ -120,6 +126,28 @@ pub enum Method {
         /// The step.
         time_step_s: f64,
     },
+}
+
+/// Square wells round all balls: the potential energy of two is lower by a depth where they are near each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SquareWell {
+    /// Depth, as an energy; negative for a step up (a square shoulder).
+    pub depth: f64,
+    /// Distance of centres at the rim of the well, over that at contact; above 1.
+    pub width: f64,
+}
+
+/// Steady shear flow along x whose velocity grows along y, in a box that is periodic along all axes (Lees & Edwards, J. Phys. C 5, 1972,
+/// 1921).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shear {
+    /// Rate of shear, 1/s.
+    pub rate_per_s: f64,
+    /// Temperature at which the gas is held. Left out: shear heats it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<f64>,
 }
 
 /// Balls given as a species. Give exactly one of `count` and `packing`.

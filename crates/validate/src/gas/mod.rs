@@ -12,6 +12,8 @@ mod frames;
 mod granular;
 mod maxwell;
 mod mixing;
+mod shear;
+mod square_well;
 mod theory;
 mod transport;
 mod wall_pressure;
@@ -35,6 +37,8 @@ pub(crate) const CASES: &[Case] = &[
     effusion::EFFUSION,
     wall_pressure::WALL_PRESSURE,
     transport::TRANSPORT,
+    square_well::SQUARE_WELL,
+    shear::SHEAR,
 ];
 
 /// Seed of everything random.

@@ -30,8 +30,11 @@ impl<const D: usize> Gas<D> {
         self.mover.begin_window();
         let thermal = (self.setup.boltzmann * temperature / self.mover.world().mass(like)).sqrt();
         for position in places {
-            let velocity = std::array::from_fn(|_| thermal * normal(&mut random));
+            let mut velocity: [f64; D] = std::array::from_fn(|_| thermal * normal(&mut random));
             let world = self.mover.world_mut();
+            if world.field.is_sheared() {
+                velocity[0] += world.field.flow_at(world.low[1], position[1]);
+            }
             let record = Record {
                 id: world.balls.len() as u32,
                 species: set as u32,
@@ -41,6 +44,8 @@ impl<const D: usize> Gas<D> {
             world.balls.push(Ball { position, velocity, time: 0.0, kind, next: NONE });
             world.records.push(record);
             self.book_ball(self.len() - 1, 1.0);
+            let pairs = self.mover.world_mut().dig_last_well();
+            self.book_wells(pairs, 1.0);
         }
         self.live.added += count as u64;
         self.mover.begin_window();
@@ -83,12 +88,20 @@ impl<const D: usize> Gas<D> {
         let Some(ball) = found else { return };
         self.book_ball(ball, -1.0);
         let world = self.mover.world_mut();
+        let pairs = world.well.as_mut().map_or(0, |well| well.swap_remove(ball));
         world.balls.swap_remove(ball);
         world.records.swap_remove(ball);
         world.records.iter_mut().filter(|record| record.id == last).for_each(|record| record.id = id);
         if let Some(followed) = world.followed.as_mut().filter(|followed| followed.id == last) {
             followed.id = id;
         }
+        self.book_wells(pairs, -1.0);
+    }
+
+    /// Books the potential energy of pairs in wells of a ball that is added (1) or removed (-1).
+    fn book_wells(&mut self, pairs: usize, sign: f64) {
+        let depth = self.mover.world().well.as_ref().map_or(0.0, |well| well.depth);
+        self.live.book(-sign * depth * pairs as f64, 0.0);
     }
 
     /// A ball of a set.
@@ -119,7 +132,8 @@ impl<const D: usize> Gas<D> {
         let balls = world.balls.len() + count;
         let extent: [[f64; 2]; D] = std::array::from_fn(|axis| world.extent(axis, self.now()));
         let (low, length) = (extent.map(|[low, _]| low), extent.map(|[low, high]| high - low));
-        let mut hash = Hash::new(low, length, world.field.period, 2.0 * RADIUS_MARGIN * largest, balls);
+        let mut hash = Hash::new(low, length, world.field.period, 2.0 * RADIUS_MARGIN * largest, balls)
+            .slid(world.field.slid_at(self.now()));
         for number in 0..world.balls.len() {
             hash.add(world.state(number, self.now()).0, world.radius(number));
         }

@@ -178,7 +178,7 @@ impl<const D: usize> Gas<D> {
         }
     }
 
-    /// Scales all velocities now, so that the kinetic energy is multiplied by a factor.
+    /// Scales all velocities now, relative to the flow of a sheared box, so that the kinetic energy is multiplied by a factor.
     fn scale_energy(&mut self, factor: f64) {
         // All balls are brought to the beginning of a window, and what is to come of them is found anew after it.
         self.mover.begin_window();
@@ -187,8 +187,11 @@ impl<const D: usize> Gas<D> {
         let (mut energy, mut momentum) = (ExactSum::default(), ExactSum::default());
         for ball in 0..world.balls.len() {
             let mass = world.mass(ball);
-            for velocity in &mut world.balls[ball].velocity {
-                let before = std::mem::replace(velocity, times * *velocity);
+            let height = world.balls[ball].position[1];
+            let flow = if world.field.is_sheared() { world.field.flow_at(world.low[1], height) } else { 0.0 };
+            for (axis, velocity) in world.balls[ball].velocity.iter_mut().enumerate() {
+                let flow = if axis == 0 { flow } else { 0.0 };
+                let before = std::mem::replace(velocity, flow + times * (*velocity - flow));
                 energy.add(0.5 * mass * (*velocity * *velocity - before * before));
                 momentum.add(mass * (*velocity - before));
             }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 /// Time between two scalings, over that in which a ball at thermal speed crosses the shortest side of the box.
 const SCALING_PERIOD: f64 = 0.1;
 
+/// Largest shear between two scalings: work of shear heats the gas meanwhile.
+const SCALING_SHEAR: f64 = 0.05;
+
 /// What holds the temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Thermostat {
@@ -19,7 +22,7 @@ pub(crate) struct Thermostat {
 
 impl<const D: usize> Gas<D> {
     /// Holds the temperature from now on, or no longer.
-    pub(super) fn hold_temperature(&mut self, temperature: Option<f64>) -> Result<(), ModelError> {
+    pub(in super::super) fn hold_temperature(&mut self, temperature: Option<f64>) -> Result<(), ModelError> {
         let Some(temperature) = temperature else {
             self.live.thermostat = None;
             return Ok(());
@@ -30,7 +33,8 @@ impl<const D: usize> Gas<D> {
         let lightest = self.sets.iter().map(|set| set.mass).fold(f64::INFINITY, f64::min);
         let thermal = (self.setup.boltzmann * temperature / lightest).sqrt();
         let shortest = self.setup.size.iter().copied().fold(f64::INFINITY, f64::min);
-        let every = SCALING_PERIOD * shortest / thermal;
+        let shear = self.setup.shear.map_or(f64::INFINITY, |shear| SCALING_SHEAR / shear.rate);
+        let every = (SCALING_PERIOD * shortest / thermal).min(shear);
         self.come_to_now();
         let next = self.mover.world().time() + every;
         self.live.thermostat = Some(Thermostat { temperature, every, next });
@@ -54,7 +58,7 @@ impl<const D: usize> Gas<D> {
         let world = self.mover.world();
         let (mut mass, mut momentum, mut energy) = (0.0, [0.0; D], 0.0);
         for ball in 0..world.balls.len() {
-            let (own, velocity) = (world.mass(ball), world.state(ball, world.now).1);
+            let (own, velocity) = (world.mass(ball), world.thermal_velocity(ball, world.now));
             mass += own;
             for axis in 0..D {
                 momentum[axis] += own * velocity[axis];

@@ -12,7 +12,15 @@ const KINDS: [(&str, Quantities); 10] = [
     ("Pressure", &[("pressure_virial", "from collisions"), ("pressure_walls", "on the walls")]),
     ("Pressure on the walls", &[("pressure", "")]),
     ("Temperature", &[("temperature", "")]),
-    ("Energy", &[("kinetic_energy", "kinetic"), ("energy", "total"), ("work", "work and heat")]),
+    (
+        "Energy",
+        &[
+            ("kinetic_energy", "kinetic"),
+            ("potential_energy", "potential"),
+            ("energy", "total"),
+            ("work", "work and heat"),
+        ],
+    ),
     ("Position of the wall", &[("position", "")]),
     ("Collisions of a ball per unit of time", &[("collision_rate", "")]),
     ("Mean free path", &[("mean_free_path", "")]),
@@ -89,7 +97,7 @@ fn is_told(gas: &Gas, column: &GaugeColumn) -> bool {
     match column.quantity {
         "pressure_virial" | "pressure_walls" => uneven.is_none(),
         "pressure" => uneven.is_some_and(|axis| column.gauge.starts_with(["x", "y", "z"][axis])),
-        "energy" => gas.gravity() != [0.0; 3],
+        "energy" => gas.gravity() != [0.0; 3] || gas.well.is_some(),
         "kinetic_energy" => gas.restitution == 1.0,
         "maxwell_p_value" => gas.species.iter().any(|species| species.speeds == Speeds::Equal),
         "mixing_entropy" => gas.partition.as_ref().is_some_and(|partition| partition.lifted_at_s.is_some()),

@@ -3,8 +3,8 @@
 mod balls;
 mod walls;
 
-use super::{Check, Checked};
-use crate::{Axis, Gas, Measure, Method, Partition, Region};
+use super::{Check, Checked, SIDES};
+use crate::{Axis, Gas, Measure, Method, Partition, Region, Shear, SquareWell};
 
 /// Close packing: the densest that there is, pi / sqrt(12) of a plane (Thue 1910) and pi / sqrt(18) of space (Hales 2005).
 pub(super) const CLOSE_PACKING: [f64; 2] = [0.906_899_682_117_089_3, 0.740_480_489_693_061_1];
@@ -28,6 +28,12 @@ impl Check {
             "must be larger than 0 and at most 1 (1: no loss)".into()
         })?;
         self.at_least("gas.contact_time_s", gas.contact_time_s.unwrap_or(0.0), 0.0)?;
+        if let Some(well) = &gas.well {
+            self.square_well(gas, well)?;
+        }
+        if let Some(shear) = &gas.shear {
+            self.shear(gas, shear)?;
+        }
         if let Some(time) = gas.reversed_at_s {
             self.above("gas.reversed_at_s", time, 0.0)?;
         }
@@ -40,6 +46,61 @@ impl Check {
         }
         self.measure(gas, &gas.measure)?;
         self.balls(gas)
+    }
+
+    /// A square well, and what does not go with it.
+    fn square_well(&self, gas: &Gas, well: &SquareWell) -> Checked {
+        self.require("gas.well.depth", well.depth != 0.0, || {
+            "must not be 0: a well without depth changes nothing; take [gas.well] out".into()
+        })?;
+        self.above("gas.well.width", well.width, 1.0)?;
+        self.require("gas.method", !matches!(gas.method, Method::FixedStep { .. }), || {
+            "fixed time steps miss the rims of square wells, and energy with them; choose \"event-driven\" or \"list\", or take \
+             [gas.well] out"
+                .into()
+        })?;
+        self.require("gas.restitution", gas.restitution == 1.0, || {
+            "must be 1 with square wells: pairs would lose energy in their wells without end; leave it out, or take [gas.well] out"
+                .into()
+        })?;
+        let radii = gas.species.iter().map(|species| species.radius).chain(gas.ball.iter().map(|ball| ball.radius));
+        let reach = 2.0 * well.width * radii.fold(0.0, f64::max);
+        for axis in Axis::ALL.into_iter().take(gas.dimensions()) {
+            let (length, periodic) = (gas.size[axis.index()], *gas.walls.along(axis)[0] == crate::Wall::Periodic);
+            self.require("gas.well.width", !periodic || length > 3.0 * reach, || {
+                format!("periodic sides {length} apart must be more than three wells apart, and the widest well reaches {reach}")
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Steady shear, and what does not go with it.
+    fn shear(&self, gas: &Gas, shear: &Shear) -> Checked {
+        self.above("gas.shear.rate_per_s", shear.rate_per_s, 0.0)?;
+        if let Some(temperature) = shear.temperature {
+            self.above("gas.shear.temperature", temperature, 0.0)?;
+        }
+        for axis in Axis::ALL.into_iter().take(gas.dimensions()) {
+            let key = format!("gas.walls.{}", SIDES[axis.index()][0]);
+            self.require(&key, *gas.walls.along(axis)[0] == crate::Wall::Periodic, || {
+                "a sheared box must be periodic along all axes; make it \"periodic\", with the opposite side, or take [gas.shear] out".into()
+            })?;
+        }
+        let still = gas.gravity() == [0.0; 3];
+        for (key, goes, why) in [
+            ("gas.gravity", still, "would make the gas fall for ever"),
+            ("gas.well", gas.well.is_none(), "does not go with it yet"),
+            ("gas.reversed_at_s", gas.reversed_at_s.is_none(), "would have to reverse the shear too"),
+            (
+                "gas.method",
+                !matches!(gas.method, Method::FixedStep { .. }),
+                "has no images that slide with fixed time steps",
+            ),
+            ("gas.measure.region", gas.measure.region.is_empty(), "would have images sliding through it"),
+        ] {
+            self.require(key, goes, || format!("{why} in a sheared box; take it out, or [gas.shear]"))?;
+        }
+        Ok(())
     }
 
     /// A vector has as many numbers as the box has sides.
