@@ -126,14 +126,23 @@ pub fn call(target: &Target, input: &[u8]) -> Result<(Result<String, String>, us
     Ok((answer, memory))
 }
 
-/// Ends the process where a call takes too long.
-fn watch(start: Instant) {
+/// Interval at which the time of a call is looked at.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// Ends the process where a call takes too long. Time in which the whole process was stopped does not count.
+fn watch() {
     thread::spawn(move || {
+        let (mut call, mut spent) = (u64::MAX, Duration::ZERO);
         loop {
-            thread::sleep(Duration::from_millis(100));
+            let before = Instant::now();
+            thread::sleep(INTERVAL);
             let began = BEGAN.load(Ordering::Relaxed);
-            let now = start.elapsed().as_millis() as u64;
-            if began != u64::MAX && now.saturating_sub(began) > TIME.as_millis() as u64 {
+            if began == u64::MAX || began != call {
+                (call, spent) = (began, Duration::ZERO);
+                continue;
+            }
+            spent += before.elapsed().min(5 * INTERVAL);
+            if spent > TIME {
                 println!("hang");
                 std::process::exit(HANG);
             }
@@ -175,7 +184,7 @@ pub fn fuzz(target: &Target, seed: u64, until: Until, current: &Path, fresh: boo
     let mut known = HashSet::new();
     let mut file = fs::File::create(current)?;
     let start = Instant::now();
-    watch(start);
+    watch();
     while outcome.executions < until.executions && start.elapsed() < until.time {
         let input = waiting.pop().unwrap_or_else(|| mutator.next(&mut random));
         file.set_len(0)?;

@@ -15,7 +15,7 @@ fn inputs_that_were_found_are_read_or_refused() {
             count += 1;
         }
     }
-    assert!(count >= 10, "{count}");
+    assert!(count >= 8, "{count}");
 }
 
 #[test]

@@ -20,6 +20,9 @@ const LONGEST: Duration = Duration::from_secs(6);
 /// Largest error of a ledger, over the magnitudes of what it accounts for.
 const LEDGER: f64 = 1e-8;
 
+/// The same for momentum of water, of which less is exact: rain and blocks that land are booked apart from what moves them.
+const MOMENTUM: f64 = 1e-5;
+
 /// Fastest water in a lake that began at rest, m/s.
 const AT_REST: f64 = 1e-6;
 
@@ -156,7 +159,8 @@ fn check(expected: &Expected, model: &dyn Model) -> Result<(), Trial> {
             _ => true,
         };
         let error = if is_exact { balance.relative_error() } else { 0.0 };
-        if error.is_nan() || error.abs() > LEDGER {
+        let is_of_water = balance.quantity == "momentum" && expected.kind != Kind::Gas;
+        if error.is_nan() || error.abs() > if is_of_water { MOMENTUM } else { LEDGER } {
             return Err(finding(&format!("ledger of {}", balance.quantity), format!("{at}: {balance:?}, {error:.3e}")));
         }
     }
@@ -168,7 +172,7 @@ fn check(expected: &Expected, model: &dyn Model) -> Result<(), Trial> {
         if expected.at_rest && fastest > AT_REST {
             return Err(finding("lake moves", format!("{at}: {fastest:.3e} m/s")));
         }
-        if !expected.at_rest && energy > first * (1.0 + 1e-6) {
+        if !expected.at_rest && energy > first + 1e-6 * first.abs() {
             return Err(finding("energy grows", format!("{at}: from {first} to {energy}")));
         }
     }
