@@ -169,8 +169,7 @@ mod tests {
                 continue;
             }
             let html = fs::read_to_string(out.join(&file)).unwrap();
-            let local =
-                |link: &&&str| !link.contains("://") && !link.starts_with("../") && !link.starts_with("data:");
+            let local = |link: &&&str| !link.contains("://") && !link.starts_with("../") && !link.starts_with("data:");
             for link in values(&html, "href").iter().chain(&values(&html, "src")).filter(local) {
                 let (page, place) = link.split_once('#').unwrap_or((link, ""));
                 let target = if page.is_empty() { file.clone() } else { page.into() };
