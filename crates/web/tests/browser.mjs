@@ -46,7 +46,7 @@ function native(scene, changes) {
   }
 }
 
-// Scenes with so many particles that a page takes minutes to open them are not waited for.
+// Scenes of dew with so many particles that opening one took a page minutes (dew/lens) are not waited for.
 const heavy = ["dew/lens", "dew/windscreen", "dew/glassware", "dew/three-boundaries"];
 // A scene that needs a download says so.
 const refused = { "flood/iowa-river": /network|download|fetch/i, "flood/chishui": /network|download|fetch/i };
