@@ -108,7 +108,7 @@ impl Runner {
     pub fn take(&mut self, command: Command) {
         let command = match command {
             Command::Open(scene, folder) => {
-                let (backend, gpu) = (self.backend, self.gpu());
+                let (backend, gpu) = (self.backend, self.devices.as_ref().map(|devices| devices.gpu.clone()));
                 return self.open(|| Subject::live(*scene, &folder, backend, gpu.as_ref()));
             }
             Command::OpenRun(folder) => return self.open(|| Subject::recorded(&folder)),
@@ -151,11 +151,6 @@ impl Runner {
             }
             Err(error) => self.send(Event::Refused(error.to_string())),
         }
-    }
-
-    /// The device that draws.
-    fn gpu(&self) -> Option<Gpu> {
-        self.devices.as_ref().map(|devices| devices.gpu.clone())
     }
 
     /// Sets up the opened scene.
@@ -210,10 +205,10 @@ impl Runner {
 
     /// Advances for a slice of wall-clock time.
     pub fn slice(&mut self) {
-        let gpu = self.gpu();
         let Some(running) = &mut self.running else { return };
         let begun = Instant::now();
-        if gpu.is_some_and(|gpu| running.subject.drawn_in_place(&gpu).is_some()) {
+        let devices = self.devices.as_ref();
+        if devices.is_some_and(|devices| running.subject.drawn_in_place(&devices.gpu).is_some()) {
             running.began = begun;
             return self.advance_on_gpu();
         }

@@ -4,13 +4,12 @@ use super::{Source, Window};
 use crate::files;
 use crate::physics::Command;
 use std::path::PathBuf;
-use web_time::Instant;
 
 impl Window {
     /// Shows where a file was written, or the error.
     pub(super) fn wrote(&mut self, done: Result<PathBuf, String>) {
         match done {
-            Ok(path) => self.notice = Some((format!("Saved as {}", path.display()), Instant::now())),
+            Ok(path) => self.notify(format!("Saved as {}", path.display())),
             Err(error) => self.fault = Some(format!("It could not be saved: {error}")),
         }
     }
@@ -59,6 +58,6 @@ impl Window {
         let Some(open) = &self.open else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
         self.offscreen.still(open.picture.job(&snapshot), self.folder.clone(), open.source.name.clone());
-        self.notice = Some(("The still is being drawn".into(), Instant::now()));
+        self.notify("The still is being drawn".into());
     }
 }

@@ -182,6 +182,18 @@ fn relative<const D: usize, M: Mode>(
     (start, apart, approach)
 }
 
+/// The rate of change of a line times itself, the line times that rate, and the line times itself.
+#[inline(always)]
+fn products<const D: usize>(apart: &[f64; D], approach: &[f64; D]) -> [f64; 3] {
+    let mut products = [0.0; 3];
+    for axis in 0..D {
+        products[0] += approach[axis] * approach[axis];
+        products[1] += apart[axis] * approach[axis];
+        products[2] += apart[axis] * apart[axis];
+    }
+    products
+}
+
 impl Quadratic {
     /// Of the image of `b` that is `offset` from where `b` is. It must be given: when the counting starts, balls that meet after
     /// long ways across a periodic box may be nearest in other images.
@@ -194,12 +206,7 @@ impl Quadratic {
         field: &Field<D>,
     ) -> Self {
         let (start, apart, approach) = relative::<D, M>(a, b, offset, field);
-        let (mut a, mut b, mut apart2) = (0.0, 0.0, 0.0);
-        for axis in 0..D {
-            a += approach[axis] * approach[axis];
-            b += apart[axis] * approach[axis];
-            apart2 += apart[axis] * apart[axis];
-        }
+        let [mut a, mut b, apart2] = products(&apart, &approach);
         let mut reach = reach;
         if M::GROWS {
             let growth = reach * field.growth;
@@ -222,12 +229,7 @@ impl Quadratic {
         field: &Field<D>,
     ) -> f64 {
         let (start, apart, approach) = relative::<D, M>(a, b, offset, field);
-        let (mut a, mut b, mut apart2) = (0.0, 0.0, 0.0);
-        for axis in 0..D {
-            a += approach[axis] * approach[axis];
-            b += apart[axis] * approach[axis];
-            apart2 += apart[axis] * apart[axis];
-        }
+        let [a, b, apart2] = products(&apart, &approach);
         if a == 0.0 {
             return f64::INFINITY;
         }
