@@ -27,11 +27,15 @@ pub fn build(root: &Path) -> Result<PathBuf> {
 /// # Errors
 /// Where a file cannot be written.
 pub fn write(module: &Path, folder: &Path) -> Result<()> {
-    Bindgen::new().input_path(module).web(true)?.typescript(false).out_name(NAME).generate(folder)?;
+    let mut bindgen = Bindgen::new();
+    bindgen.input_path(module).web(true)?.typescript(false).out_name(NAME);
+    bindgen.remove_name_section(true).remove_producers_section(true).generate(folder)?;
     let written = folder.join(format!("{NAME}_bg.wasm"));
-    let optimised = Command::new("wasm-opt").args(["-O2", "--all-features", "-o"]).args([&written, &written]).status();
+    let smaller = folder.join("smaller.wasm");
+    let optimised = Command::new("wasm-opt").args(["-O2", "--all-features", "-o"]).args([&smaller, &written]).status();
     match optimised {
-        Ok(status) => ensure!(status.success(), "wasm-opt failed"),
+        Ok(status) if status.success() => std::fs::rename(smaller, written)?,
+        Ok(_) => println!("this wasm-opt cannot read the program: it is a little larger than it might be"),
         Err(_) => println!("wasm-opt is not installed: the program is a little larger than it might be"),
     }
     Ok(())
