@@ -1,5 +1,7 @@
 //! Finding balls that overlap, in boxes by place.
 
+use crate::functions::pow;
+
 /// Balls filed by the cell of their centre.
 pub(crate) struct Hash<const D: usize> {
     low: [f64; D],
@@ -21,7 +23,7 @@ impl<const D: usize> Hash<D> {
     /// For about `balls` balls of diameters up to `largest`, in a box.
     pub fn new(low: [f64; D], length: [f64; D], period: [f64; D], largest: f64, balls: usize) -> Self {
         let volume: f64 = length.iter().product();
-        let side = largest.max((volume / (balls + 1) as f64).powf(1.0 / D as f64));
+        let side = largest.max(pow(volume / (balls + 1) as f64, 1.0 / D as f64));
         let count = length.map(|length| ((length / side) as usize).clamp(1, 1 << 20));
         let size = std::array::from_fn(|axis| length[axis] / count[axis] as f64);
         let heads = vec![NONE; count.iter().product()];

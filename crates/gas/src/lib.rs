@@ -9,6 +9,7 @@
 
 mod engine;
 mod error;
+mod functions;
 mod gas;
 mod hash;
 mod measure;

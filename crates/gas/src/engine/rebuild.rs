@@ -5,6 +5,7 @@ use super::ahead::Ahead;
 use super::event::{Event, What};
 use super::grid::Grid;
 use super::queue::Queue;
+use crate::functions::pow;
 use crate::world::{Ball, Mode, NONE, in_mode};
 use multiversion::multiversion;
 
@@ -53,7 +54,7 @@ impl<const D: usize> Engine<D> {
         let periodic = world.field.period.map(|period| period > 0.0);
         let count = diameters.len().max(1);
         let volume: f64 = world.length.iter().product();
-        let thin = (volume * balls_per_cell(D) / count as f64).powf(1.0 / D as f64);
+        let thin = pow(volume * balls_per_cell(D) / count as f64, 1.0 / D as f64);
         let largest = diameters.iter().copied().fold(0.0, f64::max);
         let nth = (diameters.len() * 9 / 10).min(diameters.len().saturating_sub(1));
         let usual = if diameters.is_empty() { 1.0 } else { *diameters.select_nth_unstable_by(nth, f64::total_cmp).1 };

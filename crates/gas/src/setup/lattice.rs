@@ -1,5 +1,7 @@
 //! Balls evenly on a lattice.
 
+use crate::functions::pow;
+
 /// Points evenly in a box of side lengths `length`, `count` of them: on the square or the centred rectangular lattice (in three
 /// dimensions the cubic or the face-centred one), stretched to fit, whichever keeps them farthest apart. Along periodic axes the
 /// box repeats; along others points lie on its faces too. With the points comes the smallest distance.
@@ -43,7 +45,7 @@ fn steps<const D: usize>(cells: [usize; D], length: [f64; D], periodic: [bool; D
 fn best<const D: usize>(count: usize, length: [f64; D], periodic: [bool; D], basis: &[[f64; D]]) -> ([usize; D], f64) {
     let cells = count.div_ceil(basis.len());
     let volume: f64 = length.iter().map(|length| length.max(1e-300)).product();
-    let usual = (volume / cells as f64).powf(1.0 / D as f64);
+    let usual = pow(volume / cells as f64, 1.0 / D as f64);
     // A cell's sides may differ by this factor from a cube's; beyond it points only come nearer to each other.
     let range = |axis: usize| {
         let even = length[axis] / usual;

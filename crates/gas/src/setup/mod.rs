@@ -12,6 +12,7 @@ mod walls;
 pub(crate) use random::Placed;
 pub(crate) use walls::Schedule;
 
+use crate::functions::pow;
 use crate::{Gas, SetupError};
 
 /// A gas to be made. Fields may be changed before [`Setup::build`]; what is not said is as in [`Setup::new`].
@@ -298,7 +299,7 @@ impl<const D: usize> Setup<D> {
 
     /// `count` balls of diameter 1, mass 1 and temperature 1 that fill `packing` of a periodic cube (in two dimensions a square).
     pub fn fluid(count: usize, packing: f64) -> Self {
-        let size = (count as f64 * ball_volume::<D>(0.5) / packing).powf(1.0 / D as f64);
+        let size = pow(count as f64 * ball_volume::<D>(0.5) / packing, 1.0 / D as f64);
         Setup::new([size; D]).periodic().species(Species::new("balls", Amount::Count(count)))
     }
 

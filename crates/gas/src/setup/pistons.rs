@@ -4,6 +4,7 @@ use super::place::closest;
 use super::random::Placed;
 use super::{Setup, Side, ball_volume};
 use crate::SetupError;
+use crate::functions::pow;
 
 /// Least mean gap between neighbours, over their diameter, to which a piston may press a gas; and over the gap at the start, where that
 /// is small.
@@ -25,7 +26,7 @@ impl<const D: usize> Setup<D> {
         let largest = places.iter().map(|placed| placed.radius).fold(0.0, f64::max);
         let limit = if places.iter().all(|placed| placed.radius == largest) { closest::<D>() } else { 1.0 };
         let volume: f64 = self.size.iter().product();
-        let gap = ((limit * volume / filled).powf(1.0 / D as f64) - 1.0).max(0.0);
+        let gap = (pow(limit * volume / filled, 1.0 / D as f64) - 1.0).max(0.0);
         let [mass, energy] = self.mass_and_energy();
         let heaviest = self
             .balls

@@ -7,6 +7,7 @@ use super::place::{JAMMED, closest};
 use super::{Setup, ball_volume};
 use crate::SetupError;
 use crate::engine::Engine;
+use crate::functions::pow;
 use crate::hash::Hash;
 use crate::method::Pause;
 use crate::random::normal;
@@ -216,7 +217,7 @@ impl<const D: usize> Site<'_, D> {
         world.walls = self.walls();
         world.wall_tallies = vec![Default::default(); world.walls.len()];
         let mut engine = Engine::new(world);
-        let fluid = (FLUID_PACKING[D - 2] / packing).powf(1.0 / D as f64);
+        let fluid = pow(FLUID_PACKING[D - 2] / packing, 1.0 / D as f64);
         for (speed, end) in [(GROWTH_SPEED[0], fluid.min(RADIUS_MARGIN)), (GROWTH_SPEED[1], RADIUS_MARGIN)] {
             set_growth(&mut engine, speed / mean);
             grow_to(&mut engine, end, mean).map_err(|reached| packing * reached.powi(D as i32))?;
@@ -235,7 +236,7 @@ impl<const D: usize> Site<'_, D> {
     /// Radii over those in the end, and places for balls of them; a packing for which there is no room.
     fn seeds(&self, radii: &[f64], packing: f64, random: &mut ChaCha8Rng) -> Result<(f64, Vec<[f64; D]>), f64> {
         let mut dropped = |seed: [f64; 2]| {
-            let scale = (seed[D - 2] / packing).powf(1.0 / D as f64).min(SEED_RADIUS);
+            let scale = pow(seed[D - 2] / packing, 1.0 / D as f64).min(SEED_RADIUS);
             self.drop_scaled(radii, scale, random).map(|positions| (scale, positions))
         };
         SEED_PACKINGS.into_iter().find_map(&mut dropped).ok_or(SEED_PACKINGS[1][D - 2])

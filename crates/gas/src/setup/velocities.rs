@@ -1,6 +1,7 @@
 //! Initial velocities: at exactly the given temperature, with no momentum but the given one.
 
 use super::{Setup, Side, Species, Speeds};
+use crate::functions::{cos, sin};
 use crate::random::{direction, normal};
 use rand_chacha::ChaCha8Rng;
 
@@ -78,7 +79,7 @@ fn equal<const D: usize>(count: usize, speed: f64, random: &mut ChaCha8Rng) -> V
         let turn = std::f64::consts::TAU * rand::RngExt::random::<f64>(random);
         for third in 0..3 {
             let angle = turn + std::f64::consts::TAU * f64::from(third) / 3.0;
-            velocities.push(std::array::from_fn(|axis| speed * [angle.cos(), angle.sin(), 0.0][axis]));
+            velocities.push(std::array::from_fn(|axis| speed * [cos(angle), sin(angle), 0.0][axis]));
         }
     } else if velocities.len() < count {
         velocities.push(direction::<D>(random).map(|x| x * speed));

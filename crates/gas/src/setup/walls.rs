@@ -1,6 +1,7 @@
 //! The walls of a set-up, and how those that move by plan do it.
 
 use super::{Setup, Side};
+use crate::functions::{cos, sin, tan};
 use crate::world::{Facing, Wall};
 use std::f64::consts::TAU;
 
@@ -67,12 +68,12 @@ fn straight(rows: &[[f64; 2]]) -> Vec<Knot> {
 fn arc(amplitude: f64, period: f64, number: usize) -> Knot {
     let step = period / f64::from(ARCS);
     let phase = |knot: u64| TAU * (knot % u64::from(ARCS)) as f64 / f64::from(ARCS);
-    let largest = amplitude * 2.0 / step * (0.5 * TAU / f64::from(ARCS)).tan();
-    let speed = |knot: u64| largest * phase(knot).cos();
+    let largest = amplitude * 2.0 / step * tan(0.5 * TAU / f64::from(ARCS));
+    let speed = |knot: u64| largest * cos(phase(knot));
     let knot = number as u64;
     Knot {
         time: number as f64 * step,
-        displacement: amplitude * phase(knot).sin(),
+        displacement: amplitude * sin(phase(knot)),
         speed: speed(knot),
         acceleration: (speed(knot + 1) - speed(knot)) / step,
     }
