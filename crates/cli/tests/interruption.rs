@@ -142,6 +142,97 @@ fn killed_and_resumed(changes: &[&str]) {
     }
 }
 
+/// Humid air before a cold pane, small enough to be opened at once.
+const DEW: &str = "run = { until_s = 0.6, frame_every_s = 0.1, gauge_every_s = 0.01, checkpoint_every_wall_s = 0.005 }
+[dew]
+size_m = [0.04, 0.03, 0.03]
+spacing_m = 0.005
+air = { temperature_c = 25.0, relative_humidity = 0.9 }
+drops = { sites_per_m2 = 1e4, smallest_radius_m = 1e-4 }
+solid = [{ name = \"pane\", shape = { box = { size_m = [0.005, 0.03, 0.03] } }, position_m = [0.0025, 0.015, 0.015], temperature_c = 5.0, held = true }]
+";
+
+/// Each model with what makes it run long enough, and checkpoints all the while.
+fn models() -> [(&'static str, &'static str, Vec<&'static str>); 4] {
+    let often = "--set=run.checkpoint_every_wall_s=0.005";
+    [
+        ("gas", BALLS, [&LONG_GAS[..], &[often]].concat()),
+        ("dew", DEW, vec!["--frames=csv"]),
+        ("voronoi", LAKE, [&LONG[..], &[often]].concat()),
+        ("sph-swe", LAKE, [&LONG[..], &[often, "--set=flood.scheme=sph-swe"]].concat()),
+    ]
+}
+
+/// Ended at so many random moments by signals in turn; the run that is left goes on to the same bytes.
+fn ended_at_random_moments(signals: &[&str], moments: u64) {
+    for (model, scene, long) in models() {
+        let place = Place::new();
+        place.write("scene.toml", scene);
+        let start = Instant::now();
+        place.run(&[&["run", "scene.toml", "-o", "whole"], &long[..]].concat()).expect_status(0);
+        let duration = start.elapsed();
+        let expected = results(&place.path("whole"));
+        let compare = |when: &str| {
+            let found = results(&place.path("ended"));
+            let names = |files: &[(String, Vec<u8>)]| files.iter().map(|file| file.0.clone()).collect::<Vec<_>>();
+            assert_eq!(names(&found), names(&expected), "{model}, {when}");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!(found == expected, "{model}, {when}: {} differs", found.0);
+            }
+        };
+        let begin = |resumes: bool| match resumes {
+            true => vec!["run", "--resume", "ended"],
+            false => [&["run", "scene.toml", "-o", "ended"], &long[..]].concat(),
+        };
+        let mut random = 0x9e37_79b9_7f4a_7c15_u64;
+        for moment in 0..moments {
+            let resumes = place.path("ended/checkpoint/state").exists();
+            if !resumes {
+                // Ended before the first checkpoint: resuming says so, and nothing is lost but the beginning.
+                if place.path("ended").exists() {
+                    let ended = place.run(&begin(true)).expect_status(2);
+                    assert!(ended.stderr.starts_with("error: "), "{model}: {}", ended.stderr);
+                    fs::remove_dir_all(place.path("ended")).unwrap();
+                }
+            }
+            let mut child = place.command(&begin(resumes)).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            sleep(duration.mul_f64((random >> 40) as f64 / (1 << 24) as f64 / 4.0));
+            let name = signals[moment as usize % signals.len()];
+            if child.try_wait().unwrap().is_none() {
+                signal(name, &child);
+            }
+            if child.wait().unwrap().success() {
+                compare(&format!("at its end before signal {moment}"));
+                fs::remove_dir_all(place.path("ended")).unwrap();
+            }
+        }
+        let resumes = place.path("ended/checkpoint/state").exists();
+        if !resumes {
+            _ = fs::remove_dir_all(place.path("ended"));
+        }
+        place.run(&begin(resumes)).expect_status(0);
+        compare("at its end");
+    }
+}
+
+#[test]
+fn killed_and_signalled_at_a_few_random_moments_each_model_gives_the_same_bytes() {
+    ended_at_random_moments(&["-KILL", "-INT", "-TERM"], 6);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn killed_at_a_hundred_random_moments_each_model_gives_the_same_bytes() {
+    ended_at_random_moments(&["-KILL"], 100);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn signalled_at_two_hundred_random_moments_each_model_gives_the_same_bytes() {
+    ended_at_random_moments(&["-INT", "-TERM"], 200);
+}
+
 /// A limit on the size of files stands for a full disk: both fail a write half way.
 #[test]
 fn a_write_that_fails_ends_the_run_and_leaves_what_is_there_readable() {

@@ -17,6 +17,7 @@
 
 #[cfg(feature = "gpu")]
 mod backend;
+mod camera_path;
 mod error;
 #[cfg(feature = "film")]
 mod filming;
@@ -50,6 +51,7 @@ pub use corpuscle_video as video;
 
 #[cfg(feature = "gpu")]
 pub use backend::{Choice, FEWEST_ON_GPU};
+pub use camera_path::{CameraStation, camera_path};
 pub use error::Error;
 #[cfg(feature = "film")]
 pub use filming::Filming;

@@ -106,6 +106,27 @@ fn runs_without_gauges_or_water_have_a_report() {
     assert!(!html.contains("Hydrographs"));
 }
 
+/// Names in a scene have letters, digits, spaces, `_` and `-`; those in a folder from elsewhere can be anything.
+#[test]
+fn a_gauge_called_like_a_script_is_shown_as_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, path) = (scene(), folder.path().join("run"));
+    let terrain = terrain(&scene);
+    write_run(&path, &scene, &terrain, FrameFormat::None).finish(&common::summary()).unwrap();
+    let gauges = fs::read_to_string(path.join("gauges.csv")).unwrap();
+    let hostile = "<script>alert(1)</script>";
+    assert!(gauges.contains("mill weir."));
+    fs::write(path.join("gauges.csv"), gauges.replace("mill weir.", &format!("{hostile}."))).unwrap();
+    let mut renamed = scene.clone();
+    renamed.title = hostile.into();
+    let html = report(&path, &renamed, &terrain);
+    assert!(!html.contains("<script"));
+    assert!(html.matches("&lt;script&gt;alert(1)&lt;/script&gt;").count() > 2, "the title and the gauge are not shown");
+    let text = common::SCENE.replace("\"mill weir\"", "\"<script>alert(1)</script>\"");
+    let refusal = Scene::parse(&text, "sample", &[]).unwrap_err().to_string();
+    assert!(refusal.contains("letters, digits"), "{refusal}");
+}
+
 #[test]
 fn elongated_terrain_is_stretched_and_says_so() {
     let folder = tempfile::tempdir().unwrap();

@@ -212,6 +212,25 @@ fn a_glb_cannot_reach_beyond_its_data() {
     }
 }
 
+/// The reader went round such nodes for ever.
+#[test]
+fn nodes_of_a_gltf_below_themselves_or_below_two_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, content) = cube([1.0; 3]).in_all_formats().into_iter().find(|(name, _)| *name == "mesh.gltf").unwrap();
+    let text = String::from_utf8(content).unwrap();
+    let node = "{\"mesh\":0}";
+    assert!(text.contains(node), "{text}");
+    for (nodes, number) in [
+        ("{\"mesh\":0,\"children\":[0]}", 0),
+        ("{\"children\":[1]},{\"children\":[0]}", 0),
+        ("{\"children\":[1,1]},{\"mesh\":0}", 1),
+    ] {
+        let odd = text.replacen(node, nodes, 1);
+        let message = Mesh::read(&written(&folder, "odd.gltf", odd), None).unwrap_err().to_string();
+        assert!(message.contains(&format!("its node {number} ")) && message.contains("below itself"), "{message}");
+    }
+}
+
 #[test]
 fn a_sampled_mesh_sums_to_its_volume() {
     for soup in [ball(0.5, 3), torus(0.5, 0.2, 40, 20), cube([0.5, 0.4, 0.3])] {

@@ -84,6 +84,23 @@ fn broken_ascii_grids_are_refused_with_the_line() {
     refused("ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize -1\n1 2 3 4".into(), "makes no sense");
 }
 
+/// All of it was unpacked: two megabytes of a compressed file took two gigabytes of memory.
+#[test]
+fn a_small_file_that_unpacks_to_far_more_text_than_its_cells_need_is_refused() {
+    use std::io::Write;
+    let packed = |text: &str, spaces: usize| {
+        let mut writer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        writer.write_all(text.as_bytes()).unwrap();
+        let block = vec![b' '; 1 << 20];
+        (0..spaces).for_each(|_| writer.write_all(&block).unwrap());
+        writer.finish().unwrap()
+    };
+    let grid = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3 4\n";
+    refused("bomb.asc.gz", &packed(grid, 64), "its text goes on beyond 4352 characters");
+    refused("bomb.asc.gz", &packed("ncols 2\n", 64), "no `nrows`");
+    read("small.asc.gz", &packed(grid, 0)).unwrap();
+}
+
 /// The same file with another number in a tag of the TIFF directory that holds one 32-bit value.
 fn with_tag(bytes: &[u8], tag: u16, value: u32) -> Vec<u8> {
     let mut bytes = bytes.to_vec();

@@ -2,6 +2,7 @@
 
 mod open;
 mod outline;
+mod shapefile;
 mod shapes;
 
 pub(crate) use open::{check_overlap, open, polygons};

@@ -1,6 +1,6 @@
 //! Obstacles of a scene.
 
-use super::{Outline, Outlines};
+use super::{Outline, Outlines, shapefile};
 use crate::limits::check_inside;
 use corpuscle_model::ModelError;
 use corpuscle_scene::{Circle, Flood as Settings, Obstacle};
@@ -105,7 +105,7 @@ fn extension(path: &Path) -> String {
 fn read(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     match extension(path).as_str() {
         "geojson" | "json" => geojson(path, terrain),
-        "shp" => shapefile(path),
+        "shp" => shapefile::polygons(&std::fs::read(path).map_err(|error| error.to_string())?),
         "csv" => csv(path),
         other => Err(format!("'.{other}' is no format of polygons here; give .geojson, .shp or .csv")),
     }
@@ -114,26 +114,6 @@ fn read(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
 fn geojson(path: &Path, terrain: &Terrain) -> Result<Vec<Polygon>, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
     Ok(terrain.polygons_to_own(polygons_of_geojson(&text)?))
-}
-
-/// The rings of each shape together: holes are rings too, by the even-odd rule.
-fn shapefile(path: &Path) -> Result<Vec<Polygon>, String> {
-    let shapes = shapefile::read_shapes(path).map_err(|error| error.to_string())?;
-    let polygon = |shape: shapefile::Shape| -> Option<Polygon> {
-        match shape {
-            shapefile::Shape::Polygon(polygon) => {
-                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
-            }
-            shapefile::Shape::PolygonM(polygon) => {
-                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
-            }
-            shapefile::Shape::PolygonZ(polygon) => {
-                Some(polygon.rings().iter().map(|ring| ring.points().iter().map(|p| [p.x, p.y]).collect()).collect())
-            }
-            _ => None,
-        }
-    };
-    Ok(shapes.into_iter().filter_map(polygon).collect())
 }
 
 /// Corners in columns x and y; where there is a column `name`, each name is a polygon.

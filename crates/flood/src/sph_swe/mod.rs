@@ -115,7 +115,37 @@ struct State {
     overrides: Overrides,
 }
 
+/// Particles of a state lie at most so many times the terrain's size beyond it.
+const MOST_BEYOND: f64 = 1.0;
+
+/// Cells of a state are at least this part of the spacing wide.
+const SMALLEST_CELL: f64 = 1e-3;
+
 impl SphSweFlood {
+    /// Whether a state that was read can be one of this flood: sorting particles that lie anywhere, into cells of any size, might never end.
+    fn can_be(&self, state: &State) -> bool {
+        let bounds = self.surroundings.terrain.bounds();
+        let [length, width] = [bounds.x_max - bounds.x_min, bounds.y_max - bounds.y_min];
+        let is_near = |x: f64, low: f64, high: f64, size: f64| {
+            (low - MOST_BEYOND * size..=high + MOST_BEYOND * size).contains(&x)
+        };
+        let smoothing = self.settings.sph_swe.smoothing_length_m.unwrap_or(self.spacing);
+        let largest = length.max(width).max(100.0 * self.spacing.max(smoothing));
+        let particle_can_be = |particle: &Particle| {
+            let Particle { x, y, u, v, ax, ay, volume, h, next_h, depth, ground, ground_slope, outside, id: _ } =
+                particle;
+            is_near(*x, bounds.x_min, bounds.x_max, length)
+                && is_near(*y, bounds.y_min, bounds.y_max, width)
+                && *h > 0.0
+                && [h, next_h].iter().all(|h| (0.0..=largest).contains(*h))
+                && [u, v, ax, ay, volume, depth, ground].iter().all(|value| value.is_finite())
+                && ground_slope.iter().all(|slope| slope.is_finite())
+                && outside.is_none_or(|side| side < 4)
+        };
+        let cells = SMALLEST_CELL * self.spacing.min(smoothing)..=largest;
+        state.time.is_finite() && cells.contains(&state.cell) && state.particles.iter().all(particle_can_be)
+    }
+
     /// Distance of particles as they are shown, m: they stand for no area.
     fn spacing_shown(&self) -> f64 {
         self.settings.sph_swe.radius_m.map_or(self.spacing, |radius| 2.0 * radius)

@@ -161,8 +161,12 @@ impl Model for SphSweFlood {
         let (shown, state): (f64, State) =
             postcard::from_bytes(state).map_err(|error| refused(format!("its bytes are damaged ({error})")))?;
         if state.residual_volume.len() != self.sources.len()
-            || state.impulses.len() != self.surroundings.obstacles.names.len()
+            || [&state.impulses, &state.on_obstacles]
+                .iter()
+                .any(|of| of.len() != self.surroundings.obstacles.names.len())
+            || state.overtopped.len() != self.surroundings.obstacles.names.len()
             || !state.maps.fit(&self.state.maps)
+            || !self.can_be(&state)
         {
             return Err(refused("it belongs to another scene".into()));
         }
@@ -177,5 +181,52 @@ impl Model for SphSweFlood {
         #[cfg(feature = "gpu")]
         self.upload_to_gpu().map_err(|error| ModelError::Device(error.to_string()))?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{SphSweFlood, State};
+    use corpuscle_model::Model;
+    use corpuscle_scene::{Flood, Scheme, Water};
+    use corpuscle_terrain::{Bounds, Terrain};
+    use std::path::Path;
+    use std::sync::Arc;
+
+    fn lake() -> SphSweFlood {
+        let bounds = Bounds { x_min: 0.0, x_max: 40.0, y_min: 0.0, y_max: 30.0 };
+        let terrain = Terrain::analytic(bounds, 1.0, |_, _| (0.0, [0.0; 2]));
+        let water = Water { level_m: Some(2.0.into()), ..Water::default() };
+        let settings = Flood {
+            scheme: Scheme::SphSwe,
+            spacing_m: Some(5.0),
+            spacing_depth_m: Some(1.0),
+            water: vec![water],
+            map_every_s: Some(1.0),
+            ..Flood::default()
+        };
+        SphSweFlood::new(&settings, 1, Path::new(""), Arc::new(terrain)).unwrap()
+    }
+
+    /// Particles that lie anywhere, or cells of any size, were sorted for ever.
+    #[test]
+    fn states_that_cannot_be_of_this_flood_are_refused() {
+        let changes: [fn(&mut State); 8] = [
+            |state| state.particles[0].x = 1e12,
+            |state| state.particles[0].y = f64::NAN,
+            |state| state.particles[0].h = 0.0,
+            |state| state.particles[0].h = 1e12,
+            |state| state.particles[0].outside = Some(4),
+            |state| state.cell = 1e-12,
+            |state| state.cell = f64::NAN,
+            |state| state.overtopped.push(None),
+        ];
+        assert!(lake().restore(&lake().save()).is_ok());
+        for (number, change) in changes.into_iter().enumerate() {
+            let mut other = lake();
+            change(&mut other.state);
+            let error = lake().restore(&other.save()).expect_err(&number.to_string()).to_string();
+            assert!(error.contains("belongs to another scene"), "{number}: {error}");
+        }
     }
 }

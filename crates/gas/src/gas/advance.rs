@@ -2,7 +2,7 @@
 
 use super::{Due, Gas};
 use crate::method::{Mover, Pause};
-use corpuscle_model::ModelError;
+use corpuscle_model::{ExactSum, ModelError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Events between two checks whether to stop.
@@ -22,9 +22,11 @@ impl<const D: usize> Gas<D> {
     pub(super) fn advance(&mut self, time: f64, stop: &AtomicBool) -> Result<(), ModelError> {
         loop {
             let (when, due) = self.next_due();
-            if !self.run_to(when.min(time), stop)? {
+            let reached = self.run_to(when.min(time), stop);
+            if !matches!(reached, Ok(true)) {
+                // After a breakdown too: shown at an earlier time, balls would go back along paths that hits have bent since.
                 self.shown = self.shown.max(self.mover.world().time());
-                return Ok(());
+                return reached.map(|_| ());
             }
             if when > time {
                 self.shown = time;
@@ -202,6 +204,11 @@ impl<const D: usize> Gas<D> {
     fn reverse(&mut self) {
         self.mover.begin_window();
         let planned: Vec<bool> = self.plans.iter().map(Option::is_some).collect();
+        let world = self.mover.world_mut();
+        let momenta =
+            (0..world.balls.len()).map(|ball| world.mass(ball) * world.balls[ball].velocity.iter().sum::<f64>());
+        let turned = -2.0 * momenta.collect::<ExactSum>().value();
+        self.live.momentum.add(turned);
         let world = self.mover.world_mut();
         world.reverse();
         let now = world.now;

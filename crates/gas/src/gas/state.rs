@@ -97,11 +97,17 @@ impl<const D: usize> Gas<D> {
             return Err(other());
         }
         // Balls may have been put in and taken out by live changes since the start.
-        let at_the_start = |balls: usize, live: &LiveTally| (balls as u64 + live.removed).checked_sub(live.added);
+        let at_the_start =
+            |balls: usize, live: &LiveTally| (balls as u64).checked_add(live.removed)?.checked_sub(live.added);
         if at_the_start(self.len(), &self.live) != at_the_start(state.world.time.len(), &state.live) {
             return Err(other());
         }
-        state.world.put_into(self.mover.world_mut()).ok_or_else(other)?;
+        let (walls, regions) = (self.mover.world().walls.len(), self.mover.world().regions.len());
+        let balls = state.world.time.len();
+        if !state.measures.fit::<D>(&self.measures, walls, regions, balls) || !state.live.fits(walls) {
+            return Err(other());
+        }
+        state.world.put_into(self.mover.world_mut(), self.sets.len()).ok_or_else(other)?;
         match (&mut self.mover, &state.method) {
             (Mover::EventDriven(engine), SavedMethod::EventDriven(saved)) => engine.restore(saved).ok_or_else(other)?,
             (Mover::List(list), SavedMethod::List(handled)) => {
@@ -153,8 +159,8 @@ impl SavedWorld {
         }
     }
 
-    /// `None` where it does not fit.
-    fn put_into<const D: usize>(&self, world: &mut World<D>) -> Option<()> {
+    /// `None` where it does not fit a world with balls of so many sets.
+    fn put_into<const D: usize>(&self, world: &mut World<D>, sets: usize) -> Option<()> {
         let count = self.time.len();
         let singles = [self.kind.len(), self.id.len(), self.species.len(), self.collided.len()];
         let vectors = [self.position.len(), self.velocity.len(), self.image.len()];
@@ -168,8 +174,10 @@ impl SavedWorld {
             && self.well.as_ref().is_none_or(|well| well.fits(count))
             && self.walls.iter().zip(&world.walls).all(|(a, b)| a.axis == b.axis)
             && self.kind.iter().all(|&kind| (kind as usize) < world.kinds.len())
-            && self.id.iter().all(|&id| (id as usize) < count);
-        if !fits {
+            && self.species.iter().all(|&set| (set as usize) < sets);
+        let mut is_taken = vec![false; count];
+        let is_free = |id: &u32| is_taken.get_mut(*id as usize).is_some_and(|taken| !std::mem::replace(taken, true));
+        if !fits || !self.id.iter().all(is_free) {
             return None;
         }
         fn vector<T: Copy, const D: usize>(from: &[T], ball: usize) -> Option<[T; D]> {

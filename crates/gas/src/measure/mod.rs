@@ -70,6 +70,29 @@ impl Measures {
         }
     }
 
+    /// Whether these are measures of the same set-up as `new`, of a gas with so many walls, regions and balls.
+    pub fn fit<const D: usize>(&self, new: &Self, walls: usize, regions: usize, balls: usize) -> bool {
+        let lengths = |bars: &[Vec<u64>]| bars.iter().map(Vec::len).collect::<Vec<_>>();
+        let sets = new.speeds.len();
+        let is_of_sets = |values: &[f64]| values.is_empty() || values.len() == sets;
+        let sample_fits = |sample: &Sample| {
+            sample.walls.len() == walls
+                && sample.areas.len() == walls
+                && sample.regions.len() == regions
+                && is_of_sets(&sample.displacement)
+                && is_of_sets(&sample.beyond)
+        };
+        let histograms =
+            |measures: &Self| [&measures.speeds, &measures.velocities, &measures.profile].map(|bars| lengths(bars));
+        histograms(self) == histograms(new)
+            && self.largest.len() == sets
+            && self.pairs.counts.len() == new.pairs.counts.len()
+            && self.starts.len().is_multiple_of(D)
+            && self.starts.len() / D <= balls
+            && self.averaged <= self.samples.len()
+            && self.samples.iter().all(sample_fits)
+    }
+
     /// Restarts the averages, with histograms up to other speeds; samples over time stay.
     pub fn begin_anew<const D: usize>(&mut self, setup: &Setup<D>, largest: Vec<f64>) {
         let samples = std::mem::take(&mut self.samples);

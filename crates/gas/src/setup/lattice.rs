@@ -17,7 +17,8 @@ pub(super) fn lattice<const D: usize>(count: usize, length: [f64; D], periodic: 
         std::array::from_fn(|axis| {
             let along = cell % cells[axis];
             cell /= cells[axis];
-            (along as f64 + base[axis]) * step[axis]
+            // One layer alone stands in the middle.
+            if step[axis].is_finite() { (along as f64 + base[axis]) * step[axis] } else { 0.5 * length[axis] }
         })
     };
     // Sites too many are left out evenly.
@@ -100,6 +101,24 @@ mod tests {
         let (points, apart) = lattice::<3>(500, [5.0; 3], [true; 3]);
         assert_eq!(points.len(), 500);
         assert!((apart - 0.5_f64.sqrt()).abs() < 1e-12);
+    }
+
+    /// Their positions were not a number.
+    #[test]
+    fn few_points_and_one_layer_lie_in_the_box() {
+        for count in 1..12 {
+            for length in [[8.0, 6.0, 7.0], [80.0, 1.0, 1.0], [80.0, 80.0, 1.0]] {
+                for periodic in [[false; 3], [true, false, true]] {
+                    let (points, apart) = lattice::<3>(count, length, periodic);
+                    let is_in = |point: &[f64; 3]| (0..3).all(|axis| (0.0..=length[axis]).contains(&point[axis]));
+                    assert!(
+                        points.len() == count && points.iter().all(is_in),
+                        "{count} {length:?} {periodic:?}: {points:?}"
+                    );
+                    assert!(count == 1 || apart.is_finite() && apart > 0.0, "{count} {length:?}: {apart}");
+                }
+            }
+        }
     }
 
     #[test]

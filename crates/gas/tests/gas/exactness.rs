@@ -1,7 +1,7 @@
 //! What is promised of the state at any time.
 
 use crate::common::{advance, bits, deepest, scatter};
-use corpuscle_gas::{Gas, Method, Setup, Side};
+use corpuscle_gas::{Gas, Method, Region, Setup, Side};
 use corpuscle_model::Model;
 
 /// Boxes of every kind whose energy is conserved, in two dimensions.
@@ -161,6 +161,49 @@ fn turned_round_it_runs_back() {
             let size = (500.0 * std::f64::consts::PI / 6.0 / 0.2_f64).cbrt();
             apart -= size * (apart / size).round();
             assert!(apart.abs() < 0.5e-6 && (v[axis] + w[axis]).abs() < 1e-5, "{apart}");
+        }
+    }
+}
+
+/// What the balls are given when all velocities are turned round was in no balance.
+#[test]
+fn momentum_balances_when_all_is_turned_round() {
+    for method in [Method::EventDriven, Method::List, Method::FixedStep(0.004)] {
+        let mut setup = Setup::<2>::new([30.0, 25.0]).gravity([0.3, -0.2]).method(method);
+        setup.reversed_at = Some(1.3);
+        scatter(&mut setup, 60, 0.3, 3.0, 5);
+        let mut gas = setup.build().unwrap();
+        for time in [1.0, 1.6, 3.0] {
+            advance(&mut gas, time);
+            let balances = gas.ledger().balances;
+            let momentum = balances.iter().find(|balance| balance.quantity == "momentum").unwrap();
+            assert!(momentum.relative_error().abs() < 1e-9, "{method:?} {time}: {momentum:?}");
+        }
+    }
+}
+
+#[test]
+fn states_with_measures_of_another_shape_or_balls_of_one_number_are_refused() {
+    let of_regions = |regions: usize| {
+        let mut setup = Setup::<2>::fluid(50, 0.3).measured(0.0, 0.1);
+        let region = |number: usize| Region { name: number.to_string(), from: [1.0; 2], to: [3.0; 2] };
+        setup.regions = (0..regions).map(region).collect();
+        let mut gas = setup.build().unwrap();
+        advance(&mut gas, 1.0);
+        gas
+    };
+    let saved = of_regions(1).save();
+    assert!(of_regions(1).restore(&saved).is_ok());
+    assert!(of_regions(2).restore(&saved).is_err());
+    // Whichever byte is changed, the state is refused or can be shown.
+    for at in (0..saved.len()).step_by(7) {
+        let mut damaged = saved.clone();
+        damaged[at] ^= 0x41;
+        let mut gas = of_regions(1);
+        if gas.restore(&damaged).is_ok() {
+            gas.frame();
+            gas.gauge_row();
+            gas.save();
         }
     }
 }

@@ -219,6 +219,26 @@ fn a_wall_that_crushes_the_gas_is_named() {
     assert!(why(gas(Side::Swinging { amplitude: 10.0, period: 9.0 })).contains("walls across x would leave"));
 }
 
+/// It was shown at the time of the frame before, as if balls had come along the paths that the last hits have bent: through one another.
+#[test]
+fn after_a_breakdown_the_balls_are_shown_where_it_happened() {
+    let species = Species::new("gas", Amount::Count(40));
+    let crushed =
+        Setup::<2>::new([12.0, 10.0]).side(0, 1, Side::Moving { velocity: -0.5, until: None }).species(species);
+    let mut gas = crushed.build().unwrap();
+    let stop = AtomicBool::new(false);
+    gas.advance_to(1.0, &stop).unwrap();
+    let Err(ModelError::Breakdown { time, .. }) = gas.advance_to(1e6, &stop) else { panic!("must be stopped") };
+    assert!(time > 1.0 && gas.time() == time, "{time} {}", gas.time());
+    let balls = &gas.frame().sets[0];
+    for (number, (at, radius)) in balls.position.iter().zip(&balls.radius).enumerate() {
+        for (other, with) in balls.position.iter().zip(&balls.radius).take(number) {
+            let distance = (at[0] - other[0]).hypot(at[1] - other[1]);
+            assert!(distance >= (radius + with) * (1.0 - 1e-9), "{distance}");
+        }
+    }
+}
+
 #[test]
 fn a_gas_too_hot_to_be_followed_is_named() {
     let mut species = Species::new("gas", Amount::Count(40));

@@ -37,7 +37,15 @@ fn read_sound(content: &[u8], folder: &Path) -> Result<Triangles, String> {
     // y is up in glTF; here z is.
     let upright = [[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let mut waiting: Vec<(Node, Matrix)> = scene.nodes().map(|node| (node, upright)).collect();
+    let mut seen = vec![false; gltf.nodes().len()];
     while let Some((node, above)) = waiting.pop() {
+        // Nodes form trees (glTF 2.0, 3.5.2). Those of a file that breaks this could lead round for ever.
+        if std::mem::replace(&mut seen[node.index()], true) {
+            return Err(format!(
+                "its node {} (counted from 0) is below itself or below two others; export the scene again",
+                node.index()
+            ));
+        }
         let own = node.transform().matrix().map(|column| column.map(f64::from));
         let matrix = own.map(|column| moved(&above, column));
         for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {

@@ -34,7 +34,16 @@ pub(super) fn read(path: &Path, text: &[u8], part: Option<&MapBox>) -> Result<Ra
 }
 
 /// The most text that a header takes.
-const LONGEST_HEADER: u64 = 4096;
+pub(super) const LONGEST_HEADER: u64 = 4096;
+
+/// The most text for a value with what parts it from the next, on average over the grid: numbers in full have 24 characters.
+const LONGEST_VALUE: u64 = 64;
+
+/// The most text that a grid with this beginning can have; only its beginning where that has no header.
+pub(super) fn longest(path: &Path, start: &[u8]) -> u64 {
+    let cells = survey(path, start).map_or(0, |survey| (survey.columns as u64).saturating_mul(survey.rows as u64));
+    cells.saturating_mul(LONGEST_VALUE).saturating_add(LONGEST_HEADER)
+}
 
 /// What the header says.
 pub(super) fn survey(path: &Path, source: impl Read) -> Result<Survey, TerrainError> {

@@ -138,20 +138,29 @@ fn kind(start: &[u8]) -> &'static str {
     }
 }
 
-/// The whole text of a file.
-fn text(path: &Path, source: impl Read) -> Result<Vec<u8>, TerrainError> {
-    let mut text = Vec::new();
-    source.take(MOST_TEXT + 1).read_to_end(&mut text).map_err(|error| match error.kind() {
+/// The whole text of a file: no more than the cells that its header tells can need, so that a small file cannot unpack to a huge text.
+fn text(path: &Path, mut source: impl Read) -> Result<Vec<u8>, TerrainError> {
+    let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::UnexpectedEof | std::io::ErrorKind::InvalidInput | std::io::ErrorKind::InvalidData => {
             TerrainError::damaged(path, error.to_string())
         }
         _ => TerrainError::read(path, error),
-    })?;
-    if text.len() as u64 > MOST_TEXT {
+    };
+    let mut text = Vec::new();
+    (&mut source).take(ascii::LONGEST_HEADER).read_to_end(&mut text).map_err(failed)?;
+    let longest = ascii::longest(path, &text);
+    let most = longest.min(MOST_TEXT);
+    source.take((most + 1).saturating_sub(text.len() as u64)).read_to_end(&mut text).map_err(failed)?;
+    if text.len() as u64 > most && longest > MOST_TEXT {
         return Err(TerrainError::unusable(
             path,
             "its text is longer than 2 GB; convert it to a GeoTIFF and cut it out",
         ));
+    }
+    if text.len() as u64 > most && most > ascii::LONGEST_HEADER {
+        let what =
+            format!("its text goes on beyond {most} characters, far more than the cells that its header tells need");
+        return Err(TerrainError::damaged(path, what));
     }
     Ok(text)
 }

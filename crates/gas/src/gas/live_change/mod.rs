@@ -86,7 +86,7 @@ impl LiveChange {
 pub(super) struct LiveTally {
     pub gained: ExactSum,
     pub lost: ExactSum,
-    /// Sum of the components.
+    /// Sum of the components, with what the balls were given when all velocities were reversed.
     pub momentum: ExactSum,
     /// Balls put in and taken out.
     pub added: u64,
@@ -95,6 +95,13 @@ pub(super) struct LiveTally {
     pub grips: Vec<Grip>,
     /// What holds the temperature.
     pub thermostat: Option<Thermostat>,
+}
+
+impl LiveTally {
+    /// Whether it is of a gas with so many walls.
+    pub(super) fn fits(&self, walls: usize) -> bool {
+        self.grips.iter().all(|grip| grip.wall() < walls)
+    }
 }
 
 impl LiveTally {

@@ -26,6 +26,13 @@ pub(crate) struct Grip {
     to: f64,
 }
 
+impl Grip {
+    /// The wall that is held.
+    pub(crate) fn wall(&self) -> usize {
+        self.wall
+    }
+}
+
 impl<const D: usize> Gas<D> {
     /// Takes hold of a piston and drags it to a place, where it is held.
     pub(super) fn drag(&mut self, [axis, end]: [usize; 2], to: f64) -> Result<(), ModelError> {

@@ -1,0 +1,53 @@
+//! Rasters: GeoTIFF and ESRI ASCII.
+
+use super::{none, on_file};
+use crate::Target;
+use corpuscle_terrain::{MapBox, read_raster, read_raster_part, read_rasters, summarize};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use std::io::Write;
+use std::path::Path;
+
+pub(super) const TARGETS: &[Target] = &[
+    Target { name: "geotiff", about: "GeoTIFF", corpus: "geotiff", read: geotiff, more: none },
+    Target { name: "ascii", about: "ESRI ASCII grids", corpus: "ascii", read: ascii, more: none },
+    Target { name: "ascii-gz", about: "ESRI ASCII grids, compressed", corpus: "ascii-gz", read: ascii_gz, more: none },
+];
+
+/// Whole, in part, with others, in summary.
+fn by_all(path: &Path) -> Result<String, String> {
+    let part = MapBox::new([50.0, 50.0, 150.0, 250.0])?;
+    let whole = read_raster(path).map(|raster| raster.warnings.len());
+    let cut = read_raster_part(path, &part).map(|raster| raster.warnings.len());
+    let several =
+        read_rasters(&[path.to_owned(), path.to_owned()], None, Some(&part)).map(|raster| raster.warnings.len());
+    let summary = summarize(path, None).map(|_| 0);
+    let mut words = String::new();
+    for answer in [whole, cut, several, summary] {
+        words += &answer.map_err(|error| without(&error.to_string(), path))?.to_string();
+    }
+    Ok(words)
+}
+
+/// A message without the path, which differs from run to run.
+fn without(message: &str, path: &Path) -> String {
+    message.replace(&path.display().to_string(), "")
+}
+
+fn geotiff(bytes: &[u8]) -> Result<String, String> {
+    on_file("a.tif", bytes, by_all)
+}
+
+fn ascii(bytes: &[u8]) -> Result<String, String> {
+    on_file("a.asc", bytes, by_all)
+}
+
+/// Bytes that are not compressed are compressed first.
+fn ascii_gz(bytes: &[u8]) -> Result<String, String> {
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        return on_file("a.asc.gz", bytes, by_all);
+    }
+    let mut writer = GzEncoder::new(Vec::new(), Compression::fast());
+    writer.write_all(bytes).map_err(|error| error.to_string())?;
+    on_file("a.asc.gz", &writer.finish().map_err(|error| error.to_string())?, by_all)
+}
