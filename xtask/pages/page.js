@@ -8,18 +8,10 @@ function tell(text) {
 }
 
 async function start() {
-  if (!navigator.gpu || !(await navigator.gpu.requestAdapter())) {
-    const scenes = document.createElement("a");
-    scenes.href = "../";
-    scenes.target = "_top";
-    scenes.textContent = "Pictures of all scenes";
-    tell("The live window needs WebGPU, which this browser does not offer: Chrome, Edge, Safari 26 and Firefox 141 or newer do.");
-    said.append(scenes);
-    return;
-  }
+  const hasWebgpu = Boolean(navigator.gpu && (await navigator.gpu.requestAdapter().catch(() => null)));
   await load({ module_or_path: new URL("corpuscle_bg.wasm", import.meta.url) });
   // Scripts of this page, and tests, ask it for what is shown.
-  window.corpuscle = await Page.open(document.getElementById("window"));
+  window.corpuscle = await Page.open(document.getElementById("window"), hasWebgpu);
   said.remove();
 }
 

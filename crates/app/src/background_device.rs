@@ -11,24 +11,26 @@ const ADDED_NICENESS: i32 = 10;
 /// single queue, in which the window would wait for them, so that there is a second device then. It is opened when it is first needed.
 #[derive(Clone)]
 pub struct BackgroundDevice {
-    window: Gpu,
+    /// The window's; none where there is none that draws.
+    window: Option<Gpu>,
     second: Arc<Mutex<Option<Gpu>>>,
 }
 
 impl BackgroundDevice {
     /// The background device that goes with a window's device.
-    pub fn beside(window: &Gpu) -> Self {
-        Self { window: window.clone(), second: Arc::default() }
+    pub fn beside(window: Option<&Gpu>) -> Self {
+        Self { window: window.cloned(), second: Arc::default() }
     }
 
     /// The device; waits until it is open.
     ///
     /// # Errors
-    /// Those of [`Gpu::open`].
+    /// [`GpuError::NoDevice`] where the window has none; those of [`Gpu::open`].
     pub fn gpu(&self) -> Result<Gpu, GpuError> {
+        let window = self.window.as_ref().ok_or(GpuError::NoDevice)?;
         // A browser opens none while a program runs.
-        if self.window.kind == GpuKind::Hardware || cfg!(target_arch = "wasm32") {
-            return Ok(self.window.clone());
+        if window.kind == GpuKind::Hardware || cfg!(target_arch = "wasm32") {
+            return Ok(window.clone());
         }
         let mut second = self.second.lock().unwrap_or_else(PoisonError::into_inner);
         if second.is_none() {

@@ -50,7 +50,7 @@ pub fn view(start: Start, backend: Backend, measure: Option<f64>) -> Result<Opti
         if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
             context.egui_ctx.add_plugin(meshes);
         }
-        let window = Window::new(&context.egui_ctx, screen, start, backend)?;
+        let window = Window::new(&context.egui_ctx, Some(screen), start, backend)?;
         Ok(Box::new(App { window, meter }) as Box<dyn eframe::App>)
     };
     let ended = eframe::run_native("Corpuscle", options, Box::new(create));

@@ -2,7 +2,7 @@
 
 mod stage;
 
-use stage::{stage, stage_of_software};
+use stage::{stage, stage_of_software, stage_without_device};
 use std::time::Duration;
 
 const SOON: Duration = Duration::from_secs(30);
@@ -292,4 +292,25 @@ fn a_scene_is_saved_as_it_was_changed() {
     let gas = scene.gas().unwrap();
     assert_eq!(gas.species[0].count, Some(300));
     assert_eq!(gas.partition.as_ref().unwrap().lifted_at_s, Some(0.0));
+}
+
+/// Without a device that draws a scene is still seen, played, turned and clicked: as discs, and floods as a map.
+#[test]
+fn without_a_device_pictures_are_discs_and_maps() {
+    for (title, steps, name) in [
+        ("Maxwell's speeds", 5, "gas"),
+        ("A piston falls onto a gas", 2, "piston"),
+        ("A lake at rest over a hill", 2, "flood"),
+        ("A cold pane", 60, "dew"),
+    ] {
+        let Some(mut stage) = stage_without_device("sketches") else { return };
+        stage.window_mut().wait_at_start();
+        stage.choose(title);
+        stage.until(SOON, title, |window| !window.is_waiting() && window.snapshot().is_some());
+        stage.steps(steps);
+        stage.same_as_reference(&format!("sketch-{name}"));
+        assert!(stage.window().fault().is_none(), "{title}: {:?}", stage.window().fault());
+        // What only a device can do is not offered.
+        assert!(!stage.has("Save a still") && !stage.has("Quality"), "{title}");
+    }
 }

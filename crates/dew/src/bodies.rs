@@ -3,13 +3,14 @@
 use crate::humid_air::ZERO_CELSIUS;
 use crate::solids::sources::{BodySources, Outside, Surroundings};
 use crate::solids::wall::WallLayer;
-use corpuscle_model::ModelError;
+use corpuscle_model::{ModelError, SolidShape};
 use corpuscle_scene::dew::{self, Dew, Shape};
 use corpuscle_scene::{SceneError, Series, Table};
 use corpuscle_solids::{
     self as solids, Depth, MATERIALS, Material, Mesh, Pose, Profile, Samples, Solid, SolidError, WineGlass,
 };
 use std::path::Path;
+use std::sync::Arc;
 
 /// A solid of a scene.
 #[derive(Debug, Clone)]
@@ -158,6 +159,23 @@ pub fn open(dew: &Dew, folder: &Path) -> Result<Vec<Body>, BodyError> {
     refuse_overlap(&bodies, dew.spacing_m)?;
     refuse_a_full_box(&bodies, dew)?;
     Ok(bodies)
+}
+
+/// The solids of a scene as shapes, in the order of the scene; relative paths are taken from `folder`.
+///
+/// # Errors
+/// [`BodyError::Solid`] where one cannot be made.
+pub fn shapes(dew: &Dew, folder: &Path) -> Result<Vec<SolidShape>, BodyError> {
+    let one = |(row, written): (usize, &dew::Solid)| match solid(written, folder) {
+        Ok((solid, _)) => Ok(shape(solid)),
+        Err(source) => Err(BodyError::Solid { name: written.name.clone(), row, source }),
+    };
+    dew.solid.iter().enumerate().map(one).collect()
+}
+
+/// The shape of a solid.
+pub(crate) fn shape(solid: Solid) -> SolidShape {
+    SolidShape { bounds: solid.bounds(), distance: Arc::new(move |place| solid.signed_distance(place)) }
 }
 
 fn body(dew: &Dew, row: usize, written: &dew::Solid, folder: &Path) -> Result<Body, BodyError> {

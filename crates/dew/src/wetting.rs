@@ -3,11 +3,12 @@
 //! The air gives water to boundary particles and takes it from them; every few steps the drops take that over: what came
 //! condenses into them, what went evaporates from them, they move, and each boundary particle has what then lies on it.
 
+use crate::bodies;
 use crate::dew::Dew;
 use crate::drops::{DropLaws, DropState, Drops, Patch, Portion, Share, Surfaces};
 use crate::fogging::{Cover, Fogging, Story, SurfaceFace, open_area};
 use crate::solids::SolidParticle;
-use corpuscle_model::{Column, ExactSum, ParticleSet, SolidShape, Surface, Values};
+use corpuscle_model::{Column, ExactSum, ParticleSet, Surface, Values};
 use corpuscle_solids::Solid;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -205,7 +206,6 @@ impl Wetting {
         let unseen = |patch: usize| self.drops.unseen_on(patch, &self.shares[patch]);
         let covered = |patch: usize| self.shares[patch].covered / area(patch) + unseen(patch).covered;
         let or_none = |time: Option<f64>| time.unwrap_or(f64::NAN);
-        let shape = self.drops.solids()[solid].clone();
         Surface {
             name: name.into(),
             position: of_solid.iter().map(|&patch| patches[patch].position).collect(),
@@ -225,7 +225,7 @@ impl Wetting {
                 column("wet_for_s", "s", &|patch| spot(patch).wet_for),
                 column("temperature_k", "K", &|patch| temperatures[self.particles[patch] as usize]),
             ],
-            shape: SolidShape { bounds: shape.bounds(), distance: Arc::new(move |place| shape.signed_distance(place)) },
+            shape: bodies::shape(self.drops.solids()[solid].clone()),
         }
     }
 

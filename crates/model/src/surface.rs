@@ -1,11 +1,12 @@
 //! The surface of a solid, patch by patch.
 
 use crate::Column;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::Arc;
 
-/// The surface of a solid as square patches, with what is known of each.
-#[derive(Debug, Clone)]
+/// The surface of a solid as square patches, with what is known of each. Serialised it is without the solid itself.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Surface {
     /// Name of the solid.
     pub name: String,
@@ -18,6 +19,7 @@ pub struct Surface {
     /// What is known of the patches; every column has one entry for each.
     pub columns: Vec<Column>,
     /// The solid itself, to be drawn.
+    #[serde(skip)]
     pub shape: SolidShape,
 }
 
@@ -38,6 +40,13 @@ pub struct SolidShape {
     pub bounds: [[f64; 3]; 2],
     /// Distance from its surface, m, negative inside; outside never more than the true one.
     pub distance: Distance,
+}
+
+impl Default for SolidShape {
+    /// No solid.
+    fn default() -> Self {
+        Self { bounds: [[0.0; 3]; 2], distance: Arc::new(|_| f64::INFINITY) }
+    }
 }
 
 /// A signed distance, m, by place.

@@ -96,9 +96,13 @@ impl Camera {
     /// Position of a point, m, in a picture of `aspect`: fractions of its width from the left and of its height from above. None behind
     /// the eye.
     pub fn project(&self, stage: &Stage, aspect: f64, point: [f64; 3]) -> Option<[f64; 2]> {
-        let clip = self.clip_from_view(stage, aspect as f32) * self.view_from_world(stage);
-        let at = clip * stage.place(point).extend(1.0);
-        (at.w > 0.0).then(|| [0.5 + 0.5 * f64::from(at.x / at.w), 0.5 - 0.5 * f64::from(at.y / at.w)])
+        self.projection(stage, aspect).ball(point, 0.0).map(|ball| ball.at)
+    }
+
+    /// What projects many points of a picture of `aspect`.
+    pub fn projection(&self, stage: &Stage, aspect: f64) -> Projection {
+        let lens = self.clip_from_view(stage, aspect as f32);
+        Projection { stage: *stage, scale: lens.y_axis.y, clip: lens * self.view_from_world(stage) }
     }
 
     /// From stage coordinates to those of the eye: x right, y up, looking along -z.
@@ -130,6 +134,38 @@ impl Camera {
     /// The line of sight.
     pub(crate) fn forward(&self) -> Vec3 {
         (self.target - self.eye).normalize_or(DVec3::NEG_Z).as_vec3()
+    }
+}
+
+/// Projects points into a picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Projection {
+    stage: Stage,
+    clip: Mat4,
+    /// Height of the picture over that of what is at distance 1, in half pictures.
+    scale: f32,
+}
+
+/// A ball in a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProjectedBall {
+    /// Its middle: fractions of the picture's width from the left and of its height from above.
+    pub at: [f64; 2],
+    /// Its radius, fraction of the picture's height.
+    pub radius: f64,
+    /// Nearness: larger for what lies before other things.
+    pub nearness: f64,
+}
+
+impl Projection {
+    /// A ball with a radius, m, in the picture; none behind the eye.
+    pub fn ball(&self, middle: [f64; 3], radius: f64) -> Option<ProjectedBall> {
+        let at = self.clip * self.stage.place(middle).extend(1.0);
+        (at.w > 0.0).then(|| ProjectedBall {
+            at: [0.5 + 0.5 * f64::from(at.x / at.w), 0.5 - 0.5 * f64::from(at.y / at.w)],
+            radius: 0.5 * f64::from(self.scale * self.stage.length(radius) / at.w),
+            nearness: f64::from(at.z / at.w),
+        })
     }
 }
 

@@ -33,7 +33,7 @@ mod tubes;
 mod view;
 
 pub use balls::{BallPainter, BallStyle, Balls, BallsOfDevice, Shading, ValueOfDevice};
-pub use camera::{Camera, Lens};
+pub use camera::{Camera, Lens, ProjectedBall, Projection};
 pub use camera_path::CameraPath;
 pub use caps::{Cap, CapPainter, Caps};
 pub use colour::{ColourTable, linear};

@@ -11,12 +11,12 @@ pub struct Page(web::Page);
 
 #[wasm_bindgen]
 impl Page {
-    /// Opens the window on a canvas, with the scene that the page's address names.
+    /// Opens the window on a canvas, with the scene that the page's address names; by WebGL where there is no WebGPU.
     ///
     /// # Errors
     /// A text that says why there is no window.
-    pub async fn open(canvas: HtmlCanvasElement) -> Result<Page, JsValue> {
-        web::Page::open(canvas).await.map(Self)
+    pub async fn open(canvas: HtmlCanvasElement, has_webgpu: bool) -> Result<Page, JsValue> {
+        web::Page::open(canvas, has_webgpu).await.map(Self)
     }
 
     /// What is shown, as JSON.

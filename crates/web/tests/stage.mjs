@@ -39,7 +39,7 @@ const webgpu = [
 
 /** Starts a browser, with WebGPU by software or without any. */
 export function browse({ gpu = true } = {}) {
-  const args = ["--no-sandbox", ...(gpu ? webgpu : ["--disable-features=WebGPU", "--disable-gpu"])];
+  const args = ["--no-sandbox", ...(gpu ? webgpu : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"])];
   return chromium.launch({ executablePath: browserPath, args });
 }
 

@@ -2,11 +2,11 @@
 
 use super::{Command, Event, Opened, scene_text};
 use crate::snapshot::Snapshot;
-use corpuscle::Simulation;
+use corpuscle::model::Surface;
 use corpuscle::pictures::Scenery;
 use corpuscle::scene::Scene;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A message to the worker.
@@ -37,6 +37,7 @@ pub(super) struct OpenedMessage {
     number: u64,
     #[serde(with = "scene_text")]
     scene: Box<Scene>,
+    surfaces: Vec<Surface>,
     gauges: Vec<String>,
     warnings: Vec<String>,
     computed_on: Option<String>,
@@ -44,15 +45,13 @@ pub(super) struct OpenedMessage {
 }
 
 impl OpenedMessage {
-    /// The scene as the window takes it: terrain and solids are opened again.
+    /// The scene as the window takes it: terrain and shapes of solids are made again.
     ///
     /// # Errors
     /// Why it cannot be opened, as text.
     pub fn open(self) -> Result<Opened, String> {
-        let Self { number, scene, gauges, warnings, computed_on, end } = self;
-        let simulation =
-            Simulation::open_to_restore((*scene).clone(), Path::new("")).map_err(|error| error.to_string())?;
-        let scenery = Scenery::of(&simulation);
+        let Self { number, scene, surfaces, gauges, warnings, computed_on, end } = self;
+        let scenery = Scenery::of_scene((*scene).clone(), surfaces).map_err(|error| error.to_string())?;
         let scene = *scene;
         Ok(Opened { number, scene, pictures: None, scenery, gauges, warnings, computed_on, history: None, end })
     }
@@ -63,8 +62,9 @@ impl FromWorker {
     pub fn of(event: Event) -> Option<Self> {
         Some(match event {
             Event::Opened(opened) => {
-                let Opened { number, scene, gauges, warnings, computed_on, end, .. } = *opened;
-                Self::Opened(OpenedMessage { number, scene: Box::new(scene), gauges, warnings, computed_on, end })
+                let Opened { number, scene, scenery, gauges, warnings, computed_on, end, .. } = *opened;
+                let (scene, surfaces) = (Box::new(scene), scenery.surfaces().to_vec());
+                Self::Opened(OpenedMessage { number, scene, surfaces, gauges, warnings, computed_on, end })
             }
             Event::Refused(what) => Self::Refused(what),
             Event::NotChanged(what) => Self::NotChanged(what),

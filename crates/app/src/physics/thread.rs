@@ -21,12 +21,12 @@ pub struct Physics {
 }
 
 impl Physics {
-    /// Starts the thread: `gpu` draws pictures and may take the steps too, `background` draws films.
+    /// Starts the thread: `gpu`, if there is one, draws pictures and may take the steps too, `background` draws films.
     ///
     /// # Errors
     /// Where the thread cannot be started.
     pub(crate) fn start(
-        gpu: &Gpu,
+        gpu: Option<&Gpu>,
         background: BackgroundDevice,
         backend: Backend,
         wake: Wake,
@@ -34,8 +34,8 @@ impl Physics {
         let (commands, taken) = channel();
         let (sender, events) = channel();
         let shared = Arc::new(Shared::new(wake));
-        let devices = Devices { gpu: gpu.clone(), background };
-        let runner = Runner::new(sender, shared.clone(), backend, Some(devices));
+        let devices = gpu.map(|gpu| Devices { gpu: gpu.clone(), background });
+        let runner = Runner::new(sender, shared.clone(), backend, devices);
         let own = shared.clone();
         let thread = std::thread::Builder::new().name("physics".into()).spawn(move || run(runner, &taken, &own))?;
         Ok(Self { commands: Some(commands), events, shared, thread: Some(thread) })

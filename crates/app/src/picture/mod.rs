@@ -1,18 +1,21 @@
 //! The picture in the middle: drawn on the window's device, with a camera that the user rotates, pans and zooms.
 
+mod device;
 mod paused;
+mod sketch;
 
 use crate::offscreen::OffscreenRenderer;
 use crate::overlay::Over;
-use crate::screen::OnScreen;
+use crate::physics::open_pictures;
 use crate::snapshot::Snapshot;
-use crate::view_state::moment;
 use crate::{Screen, style};
-use corpuscle::gpu::GpuKind;
-use corpuscle::pictures::{CameraOffset, Pictures, Quality, Scenery, Shown};
+use corpuscle::Error;
+use corpuscle::pictures::{CameraOffset, Pictures, Quality, Scenery, Shown, Sketches};
 use corpuscle_render::Lens;
+use device::DevicePainting;
 use egui::{Color32, MultiTouchInfo, PointerButton, Pos2, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use glam::DVec3;
+use sketch::SketchPainting;
 use std::sync::Arc;
 use std::time::Duration;
 use web_time::Instant;
@@ -38,10 +41,8 @@ pub enum QualitySetting {
 
 /// The picture of a scene.
 pub struct Picture {
-    screen: Screen,
-    pictures: Pictures,
+    painting: Painting,
     scenery: Arc<Scenery>,
-    on_screen: Option<OnScreen>,
     shown: Option<Shown>,
     /// What was drawn last.
     drawn: Option<Drawn>,
@@ -61,6 +62,24 @@ pub struct Picture {
     fault: Option<String>,
 }
 
+/// What draws it.
+enum Painting {
+    /// The window's device.
+    Device(Box<DevicePainting>),
+    /// The window's own shapes, where there is no such device.
+    Sketch(Box<SketchPainting>),
+}
+
+impl Painting {
+    fn open(screen: Option<&Screen>, pictures: Option<Pictures>, scenery: &Scenery) -> Result<Self, Error> {
+        let Some(screen) = screen else {
+            return Ok(Self::Sketch(Box::new(SketchPainting::new(Sketches::open(scenery)?))));
+        };
+        let pictures = pictures.map_or_else(|| open_pictures(&screen.gpu, scenery), Ok)?;
+        Ok(Self::Device(Box::new(DevicePainting::new(screen.clone(), pictures))))
+    }
+}
+
 /// What a picture was drawn from.
 #[derive(Clone, PartialEq)]
 struct Drawn {
@@ -74,13 +93,14 @@ struct Drawn {
 }
 
 impl Picture {
-    /// The picture of a scene that was opened.
-    pub fn new(screen: Screen, pictures: Pictures, scenery: Scenery) -> Self {
-        Self {
-            screen,
-            pictures,
+    /// The picture of a scene that was opened, with its pictures where they are open already; sketched where there is no screen.
+    ///
+    /// # Errors
+    /// Where something cannot be drawn.
+    pub fn open(screen: Option<&Screen>, pictures: Option<Pictures>, scenery: Scenery) -> Result<Self, Error> {
+        Ok(Self {
+            painting: Painting::open(screen, pictures, &scenery)?,
             scenery: Arc::new(scenery),
-            on_screen: None,
             shown: None,
             drawn: None,
             requested: None,
@@ -90,7 +110,12 @@ impl Picture {
             changed: Instant::now(),
             key_height: 0.0,
             fault: None,
-        }
+        })
+    }
+
+    /// True where it is sketched.
+    pub fn is_sketch(&self) -> bool {
+        matches!(self.painting, Painting::Sketch(_))
     }
 
     /// Resets the camera.
@@ -173,13 +198,17 @@ impl Picture {
 
     /// True where the last picture has full quality.
     pub fn is_complete(&self) -> bool {
-        self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1)
+        self.drawn.as_ref().is_some_and(|drawn| drawn.samples > 1 || self.is_sketch())
     }
 
     /// Records that the partition of a gas was lifted.
     pub fn lift_partition(&mut self, time: f64) {
         self.lifted = Some(time);
-        self.view_state().lift(&mut self.pictures);
+        let view_state = self.view_state();
+        match &mut self.painting {
+            Painting::Device(device) => device.lift(view_state),
+            Painting::Sketch(sketch) => sketch.lift(time),
+        }
         (self.drawn, self.requested) = (None, None);
     }
 
@@ -201,7 +230,10 @@ impl Picture {
 
     /// The quality, and samples each way in a pixel.
     fn work(&self, still: bool) -> (Quality, u32) {
-        let is_hardware = self.screen.gpu.kind == GpuKind::Hardware;
+        let is_hardware = match &self.painting {
+            Painting::Device(device) => device.is_hardware(),
+            Painting::Sketch(_) => return (Quality::Simple, 1),
+        };
         match self.quality {
             QualitySetting::Simple => (Quality::Simple, if is_hardware || still { 2 } else { 1 }),
             QualitySetting::Full => (Quality::Full, if is_hardware || still { 2 } else { 1 }),
@@ -212,18 +244,19 @@ impl Picture {
         }
     }
 
-    fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), corpuscle::Error> {
-        self.pictures.resize(drawn.size, drawn.samples)?;
-        let shown = self.pictures.show(&moment(snapshot), &self.camera_offset, drawn.quality, paper)?;
-        self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
-        self.shown = Some(shown);
+    fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<(), Error> {
+        self.shown = Some(match &mut self.painting {
+            Painting::Device(device) => device.draw(snapshot, drawn, paper)?,
+            Painting::Sketch(sketch) => sketch.draw(snapshot, drawn.camera_offset, drawn.size),
+        });
         Ok(())
     }
 
-    fn paint(&self, ui: &Ui, rect: Rect) -> f32 {
+    fn paint(&mut self, ui: &Ui, rect: Rect) -> f32 {
         let painter = ui.painter_at(rect);
-        if let Some(on_screen) = &self.on_screen {
-            painter.add(egui_wgpu::Callback::new_paint_callback(rect, on_screen.clone()));
+        match &mut self.painting {
+            Painting::Device(device) => device.paint(&painter, rect),
+            Painting::Sketch(sketch) => sketch.paint(&painter, rect, style::paper(ui.visuals()).0),
         }
         let over = |shown| Over { shown, rect, painter: &painter, dark: ui.visuals().dark_mode };
         let key_height = self.shown.as_ref().map_or(0.0, |shown| over(shown).paint());

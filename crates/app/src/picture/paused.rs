@@ -1,8 +1,7 @@
 //! The full-quality picture of a paused scene: requested from the offscreen renderer, and shown when it is there.
 
-use super::{Drawn, Picture};
+use super::{Drawn, Painting, Picture};
 use crate::offscreen::{OffscreenRenderer, PausedSettings, RenderJob};
-use crate::screen::OnScreen;
 use crate::snapshot::Snapshot;
 use crate::view_state::ViewState;
 use corpuscle::gpu::Image;
@@ -27,15 +26,13 @@ impl Picture {
     /// Shows a picture that was drawn, by the number of its request. One that is out of date is dropped: something changed since the request.
     pub fn take(&mut self, number: u64, result: Result<Box<(Shown, Image)>, String>) {
         let Some((_, drawn)) = self.requested.clone().filter(|(requested, _)| *requested == number) else { return };
+        let Painting::Device(device) = &mut self.painting else { return };
         let laid = result.and_then(|drawn| {
             let (shown, image) = *drawn;
-            let inlay = self.screen.inlays.image(&self.screen.gpu, &image).map_err(|error| error.to_string())?;
-            Ok((shown, OnScreen(inlay)))
+            device.take(&image).map(|()| shown)
         });
         match laid {
-            Ok((shown, on_screen)) => {
-                (self.shown, self.on_screen, self.drawn) = (Some(shown), Some(on_screen), Some(drawn));
-            }
+            Ok(shown) => (self.shown, self.drawn) = (Some(shown), Some(drawn)),
             Err(error) => self.fault = Some(error),
         }
     }

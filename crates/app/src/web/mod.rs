@@ -7,6 +7,7 @@ use crate::meter::Meter;
 use crate::physics::Backend;
 use crate::{Measurement, Meshes, Screen, Start, Window, link};
 use corpuscle::gpu::{Gpu, wgpu};
+use eframe::Renderer;
 use egui_wgpu::{WgpuSetup, WgpuSetupCreateNew};
 use elements::Elements;
 use serde_json::{Map, Value, json};
@@ -34,11 +35,12 @@ impl Words {
 }
 
 impl Page {
-    /// Opens the window on a canvas, with the scene that the page's address names.
+    /// Opens the window on a canvas, with the scene that the page's address names; without WebGPU it is drawn by WebGL, pictures as discs
+    /// and maps.
     ///
     /// # Errors
     /// A text that says why there is no window.
-    pub async fn open(canvas: HtmlCanvasElement) -> Result<Self, JsValue> {
+    pub async fn open(canvas: HtmlCanvasElement, has_webgpu: bool) -> Result<Self, JsValue> {
         console_error_panic_hook::set_once();
         let location = web_sys::window().ok_or("there is no page")?.location();
         let (hash, words) = (location.hash()?, Words::of(&location.search()?));
@@ -48,7 +50,8 @@ impl Page {
         setup.device_descriptor = Arc::new(Gpu::request);
         let wgpu_options =
             egui_wgpu::WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() };
-        let options = eframe::WebOptions { wgpu_options, dithering: false, ..Default::default() };
+        let renderer = if has_webgpu { Renderer::Wgpu } else { Renderer::Glow };
+        let options = eframe::WebOptions { renderer, wgpu_options, dithering: false, ..Default::default() };
         let create = move |context: &eframe::CreationContext<'_>| {
             context.egui_ctx.add_plugin(elements);
             Ok(Box::new(App::new(context, &hash, &words)?) as Box<dyn eframe::App>)
@@ -66,7 +69,8 @@ impl Page {
 
 struct App {
     window: Window,
-    gpu: Gpu,
+    /// The device; none without WebGPU.
+    gpu: Option<Gpu>,
     /// True once the device was found lost.
     is_lost: bool,
     /// The link to what is shown, as it stands in the page's address.
@@ -77,12 +81,14 @@ struct App {
 
 impl App {
     fn new(context: &eframe::CreationContext<'_>, hash: &str, words: &Words) -> Result<Self, String> {
-        let state = context.wgpu_render_state.as_ref().ok_or("the page has no GPU")?;
-        let gpu = Gpu::of(&state.adapter, state.device.clone(), state.queue.clone());
-        let screen = Screen::new(gpu.clone(), state.target_format);
-        if let Some(meshes) = Meshes::new(&screen.gpu, state.target_format) {
-            context.egui_ctx.add_plugin(meshes);
-        }
+        let screen = context.wgpu_render_state.as_ref().map(|state| {
+            let gpu = Gpu::of(&state.adapter, state.device.clone(), state.queue.clone());
+            if let Some(meshes) = Meshes::new(&gpu, state.target_format) {
+                context.egui_ctx.add_plugin(meshes);
+            }
+            Screen::new(gpu, state.target_format)
+        });
+        let gpu = screen.as_ref().map(|screen| screen.gpu.clone());
         let (start, fault) = match link::read(hash) {
             Ok(start) => (start, None),
             Err(fault) => (Start::Welcome, Some(fault)),
@@ -119,6 +125,7 @@ impl App {
             "gauges": gauges.collect::<Map<_, _>>(),
             "opening": self.window.is_waiting(),
             "error": self.window.fault(),
+            "webgpu": self.gpu.is_some(),
             "pictures_per_s": measured.map(|measured| measured.pictures_per_s),
             "slowest_picture_s": measured.map(|measured| measured.slowest_s),
         })
@@ -131,7 +138,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        if let Err(error) = self.gpu.check()
+        if let Some(Err(error)) = self.gpu.as_ref().map(Gpu::check)
             && !self.is_lost
         {
             self.is_lost = true;

@@ -15,7 +15,7 @@ use crate::background_device::BackgroundDevice;
 use crate::gallery::Gallery;
 use crate::gas_controls::GasControls;
 use crate::offscreen::OffscreenRenderer;
-use crate::physics::{Backend, Command, Opened, Physics, default_pace, open_pictures};
+use crate::physics::{Backend, Command, Opened, Physics, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
@@ -31,7 +31,8 @@ use web_time::Instant;
 
 /// The window and all that it shows.
 pub struct Window {
-    screen: Screen,
+    /// Where pictures are drawn; none where they are sketched.
+    screen: Option<Screen>,
     physics: Physics,
     /// Draws pictures that take long.
     offscreen: OffscreenRenderer,
@@ -112,16 +113,18 @@ impl PictureClock {
 }
 
 impl Window {
-    /// A window that opens `start` first and computes scenes on `backend`.
+    /// A window that opens `start` first and computes scenes on `backend`. Without a screen pictures are discs and maps, drawn with the
+    /// window's own shapes.
     ///
     /// # Errors
     /// Where the threads of the physics or of the pictures cannot be started.
-    pub fn new(context: &Context, screen: Screen, start: Start, backend: Backend) -> std::io::Result<Self> {
+    pub fn new(context: &Context, screen: Option<Screen>, start: Start, backend: Backend) -> std::io::Result<Self> {
         style::set_up(context);
         let wake = context.clone();
         let wake: Wake = Arc::new(move || wake.request_repaint());
-        let background = BackgroundDevice::beside(&screen.gpu);
-        let physics = Physics::start(&screen.gpu, background.clone(), backend, wake.clone())?;
+        let gpu = screen.as_ref().map(|screen| &screen.gpu);
+        let background = BackgroundDevice::beside(gpu);
+        let physics = Physics::start(gpu, background.clone(), backend, wake.clone())?;
         let offscreen = OffscreenRenderer::start(background, wake)?;
         let mut window = Self {
             screen,
@@ -239,8 +242,8 @@ impl Window {
         let plots = Plots::new(&opened);
         let Opened { number, scene, pictures, scenery, end, computed_on, .. } = opened;
         let terrain = scenery.shared_terrain();
-        let pictures = match pictures.map_or_else(|| open_pictures(&self.screen.gpu, &scenery), Ok) {
-            Ok(pictures) => pictures,
+        let mut picture = match Picture::open(self.screen.as_ref(), pictures, scenery) {
+            Ok(picture) => picture,
             Err(error) => {
                 self.fault = Some(error.to_string());
                 return;
@@ -262,7 +265,6 @@ impl Window {
             },
         };
         let before = self.open.take();
-        let mut picture = Picture::new(self.screen.clone(), pictures, scenery);
         let mut times = 1.0;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
             // A scene restarted with changes keeps its camera.

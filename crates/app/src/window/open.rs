@@ -79,7 +79,9 @@ impl Open {
         if icons::button(ui, Icon::Frame, "Show all", "F").clicked() {
             self.picture.reset();
         }
-        self.quality(ui);
+        if !self.picture.is_sketch() {
+            self.quality(ui);
+        }
     }
 
     fn quality(&mut self, ui: &mut Ui) {

@@ -142,7 +142,8 @@ impl Window {
                 ui.separator();
                 self.toolbar_film(ui);
             }
-            if self.open.is_some() && icons::button(ui, Icon::Still, "Save a still", "S").clicked() {
+            let draws = self.open.as_ref().is_some_and(|open| !open.picture.is_sketch());
+            if draws && icons::button(ui, Icon::Still, "Save a still", "S").clicked() {
                 self.save_still();
             }
             let Some(open) = &mut self.open else { return };

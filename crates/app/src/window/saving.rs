@@ -57,6 +57,12 @@ impl Window {
     pub(super) fn save_still(&mut self) {
         let Some(open) = &self.open else { return };
         let Some(snapshot) = open.snapshot.clone() else { return };
+        if open.picture.is_sketch() {
+            self.fault = Some(
+                "Stills are drawn by a graphics device, which there is not here: take a picture of the screen".into(),
+            );
+            return;
+        }
         self.offscreen.still(open.picture.job(&snapshot), self.folder.clone(), open.source.name.clone());
         self.notify("The still is being drawn".into());
     }

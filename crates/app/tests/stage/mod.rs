@@ -51,12 +51,12 @@ pub fn stage(test: &str) -> Option<Stage> {
 
 /// The same as software draws it in the system's window.
 pub fn stage_of_software(test: &str) -> Option<Stage> {
-    stage_by(test, egui::Theme::Light, Start::Welcome, true)
+    stage_by(test, egui::Theme::Light, Start::Welcome, Drawn::ByMeshes)
 }
 
 /// A window in a theme that begins so.
 pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
-    stage_by(test, theme, start, false)
+    stage_by(test, theme, start, Drawn::Plain)
 }
 
 /// A window whose device is taken for a GPU, which computes too.
@@ -64,34 +64,50 @@ pub fn stage_in(test: &str, theme: egui::Theme, start: Start) -> Option<Stage> {
 pub fn stage_of_gpu(test: &str) -> Option<Stage> {
     let mut device = require_gpu(test)?;
     device.kind = GpuKind::Hardware;
-    Some(stage_on(device, egui::Theme::Light, Start::Welcome, false, Backend::Gpu))
+    Some(stage_on(device, egui::Theme::Light, Start::Welcome, Drawn::Plain, Backend::Gpu))
 }
 
-fn stage_by(test: &str, theme: egui::Theme, start: Start, by_meshes: bool) -> Option<Stage> {
-    Some(stage_on(require_gpu(test)?, theme, start, by_meshes, Backend::Auto))
+/// A window without a device of its own: pictures are sketched.
+#[allow(dead_code)]
+pub fn stage_without_device(test: &str) -> Option<Stage> {
+    stage_by(test, egui::Theme::Light, Start::Welcome, Drawn::Sketched)
 }
 
-fn stage_on(gpu: Gpu, theme: egui::Theme, start: Start, by_meshes: bool, backend: Backend) -> Stage {
+/// How the window is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Drawn {
+    Plain,
+    ByMeshes,
+    /// Its pictures with its own shapes.
+    Sketched,
+}
+
+fn stage_by(test: &str, theme: egui::Theme, start: Start, drawn: Drawn) -> Option<Stage> {
+    Some(stage_on(require_gpu(test)?, theme, start, drawn, Backend::Auto))
+}
+
+fn stage_on(gpu: Gpu, theme: egui::Theme, start: Start, drawn: Drawn, backend: Backend) -> Stage {
     let renderer = egui_wgpu::Renderer::new(
         &gpu.device,
         FORMAT,
         egui_wgpu::RendererOptions { dithering: false, ..Default::default() },
     );
     let renderer = Arc::new(RwLock::new(renderer));
-    let screen = Screen::new(gpu, FORMAT);
+    let screen = Screen::new(gpu.clone(), FORMAT);
     // The window sets its letters before the first picture, as it does in the system's window.
     let made = Rc::new(RefCell::new(None));
-    let (own, made_first) = (screen.clone(), made.clone());
+    let (own, made_first) = (Some(screen.clone()), made.clone());
     let harness = Harness::builder()
         .with_size(vec2(SIZE[0], SIZE[1]))
         .with_theme(theme)
         .with_step_dt(1.0 / 60.0)
         .renderer(Textures(screen.gpu.clone(), renderer.clone()))
         .with_context_setup(move |context| {
-            if let Some(meshes) = Meshes::new(&own.gpu, FORMAT).filter(|_| by_meshes) {
+            if let Some(meshes) = Meshes::new(&gpu, FORMAT).filter(|_| drawn == Drawn::ByMeshes) {
                 context.add_plugin(meshes);
             }
-            *made_first.borrow_mut() = Some(Window::new(context, own, start, backend).unwrap());
+            *made_first.borrow_mut() =
+                Some(Window::new(context, own.filter(|_| drawn != Drawn::Sketched), start, backend).unwrap());
         })
         .build_ui_state(
             move |ui, window: &mut Option<Window>| {

@@ -9,7 +9,9 @@ pub(crate) mod gas;
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{DrawContext, Particles, PictureSettings, Scenery, Subject};
+use crate::pictures::{DrawContext, Particles, PictureSettings, Scenery, Sketcher, Subject};
+#[cfg(feature = "pictures")]
+use corpuscle_model::SolidShape;
 use corpuscle_model::{Model, ModelError};
 use corpuscle_output::{PlainReport, Summary};
 use corpuscle_scene::{Scene, SceneKind};
@@ -130,6 +132,24 @@ pub trait ModelKind: Send + Sync {
         Ok(PlainReport::new(run.folder, run.scene, run.model, time_unit).write()?)
     }
 
+    /// The terrain of a scene that was opened elsewhere, as pictures need it.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    #[cfg(feature = "pictures")]
+    fn terrain(&self, _scene: &Scene, _folder: &Path) -> Result<Option<Arc<Terrain>>, Error> {
+        Ok(None)
+    }
+
+    /// The solids of a scene that was opened elsewhere, in the order of its model's surfaces.
+    ///
+    /// # Errors
+    /// Where one cannot be made.
+    #[cfg(feature = "pictures")]
+    fn shapes(&self, _scene: &Scene, _folder: &Path) -> Result<Vec<SolidShape>, Error> {
+        Ok(Vec::new())
+    }
+
     /// What pictures show.
     ///
     /// # Errors
@@ -141,6 +161,15 @@ pub trait ModelKind: Send + Sync {
         scenery: &Scenery,
         _settings: &PictureSettings,
     ) -> Result<Box<dyn Subject>, Error> {
+        Ok(Box::new(Particles::new(scenery)))
+    }
+
+    /// What draws sketches, where there is no device that draws.
+    ///
+    /// # Errors
+    /// Where a file that the scene names cannot be used.
+    #[cfg(feature = "pictures")]
+    fn sketcher(&self, scenery: &Scenery) -> Result<Box<dyn Sketcher>, Error> {
         Ok(Box::new(Particles::new(scenery)))
     }
 

@@ -21,7 +21,7 @@ use std::path::Path;
 
 /// Default azimuth and elevation of the camera (from the south-east, from above), and field of view, radians.
 const DIRECTION: [f64; 2] = [-1.15, 0.6];
-const OWN_VIEW: OwnView =
+pub(super) const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.13, 0.06, 0.2, 0.09] };
 /// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -1.0;
@@ -136,12 +136,8 @@ impl FloodPicture {
         heights: f64,
     ) -> Result<Self, Error> {
         let bounds = ground.bounds();
-        let grid = ground.map_grid();
-        let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(MOST_NODES));
         let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
-        let field = HeightField::sampled(from, to, nodes, |x, y| {
-            if has_data(ground, [x, y]) { heights * ground.height(x, y) } else { f64::NAN }
-        });
+        let field = height_field(ground, heights, MOST_NODES);
         let [low, high] = field.range();
         let base = low - BASE * (to[0] - from[0]).max(to[1] - from[1]);
         // The paths of a scene that was opened are absolute.
@@ -177,7 +173,7 @@ impl FloodPicture {
             splats: false,
             turbid: (CLEAR / depth).clamp(TURBID[0], TURBID[1]),
             depth: (ground_style == GroundStyle::Depth).then(|| DepthClasses::about(depth, settings.wet_depth_m)),
-            blues: ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() },
+            blues: blues(depth),
             heights,
         })
     }
@@ -225,11 +221,8 @@ impl FloodPicture {
     /// Particles as balls, coloured by depth as maps are.
     fn discs(&self, context: &DrawContext, set: &ParticleSet) -> Balls {
         let style = self.disc_style();
-        let depths = set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values);
-        let depth = |at: usize| match depths {
-            Some(Values::Scalar(depths)) => depths[at],
-            _ => 0.0,
-        };
+        let depths = depths(set);
+        let depth = |at: usize| depths.get(at).copied().unwrap_or(0.0);
         let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], depth(at)));
         context.balls.balls(context.renderer.gpu(), &self.stage, &style, balls)
     }
@@ -253,6 +246,30 @@ impl FloodPicture {
             key_place: if is_plan { KeyPlace::Below } else { KeyPlace::Corner },
             ..Overlay::default()
         }
+    }
+}
+
+/// Heights of the ground at the nodes of its own grid, at most so many a side, so many times as high as they are.
+pub(super) fn height_field(ground: &Ground, heights: f64, most: usize) -> HeightField {
+    let bounds = ground.bounds();
+    let grid = ground.map_grid();
+    let nodes = [grid.columns, grid.rows].map(|cells| (cells + 1).min(most));
+    let (from, to) = ([bounds.x_min, bounds.y_min], [bounds.x_max, bounds.y_max]);
+    HeightField::sampled(from, to, nodes, |x, y| {
+        if has_data(ground, [x, y]) { heights * ground.height(x, y) } else { f64::NAN }
+    })
+}
+
+/// The colours of shallow to deep water, which is about so deep, m.
+pub(super) fn blues(depth: f64) -> ColourTable {
+    ColourTable { low: 0.0, high: 2.0 * depth as f32, colours: BLUES.map(split).to_vec() }
+}
+
+/// Depths of the particles of a set, m.
+pub(super) fn depths(set: &ParticleSet) -> &[f64] {
+    match set.columns.iter().find(|column| column.name == "depth").map(|column| &column.values) {
+        Some(Values::Scalar(depths)) => depths,
+        _ => &[],
     }
 }
 

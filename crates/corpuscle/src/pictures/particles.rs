@@ -1,6 +1,6 @@
 //! Pictures of particles in a box, for models without their own: in a bright room, or on paper where all lie in one plane.
 
-use super::{DrawContext, Moment, OwnView, Quality, Scenery, Shown, Subject};
+use super::{Disc, DrawContext, Moment, OwnView, Quality, Scenery, Shown, Sketch, SketchView, Sketcher, Subject};
 use crate::Error;
 use corpuscle_drawing::text;
 use corpuscle_model::{Container, Frame, ParticleSet};
@@ -82,6 +82,23 @@ impl Subject for Particles {
             things.push(self.floor.get_or_insert_with(|| Floor::new(&context.renderer, stage.from.z)));
         }
         context.take(&stage, &camera, &light, &mut things, overlay)
+    }
+}
+
+impl Sketcher for Particles {
+    fn sketch(&mut self, seen: &SketchView, title: &str, moment: &Moment<'_>) -> Sketch {
+        let stage = *self.stage.get_or_insert_with(|| stage_of(moment));
+        let is_flat = stage.from.z == stage.to.z;
+        let camera = if is_flat { seen.plan(&stage, OWN_VIEW.margins) } else { seen.orbit(&stage, &OWN_VIEW) };
+        let discs = |(set, colour): (&ParticleSet, &[u8; 3])| {
+            let places = set.position.iter().zip(&set.radius);
+            places
+                .map(|(place, radius)| Disc { place: *place, radius: *radius, colour: *colour, has_rim: true })
+                .collect::<Vec<_>>()
+        };
+        let discs = moment.frame.sets.iter().zip(COLOURS.iter().cycle()).flat_map(discs).collect();
+        let overlay = self.overlay(title, moment.frame, &stage);
+        Sketch { shown: seen.shown(stage, camera, overlay), patches: Vec::new(), discs, lines: Vec::new() }
     }
 }
 

@@ -6,10 +6,17 @@ use super::{ModelKind, Opened, Opening, Recorded};
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, dew::DewPicture};
+use crate::pictures::{
+    DrawContext, PictureSettings, Scenery, Sketcher, Subject,
+    dew::{DewPicture, DewSketch},
+};
 use corpuscle_model::ModelError;
+#[cfg(feature = "pictures")]
+use corpuscle_model::SolidShape;
 use corpuscle_output::DewReport;
 use corpuscle_scene::{Dew, Scene, SceneKind};
+#[cfg(feature = "pictures")]
+use std::path::Path;
 
 /// Memory for each particle, bytes, 1242 measured by the bench `dew/plate-100k`: air, its columns, lists and pairs with solids.
 const BYTES_PER_AIR_PARTICLE: f64 = 1300.0;
@@ -57,6 +64,16 @@ impl ModelKind for Kind {
 
     fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {
         Ok(DewReport::new(run.folder, run.scene, run.model)?.write()?)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn shapes(&self, scene: &Scene, folder: &Path) -> Result<Vec<SolidShape>, Error> {
+        Ok(corpuscle_dew::bodies::shapes(dew(scene)?, folder).map_err(ModelError::from)?)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn sketcher(&self, scenery: &Scenery) -> Result<Box<dyn Sketcher>, Error> {
+        Ok(Box::new(DewSketch::new(dew(scenery.scene())?, scenery.surfaces())))
     }
 
     #[cfg(feature = "pictures")]

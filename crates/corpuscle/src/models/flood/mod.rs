@@ -7,7 +7,9 @@ use crate::Error;
 use crate::ground::ground;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, flood::FloodPicture};
+use crate::pictures::{
+    DrawContext, PictureSettings, Scenery, Sketcher, Subject, flood::FloodPicture, flood_sketch::FloodSketch,
+};
 use corpuscle_flood::default_spacing;
 use corpuscle_model::ModelError;
 use corpuscle_output::{Report, Summary, compare_extent};
@@ -77,6 +79,19 @@ impl ModelKind for Kind {
     fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {
         let terrain = run.terrain.ok_or_else(no_flood)?;
         Ok(Report::read(run.folder, run.scene, terrain)?.write()?)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn terrain(&self, scene: &Scene, folder: &Path) -> Result<Option<Arc<Terrain>>, Error> {
+        let FloodScene { terrain, .. } = scene.flood().ok_or_else(no_flood)?;
+        Ok(Some(Arc::new(ground(terrain, scene.seed, folder)?)))
+    }
+
+    #[cfg(feature = "pictures")]
+    fn sketcher(&self, scenery: &Scenery) -> Result<Box<dyn Sketcher>, Error> {
+        let FloodScene { flood, .. } = scenery.scene().flood().ok_or_else(no_flood)?;
+        let terrain = scenery.terrain().ok_or_else(no_flood)?;
+        Ok(Box::new(FloodSketch::new(flood, terrain)?))
     }
 
     #[cfg(feature = "pictures")]

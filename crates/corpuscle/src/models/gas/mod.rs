@@ -6,7 +6,7 @@ use super::{COLLISIONS, ModelKind, Opened, Opening, Recorded};
 use crate::Error;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
-use crate::pictures::{DrawContext, PictureSettings, Scenery, Subject, gas::GasPicture};
+use crate::pictures::{DrawContext, PictureSettings, Scenery, Sketcher, Subject, gas::GasPicture};
 use corpuscle_model::ModelError;
 use corpuscle_output::GasReport;
 use corpuscle_scene::{Gas, Scene, SceneKind, Units};
@@ -64,6 +64,11 @@ impl ModelKind for Kind {
 
     fn write_report(&self, run: &Recorded<'_>) -> Result<(), Error> {
         Ok(GasReport::new(run.folder, run.scene, run.model)?.write()?)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn sketcher(&self, scenery: &Scenery) -> Result<Box<dyn Sketcher>, Error> {
+        Ok(Box::new(GasPicture::new(gas(scenery.scene())?.clone())))
     }
 
     #[cfg(feature = "pictures")]

@@ -2,6 +2,7 @@
 //! compared.
 
 mod section;
+mod sketch;
 
 use super::{DrawContext, Moment, OwnView, Shown, Subject};
 use crate::Error;
@@ -11,7 +12,8 @@ use corpuscle_model::{ParticleSet, Surface, Values};
 use corpuscle_render::{Axes, Cap, Drawable, Floor, Light, Overlay, Solid, SolidStyle, Stage};
 use corpuscle_scene::Dew;
 use corpuscle_scene::dew::Material;
-use section::Section;
+use section::SectionPicture;
+pub(crate) use sketch::DewSketch;
 
 /// Azimuth of the camera from the normal of the wet side, its elevation, and field of view, radians.
 const BESIDE: f64 = 0.45;
@@ -30,13 +32,13 @@ const MATT: [u8; 3] = [150, 152, 156];
 /// Draws dew.
 pub(crate) enum DewPicture {
     Room(Room),
-    Section(Section),
+    Section(SectionPicture),
 }
 
 impl DewPicture {
     pub(crate) fn new(context: &DrawContext, dew: &Dew, surfaces: &[Surface]) -> Self {
         match shows_air(dew) {
-            true => Self::Section(Section::new(context, dew, surfaces)),
+            true => Self::Section(SectionPicture::new(context, dew, surfaces)),
             false => Self::Room(Room::new(context, dew, surfaces)),
         }
     }
@@ -66,13 +68,7 @@ pub(crate) struct Room {
 
 impl Room {
     fn new(context: &DrawContext, dew: &Dew, surfaces: &[Surface]) -> Self {
-        let corner = |pick: fn(f64, f64) -> f64, side: usize, start: f64| {
-            std::array::from_fn(|k| surfaces.iter().map(|surface| surface.shape.bounds[side][k]).fold(start, pick))
-        };
-        let stage = match surfaces {
-            [] => Stage::new([0.0; 3], dew.size_m),
-            _ => Stage::new(corner(f64::min, 0, f64::INFINITY), corner(f64::max, 1, f64::NEG_INFINITY)),
-        };
+        let stage = Self::stage(dew, surfaces);
         let style = |surface: &Surface| {
             let solid = dew.solid.iter().find(|solid| solid.name == surface.name);
             solid.map_or(SolidStyle::Opaque(MATT, 0.6), |solid| style(&solid.material))
@@ -80,7 +76,18 @@ impl Room {
         let solids =
             surfaces.iter().map(|surface| Solid::new(&context.renderer, &stage, &surface.shape, style(surface)));
         let floor = Floor::new(&context.renderer, stage.from.z - 0.002 * stage.unit());
-        Self { solids: solids.collect(), floor, azimuth: wet_side(surfaces) + BESIDE, stage }
+        Self { solids: solids.collect(), floor, azimuth: azimuth(surfaces), stage }
+    }
+
+    /// The solids' box; the room where there are none.
+    fn stage(dew: &Dew, surfaces: &[Surface]) -> Stage {
+        let corner = |pick: fn(f64, f64) -> f64, side: usize, start: f64| {
+            std::array::from_fn(|k| surfaces.iter().map(|surface| surface.shape.bounds[side][k]).fold(start, pick))
+        };
+        match surfaces {
+            [] => Stage::new([0.0; 3], dew.size_m),
+            _ => Stage::new(corner(f64::min, 0, f64::INFINITY), corner(f64::max, 1, f64::NEG_INFINITY)),
+        }
     }
 
     fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
@@ -125,6 +132,11 @@ fn style(material: &Material) -> SolidStyle {
         "concrete" => SolidStyle::Opaque([150, 146, 138], 0.0),
         _ => SolidStyle::Opaque(MATT, 0.6),
     }
+}
+
+/// Azimuth of the camera: a little beside the wet side.
+fn azimuth(surfaces: &[Surface]) -> f64 {
+    wet_side(surfaces) + BESIDE
 }
 
 /// Azimuth of the mean normal of the wet patches of all solids; none where they have no common side.

@@ -2,11 +2,12 @@
 
 mod page;
 mod sides;
+mod sketch;
 
 use super::{DrawContext, Moment, OwnView, Quality, Shown, Subject};
 use crate::Error;
 use corpuscle_drawing::colour::{VIRIDIS, split};
-use corpuscle_model::{Container, Frame, ParticleSet};
+use corpuscle_model::{Container, Frame, ParticleSet, Path};
 use corpuscle_output::{GasKey, gas_key};
 use corpuscle_render::{
     BallStyle, Balls, Camera, ColourTable, Drawable, Floor, KeyPlace, Lens, Light, Shading, Stage, TubeStyle, Tubes,
@@ -56,9 +57,7 @@ struct View {
 
 impl Subject for GasPicture {
     fn lift_partition(&mut self, time: f64) {
-        if let Some(partition) = &mut self.gas.partition {
-            partition.lifted_at_s = Some(partition.lifted_at_s.map_or(time, |planned| planned.min(time)));
-        }
+        self.lift(time);
     }
 
     fn draw(&mut self, context: &DrawContext, title: &str, moment: &Moment<'_>) -> Result<Shown, Error> {
@@ -69,13 +68,10 @@ impl Subject for GasPicture {
             true => Light::paper_of(context.paper),
             false => context.lit(Light::studio().from_azimuth(DIRECTION[0] + SUN)),
         };
-        let overlay = self.overlay(context, title, moment, &key, &view);
+        let overlay = self.overlay(title, moment, &key, &view, self.remark(context, moment, &view));
         let stage = &view.stage;
         let mut balls = self.balls(context, &view, moment, &key);
-        let trajectories = moment.paths.iter().map(|path| {
-            let so_far = path.times.partition_point(|time| *time <= moment.frame.time);
-            &path.points[..so_far.min(path.points.len())]
-        });
+        let trajectories = moment.paths.iter().map(|path| so_far(path, moment.frame.time));
         let mut trajectories = tubes(context, stage, TRAJECTORY, [2.2, 0.002], trajectories);
         let mut things: Vec<&mut dyn Drawable> = Vec::new();
         let mut edges = sides::edges(&self.gas, context, &view);
@@ -99,14 +95,16 @@ impl GasPicture {
         Self { gas, plates: Plates::default(), floor: None }
     }
 
+    /// Notes that the partition was lifted at a time, s.
+    fn lift(&mut self, time: f64) {
+        if let Some(partition) = &mut self.gas.partition {
+            partition.lifted_at_s = Some(partition.lifted_at_s.map_or(time, |planned| planned.min(time)));
+        }
+    }
+
     /// The camera. Moving walls do not move it.
     fn view(&self, context: &DrawContext, moment: &Moment<'_>, key: &GasKey) -> View {
-        let size = padded(&self.gas.size);
-        let container = moment.container.unwrap_or(Container { from: [0.0; 3], to: size });
-        let stage = Stage::new(
-            std::array::from_fn(|k| container.from[k].min(0.0)),
-            std::array::from_fn(|k| container.to[k].max(size[k])),
-        );
+        let (stage, container) = self.stage(moment);
         let aspect = context.aspect();
         if self.gas.dimensions() > 2 {
             let camera = context.camera(&stage, &OWN_VIEW, moment.frame.time);
@@ -127,6 +125,25 @@ impl GasPicture {
         if many || shown_height(&beside.camera) < shown_height(&below.camera) { beside } else { below }
     }
 
+    /// The stage, and the box, which may be smaller.
+    fn stage(&self, moment: &Moment<'_>) -> (Stage, Container) {
+        let size = padded(&self.gas.size);
+        let container = moment.container.unwrap_or(Container { from: [0.0; 3], to: size });
+        let stage = Stage::new(
+            std::array::from_fn(|k| container.from[k].min(0.0)),
+            std::array::from_fn(|k| container.to[k].max(size[k])),
+        );
+        (stage, container)
+    }
+
+    /// The colours of a set of balls, whose values are speeds where there is one set.
+    fn colours(number: usize, key: &GasKey) -> ColourTable {
+        match key {
+            GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),
+            GasKey::Speed { most, .. } => speeds(*most),
+        }
+    }
+
     /// The sets of balls, each in its colours.
     fn balls(&self, context: &DrawContext, view: &View, moment: &Moment<'_>, key: &GasKey) -> Vec<Balls> {
         let shading = match (self.gas.dimensions(), context.quality) {
@@ -137,13 +154,8 @@ impl GasPicture {
         let style = |number: usize| BallStyle {
             shading,
             least_radius: self.least_radius(context, moment.frame, view) as f32,
-            ..BallStyle::new(match key {
-                GasKey::Kinds(kinds) => ColourTable::plain(kinds.get(number).map_or(INK, |(_, colour)| *colour)),
-                GasKey::Speed { most, .. } => speeds(*most),
-            })
+            ..BallStyle::new(Self::colours(number, key))
         };
-        let speed =
-            |set: &ParticleSet, at: usize| set.velocity[at].iter().map(|along| along * along).sum::<f64>().sqrt();
         let sets = moment.frame.sets.iter().enumerate();
         sets.map(|(number, set)| {
             let balls = (0..set.len()).map(|at| (set.position[at], set.radius[at], speed(set, at)));
@@ -169,6 +181,17 @@ impl GasPicture {
         let smallest = frame.sets.iter().flat_map(|set| &set.radius).copied().fold(f64::INFINITY, f64::min);
         (self.least_radius(context, frame, view) * sample_height(context, view) / smallest).max(1.0)
     }
+}
+
+/// Speed of a ball of a set.
+fn speed(set: &ParticleSet, at: usize) -> f64 {
+    set.velocity[at].iter().map(|along| along * along).sum::<f64>().sqrt()
+}
+
+/// The part of a trajectory before a time, s.
+fn so_far(path: &Path, time: f64) -> &[[f64; 3]] {
+    let count = path.times.partition_point(|at| *at <= time);
+    &path.points[..count.min(path.points.len())]
 }
 
 /// Height of a sample in the middle of the stage, m.

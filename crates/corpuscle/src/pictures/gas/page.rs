@@ -13,11 +13,11 @@ const HARDLY: f64 = 1.15;
 impl GasPicture {
     pub(super) fn overlay(
         &self,
-        context: &DrawContext,
         title: &str,
         moment: &Moment<'_>,
         key: &GasKey,
         view: &View,
+        remark: String,
     ) -> Overlay {
         let (unit, time) = match self.gas.units {
             Units::Si => ("m", text::any_time(moment.frame.time)),
@@ -35,7 +35,7 @@ impl GasPicture {
             key: Some(key),
             key_place: view.key_place,
             lines: self.lines(moment),
-            remark: self.remark(context, moment, view),
+            remark,
             borders: if flat { sides::borders(&self.gas, view, moment.frame.time) } else { Vec::new() },
             marks: if flat { self.marks(moment) } else { Vec::new() },
             labels: self.gas.measure.region.iter().map(label).collect(),
@@ -69,7 +69,7 @@ impl GasPicture {
         found.into_iter().filter(|(there, ..)| *there).map(|(_, style, name)| (style, name.into())).collect()
     }
 
-    fn remark(&self, context: &DrawContext, moment: &Moment<'_>, view: &View) -> String {
+    pub(super) fn remark(&self, context: &DrawContext, moment: &Moment<'_>, view: &View) -> String {
         let enlarged = self.enlarged(context, moment.frame, view);
         let mut radii = moment.frame.sets.iter().flat_map(|set| &set.radius);
         let first = radii.next();
