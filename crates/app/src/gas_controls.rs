@@ -5,7 +5,7 @@ use crate::snapshot::Snapshot;
 use corpuscle::GasLiveChange as LiveChange;
 use corpuscle::scene::{Axis, Gas, Wall};
 use corpuscle_drawing::text::short_number;
-use egui::{Button, RichText, Slider, Ui, WidgetInfo};
+use egui::{Button, RichText, Slider, SliderClamping, Ui, WidgetInfo};
 
 /// Factor on the energy of a gas when it is heated once.
 const WARMER: f64 = 1.15;
@@ -138,7 +138,9 @@ fn piston(
     let mut action = None;
     ui.horizontal(|ui| {
         ui.spacing_mut().slider_width = (ui.available_width() - 150.0).max(60.0);
-        let response = ui.add(Slider::new(&mut to, range[0]..=range[1]).max_decimals(3));
+        // The position of a piston that nobody drags is not rounded: that would be a drag.
+        let slider = Slider::new(&mut to, range[0]..=range[1]).max_decimals(3).clamping(SliderClamping::Edits);
+        let response = ui.add(slider);
         response.widget_info(|| WidgetInfo::slider(true, before, &name));
         if response.changed() && to != before {
             controls.pistons.retain(|(held, _)| *held != wall);

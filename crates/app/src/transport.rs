@@ -8,7 +8,7 @@ use corpuscle_drawing::text;
 use egui::{Align, Color32, CornerRadius, Layout, Rect, RichText, Role, Sense, Slider, Ui, WidgetInfo, vec2};
 
 /// Slowest and fastest pace, as multiples of the default pace.
-const PACES: [f64; 2] = [0.02, 50.0];
+pub(crate) const PACES: [f64; 2] = [0.02, 50.0];
 
 /// An action of the strip.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -58,6 +58,9 @@ fn balls_are_put_in_a_temperature_is_held_and_a_piston_dragged() {
     stage.choose("A piston falls onto a gas");
     let count = |window: &corpuscle_app::Window| window.snapshot().map_or(0, |snapshot| snapshot.particles);
     stage.until(SOON, "it plays", |window| !window.is_waiting() && gauge(window, "gas.packing") > 0.0);
+    // Nobody drags the piston: it moves.
+    stage.until(SOON, "it moves", |window| gauge(window, "x_max.velocity") < -1e-3);
+    assert!(!stage.has("Release"));
     let before = count(stage.window());
     let part = (before as f64 * 0.1).round() as usize;
     stage.click(&format!("Add {part}"));

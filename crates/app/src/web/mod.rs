@@ -24,13 +24,16 @@ struct Words {
     is_embedded: bool,
     /// `measure=SECONDS`: pictures are counted.
     measure: Option<f64>,
+    /// `speed=TIMES`: the pace of scenes, over their own.
+    speed: Option<f64>,
 }
 
 impl Words {
     fn of(search: &str) -> Self {
         let words: Vec<_> = search.trim_start_matches('?').split('&').collect();
-        let measure = words.iter().find_map(|word| word.strip_prefix("measure=")?.parse().ok());
-        Self { is_embedded: words.contains(&"embed"), measure }
+        let number = |name| words.iter().find_map(|word| word.strip_prefix(name)?.parse::<f64>().ok());
+        let (measure, speed) = (number("measure="), number("speed="));
+        Self { is_embedded: words.contains(&"embed"), measure, speed }
     }
 }
 
@@ -103,6 +106,9 @@ impl App {
         }
         if words.is_embedded {
             window.embed();
+        }
+        if let Some(speed) = words.speed {
+            window.set_speed(speed);
         }
         let measured = Arc::<Mutex<Option<Measurement>>>::default();
         let meter = words.measure.map(|seconds| Meter::new(seconds, measured.clone()));

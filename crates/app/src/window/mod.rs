@@ -19,6 +19,7 @@ use crate::physics::{Backend, Command, Opened, Physics, default_pace};
 use crate::picture::Picture;
 use crate::plots::Plots;
 use crate::snapshot::{Snapshot, Wake};
+use crate::transport::PACES;
 use crate::{Screen, help, link, style};
 use egui::{Context, Frame, Margin, Panel, Ui};
 use open::{Open, parameters};
@@ -50,6 +51,8 @@ pub struct Window {
     clock: PictureClock,
     /// Folder of the files written.
     folder: PathBuf,
+    /// The pace of scenes as they are opened, over their own.
+    speed: f64,
     /// Whether a scene plays as soon as it is open.
     plays: bool,
     /// True where the picture and its controls are shown alone.
@@ -139,6 +142,7 @@ impl Window {
             fault: None,
             clock: PictureClock::default(),
             folder: PathBuf::from("."),
+            speed: 1.0,
             plays: true,
             is_embedded: false,
             is_narrow: false,
@@ -159,6 +163,13 @@ impl Window {
     /// Scenes opened from now on are paused at their start.
     pub fn wait_at_start(&mut self) {
         self.plays = false;
+    }
+
+    /// Scenes opened from now on play so many times as fast as by default, within the range of the window's control.
+    pub fn set_speed(&mut self, times: f64) {
+        if times.is_finite() {
+            self.speed = times.clamp(PACES[0], PACES[1]);
+        }
     }
 
     /// Opens a scene.
@@ -265,7 +276,7 @@ impl Window {
             },
         };
         let before = self.open.take();
-        let mut times = 1.0;
+        let mut times = self.speed;
         if let Some(before) = before.filter(|before| before.source.name == source.name) {
             // A scene restarted with changes keeps its camera.
             (picture.camera_offset, picture.quality) = (before.picture.camera_offset, before.picture.quality);

@@ -33,12 +33,12 @@ impl Source {
     /// # Errors
     /// Where the text or a change is refused.
     pub fn scene(&self) -> Result<Scene, SceneError> {
-        let written = Scene::parse(&self.text, &self.name, &[])?;
-        if self.changes.is_empty() {
-            return Ok(written);
+        let mut whole = Scene::parse(&self.text, &self.name, &[])?;
+        // As `--set` on the command line: defaults that depend on a changed value follow it.
+        if let Ok(changed) = Scene::parse(&self.text, &self.name, &self.changes) {
+            return Ok(changed);
         }
-        // Defaults are written out, so that every value can be set by its path.
-        let mut whole = written;
+        // A part of a default, such as one number of a list, has a path only where defaults are written out.
         whole.resolve_defaults();
         Scene::parse(&whole.to_toml()?, &self.name, &self.changes)
     }
@@ -47,5 +47,27 @@ impl Source {
 impl From<Builtin> for Source {
     fn from(scene: Builtin) -> Self {
         Self { name: scene.name.into(), text: scene.text.into(), folder: PathBuf::from("."), changes: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use corpuscle::scene::builtin;
+
+    fn changed(path: &str, value: &str) -> Scene {
+        let changes = vec![(path.into(), value.into())];
+        let mut scene = Source { changes, ..builtin("gas/effusion").unwrap().into() }.scene().unwrap();
+        scene.resolve_defaults();
+        scene
+    }
+
+    #[test]
+    fn defaults_follow_changes() {
+        let scene = changed("run.until_s", "3");
+        assert_eq!(scene.run.gauge_every_s, Some(3.0 / 200.0));
+        assert_eq!(scene.gas().unwrap().measure.from_s, Some(0.1 * 3.0));
+        // One number of a default.
+        assert_eq!(changed("gas.gravity.1", "-2.0").gas().unwrap().gravity, Some(vec![0.0, -2.0]));
     }
 }
