@@ -122,14 +122,17 @@ fn names_in(folder: &Path) -> Result<Vec<String>, OutputError> {
     Ok(names)
 }
 
+/// File of the times of the depth maps.
+pub(crate) const TIMES: &str = "times.csv";
+
 /// File of the depth map of a frame.
 pub(crate) fn snapshot_path(folder: &Path, index: usize) -> PathBuf {
     folder.join(format!("{SNAPSHOT}_{index:06}.tif"))
 }
 
-/// Writes `times.csv`: which depth map shows which time.
+/// Writes [`TIMES`]: which depth map shows which time.
 pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), OutputError> {
-    write_whole(&folder.join("times.csv"), |file| {
+    write_whole(&folder.join(TIMES), |file| {
         writeln!(file, "file,time_s")?;
         times
             .iter()
@@ -138,9 +141,9 @@ pub(crate) fn write_times(folder: &Path, times: &[f64]) -> Result<(), OutputErro
     })
 }
 
-/// Reads the times of the depth maps from `times.csv`; none where there is no such file.
+/// Reads the times of the depth maps from [`TIMES`]; none where there is no such file.
 pub(crate) fn read_times(folder: &Path) -> Result<Vec<f64>, OutputError> {
-    let path = folder.join("times.csv");
+    let path = folder.join(TIMES);
     let text = match fs::read_to_string(&path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
         text => text.map_err(OutputError::read(&path))?,

@@ -278,7 +278,7 @@ impl RunFolder {
         }
         let maps = self.path.join("maps");
         remove_numbered(&maps, "depth_", self.map_times.len())?;
-        if maps.exists() {
+        if maps.join(maps::TIMES).exists() {
             maps::write_times(&maps, &self.map_times)?;
         }
         let summary = self.path.join("summary.json");
