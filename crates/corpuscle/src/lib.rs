@@ -23,6 +23,7 @@ mod error;
 mod filming;
 mod ground;
 mod live_change;
+mod memory;
 pub mod models;
 mod open;
 pub mod parameters;

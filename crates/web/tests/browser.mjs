@@ -141,6 +141,11 @@ onPage("a link that is wrong is told", "#gas/none", async (stage) => {
   assert.match(error, /gas\/none/);
 });
 
+onPage("a scene that needs more memory than a page has is refused with what to do", "#gas/maxwell?gas.species.0.count=20000000", async (stage) => {
+  const { error } = await stage.until("it is told", (state) => state.error);
+  assert.match(error, /10\.0 GB of memory, and 3\.2 GB can be had here: give fewer balls/);
+});
+
 onPage("terrain that is dropped is flooded", "", async (stage) => {
   await stage.until("the first page", (state) => !state.opening);
   // A valley that falls towards the south.

@@ -17,7 +17,8 @@ use web_sys::{MessageEvent, Worker, WorkerOptions, WorkerType};
 
 /// The script of the worker, beside the page.
 const SCRIPT: &str = "worker.js";
-const BROKEN: &str = "an internal error stopped the scene; open it again";
+const BROKEN: &str = "the scene was ended: it took more memory than a page has (4 GB), or an internal error stopped it. Make it smaller, or run it \
+                      with the program (corpuscle view)";
 
 /// The handle of the worker. Dropping it ends the worker.
 pub struct Physics {

@@ -11,6 +11,9 @@ use wasm_bindgen_futures::spawn_local;
 /// The folder that dropped files have in memory.
 const FOLDER: &str = "/dropped";
 
+/// Largest file that is read, bytes: it is in memory twice, as is the terrain in it, and a page has 4 GB.
+const MOST: usize = 512 << 20;
+
 impl Window {
     /// Reads the dropped files, and opens the first.
     pub(super) fn take_files(&mut self, context: &Context, files: &[DroppedFileHandle]) {
@@ -22,6 +25,14 @@ impl Window {
             for file in files {
                 let path = Path::new(FOLDER).join(file.path());
                 match file.bytes_async().await {
+                    Ok(bytes) if bytes.len() > MOST => {
+                        let _ = sender.send(Err(format!(
+                            "{}: a page reads files of at most {} MB; make it smaller (`corpuscle terrain clip`), or open it with the \
+                             program (`corpuscle view`)",
+                            file.path().display(),
+                            MOST >> 20
+                        )));
+                    }
                     Ok(bytes) => {
                         holder.hold(path.clone(), &bytes);
                         hold_in_memory(path.clone(), &bytes);

@@ -4,6 +4,7 @@ mod parameters;
 
 use super::{ModelKind, Opened, Opening, Recorded};
 use crate::Error;
+use crate::memory::refuse_what_does_not_fit;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
 use crate::pictures::{
@@ -41,6 +42,9 @@ impl ModelKind for Kind {
 
     fn open(&self, opening: Opening<'_>) -> Result<Opened, Error> {
         let Opening { scene, folder, .. } = opening;
+        let settings = dew(scene)?;
+        let parcels = settings.size_m.iter().product::<f64>() / settings.spacing_m.powi(3);
+        refuse_what_does_not_fit(parcels * BYTES_PER_AIR_PARTICLE, "give a larger dew.spacing_m or a smaller box")?;
         Ok(Opened::plain(Box::new(corpuscle_dew::open(dew(scene)?, scene.seed, folder)?)))
     }
 

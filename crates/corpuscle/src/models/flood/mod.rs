@@ -5,6 +5,7 @@ mod parameters;
 use super::{ModelKind, Opened, Opening, Recorded};
 use crate::Error;
 use crate::ground::ground;
+use crate::memory::refuse_what_does_not_fit;
 use crate::parameters::Builder;
 #[cfg(feature = "pictures")]
 use crate::pictures::{
@@ -48,6 +49,7 @@ impl ModelKind for Kind {
             flood.spacing_m = Some(chosen.spacing);
             notes.push(chosen.to_string());
         }
+        refuse_more_than_memory(flood, &terrain, folder, until)?;
         let new = if is_restored { corpuscle_flood::open_to_restore } else { corpuscle_flood::open };
         let model = new(flood, seed, folder, terrain.clone())?;
         *flood = model.settings().clone();
@@ -105,6 +107,20 @@ impl ModelKind for Kind {
         let terrain = scenery.terrain().ok_or_else(no_flood)?;
         Ok(Box::new(FloodPicture::new(context, flood, terrain, settings.ground.clone(), settings.heights)?))
     }
+}
+
+/// Refuses water that would take more memory than there can be.
+fn refuse_more_than_memory(flood: &Flood, terrain: &Terrain, folder: &Path, until: f64) -> Result<(), Error> {
+    let fits = |area: f64| {
+        let particles = area / flood.spacing_m.unwrap_or(f64::INFINITY).powi(2);
+        refuse_what_does_not_fit(particles * BYTES_PER_PARTICLE, "give a larger flood.spacing_m")
+    };
+    let [length, width] = terrain.bounds().size();
+    // Where it does even if all the ground is wet, nobody has to find out how much of it is.
+    if fits(length * width).is_err() {
+        fits(default_spacing(flood, terrain, folder, until)?.wet_area)?;
+    }
+    Ok(())
 }
 
 /// Largest number of particles over a run without a warning: more take days.
