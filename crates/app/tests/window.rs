@@ -317,3 +317,18 @@ fn without_a_device_pictures_are_discs_and_maps() {
         assert!(!stage.has("Save a still") && !stage.has("Quality"), "{title}");
     }
 }
+
+#[test]
+fn a_window_as_narrow_as_a_phone_has_the_picture_and_one_panel() {
+    let Some(mut stage) = stage("a narrow window") else { return };
+    stage.choose("Maxwell's speeds");
+    stage.until(SOON, "it plays", |window| window.snapshot().is_some_and(|snapshot| snapshot.frame.time > 0.0));
+    assert!(stage.has("Heat"));
+    stage.resize([390.0, 800.0]);
+    assert_eq!(stage.picture_size()[0], 390.0);
+    assert!(!stage.has("Heat"));
+    stage.click("Parameters");
+    assert!(stage.has("Heat") && stage.picture_size()[1] > 250.0, "{:?}", stage.picture_size());
+    stage.click("Plots");
+    assert!(!stage.has("Heat"));
+}

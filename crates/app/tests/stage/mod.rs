@@ -169,6 +169,17 @@ impl Stage {
         self.harness.query_all_by_label(name).next().is_some()
     }
 
+    /// Gives the window another size, points.
+    pub fn resize(&mut self, size: [f32; 2]) {
+        self.harness.set_size(vec2(size[0], size[1]));
+        self.run(Duration::from_millis(100));
+    }
+
+    /// Size of the picture of the scene, points.
+    pub fn picture_size(&self) -> [f32; 2] {
+        self.harness.get_by_label("Picture of the scene").rect().size().into()
+    }
+
     /// Clicks on a place of the picture, in parts of its width and height.
     pub fn click_picture(&mut self, part: [f32; 2]) {
         let rect = self.harness.get_by_label("Picture of the scene").rect();

@@ -21,7 +21,7 @@ use std::path::Path;
 
 /// Default azimuth and elevation of the camera (from the south-east, from above), and field of view, radians.
 const DIRECTION: [f64; 2] = [-1.15, 0.6];
-pub(super) const OWN_VIEW: OwnView =
+const OWN_VIEW: OwnView =
     OwnView { direction: DIRECTION, field_of_view: 0.5, margin: 0.06, margins: [0.13, 0.06, 0.2, 0.09] };
 /// Azimuth of the sun to the left of the camera, radians.
 const SUN: f64 = -1.0;

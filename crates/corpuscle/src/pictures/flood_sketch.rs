@@ -1,6 +1,6 @@
 //! A flood as a map: the ground with its shades from above, the water as discs coloured by depth.
 
-use super::flood::{OWN_VIEW, blues, depths, height_field};
+use super::flood::{blues, depths, height_field};
 use super::{Disc, GroundMap, Moment, Sketch, SketchView, Sketcher};
 use crate::Error;
 use corpuscle_drawing::text;
@@ -14,6 +14,8 @@ use std::path::Path;
 
 /// Most nodes per side of the ground: what any browser draws.
 const MOST_NODES: usize = 1025;
+/// Margins for axes and legend: left, right, below and above, parts of the height of the picture.
+const MARGINS: [f64; 4] = [0.19, 0.06, 0.2, 0.12];
 /// Radius of a disc over that of the particle: discs of neighbours meet.
 const RADIUS: f64 = 1.35;
 /// The light of the ground's shades: from the north-west, as on maps (Horn 1981).
@@ -61,7 +63,7 @@ impl Sketcher for FloodSketch {
             ..Overlay::default()
         };
         let discs = moment.frame.sets.iter().flat_map(|set| self.discs(set)).collect();
-        let camera = seen.plan(&self.stage, OWN_VIEW.margins);
+        let camera = seen.plan(&self.stage, MARGINS);
         Sketch { shown: seen.shown(self.stage, camera, overlay), patches: Vec::new(), discs, lines: Vec::new() }
     }
 
