@@ -141,7 +141,7 @@ onPage("a link that is wrong is told", "#gas/none", async (stage) => {
   assert.match(error, /gas\/none/);
 });
 
-onPage("a scene that needs more memory than a page has is refused with what to do", "#gas/maxwell?gas.species.0.count=20000000", async (stage) => {
+onPage("a scene that needs more memory than a page has is refused with what to do", "#gas/maxwell?gas.species.0.count=20000000&gas.species.0.radius=0.01", async (stage) => {
   const { error } = await stage.until("it is told", (state) => state.error);
   assert.match(error, /10\.0 GB of memory, and 3\.2 GB can be had here: give fewer balls/);
 });
