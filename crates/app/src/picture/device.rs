@@ -7,7 +7,7 @@ use crate::snapshot::Snapshot;
 use crate::view_state::{ViewState, moment};
 use corpuscle::Error;
 use corpuscle::gpu::{GpuKind, Image};
-use corpuscle::pictures::{Pictures, Quality, Shown};
+use corpuscle::pictures::{Pictures, Shown};
 use egui::{Painter, Rect};
 
 /// What draws pictures on the window's device.
@@ -30,8 +30,7 @@ impl DevicePainting {
     /// Draws a picture of a snapshot.
     pub fn draw(&mut self, snapshot: &Snapshot, drawn: &Drawn, paper: [f32; 3]) -> Result<Shown, Error> {
         self.pictures.resize(drawn.size, drawn.samples)?;
-        let quality: Quality = drawn.quality;
-        let shown = self.pictures.show(&moment(snapshot), &drawn.camera_offset, quality, paper)?;
+        let shown = self.pictures.show(&moment(snapshot), &drawn.camera_offset, drawn.quality, paper)?;
         self.on_screen = Some(OnScreen(self.pictures.inlay(&shown, &self.screen.inlays)));
         Ok(shown)
     }
